@@ -1,0 +1,1 @@
+"""The machine: graph, compiler, renderer, files, commands."""

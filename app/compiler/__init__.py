@@ -1,0 +1,37 @@
+"""Graph in, plan out. Pure: no OpenGL, no files.
+
+Stages, each a function of what the one before made: `expand` flattens groups, `lower` turns nodes into operations,
+`fuse` groups operations into passes, `emit` writes a GLSL program per pass, `schedule` finds formats, keys and slots.
+"""
+
+from __future__ import annotations
+
+from ..graph import Graph
+from .explain import dot, explain
+from .fuse import fuse
+from .ir import Picture
+from .library import Library, installed
+from .lower import Probe, Probed, Request, lower
+from .plan import Pass, Plan, Shader, Surface, Upload
+from .schedule import schedule
+from .target import NULL, Form, Precision, Target
+
+__all__ = [
+    "NULL", "Form", "Library", "Pass", "Picture", "Plan", "Precision", "Probe", "Probed", "Request", "Shader",
+    "Surface", "Target", "Upload", "compile_graph", "dot", "explain", "installed",
+]
+
+
+def compile_graph(
+    graph: Graph, request: Request, probe: Probe, *, target: Target = NULL, precision: Precision | None = None,
+    library: Library | None = None, fusion: bool = True,
+) -> Plan:
+    """Compile what `request` wants of `graph` for `target`.
+
+    Raises GraphError for a graph that cannot be rendered, InputError (from `probe`) for a picture that cannot be
+    read, DeviceError for one that is too large, ShaderError for a node and its GLSL that do not agree.
+    """
+    library = library or installed()
+    program = lower(graph, request, library, probe)
+    passes = fuse(program, target, enabled=fusion)
+    return schedule(program, passes, library, target, precision or target.precision)

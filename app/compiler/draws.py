@@ -1,0 +1,187 @@
+"""What a filter's `passes` is handed: it turns draws into operations."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from ...nodes import Argument, Drawn, Edge, Filter, Image, Kind, Node, Pixels, Plain, Size, Socket, glsl_type
+from ..errors import ShaderError
+from . import gaussian
+from .ir import BLOCK, Accessor, Builder, Call, Choice, Constant, Convolve, Gather, Parameter, Picture, Reduce, Ref, Shape
+from .library import Function, Library
+
+
+@dataclass(frozen=True)
+class Made:
+    """A draw's result: the `Drawn` that a node sees."""
+
+    ref: Ref
+    shape: Shape
+
+    @property
+    def size(self) -> Size:
+        return self.shape.size
+
+
+class Recorder:
+    """Implements `Draw` for one node: `resolved` holds what its inputs are linked to."""
+
+    def __init__(
+        self, owner: str, node: Filter, size: Size, resolved: Mapping[str, Ref | Constant], linked: frozenset[str],
+        builder: Builder, library: Library, reader: Callable[[Picture, str], Ref],
+    ) -> None:
+        self.size = size
+        self._owner, self._node = owner, node
+        self._resolved, self._linked = resolved, linked
+        self._builder, self._library, self._reader = builder, library, reader
+        self._shader = f"{node.category}/{node.id}"
+
+    def size_of(self, pixels: Pixels) -> Size:
+        operand = self._operand(pixels)
+        return self._builder.shape(operand).size if isinstance(operand, Ref) else (1, 1)
+
+    def linked(self, socket: Socket) -> bool:
+        return socket.name in self._linked
+
+    def __call__(
+        self, function: str, /, *inputs: Socket, size: Size | None = None, edge: Edge = "clamp",
+        result: Socket | None = None, **arguments: Argument,
+    ) -> Drawn:
+        signature = self._library.function(self._shader, function, self._owner)
+        named: dict[str, Argument] = {item.name: item for item in inputs} | arguments
+        accessors: list[Accessor] = []
+        rest: dict[str, Argument] = {}
+        for name, item in named.items():
+            if isinstance(item, (Socket, Made)):
+                operand = self._operand(item)
+                channels = item.channels if isinstance(item, Socket) else item.shape.channels
+                accessors.append(Accessor(name, glsl_type(channels), operand))
+            else:
+                rest[name] = item
+        return self._made(
+            Gather(
+                (self._shape(result, size or self.size),), self._owner, self._shader, function, tuple(accessors),
+                self._parameters(signature, rest), edge, choices(self._node),
+            )
+        )
+
+    def point(self, function: str, /, *inputs: Socket, result: Socket | None = None, **arguments: Argument) -> Drawn:
+        signature = self._library.function(self._shader, function, self._owner)
+        named: dict[str, Argument] = {item.name: item for item in inputs} | arguments
+        sizes = [self.size_of(item) for item in named.values() if isinstance(item, (Socket, Made))]
+        size = next((found for found in sizes if found != (1, 1)), (1, 1) if sizes else self.size)
+        return self._made(
+            Call(
+                (self._shape(result, size),), self._owner, self._shader, function,
+                self._parameters(signature, named), choices(self._node),
+            )
+        )
+
+    def blur(self, image: Pixels, sigma: float | tuple[float, float], edge: Edge = "clamp") -> Drawn:
+        sigmas = sigma if isinstance(sigma, tuple) else (sigma, sigma)
+        axes = [gaussian.plan_axis(max(0.0, one)) for one in sigmas]
+        made = self._pixels(image)
+        full = made.size
+        for axis, plan in enumerate(axes):
+            total = 1
+            for step in plan.steps:
+                weights, start = gaussian.decimation(step)
+                before = plan.apron if total == 1 else 0
+                total *= step
+                length = -(-(full[axis] + 2 * plan.apron) // total)
+                made = self._convolve(made, axis, weights, step, start - before, edge, length)
+        for axis, plan in enumerate(axes):
+            if plan.rest > 0.0:
+                weights = gaussian.weights(plan.rest)
+                lies_beyond = edge if plan.factor == 1 else "clamp"
+                made = self._convolve(made, axis, weights, 1, -(len(weights) // 2), lies_beyond, made.size[axis])
+        for axis, plan in reversed(list(enumerate(axes))):
+            if plan.factor > 1:
+                made = self._enlarge(made, axis, plan.factor, plan.apron, full[axis])
+        return made
+
+    def convolve(self, image: Pixels, weights: tuple[float, ...], axis: Literal["x", "y"], edge: Edge = "clamp") -> Drawn:
+        made = self._pixels(image)
+        along = 0 if axis == "x" else 1
+        return self._convolve(made, along, weights, 1, -(len(weights) // 2), edge, made.size[along])
+
+    def reduce(self, image: Pixels, operation: Literal["sum", "max"]) -> Drawn:
+        made = self._pixels(image)
+        while made.size != (1, 1):
+            size = (math.ceil(made.size[0] / BLOCK), math.ceil(made.size[1] / BLOCK))
+            shape = Shape(size, made.shape.channels, data=True)
+            made = self._made(Reduce((shape,), self._owner, made.ref, operation))
+        return made
+
+    def read(self, path: str, layer: str, result: Socket) -> Drawn:
+        ref = self._reader(Picture(path, layer, result.kind, result.channels), self._owner)
+        return Made(ref, self._builder.shape(ref))
+
+    # --- parts ---------------------------------------------------------------------------------------------------
+
+    def _made(self, op: Call | Gather | Convolve | Reduce) -> Made:
+        return Made(self._builder.add(op), op.shapes[0])
+
+    def _shape(self, result: Socket | None, size: Size) -> Shape:
+        socket = result or Image()
+        return Shape((1, 1) if socket.single else size, socket.channels, socket.kind is not Kind.IMAGE)
+
+    def _operand(self, item: Pixels) -> Ref | Constant:
+        if isinstance(item, Socket):
+            return self._resolved[item.name]
+        assert isinstance(item, Made)
+        return item.ref
+
+    def _pixels(self, item: Pixels) -> Made:
+        operand = self._operand(item)
+        if isinstance(operand, Constant):
+            raise ShaderError(self._owner, f"nodes/{self._shader}.py", 1, "a constant input cannot be filtered")
+        return Made(operand, self._builder.shape(operand))
+
+    def _parameters(self, signature: Function, arguments: Mapping[str, Argument]) -> tuple[Parameter, ...]:
+        names = tuple(name for _, name in signature.parameters)
+        if names != tuple(arguments):
+            raise ShaderError(
+                self._owner, f"shaders/{self._shader}.glsl", 1,
+                f"'{signature.name}' takes ({', '.join(names)}) but is drawn with ({', '.join(arguments)})",
+            )
+        found: list[Parameter] = []
+        for (glsl, name), item in zip(signature.parameters, arguments.values(), strict=True):
+            if isinstance(item, str):
+                operand = Choice(self._node.values[name].choices.index(item))
+            elif isinstance(item, (Socket, Made)):
+                operand = self._operand(item)
+            else:
+                assert isinstance(item, (float, int, tuple))
+                operand = Constant(_plain(item))
+            found.append(Parameter(glsl, operand))
+        return tuple(found)
+
+    def _convolve(
+        self, made: Made, axis: int, weights: tuple[float, ...], stride: int, origin: int, edge: Edge, length: int
+    ) -> Made:
+        size = (length, made.size[1]) if axis == 0 else (made.size[0], length)
+        shape = Shape(size, made.shape.channels, made.shape.data)
+        return self._made(Convolve((shape,), self._owner, made.ref, axis, weights, stride, origin, edge))
+
+    def _enlarge(self, made: Made, axis: int, factor: int, apron: int, length: int) -> Made:
+        size = (length, made.size[1]) if axis == 0 else (made.size[0], length)
+        shape = Shape(size, made.shape.channels, made.shape.data)
+        accessor = Accessor("image", "vec4", made.ref)
+        numbers = tuple(Parameter("int", Constant(value)) for value in (axis, factor, apron))
+        return self._made(Gather((shape,), self._owner, "primitive/enlarge", "enlarge", (accessor,), numbers))
+
+
+def choices(node: Node) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """The choices of a node by value: its GLSL file sees them as macros."""
+    return tuple((name, value.choices) for name, value in node.values.items() if value.choices)
+
+
+def _plain(item: Plain) -> float | int | bool | tuple[float, ...]:
+    assert not isinstance(item, str)
+    return item
+
+

@@ -1,0 +1,286 @@
+"""Third stage: one GLSL program per pass, as a fragment or as a compute shader.
+
+The text depends on what is computed, never on values: those are uniforms, so that dragging a slider compiles nothing.
+Names are counted from zero in every pass, so that equal passes of different graphs share a program.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from ...nodes import glsl_type
+from . import bodies
+from .fuse import Fused
+from .ir import Call, Choice, Constant, Convolve, Gather, Op, Parameter, Program, Reduce, Ref, Shape
+from .library import Library, Text
+from .plan import LINES_PER_FILE, Shader, Uniform
+from .target import Form, Target
+
+LOCAL_SIZE = 64
+"""Invocations of a work group, along a row."""
+
+
+@dataclass(frozen=True)
+class Emitted:
+    """A program, what its uniforms and weights are set to, and how many work groups run."""
+
+    shader: Shader
+    uniforms: tuple[tuple[str, Uniform], ...]
+    weights: tuple[float, ...]
+    groups: tuple[int, int]
+
+
+@dataclass
+class Names:
+    """Hands out textures and uniforms as the text of a pass asks for them."""
+
+    program: Program
+    textures: dict[Ref, int]
+    form: Form
+    by_image: bool
+    uniforms: list[tuple[str, str, Uniform]] = field(default_factory=list[tuple[str, str, Uniform]])
+
+    def uniform(self, glsl: str, value: Uniform, name: str = "") -> str:
+        """A uniform of this type set to `value`; booleans travel as integers."""
+        name = name or f"u{len(self.uniforms)}"
+        self.uniforms.append((name, "int" if glsl == "bool" else glsl, value))
+        return f"({name} != 0)" if glsl == "bool" else name
+
+    def shape(self, ref: Ref) -> Shape:
+        return self.program.ops[ref.op].shapes[ref.output]
+
+    def load(self, ref: Ref, where: str) -> str:
+        """Read one pixel; a single pixel stands for every position."""
+        shape = self.shape(ref)
+        where = "ivec2(0)" if shape.size == (1, 1) else where
+        name = f"t{self.textures[ref]}"
+        call = f"imageLoad({name}, {where})" if self.by_image else f"texelFetch({name}, {where}, 0)"
+        return call + ("", ".r", ".rg", ".rgb", "")[shape.channels]
+
+    def converted(self, ref: Ref, where: str, glsl: str) -> str:
+        """Read one pixel as another type."""
+        return convert(self.load(ref, where), self.shape(ref).channels, glsl)
+
+    def constant(self, item: Constant, glsl: str) -> str:
+        """A uniform; one of another width is converted like a picture would be."""
+        if item.channels == 1 and glsl in ("float", "int", "bool"):
+            return self.uniform(glsl, item.value)
+        if item.channels == 9:
+            return self.uniform("mat3", item.value)
+        return convert(self.uniform(glsl_type(item.channels), item.value), item.channels, glsl)
+
+    def argument(self, item: Parameter, values: dict[Ref, str]) -> str:
+        """A parameter as an expression; `values` names what the pass has computed or loaded already."""
+        if isinstance(item.operand, Choice):
+            return str(item.operand.index)
+        if isinstance(item.operand, Constant):
+            return self.constant(item.operand, item.glsl)
+        text = values[item.operand]
+        channels = self.shape(item.operand).channels
+        if item.low != float("-inf") or item.high != float("inf"):
+            text = f"clamp({text}, {_bound(item.low)}, {_bound(item.high)})"
+        if item.factor != 1.0:
+            text = f"{text} * {self.uniform('float', item.factor)}"
+        return convert(text, channels, item.glsl)
+
+
+def convert(text: str, channels: int, glsl: str) -> str:
+    """An expression with this many channels as another GLSL type: the lossless conversions between sockets."""
+    if glsl == glsl_type(channels):
+        return text
+    if channels == 1:
+        return {
+            "int": f"int(floor({text} + 0.5))", "bool": f"({text} > 0.5)", "vec4": f"vec4(vec3({text}), 1.0)",
+        }.get(glsl, f"{glsl}({text})")
+    wanted = glsl_channels(glsl)
+    if channels > wanted:
+        return f"({text}).{'rgba'[:wanted]}"
+    return f"{glsl}({text}, {', '.join(['0.0'] * (wanted - channels))})"
+
+
+def glsl_channels(glsl: str) -> int:
+    """How many floats a GLSL type holds."""
+    return {"vec2": 2, "vec3": 3, "vec4": 4}.get(glsl, 1)
+
+
+def _bound(limit: float) -> str:
+    return f"{min(max(limit, -3.0e38), 3.0e38)!r}"
+
+
+def emit(program: Program, fused: Fused, library: Library, target: Target, texels: Mapping[Ref, str]) -> Emitted:
+    """Write the program of one pass. `texels` are the formats of what it reads and writes."""
+    root = program.ops[fused.root]
+    by_image = target.loads_images and len(fused.reads) + len(fused.writes) <= target.max_images
+    names = Names(program, {ref: number for number, ref in enumerate(fused.reads)}, target.form, by_image)
+    halves = [texels[ref].endswith("16f") for ref in fused.writes]
+    sliding = isinstance(root, Convolve) and root.stride == 1 and target.form == "compute"
+    parts = _parts(program, fused, names, library)
+    texts = library.closure(tuple(dict.fromkeys(parts.shaders)))
+    used = frozenset[str]().union(*(text.words for text in texts))
+    names.uniform("ivec2", root.size, "grid")
+    if "proxy" in used:
+        names.uniform("float", program.scale, "proxy")
+    if "frame" in used:
+        names.uniform("int", program.frame, "frame")
+    if sliding:
+        assert isinstance(root, Convolve)
+        stores = [_store(names.shape(fused.writes[0]), f"s{k}", 0, target, halves[0]) for k in range(bodies.OUTPUTS)]
+        main = bodies.sliding(names, root, stores)
+    else:
+        main = _main(names, fused, parts, target, halves)
+    files = ["generated"]
+    lines = [
+        f"#version {430 if target.version >= 430 else 410} core",
+        *([f"layout(local_size_x = {LOCAL_SIZE}) in;"] if target.form == "compute" else []),
+        *(f"uniform {glsl} {name};" for name, glsl, _ in names.uniforms),
+        *_textures(names, fused, target, texels), *_targets(names, fused, target, texels),
+        "ivec2 pixel, extent;", *_half_rounding(target, halves),
+    ]
+    for text in (item for item in texts if item.name != parts.reader):
+        lines += _included(text, files, program, fused)
+    lines += parts.functions
+    for text in (item for item in texts if item.name == parts.reader):
+        lines += _included(text, files, program, fused)
+    return Emitted(
+        Shader("\n".join([*lines, *main]) + "\n", target.form, tuple(files), by_image),
+        tuple((name, value) for name, _, value in names.uniforms),
+        bodies.padded_weights(root, sliding) if isinstance(root, Convolve) else (), _groups(root, sliding),
+    )
+
+
+@dataclass(frozen=True)
+class _Parts:
+    """Text of a pass: shader files; functions; statements of main; what they compute.
+
+    `reader` is the file that reads through the accessors among the functions, so it follows them.
+    """
+
+    shaders: list[str]
+    functions: list[str]
+    body: list[str]
+    results: list[str]
+    reader: str = ""
+
+
+def _parts(program: Program, fused: Fused, names: Names, library: Library) -> _Parts:
+    root = program.ops[fused.root]
+    shaders = [op.shader for op in (program.ops[index] for index in fused.members) if isinstance(op, Call)]
+    if isinstance(root, Call):
+        body, values = _calls(program, fused, names, "pixel")
+        return _Parts(shaders, [], body, [values[ref] for ref in fused.writes])
+    if isinstance(root, Reduce):
+        body, values = _calls(program, fused, names, "pixel")
+        functions = bodies.source(names, root, body, values[root.image]) + bodies.reduction(names, root)
+        return _Parts(shaders, functions, [], ["reduced(pixel)"])
+    if isinstance(root, Convolve):
+        functions = bodies.convolved_accessor(names, root)
+        if root.stride != 1 or names.form == "fragment":
+            functions += bodies.convolution(names, root)
+        return _Parts(["primitive/edges"], functions, [], ["convolved()"])
+    assert isinstance(root, Gather)
+    functions = [line for item in root.accessors for line in bodies.accessor(names, item, root.edge)]
+    arguments = ", ".join(names.argument(item, {}) for item in root.parameters)
+    call = f"{root.function}({arguments})"
+    returned = library.function(root.shader, root.function, root.owner).result
+    result = convert(call, glsl_channels(returned), glsl_type(root.shapes[0].channels))
+    return _Parts(["primitive/edges", root.shader], functions, [], [result], root.shader)
+
+
+def _calls(program: Program, fused: Fused, names: Names, where: str) -> tuple[list[str], dict[Ref, str]]:
+    """Statements that evaluate the pointwise members of a pass at one pixel, and the names of all they computed."""
+    lines: list[str] = []
+    values: dict[Ref, str] = {}
+    for number, ref in enumerate(fused.reads):
+        values[ref] = f"a{number}"
+        lines.append(f"{glsl_type(names.shape(ref).channels)} a{number} = {names.load(ref, where)};")
+    for number, index in enumerate(fused.members):
+        op = program.ops[index]
+        if not isinstance(op, Call):
+            continue
+        outputs = [f"v{number}_{output}" for output in range(len(op.shapes))]
+        arguments = [names.argument(item, values) for item in op.parameters]
+        types = [glsl_type(shape.channels) for shape in op.shapes]
+        if len(outputs) == 1:
+            lines.append(f"{types[0]} {outputs[0]} = {op.function}({', '.join(arguments)});")
+        else:
+            lines += [f"{glsl} {name};" for glsl, name in zip(types, outputs, strict=True)]
+            lines.append(f"{op.function}({', '.join([*arguments, *outputs])});")
+        values |= {Ref(index, output): name for output, name in enumerate(outputs)}
+    return lines, values
+
+
+def _included(text: Text, files: list[str], program: Program, fused: Fused) -> list[str]:
+    """A shader file, with the macros of its node's choices around it and its own line numbers."""
+    ops = (program.ops[index] for index in fused.members)
+    choices = next((op.choices for op in ops if isinstance(op, (Call, Gather)) and op.shader == text.name), ())
+    macros = [(macro(name, one), number) for name, all_ in choices for number, one in enumerate(all_)]
+    files.append(f"shaders/{text.name}.glsl")
+    return [
+        *(f"#define {name} {number}" for name, number in macros),
+        f"#line {LINES_PER_FILE * (len(files) - 1) + 1}", text.body.rstrip("\n"), "#line 1",
+        *(f"#undef {name}" for name, _ in macros),
+    ]
+
+
+def macro(value: str, choice: str) -> str:
+    """The macro that stands for a choice in GLSL: `MODE_SOFT_LIGHT`."""
+    return "".join(letter if letter.isalnum() else "_" for letter in f"{value}_{choice}").upper()
+
+
+def _textures(names: Names, fused: Fused, target: Target, texels: Mapping[Ref, str]) -> Iterator[str]:
+    for number, ref in enumerate(fused.reads):
+        if names.by_image:
+            yield f"layout(binding = {number}, {texels[ref]}) readonly uniform image2D t{number};"
+        elif target.form == "compute":
+            yield f"layout(binding = {number}) uniform sampler2D t{number};"
+        else:
+            yield f"uniform sampler2D t{number};"
+
+
+def _targets(names: Names, fused: Fused, target: Target, texels: Mapping[Ref, str]) -> Iterator[str]:
+    first = len(fused.reads) if names.by_image else 0
+    for number, ref in enumerate(fused.writes):
+        if target.form == "compute":
+            yield f"layout(binding = {first + number}, {texels[ref]}) writeonly uniform image2D o{number};"
+        else:
+            yield f"layout(location = {number}) out vec4 o{number};"
+
+
+def _half_rounding(target: Target, halves: list[bool]) -> list[str]:
+    """Halves saturate instead of overflowing; the software rasterizer would also truncate them."""
+    if not any(halves):
+        return []
+    rounded = "vec4(unpackHalf2x16(packHalf2x16(c.xy)), unpackHalf2x16(packHalf2x16(c.zw)))"
+    exact = target.software and target.version >= 430
+    return [f"vec4 as_half(vec4 c) {{ c = clamp(c, -65504.0, 65504.0); return {rounded if exact else 'c'}; }}"]
+
+
+def _main(names: Names, fused: Fused, parts: _Parts, target: Target, halves: list[bool]) -> list[str]:
+    """A main that makes one pixel per invocation."""
+    if target.form == "compute":
+        start = ["pixel = ivec2(gl_GlobalInvocationID.xy);", "if (any(greaterThanEqual(pixel, grid))) return;"]
+    else:
+        start = ["pixel = ivec2(gl_FragCoord.xy);"]
+    stores = [
+        _store(names.shape(ref), result, number, target, halves[number])
+        for number, (ref, result) in enumerate(zip(fused.writes, parts.results, strict=True))
+    ]
+    return ["void main() {", *start, "extent = grid;", *parts.body, *stores, "}"]
+
+
+def _store(shape: Shape, result: str, number: int, target: Target, half: bool) -> str:
+    """Write target `number` at `pixel`; unused channels are zero."""
+    texel = result if shape.channels == 4 else f"vec4({result}, {', '.join(['0.0'] * (4 - shape.channels))})"
+    texel = f"as_half({texel})" if half else texel
+    return f"imageStore(o{number}, pixel, {texel});" if target.form == "compute" else f"o{number} = {texel};"
+
+
+def _groups(root: Op, sliding: bool) -> tuple[int, int]:
+    """Work groups of a compute pass."""
+    width, height = root.size
+    if sliding:
+        assert isinstance(root, Convolve)
+        along, across = (width, height) if root.axis == 0 else (height, width)
+        return (-(-across // LOCAL_SIZE), -(-along // bodies.OUTPUTS))
+    return (-(-width // LOCAL_SIZE), height)

@@ -1,0 +1,98 @@
+"""Groups become their bodies: nested graphs in, one flat graph with paths for names out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from ...nodes import Node
+from ..errors import GraphError
+from ..graph import INPUTS, OUTPUTS, Graph, Group, Input, Port, Unknown
+
+MAX_DEPTH = 32
+
+
+@dataclass
+class Flat:
+    """A graph without groups. Node names are paths such as `glow/bloom`; an input's node is `<path>/inputs`."""
+
+    nodes: dict[str, Node] = field(default_factory=dict[str, Node])
+    links: dict[Port, Port] = field(default_factory=dict[Port, Port])
+    inputs: dict[Port, Input] = field(default_factory=dict[Port, Input])
+    outputs: dict[str, Port] = field(default_factory=dict[str, Port])
+    muted: set[str] = field(default_factory=set[str])
+    folders: dict[str, str] = field(default_factory=dict[str, str])
+
+    def source(self, port: Port) -> Port | None:
+        """What is linked to an input, followed through the ends of groups to a node or a graph input."""
+        found = self.links.get(port)
+        while found is not None and found in self.links:
+            found = self.links[found]
+        return found
+
+
+def expand(graph: Graph) -> Flat:
+    """Expand every group of `graph`. A group's unlinked input keeps its own default file."""
+    flat = Flat()
+    # Depth first without recursion: groups may nest deeper than we would like to recurse through.
+    todo: list[tuple[str, Graph, Mapping[str, Any]]] = [("", graph, {})]
+    while todo:
+        prefix, body, values = todo.pop()
+        if prefix.count("/") > MAX_DEPTH:
+            raise GraphError(f"group '{prefix.rstrip('/')}': groups nest deeper than {MAX_DEPTH}; flatten some of them")
+        for name, value in values.items():
+            body = body.set_control(name, value)
+        flat.folders[prefix] = body.folder
+        for name, socket in body.inputs.items():
+            flat.inputs[Port(prefix + INPUTS, name)] = socket
+        for name, item in body.nodes.items():
+            path = prefix + name
+            if isinstance(item, Group):
+                todo.append((path + "/", item.graph, item.values))
+                if name in body.muted:
+                    flat.muted.add(path + "/")
+            elif isinstance(item, Unknown):
+                raise GraphError(f"node '{path}': its type '{item.type}' is unknown to this version of Halation")
+            else:
+                flat.nodes[path] = item
+                flat.folders[path] = body.folder
+                if name in body.muted:
+                    flat.muted.add(path)
+        for target, source in body.links.items():
+            flat.links[_inward(body, prefix, target)] = _outward(body, prefix, source)
+    for name in graph.outputs:
+        flat.outputs[name] = Port(OUTPUTS, name)
+    _mute_groups(flat)
+    return flat
+
+
+def _inward(body: Graph, prefix: str, target: Port) -> Port:
+    """A link into a group ends at the group's own input, or at what its control turns."""
+    item = body.nodes.get(target.node)
+    while isinstance(item, Group):
+        prefix += target.node + "/"
+        if target.socket in item.graph.inputs:
+            return Port(prefix + INPUTS, target.socket)
+        control = item.graph.controls.get(target.socket)
+        if control is None:
+            break
+        target, item = control.target, item.graph.nodes.get(control.target.node)
+    return replace(target, node=prefix + target.node)
+
+
+def _outward(body: Graph, prefix: str, source: Port) -> Port:
+    """A link out of a group starts at the group's own output."""
+    if isinstance(body.nodes.get(source.node), Group):
+        return Port(f"{prefix}{source.node}/{OUTPUTS}", source.socket)
+    return replace(source, node=prefix + source.node)
+
+
+def _mute_groups(flat: Flat) -> None:
+    """A muted group passes its first input to its outputs."""
+    for path in [name for name in flat.muted if name.endswith("/")]:
+        flat.muted.discard(path)
+        first = next((port for port in flat.inputs if port.node == path + INPUTS), None)
+        for target in [port for port in flat.links if port.node == path + OUTPUTS]:
+            if first is not None:
+                flat.links[target] = first

@@ -1,0 +1,99 @@
+"""A plan as a person reads it: a table of passes, or Graphviz."""
+
+from __future__ import annotations
+
+from .plan import Pass, Plan, Surface
+
+
+def size_text(count: int) -> str:
+    """Bytes in the largest unit that keeps one digit before the point."""
+    amount = float(count)
+    for unit in ("B", "KiB", "MiB"):
+        if amount < 1024.0:
+            return f"{amount:.0f} {unit}" if unit == "B" else f"{amount:.1f} {unit}"
+        amount /= 1024.0
+    return f"{amount:.2f} GiB"
+
+
+def explain(plan: Plan) -> str:
+    """Uploads, passes with what was fused into each, formats, slots, bytes, and the peak of texture memory."""
+    lines = [f"target    {plan.target.renderer}, GL {plan.target.version / 100:.1f}, {plan.target.form} passes"]
+    for upload in plan.uploads:
+        picture, surface = upload.picture, plan.surfaces[upload.surface]
+        layer = f":{picture.layer}" if picture.layer else ""
+        lines.append(f"upload    {_surface(upload.surface, surface)}  {upload.node} <- {picture.path}{layer}")
+    for index, one in enumerate(plan.passes):
+        made = ", ".join(_surface(number, plan.surfaces[number]) for number in one.targets)
+        read = " ".join(f"#{number}" for number in one.textures) or "-"
+        lines.append(f"pass {index:<4} {made}  {_label(one)}  reads {read}")
+    for name, number in plan.outputs.items():
+        lines.append(f"output    #{number}  {name}")
+    shaders = len({one.shader for one in plan.passes})
+    lines.append(
+        f"total     {len(plan.passes)} passes, {shaders} programs, {len(plan.surfaces)} surfaces in "
+        f"{len(plan.slots)} textures, peak {size_text(plan.peak_bytes)}"
+    )
+    return "\n".join(lines)
+
+
+def as_json(plan: Plan) -> dict[str, object]:
+    """The same facts for machines."""
+    return {
+        "target": plan.target.renderer,
+        "form": plan.target.form,
+        "uploads": [
+            {"surface": item.surface, "node": item.node, "path": item.picture.path, "layer": item.picture.layer}
+            for item in plan.uploads
+        ],
+        "passes": [
+            {
+                "nodes": list(one.nodes), "functions": list(one.functions), "form": one.shader.form,
+                "reads": list(one.textures), "writes": list(one.targets),
+            }
+            for one in plan.passes
+        ],
+        "surfaces": [
+            {
+                "node": item.label, "size": list(item.size), "channels": item.channels, "format": item.texel,
+                "slot": item.slot, "bytes": item.nbytes, "first": item.first, "last": item.last, "key": item.key,
+            }
+            for item in plan.surfaces
+        ],
+        "outputs": dict(plan.outputs),
+        "peak_bytes": plan.peak_bytes,
+    }
+
+
+def dot(plan: Plan) -> str:
+    """The plan as a Graphviz graph: boxes are passes, edges are surfaces with their format and slot."""
+    lines = ["digraph plan {", '  rankdir=LR; node [shape=box, fontname="sans-serif"]; edge [fontname="sans-serif"];']
+    makers: dict[int, str] = {}
+    for upload in plan.uploads:
+        makers[upload.surface] = f"upload{upload.surface}"
+        lines.append(f'  upload{upload.surface} [shape=folder, label="{_quoted(upload.picture.path)}"];')
+    for index, one in enumerate(plan.passes):
+        lines.append(f'  pass{index} [label="{index}: {_quoted(_label(one))}"];')
+        for number in one.targets:
+            makers[number] = f"pass{index}"
+        lines += [
+            f'  {makers[number]} -> pass{index} [label="{_quoted(_surface(number, plan.surfaces[number]))}"];'
+            for number in one.textures
+        ]
+    for name, number in plan.outputs.items():
+        lines.append(f'  "out_{_quoted(name)}" [shape=ellipse, label="{_quoted(name)}"];')
+        lines.append(f'  {makers[number]} -> "out_{_quoted(name)}";')
+    return "\n".join([*lines, "}"])
+
+
+def _label(one: Pass) -> str:
+    """What a pass does: one function, or all that were fused, with the nodes they came from."""
+    return f"{' + '.join(one.functions)}  [{', '.join(one.nodes)}]"
+
+
+def _surface(number: int, surface: Surface) -> str:
+    width, height = surface.size
+    return f"#{number} {width}x{height} {surface.texel} slot {surface.slot} ({size_text(surface.nbytes)})"
+
+
+def _quoted(text: str) -> str:
+    return text.replace("\\", "\\\\").replace('"', '\\"')

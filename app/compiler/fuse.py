@@ -1,0 +1,102 @@
+"""Second stage: which operations share a pass.
+
+A pointwise operation joins its reader when nothing else reads it, both have the same size, and the pass stays
+within the device's limits. Reductions take their producer in too: they read every pixel exactly once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from .ir import Call, Op, Program, Read, Reduce, Ref
+from .target import Target
+
+MAX_MEMBERS = 48
+"""Longer passes would save nothing more, and take the driver long to compile."""
+
+
+@dataclass(frozen=True)
+class Fused:
+    """Operations of one pass in order, the root last; what it reads from textures and what it writes."""
+
+    members: tuple[int, ...]
+    reads: tuple[Ref, ...]
+    writes: tuple[Ref, ...]
+
+    @property
+    def root(self) -> int:
+        return self.members[-1]
+
+
+def fuse(program: Program, target: Target, *, enabled: bool = True) -> tuple[Fused, ...]:
+    """Group the operations of `program` into passes, in order. `enabled=False` leaves every one alone."""
+    ops = program.ops
+    live = _live(program)
+    readers = _readers(ops, live)
+    kept = set(program.outputs.values())
+    home: dict[int, int] = {}
+    members: dict[int, list[int]] = {}
+    reads: dict[int, dict[Ref, None]] = {}
+    for index in reversed(range(len(ops))):
+        op = ops[index]
+        if index not in live or isinstance(op, Read):
+            continue
+        outputs = [Ref(index, number) for number in range(len(op.shapes))]
+        roots = {home[reader] for ref in outputs for reader in readers.get(ref, ())}
+        root = roots.pop() if len(roots) == 1 else index
+        if enabled and root != index and isinstance(op, Call) and not kept.intersection(outputs):
+            joined = _joined(reads[root], outputs, op)
+            if _fits(ops, op, root, len(members[root]), joined, target):
+                home[index] = root
+                members[root].append(index)
+                reads[root] = joined
+                continue
+        home[index], members[index] = index, [index]
+        reads[index] = dict.fromkeys(op.reads())
+    return tuple(
+        Fused(tuple(reversed(members[root])), tuple(reads[root]), tuple(_writes(ops, root, readers, kept)))
+        for root in sorted(members)
+    )
+
+
+def _live(program: Program) -> set[int]:
+    """Operations that an output needs."""
+    found: set[int] = set()
+    todo = [ref.op for ref in program.outputs.values()]
+    while todo:
+        index = todo.pop()
+        if index not in found:
+            found.add(index)
+            todo.extend(ref.op for ref in program.ops[index].reads())
+    return found
+
+
+def _readers(ops: tuple[Op, ...], live: set[int]) -> dict[Ref, list[int]]:
+    found: dict[Ref, list[int]] = {}
+    for index in live:
+        for ref in ops[index].reads():
+            found.setdefault(ref, []).append(index)
+    return found
+
+
+def _joined(outer: Iterable[Ref], made: list[Ref], op: Op) -> dict[Ref, None]:
+    """What a pass reads once `op` is part of it."""
+    return dict.fromkeys([*(ref for ref in outer if ref not in made), *op.reads()])
+
+
+def _fits(ops: tuple[Op, ...], op: Op, root: int, count: int, reads: dict[Ref, None], target: Target) -> bool:
+    reader = ops[root]
+    if isinstance(reader, Call):
+        same_size = reader.size == op.size
+    elif isinstance(reader, Reduce):
+        same_size = ops[reader.image.op].size == op.size
+    else:
+        return False
+    return same_size and count < MAX_MEMBERS and len(reads) <= target.max_inputs
+
+
+def _writes(ops: tuple[Op, ...], root: int, readers: dict[Ref, list[int]], kept: set[Ref]) -> list[Ref]:
+    """The root's outputs that somebody wants."""
+    outputs = [Ref(root, number) for number in range(len(ops[root].shapes))]
+    return [ref for ref in outputs if ref in readers or ref in kept]

@@ -1,0 +1,80 @@
+"""Gaussian blur at a cost that hardly depends on sigma.
+
+Small sigmas are convolved as they are. Large ones are decimated with a Gaussian of 0.7 times the step (a box would
+move small highlights by up to half a block), convolved exactly at the small size, and enlarged with a cubic B-spline,
+whose own variance of a third of a small pixel squared is taken off first (Unser 1999). Relative error below 3e-4.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+DIRECT_BELOW = 7.0
+"""Up to this sigma the direct convolution is both exact and no slower."""
+
+_SPREAD = 0.7
+"""Sigma of a decimation, in steps."""
+
+_REST = 1.45
+"""Sigma that must be left for the small size, in its pixels: less of it shows the grid."""
+
+
+@dataclass(frozen=True)
+class Axis:
+    """How to blur along one axis: decimate by each step, convolve with `rest`, enlarge by `factor`.
+
+    `apron` is how many full-size pixels the small picture reaches beyond each end, so that the edge mode is
+    applied once, at full size.
+    """
+
+    steps: tuple[int, ...]
+    factor: int
+    rest: float
+    apron: int
+
+
+def plan_axis(sigma: float) -> Axis:
+    """Split `sigma`, in pixels, into decimations and an exact rest."""
+    if sigma < DIRECT_BELOW:
+        return Axis((), 1, sigma, 0)
+    steps: list[int] = []
+    factor, variance = 1, 0.0
+    while True:
+        for step in (4, 2):
+            next_factor = factor * step
+            next_variance = variance + (_SPREAD * next_factor) ** 2
+            rest = sigma * sigma - next_variance - next_factor**2 / 3.0
+            if rest > 0.0 and math.sqrt(rest) >= _REST * next_factor:
+                steps.append(step)
+                factor, variance = next_factor, next_variance
+                break
+        else:
+            break
+    rest = math.sqrt(sigma * sigma - variance - factor**2 / 3.0) / factor
+    apron = factor * (math.ceil(4.0 * rest) + 2)
+    return Axis(tuple(steps), factor, rest, apron)
+
+
+def weights(sigma: float) -> tuple[float, ...]:
+    """Normalized weights out to 4 sigma, as scipy's gaussian_filter has them.
+
+    Below one pixel the Gaussian is integrated over each pixel: samples of it would be too narrow.
+    """
+    radius = int(4.0 * sigma + 0.5) if sigma >= 1.0 else math.ceil(4.0 * sigma)
+    if sigma < 1.0:
+        half = sigma * math.sqrt(2.0)
+        found = [math.erf((i + 0.5) / half) - math.erf((i - 0.5) / half) for i in range(-radius, radius + 1)]
+    else:
+        found = [math.exp(-0.5 * (i / sigma) ** 2) for i in range(-radius, radius + 1)]
+    total = math.fsum(found)
+    return tuple(weight / total for weight in found)
+
+
+def decimation(step: int) -> tuple[tuple[float, ...], int]:
+    """Weights of a decimation by `step`, and where they start relative to the first pixel of each block."""
+    sigma, middle = _SPREAD * step, (step - 1) / 2
+    reach = math.ceil(4.0 * sigma - middle)
+    found = [math.exp(-0.5 * ((i - middle) / sigma) ** 2) for i in range(-reach, step + reach)]
+    total = math.fsum(found)
+    return tuple(weight / total for weight in found), -reach

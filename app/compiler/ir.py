@@ -1,0 +1,205 @@
+"""The operations that a graph is lowered to: static single assignment, one entry per thing to compute.
+
+Operations are values: two that are equal compute the same pixels, so adding one twice gives the first again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from ...nodes import Edge, Kind, Size
+
+
+@dataclass(frozen=True)
+class Shape:
+    """What a picture in the making looks like. `data` (depth, ids, measurements) always keeps 32 bits."""
+
+    size: Size
+    channels: int
+    data: bool
+
+
+@dataclass(frozen=True)
+class Ref:
+    """One output of one operation."""
+
+    op: int
+    output: int = 0
+
+
+@dataclass(frozen=True)
+class Constant:
+    """A number or vector that becomes a uniform: it never changes the shader's text."""
+
+    value: float | int | bool | tuple[float, ...]
+
+    @property
+    def channels(self) -> int:
+        return len(self.value) if isinstance(self.value, tuple) else 1
+
+
+@dataclass(frozen=True)
+class Choice:
+    """An index that is part of the shader's text: another choice is another program."""
+
+    index: int
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One argument of a GLSL function. A wired value is clamped to its hard range, then brought to working units."""
+
+    glsl: str
+    operand: Ref | Constant | Choice
+    factor: float = 1.0
+    low: float = float("-inf")
+    high: float = float("inf")
+
+
+@dataclass(frozen=True)
+class Accessor:
+    """A picture that a function reads anywhere, through `<name>_at` and `<name>_near`."""
+
+    name: str
+    glsl: str
+    operand: Ref | Constant
+
+
+@dataclass(frozen=True)
+class Picture:
+    """Pixels from outside: a layer of a file, or an array bound to an input (then `path` is the input's name)."""
+
+    path: str
+    layer: str
+    kind: Kind
+    width: int
+    in_memory: bool = False
+
+
+@dataclass(frozen=True)
+class Op:
+    """One operation. `owner` is the node it came from, as a path through groups."""
+
+    shapes: tuple[Shape, ...]
+    owner: str = field(compare=False)
+
+    def reads(self) -> Iterator[Ref]:
+        """Every picture it reads, in order."""
+        return iter(())
+
+    @property
+    def size(self) -> Size:
+        return self.shapes[0].size
+
+    @property
+    def label(self) -> str:
+        """What it does, in a word or two."""
+        return type(self).__name__.lower()
+
+
+@dataclass(frozen=True)
+class Read(Op):
+    """Pixels uploaded from outside."""
+
+    picture: Picture
+    fingerprint: str
+    half: bool
+
+
+@dataclass(frozen=True)
+class Call(Op):
+    """A pointwise GLSL function. Several shapes are several `out` parameters. `choices` become macros for its file."""
+
+    shader: str
+    function: str
+    parameters: tuple[Parameter, ...]
+    choices: tuple[tuple[str, tuple[str, ...]], ...] = ()
+
+    @property
+    def label(self) -> str:
+        return self.function
+
+    def reads(self) -> Iterator[Ref]:
+        return (item.operand for item in self.parameters if isinstance(item.operand, Ref))
+
+
+@dataclass(frozen=True)
+class Gather(Op):
+    """A GLSL function that reads its pictures anywhere."""
+
+    shader: str
+    function: str
+    accessors: tuple[Accessor, ...]
+    parameters: tuple[Parameter, ...]
+    edge: Edge = "clamp"
+    choices: tuple[tuple[str, tuple[str, ...]], ...] = ()
+
+    @property
+    def label(self) -> str:
+        return self.function
+
+    def reads(self) -> Iterator[Ref]:
+        return (item.operand for item in self.accessors if isinstance(item.operand, Ref))
+
+
+@dataclass(frozen=True)
+class Convolve(Op):
+    """out[i] = sum over j of weights[j] * image[i * stride + origin + j], along one axis (0 is x)."""
+
+    image: Ref
+    axis: int
+    weights: tuple[float, ...]
+    stride: int
+    origin: int
+    edge: Edge
+
+    @property
+    def label(self) -> str:
+        return f"{'decimate' if self.stride > 1 else 'convolve'} {'xy'[self.axis]}"
+
+    def reads(self) -> Iterator[Ref]:
+        return iter((self.image,))
+
+
+@dataclass(frozen=True)
+class Reduce(Op):
+    """Sum or maximum over blocks of `BLOCK` x `BLOCK` pixels."""
+
+    image: Ref
+    operation: str
+
+    def reads(self) -> Iterator[Ref]:
+        return iter((self.image,))
+
+
+BLOCK = 16
+
+
+class Builder:
+    """Collects operations; adding an equal one again returns the first."""
+
+    def __init__(self) -> None:
+        self.ops: list[Op] = []
+        self._known: dict[Op, int] = {}
+
+    def add(self, op: Op) -> Ref:
+        """The first output of `op`."""
+        known = self._known.get(op)
+        if known is None:
+            known = self._known[op] = len(self.ops)
+            self.ops.append(op)
+        return Ref(known)
+
+    def shape(self, ref: Ref) -> Shape:
+        return self.ops[ref.op].shapes[ref.output]
+
+
+@dataclass(frozen=True)
+class Program:
+    """All operations in an order in which each comes after what it reads, and the pictures wanted by name."""
+
+    ops: tuple[Op, ...]
+    outputs: Mapping[str, Ref]
+    scale: float
+    frame: int

@@ -1,0 +1,355 @@
+"""First stage: a graph becomes operations.
+
+Only what the wanted outputs need is lowered. Groups are expanded, muted and neutral nodes vanish, sizes become known,
+pictures of the wrong size get a fit, and values arrive in working units.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import PurePath
+from types import MappingProxyType
+from typing import Protocol, cast
+
+from ...nodes import Filter, Kind, Node, Pointwise, Size, Socket, Source, Value, glsl_type
+from ..errors import GraphError
+from ..graph import INPUTS, OUTPUTS, Graph, Input, Port
+from .draws import Made, Recorder, choices
+from .expand import Flat, expand
+from .ir import Accessor, Builder, Call, Choice, Constant, Gather, Parameter, Picture, Program, Read, Ref, Shape
+from .library import Library
+
+DEFAULT_CANVAS: Size = (1920, 1080)
+
+Operand = Ref | Constant
+
+
+@dataclass(frozen=True)
+class Probed:
+    """What is known of a picture before it is read."""
+
+    size: Size
+    half: bool
+    fingerprint: str
+
+
+class Probe(Protocol):
+    """Looks at a picture's header. Raises InputError for what cannot be read."""
+
+    def __call__(self, picture: Picture) -> Probed: ...
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is wanted of a graph.
+
+    `targets` are outputs of nodes or of the graph by the name they shall have; empty means every graph output.
+    `bindings` fill graph inputs by name. `size` replaces the canvas and every picture's size; `scale` below one is a
+    proxy: everything, lengths in pixels too, shrinks by it.
+    """
+
+    targets: Mapping[str, Port] = field(default_factory=lambda: MappingProxyType({}))
+    bindings: Mapping[str, Picture] = field(default_factory=lambda: MappingProxyType({}))
+    size: Size | None = None
+    scale: float = 1.0
+    frame: int = 1
+
+
+def lower(graph: Graph, request: Request, library: Library, probe: Probe) -> Program:
+    """Lower what `request` wants of `graph`. Raises GraphError where the graph is not fit to render."""
+    return _Lowering(graph, request, library, probe).run()
+
+
+class _Lowering:
+    def __init__(self, graph: Graph, request: Request, library: Library, probe: Probe) -> None:
+        self.graph, self.request, self.library, self.probe = graph, request, library, probe
+        self.flat: Flat = expand(graph)
+        self.builder = Builder()
+        self.results: dict[Port, Operand] = {}
+
+    def run(self) -> Program:
+        targets = dict(self.request.targets) or self.flat.outputs
+        if not targets:
+            raise GraphError("the graph has no outputs: link something to an output, or name a node to render")
+        sources = {name: self._target(name, port) for name, port in targets.items()}
+        for node in self._order(sources.values()):
+            self._node(node)
+        outputs = {name: self._finished(port, name) for name, port in sources.items()}
+        return Program(
+            tuple(self.builder.ops), MappingProxyType(outputs), self.request.scale, self.request.frame
+        )
+
+    # --- what feeds what -------------------------------------------------------------------------------------------
+
+    def _target(self, name: str, port: Port) -> Port:
+        """The node output or graph input behind something wanted."""
+        if port.node == OUTPUTS or port.node.endswith("/" + OUTPUTS):
+            source = self.flat.source(port)
+            if source is None:
+                raise GraphError(f"output '{name}' is not linked to anything: link a node to it")
+            return source
+        return port
+
+    def _order(self, sources: Iterable[Port]) -> list[str]:
+        """Names of the nodes that `sources` need, each after what it reads."""
+        order: list[str] = []
+        state: dict[str, bool] = {}
+        todo: list[tuple[str, bool]] = [(port.node, False) for port in sources]
+        while todo:
+            name, leaving = todo.pop()
+            if leaving:
+                state[name] = True
+                order.append(name)
+                continue
+            if name in state or name not in self.flat.nodes:
+                if state.get(name) is False:
+                    raise GraphError(f"node '{name}' feeds itself: cut one link of the loop")
+                continue
+            state[name] = False
+            todo.append((name, True))
+            node = self.flat.nodes[name]
+            for socket in (*node.inputs, *node.values):
+                source = self.flat.source(Port(name, socket))
+                if source is not None and state.get(source.node) is not True:
+                    todo.append((source.node, False))
+        return order
+
+    @cached_property
+    def canvas(self) -> Size:
+        """The size of what is made from nothing: asked for, the graph's own, or that of the first picture."""
+        size = self.request.size or self.graph.settings.size
+        if size is None:
+            first = next(self._pictures(), None)
+            size = self.probe(first).size if first else DEFAULT_CANVAS
+        return self._scaled(size)
+
+    def _pictures(self) -> Iterator[Picture]:
+        """Pictures that the graph itself names: inputs first, then sources."""
+        for port, socket in self.flat.inputs.items():
+            picture = self._picture(port, socket) if port.node == INPUTS else None
+            if picture is not None:
+                yield picture
+        for path, node in self.flat.nodes.items():
+            for value in node.values.values() if isinstance(node, Source) else ():
+                if value.type == "path" and getattr(node, value.name):
+                    yield self._located(Picture(getattr(node, value.name), "", Kind.IMAGE, 4), path)
+
+    def _scaled(self, size: Size) -> Size:
+        scale = self.request.scale
+        return (max(1, round(size[0] * scale)), max(1, round(size[1] * scale)))
+
+    # --- pictures from outside -------------------------------------------------------------------------------------
+
+    def _picture(self, port: Port, socket: Input) -> Picture | None:
+        """The picture bound to a graph input, else its default file."""
+        kind, width = socket.kind, socket.socket().channels
+        bound = self.request.bindings.get(port.socket) if port.node == INPUTS else None
+        if bound is not None:
+            return Picture(bound.path, bound.layer or socket.layer, kind, width, bound.in_memory)
+        if not socket.file:
+            return None
+        folder = self.flat.folders[port.node.removesuffix(INPUTS)]
+        return Picture(str(PurePath(folder, socket.file)), socket.layer, kind, width)
+
+    def _read(self, picture: Picture, owner: str) -> Ref:
+        """Upload a picture, at the size wanted."""
+        probed = self.probe(picture)
+        data = picture.kind is not Kind.IMAGE
+        shape = Shape(probed.size, picture.width, data)
+        ref = self.builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half))
+        wanted = self.request.size if self.request.size and probed.size != (1, 1) else probed.size
+        return self._fit(ref, self._scaled(wanted), owner)
+
+    def _fit(self, ref: Ref, size: Size, owner: str) -> Ref:
+        """The picture at another size. Equal up to rounding: stretched; otherwise scaled to cover and cropped."""
+        shape = self.builder.shape(ref)
+        if shape.size in (size, (1, 1)):
+            return ref
+        across, down = shape.size[0] / size[0], shape.size[1] / size[1]
+        if abs(across / down - 1.0) > max(1.0 / side for side in (*size, *shape.size)):
+            across = down = min(across, down)
+        fitted = Shape(size, shape.channels, shape.data)
+        function = "fit_nearest" if shape.data else "fit"
+        accessor, scale = Accessor("image", "vec4", ref), Parameter("vec2", Constant((across, down)))
+        return self.builder.add(Gather((fitted,), owner, "primitive/fit", function, (accessor,), (scale,)))
+
+    # --- nodes -----------------------------------------------------------------------------------------------------
+
+    def _operand(self, port: Port) -> Operand | None:
+        """What a source port stands for; None for a graph input that has neither a picture nor a default."""
+        if port in self.results:
+            return self.results[port]
+        socket = self.flat.inputs.get(port)
+        if socket is None:
+            raise GraphError(f"'{port}' does not exist: link to an output of a node or to an input of the graph")
+        picture = self._picture(port, socket)
+        if picture is not None:
+            self.results[port] = self._read(picture, f"{port}")
+        elif socket.default is not None:
+            self.results[port] = Constant(cast("float | tuple[float, ...]", socket.default))
+        else:
+            return None
+        return self.results[port]
+
+    def _finished(self, port: Port, name: str) -> Ref:
+        """What an output shows, as pixels."""
+        operand = self._operand(port)
+        if operand is None:
+            raise GraphError(
+                f"output '{name}' shows the graph input '{port.socket}', which is not bound to a picture: "
+                "give it a file, or bind it by name"
+            )
+        return operand if isinstance(operand, Ref) else self._converted(operand, 4, self.canvas, name)
+
+    def _converted(self, operand: Operand, channels: int, size: Size, owner: str) -> Ref:
+        """The same as a picture with this many channels."""
+        glsl = glsl_type(channels)
+        shape = Shape(size, channels, data=False)
+        parameters = (Parameter(glsl, operand),)
+        return self.builder.add(Call((shape,), owner, "primitive/convert", f"as_{glsl}", parameters))
+
+    def _inputs(self, path: str, node: Node) -> tuple[dict[str, Operand], frozenset[str]]:
+        """What every input reads, and which of them are linked."""
+        found: dict[str, Operand] = {}
+        linked: set[str] = set()
+        for name, socket in node.inputs.items():
+            source = self.flat.source(Port(path, name))
+            operand = self._operand(source) if source is not None else None
+            if operand is not None:
+                found[name] = operand
+                linked.add(name)
+            elif socket.optional:
+                found[name] = Constant(_spread(socket))
+            elif source is not None:
+                raise GraphError(
+                    f"node '{path}': input '{name}' comes from the graph input '{source.socket}', which is not bound "
+                    "to a picture: give it a file, or bind it by name"
+                )
+            else:
+                raise GraphError(f"node '{path}': input '{name}' is not linked: link a picture to it")
+        return found, frozenset(linked)
+
+    def _node(self, path: str) -> None:
+        node = self.flat.nodes[path]
+        operands, linked = self._inputs(path, node)
+        wires: dict[str, Operand] = {}
+        for name in node.values:
+            source = self.flat.source(Port(path, name))
+            operand = self._operand(source) if source is not None else None
+            if operand is not None:
+                wires[name] = operand
+        through = self._through(path, node, operands, wires)
+        if through is not None:
+            for name in node.outputs:
+                self.results[Port(path, name)] = through
+            return
+        size = self._size(node, operands, wires, linked)
+        self._fit_all(path, operands, wires, size)
+        working = node.working(self.request.scale, size[1])
+        if isinstance(working, Pointwise):
+            self._pointwise(path, working, operands, wires, size)
+        elif isinstance(working, Filter):
+            self._filter(path, working, operands, linked, size)
+
+    def _fit_all(self, path: str, operands: dict[str, Operand], wires: dict[str, Operand], size: Size) -> None:
+        """Bring every picture to the size of the first one, which need not be the size of the result."""
+        refs = [operand for operand in (*operands.values(), *wires.values()) if isinstance(operand, Ref)]
+        sizes = [found for found in (self.builder.shape(ref).size for ref in refs) if found != (1, 1)]
+        wanted = sizes[0] if sizes else size
+        for group in (operands, wires):
+            for name, operand in group.items():
+                if isinstance(operand, Ref):
+                    group[name] = self._fit(operand, wanted, path)
+
+    def _through(
+        self, path: str, node: Node, operands: Mapping[str, Operand], wires: Mapping[str, Operand]
+    ) -> Operand | None:
+        """What passes unchanged through a muted or neutral node."""
+        if path in self.flat.muted:
+            for name, socket in node.inputs.items():
+                if all(output.socket.kind is socket.kind for output in node.outputs.values()):
+                    return operands[name]
+            return next(iter(operands.values()), Constant((0.0, 0.0, 0.0, 0.0)))
+        if wires or len(node.outputs) != 1:
+            return None
+        name = node.identity()
+        return operands.get(name) if name else None
+
+    def _size(
+        self, node: Node, operands: Mapping[str, Operand], wires: Mapping[str, Operand], linked: frozenset[str]
+    ) -> Size:
+        found = {
+            name: self.builder.shape(operand).size
+            for name, operand in [*((name, operands[name]) for name in node.inputs if name in linked), *wires.items()]
+            if isinstance(operand, Ref)
+        }
+        pictures = {name: size for name, size in found.items() if size != (1, 1)}
+        if found and not pictures:
+            return (1, 1)
+        return node.output_size(pictures, self.canvas)
+
+    def _pointwise(
+        self, path: str, node: Pointwise, operands: Mapping[str, Operand], wires: Mapping[str, Operand], size: Size
+    ) -> None:
+        parameters: list[Parameter] = []
+        for name in node.order:
+            if name in node.inputs:
+                parameters.append(Parameter(node.inputs[name].glsl, operands[name]))
+            elif node.values[name].glsl is not None:
+                parameters.append(self._value(node, node.values[name], wires.get(name), size))
+        shapes = tuple(
+            Shape((1, 1) if output.socket.single else size, output.socket.channels, output.socket.kind is not Kind.IMAGE)
+            for output in node.outputs.values()
+        )
+        call = Call(shapes, path, f"{node.category}/{node.id}", node.id, tuple(parameters), choices(node))
+        ref = self.builder.add(call)
+        for index, name in enumerate(node.outputs):
+            self.results[Port(path, name)] = Ref(ref.op, index)
+
+    def _value(self, node: Node, value: Value, wire: Operand | None, size: Size) -> Parameter:
+        glsl = value.glsl or "float"
+        if wire is not None:
+            units = {"px": self.request.scale, "height": float(size[1]), "deg": math.pi / 180.0}
+            return Parameter(glsl, wire, units.get(value.unit or "", 1.0), value.minimum, value.maximum)
+        now = getattr(node, value.name)
+        operand = Choice(value.choices.index(now)) if value.type == "choice" else Constant(now)
+        return Parameter(glsl, operand)
+
+    def _filter(
+        self, path: str, node: Filter, operands: Mapping[str, Operand], linked: frozenset[str], size: Size
+    ) -> None:
+        filled = dict(operands)
+        for name in linked:
+            filled[name] = self._as_pixels(path, node.inputs[name], operands[name], size)
+        recorder = Recorder(path, node, size, filled, linked, self.builder, self.library, self._read_for(path))
+        drawn = node.passes(recorder)
+        made = drawn if isinstance(drawn, Mapping) else {next(iter(node.outputs)): drawn}
+        for name, item in made.items():
+            assert isinstance(item, Made)
+            self.results[Port(path, name)] = item.ref
+
+    def _as_pixels(self, path: str, socket: Socket, operand: Operand, size: Size) -> Operand:
+        """A filter looks around in its input: give it real pixels with the channels that it declares."""
+        channels = self.builder.shape(operand).channels if isinstance(operand, Ref) else operand.channels
+        if socket.single or (isinstance(operand, Ref) and channels == socket.channels):
+            return operand
+        at = self.builder.shape(operand).size if isinstance(operand, Ref) else size
+        return self._converted(operand, socket.channels, at, path)
+
+    def _read_for(self, path: str) -> Callable[[Picture, str], Ref]:
+        return lambda picture, owner: self._read(self._located(picture, path), owner)
+
+    def _located(self, picture: Picture, path: str) -> Picture:
+        """Relative paths start at the folder of the graph file that the node came from."""
+        return replace(picture, path=str(PurePath(self.flat.folders[path], picture.path)))
+
+
+def _spread(socket: Socket) -> float | tuple[float, ...]:
+    """A socket's default with one number per channel."""
+    default = socket.default if socket.default is not None else 0.0
+    if socket.channels == 1 or isinstance(default, tuple):
+        return default
+    return (default,) * socket.channels

@@ -1,0 +1,111 @@
+"""The result of compiling: frozen data that says everything the renderer does, and nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from ...nodes import Size
+from .ir import Picture
+from .target import Form, Target
+
+Depth = Literal["f2", "f4"]
+LINES_PER_FILE = 1000
+"""Line n of file f of a program is line f * LINES_PER_FILE + n: not all drivers report file numbers."""
+
+Uniform = float | int | bool | tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A picture on the device. `key` is equal only where the pixels are; `slot` is the texture it lives in.
+
+    Three channels are stored as four: nothing else is sure to be renderable. `first` and `last` are the passes
+    that make it and read it last; `last` is beyond all passes for what is kept.
+    """
+
+    key: str
+    label: str
+    size: Size
+    channels: int
+    depth: Depth
+    slot: int
+    first: int
+    last: int
+
+    @property
+    def components(self) -> int:
+        return 4 if self.channels == 3 else self.channels
+
+    @property
+    def nbytes(self) -> int:
+        return self.size[0] * self.size[1] * self.components * (2 if self.depth == "f2" else 4)
+
+    @property
+    def texel(self) -> str:
+        """Format as GLSL image layouts spell it."""
+        return {1: "r", 2: "rg", 4: "rgba"}[self.components] + ("16f" if self.depth == "f2" else "32f")
+
+
+@dataclass(frozen=True)
+class Shader:
+    """A whole GLSL program, made of `files`. `reads_images`: its textures are bound to image units."""
+
+    source: str
+    form: Form
+    files: tuple[str, ...]
+    reads_images: bool
+
+    def locate(self, line: int) -> tuple[str, int]:
+        """The file and line that a driver means by `line`."""
+        number, row = divmod(line, LINES_PER_FILE)
+        return (self.files[number], row) if number < len(self.files) else (self.files[0], line)
+
+
+@dataclass(frozen=True)
+class Upload:
+    """Pixels from outside go into a surface."""
+
+    surface: int
+    picture: Picture
+    node: str
+
+
+@dataclass(frozen=True)
+class Pass:
+    """One draw or dispatch. Textures are bound in order as t0, t1, ...; targets as o0, o1, ...
+
+    `groups` are work groups of a compute pass. `weights` fill its uniform block, if any.
+    """
+
+    nodes: tuple[str, ...]
+    functions: tuple[str, ...]
+    shader: Shader
+    textures: tuple[int, ...]
+    targets: tuple[int, ...]
+    uniforms: tuple[tuple[str, Uniform], ...]
+    weights: tuple[float, ...]
+    groups: tuple[int, int]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What to upload, what to run in which order, and what to hand back by name."""
+
+    target: Target
+    surfaces: tuple[Surface, ...]
+    uploads: tuple[Upload, ...]
+    passes: tuple[Pass, ...]
+    outputs: Mapping[str, int]
+    slots: tuple[int, ...]
+    """Bytes of each texture that the plan needs at the same time."""
+
+    @property
+    def peak_bytes(self) -> int:
+        """Texture memory needed at once."""
+        return sum(self.slots)
+
+    def releases(self, index: int) -> Iterator[int]:
+        """Surfaces that nothing reads after pass `index`."""
+        return (number for number, surface in enumerate(self.surfaces) if surface.last == index)

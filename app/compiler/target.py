@@ -1,0 +1,42 @@
+"""What the compiler needs to know of the machine that will run a plan."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Form = Literal["fragment", "compute"]
+Precision = Literal["half", "float"]
+
+
+@dataclass(frozen=True)
+class Target:
+    """A GL implementation: its name, version (410, 430, ...), limits, and what suits it.
+
+    `form` is how passes are emitted. `precision` is how color intermediates are kept: the software rasterizer
+    truncates half-float stores and gains nothing from them, so its own choice is float.
+    """
+
+    renderer: str
+    version: int
+    software: bool
+    max_size: int = 16384
+    max_images: int = 8
+    max_samplers: int = 16
+    max_targets: int = 8
+    form: Form = "compute"
+    precision: Precision = "float"
+
+    @property
+    def loads_images(self) -> bool:
+        """True if compute passes read through image units: a third of a sampler's cost on the software rasterizer."""
+        return self.form == "compute" and self.software
+
+    @property
+    def max_inputs(self) -> int:
+        """How many pictures one pass may read."""
+        return self.max_images - 1 if self.loads_images else self.max_samplers
+
+
+NULL = Target("none", 430, software=True)
+"""A target for plans that are only looked at."""

@@ -1,0 +1,70 @@
+"""Every exception that Halation raises on purpose.
+
+    HalationError                 one sentence for the user; `exit_code` for the command line
+    ├── UsageError           2    the command line or a call makes no sense
+    ├── GraphError           3    the graph itself is at fault
+    │   └── DocumentError         a graph file cannot be read: names file and JSON path
+    ├── InputError           4    a picture that the graph needs cannot be read
+    ├── DeviceError          5    no usable OpenGL, or it ran out of something
+    │   └── ShaderError           a driver refused a shader: names node, file and line
+    └── RenderError          1    the picture was not finished
+        └── OutputError           a result cannot be written
+
+Anything else that escapes is a bug.
+"""
+
+from __future__ import annotations
+
+
+class HalationError(Exception):
+    """One sentence that names the file, node and value and says what to do."""
+
+    exit_code = 1
+
+
+class UsageError(HalationError):
+    """The command line or a call makes no sense."""
+
+    exit_code = 2
+
+
+class GraphError(HalationError):
+    """The graph itself is at fault."""
+
+    exit_code = 3
+
+
+class DocumentError(GraphError):
+    """A graph file cannot be read. `path` is the JSON path of the fault, such as `nodes.bloom.values`."""
+
+    def __init__(self, file: str, path: str, fault: str) -> None:
+        self.file, self.path, self.fault = file, path, fault
+        super().__init__(": ".join(part for part in (file, path, fault) if part))
+
+
+class InputError(HalationError):
+    """A picture that the graph needs cannot be read."""
+
+    exit_code = 4
+
+
+class DeviceError(HalationError):
+    """No usable OpenGL, or it ran out of something."""
+
+    exit_code = 5
+
+
+class ShaderError(DeviceError):
+    """A driver refused a shader. `node`, `file` and `line` say where."""
+
+    def __init__(self, node: str, file: str, line: int, fault: str) -> None:
+        self.node, self.file, self.line, self.fault = node, file, line, fault
+        super().__init__(f"node '{node}': {file}, line {line}: {fault}")
+
+
+class RenderError(HalationError):
+    """The picture was not finished."""
+
+
+class OutputError(RenderError):
+    """A result cannot be written."""

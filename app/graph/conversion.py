@@ -1,0 +1,86 @@
+"""Which link fits: lossless conversions are implicit, the rest name the node that converts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from ...nodes import Color, Field, Image, Kind, Number, Plain, Socket, Value, Vector
+
+_FITS: Mapping[Kind, frozenset[Kind]] = MappingProxyType({
+    Kind.NUMBER: frozenset(Kind),
+    Kind.COLOR: frozenset({Kind.COLOR, Kind.IMAGE}),
+    Kind.FIELD: frozenset({Kind.FIELD, Kind.IMAGE, Kind.VECTOR}),
+    Kind.IMAGE: frozenset({Kind.IMAGE}),
+    Kind.VECTOR: frozenset({Kind.VECTOR}),
+})
+
+_VALUE_TAKES: Mapping[str, frozenset[Kind]] = MappingProxyType({
+    "float": frozenset({Kind.NUMBER, Kind.FIELD}),
+    "int": frozenset({Kind.NUMBER, Kind.FIELD}),
+    "bool": frozenset({Kind.NUMBER, Kind.FIELD}),
+    "color": frozenset({Kind.COLOR, Kind.IMAGE, Kind.FIELD, Kind.NUMBER}),
+    "vector": frozenset({Kind.VECTOR, Kind.FIELD, Kind.NUMBER}),
+})
+
+_WAY_OUT: Mapping[tuple[Kind, Kind], str] = MappingProxyType({
+    (Kind.IMAGE, Kind.FIELD): "put a 'luminance' or 'separate' node between them",
+    (Kind.IMAGE, Kind.VECTOR): "put a 'separate' node, then a 'combine' node between them",
+    (Kind.VECTOR, Kind.IMAGE): "put a 'separate' node, then a 'combine' node between them",
+    (Kind.VECTOR, Kind.FIELD): "put a 'separate' node between them",
+    (Kind.VECTOR, Kind.VECTOR): "put a 'separate' node, then a 'combine' node between them",
+    (Kind.COLOR, Kind.FIELD): "put a 'luminance' or 'separate' node between them",
+    (Kind.COLOR, Kind.VECTOR): "put a 'separate' node, then a 'combine' node between them",
+})
+
+
+def make_socket(kind: Kind, width: int = 4, default: Plain | None = None, *, name: str = "", doc: str = "") -> Socket:
+    """A socket that no class body declares. `width` counts the channels of a Vector."""
+    start = default if isinstance(default, tuple) or default is None else float(default)
+    if kind is Kind.VECTOR:
+        socket: Socket = Vector(start, width=width, doc=doc)
+    else:
+        makers = {Kind.IMAGE: Image, Kind.FIELD: Field, Kind.NUMBER: Number, Kind.COLOR: Color}
+        socket = makers[kind](start, doc=doc)
+    socket.__set_name__(Socket, name)
+    return socket
+
+
+def conversion(source: Socket, target: Socket | Value) -> str | None:
+    """None if `source` can feed `target` without loss, else the reason and the way out.
+
+    A Number fits everything, a Color or Field an Image, a Field a Vector; widths of Vectors must agree.
+    A value (of a pointwise node) takes what its own type can hold.
+    """
+    if isinstance(target, Value):
+        return _into_value(source, target)
+    if target.kind in _FITS[source.kind] and not _widths_differ(source, target.kind, target.channels):
+        return None
+    reason = f"{_word(source)} does not fit {_word(target)}"
+    if target.single:
+        return f"{reason}, which holds one value for the whole picture; measure it, or feed {_singles(target)}"
+    return f"{reason}; {_WAY_OUT[source.kind, target.kind]}"
+
+
+def _into_value(source: Socket, target: Value) -> str | None:
+    takes = _VALUE_TAKES.get(target.type)
+    if takes is None:
+        return f"a {target.type} cannot be wired, only set"
+    if source.kind in takes and not _widths_differ(source, Kind.VECTOR, target.length):
+        return None
+    width = str(target.length) if target.type == "vector" else ""
+    kinds = sorted(f"{kind}{width if kind is Kind.VECTOR else ''}" for kind in takes)
+    return f"{_word(source)} does not fit a {target.type} value, which takes {' or '.join(kinds)}"
+
+
+def _widths_differ(source: Socket, kind: Kind, channels: int) -> bool:
+    return source.kind is Kind.VECTOR and kind is Kind.VECTOR and source.channels != channels
+
+
+def _word(socket: Socket) -> str:
+    word = f"{socket.kind}{socket.channels}" if socket.kind is Kind.VECTOR else str(socket.kind)
+    return f"{'an' if word[0] in 'AEIOU' else 'a'} {word}"
+
+
+def _singles(target: Socket) -> str:
+    return "a Number" if target.kind is Kind.NUMBER else "a Number or Color"

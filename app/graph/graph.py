@@ -1,0 +1,395 @@
+"""The graph: an immutable value. Every edit returns a new one and raises GraphError where it makes no sense."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from graphlib import CycleError
+from types import MappingProxyType
+from typing import Any, Self
+
+from ...nodes import Node, Plain, Pointwise, Socket, Value
+from ..errors import GraphError
+from .conversion import conversion
+from .names import INPUTS, OUTPUTS, check_name, did_you_mean, fresh_name
+from .parts import Control, Input, Output, Port, Settings, Signature, Unknown, freeze
+from .relink import relinked
+from .values import coerced, value_fault
+from .walk import reach, route, sort
+
+
+@dataclass(frozen=True)
+class Group:
+    """A node whose body is another graph.
+
+    `path` is as written in the file, relative to that file; empty for a body that is part of it.
+    `values` holds settings of the body's controls by name.
+    """
+
+    graph: Graph
+    path: str = ""
+    values: Mapping[str, Plain] = field(default_factory=dict[str, Plain])
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "values", MappingProxyType(dict(self.values)))
+
+    def body(self) -> Graph:
+        """The graph inside, with the group's values put where its controls point."""
+        graph = self.graph
+        for name, plain in self.values.items():
+            if name in graph.controls:
+                graph = graph.put(graph.controls[name].target, plain)
+        return graph
+
+
+Item = Node | Group | Unknown
+
+
+@dataclass(frozen=True)
+class Graph:
+    """Nodes by id, links by *target*: an input has at most one source.
+
+    `ui["nodes"]` holds the layout by node id. `extra` keeps keys that mean nothing here, by the JSON path of the
+    object that holds them. `folder` is where relative paths start; it is not saved.
+    """
+
+    nodes: Mapping[str, Item] = field(default_factory=dict[str, Item])
+    links: Mapping[Port, Port] = field(default_factory=dict[Port, Port])
+    inputs: Mapping[str, Input] = field(default_factory=dict[str, Input])
+    outputs: Mapping[str, Output] = field(default_factory=dict[str, Output])
+    controls: Mapping[str, Control] = field(default_factory=dict[str, Control])
+    settings: Settings = field(default_factory=Settings)
+    muted: frozenset[str] = frozenset()
+    ui: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    extra: Mapping[str, Mapping[str, Any]] = field(default_factory=dict[str, Mapping[str, Any]])
+    folder: str = field(default="", compare=False)
+
+    def __post_init__(self) -> None:
+        for name in ("nodes", "links", "inputs", "outputs", "controls"):
+            if not isinstance(getattr(self, name), MappingProxyType):
+                object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
+        for name in ("ui", "extra"):
+            if not isinstance(getattr(self, name), MappingProxyType):
+                object.__setattr__(self, name, freeze(getattr(self, name)))
+        object.__setattr__(self, "muted", frozenset(self.muted))
+
+    # --- questions ---------------------------------------------------------------------------------------------
+
+    def node(self, id: str) -> Item:
+        """The node of that id. Raises GraphError with a suggestion."""
+        if id not in self.nodes:
+            raise GraphError(f"there is no node '{id}'{did_you_mean(id, self.nodes)}")
+        return self.nodes[id]
+
+    def source(self, port: Port) -> Socket | None:
+        """What leaves at `port`; None if it belongs to a node of unknown type. Raises GraphError."""
+        if port.node == INPUTS:
+            return _pick(self.inputs, port.socket, "the graph has no input").socket(port.socket)
+        face = signature(self.node(port.node))
+        return None if face.anything else _pick(face.outputs, port.socket, f"node '{port.node}' has no output")
+
+    def target(self, port: Port) -> Socket | Value | None:
+        """What a link to `port` feeds; None if it belongs to a node of unknown type. Raises GraphError."""
+        if port.node == OUTPUTS:
+            return _pick(self.outputs, port.socket, "the graph has no output").socket(port.socket)
+        face = signature(self.node(port.node))
+        if face.anything or port.socket in face.inputs:
+            return face.inputs.get(port.socket)
+        value = _pick({**face.inputs, **face.values}, port.socket, f"node '{port.node}' has no input")
+        if not face.pointwise:
+            raise GraphError(f"'{port}' can only be set: only values of pointwise nodes can be wired")
+        return value
+
+    def link_fault(self, source: Port, target: Port) -> str | None:
+        """Why a link from `source` cannot feed `target`, loops aside, or None."""
+        try:
+            start, end = self.source(source), self.target(target)
+        except GraphError as error:
+            return str(error)
+        return None if start is None or end is None else conversion(start, end)
+
+    def order(self) -> tuple[str, ...]:
+        """Every node after all that feed it; the same for equal graphs. Raises GraphError that names a loop."""
+        try:
+            return sort({id: sorted(self.feeding[id]) for id in sorted(self.nodes)})
+        except CycleError as error:
+            raise GraphError(loop_sentence(error.args[1])) from None
+
+    def upstream(self, id: str) -> frozenset[str]:
+        """Every node that `id` (or OUTPUTS) depends on."""
+        return frozenset(reach(id, self.feeding))
+
+    def downstream(self, id: str) -> frozenset[str]:
+        """Every node that depends on `id` (or INPUTS)."""
+        return frozenset(reach(id, self.fed))
+
+    @cached_property
+    def feeding(self) -> Mapping[str, frozenset[str]]:
+        """For every node and OUTPUTS: the nodes that feed it directly."""
+        return self._neighbors((target.node, source.node) for target, source in self.links.items())
+
+    @cached_property
+    def fed(self) -> Mapping[str, frozenset[str]]:
+        """For every node and INPUTS: the nodes that it feeds directly."""
+        return self._neighbors((source.node, target.node) for target, source in self.links.items())
+
+    def bypass(self, id: str, wanted: Socket | Value | None) -> Port | None:
+        """What reaches `wanted` in place of node `id`: the source of the node's first linked input that fits."""
+        face = signature(self.node(id))
+        ports = sorted(port for port in self.links if port.node == id) if face.anything else [
+            Port(id, name) for name in face.inputs
+        ]
+        for source in (self.links[port] for port in ports if port in self.links):
+            try:
+                start = self.source(source)
+            except GraphError:
+                continue
+            if source.node != id and (wanted is None or start is None or conversion(start, wanted) is None):
+                return source
+        return None
+
+    # --- nodes -------------------------------------------------------------------------------------------------
+
+    def fresh_id(self, stem: str) -> str:
+        """A free node id: `stem`, or `stem2`, `stem3`, ..."""
+        return fresh_name(stem, {*self.nodes, INPUTS, OUTPUTS})
+
+    def add(self, id: str, item: Item) -> Self:
+        """A graph with one more node."""
+        check_name(id, "node", self.nodes)
+        return self._with(nodes={**self.nodes, id: item})
+
+    def remove(self, id: str, heal: bool = True) -> Self:
+        """A graph without that node, its links and the controls of it.
+
+        With `heal`, what fed its first input that fits is linked to what it fed.
+        """
+        self.node(id)
+        links = {target: source for target, source in self.links.items() if id not in (target.node, source.node)}
+        for target, source in self.links.items() if heal else ():
+            if source.node == id != target.node and (instead := self._instead(id, target)):
+                links[target] = instead
+        kept = {name: control for name, control in self.controls.items() if control.target.node != id}
+        nodes = {name: item for name, item in self.nodes.items() if name != id}
+        return self._with(nodes=nodes, links=links, controls=kept, muted=self.muted - {id}, **self._notes(id))
+
+    def rename(self, old: str, new: str) -> Self:
+        """A graph where a node has another id; links, controls and layout follow."""
+        self.node(old)
+        if old == new:
+            return self
+        check_name(new, "node", self.nodes)
+
+        def moved(port: Port) -> Port:
+            return Port(new, port.socket) if port.node == old else port
+
+        return self._with(
+            nodes={new if id == old else id: item for id, item in self.nodes.items()},
+            links={moved(target): moved(source) for target, source in self.links.items()},
+            controls={name: dataclasses.replace(item, target=moved(item.target)) for name, item in self.controls.items()},
+            muted={new if id == old else id for id in self.muted},
+            **self._notes(old, new),
+        )
+
+    def replace(self, id: str, item: Item) -> Self:
+        """A graph where another node stands in that place.
+
+        Links stay where a socket of the same name fits, else move to the first free one of a kind that fits,
+        else go; controls of values that it lacks go too.
+        """
+        before, face = self.node(id), signature(item)
+        after = self._with(nodes={**self.nodes, id: item})
+        links = relinked(self.links, id, signature(before), face, lambda start, end: not after.link_fault(start, end))
+        kept = {
+            name: control for name, control in self.controls.items()
+            if control.target.node != id or face.anything or control.target.socket in face.values
+        }
+        notes = {} if _type_of(before) == _type_of(item) else self._notes(id)
+        return after._with(links=links, controls=kept, **{**notes, "ui": self.ui})
+
+    def mute(self, id: str, on: bool = True) -> Self:
+        """A graph where the node passes its first input through, or works again."""
+        self.node(id)
+        return self._with(muted=self.muted | {id} if on else self.muted - {id})
+
+    # --- links and values --------------------------------------------------------------------------------------
+
+    def connect(self, source: Port, target: Port) -> Self:
+        """A graph where `source` feeds `target`, in place of what fed it before."""
+        if fault := self.link_fault(source, target):
+            raise GraphError(f"'{source}' cannot feed '{target}': {fault}")
+        if loop := route(source.node, target.node, self.feeding):
+            raise GraphError(f"'{source}' cannot feed '{target}': {loop_sentence((target.node, *loop))}")
+        return self._with(links={**self.links, target: source})
+
+    def disconnect(self, target: Port) -> Self:
+        """A graph without the link to `target`."""
+        if target not in self.links:
+            raise GraphError(f"nothing is linked to '{target}'")
+        return self._with(links=_without(self.links, target))
+
+    def value(self, port: Port) -> Plain:
+        """What a value of a node, or a control of a group, is set to."""
+        return declared(self.node(port.node), port.socket, port.node).default
+
+    def set(self, port: Port, value: object) -> Self:
+        """A graph where a value of a node, or a control of a group, is set; checks type, choice and hard range."""
+        wanted = declared(self.node(port.node), port.socket, port.node)
+        if fault := value_fault(wanted, value):
+            raise GraphError(f"{port}: {fault}")
+        plain = coerced(wanted, value)
+        assert plain is not None
+        return self.put(port, plain)
+
+    def put(self, port: Port, plain: Plain) -> Self:
+        """`set` without any check; a port that is not there changes nothing."""
+        item = self.nodes.get(port.node)
+        if isinstance(item, Group):
+            item = dataclasses.replace(item, values={**item.values, port.socket: plain})
+        elif isinstance(item, Node) and port.socket in item.values:
+            item = dataclasses.replace(item, **{port.socket: plain})
+        else:
+            return self
+        return self._with(nodes={**self.nodes, port.node: item})
+
+    def set_control(self, name: str, value: object) -> Self:
+        """A graph where the value behind a control is set."""
+        return self.set(_pick(self.controls, name, "the graph has no control").target, value)
+
+    def override(self, path: str, value: object) -> Self:
+        """Set what `path` names: `glow` (a control), `bloom.intensity`, `group.control` or `group.node.value`."""
+        head, dot, rest = path.partition(".")
+        if not dot:
+            return self.set_control(path, value)
+        if "." not in rest:
+            return self.set(Port(head, rest), value)
+        item = self.node(head)
+        if not isinstance(item, Group):
+            raise GraphError(f"'{path}' looks inside '{head}', which is no group: write {head}.value")
+        return self._with(nodes={**self.nodes, head: Group(item.body().override(rest, value), item.path)})
+
+    # --- ends --------------------------------------------------------------------------------------------------
+
+    def add_input(self, name: str, input: Input) -> Self:
+        """A graph with one more input."""
+        check_name(name, "input", self.inputs)
+        return self._with(inputs={**self.inputs, name: input})
+
+    def add_output(self, name: str, output: Output) -> Self:
+        """A graph with one more output."""
+        check_name(name, "output", self.outputs)
+        return self._with(outputs={**self.outputs, name: output})
+
+    def add_control(self, name: str, control: Control) -> Self:
+        """A graph that shows one more value under a name."""
+        check_name(name, "control", self.controls)
+        declared(self.node(control.target.node), control.target.socket, control.target.node)
+        return self._with(controls={**self.controls, name: control})
+
+    def remove_input(self, name: str) -> Self:
+        """A graph without that input and its links."""
+        _pick(self.inputs, name, "the graph has no input")
+        links = {target: source for target, source in self.links.items() if source != Port(INPUTS, name)}
+        return self._with(inputs=_without(self.inputs, name), links=links, extra=self._extra(f"inputs.{name}"))
+
+    def remove_output(self, name: str) -> Self:
+        """A graph without that output and its link."""
+        _pick(self.outputs, name, "the graph has no output")
+        links = _without(self.links, Port(OUTPUTS, name))
+        return self._with(outputs=_without(self.outputs, name), links=links, extra=self._extra(f"outputs.{name}"))
+
+    def remove_control(self, name: str) -> Self:
+        """A graph without that control; the value stays as it is."""
+        _pick(self.controls, name, "the graph has no control")
+        return self._with(controls=_without(self.controls, name), extra=self._extra(f"controls.{name}"))
+
+    # --- inside ------------------------------------------------------------------------------------------------
+
+    def _with(self, **changes: Any) -> Self:
+        return dataclasses.replace(self, **changes)
+
+    def _neighbors(self, pairs: Iterable[tuple[str, str]]) -> Mapping[str, frozenset[str]]:
+        found: dict[str, set[str]] = {id: set() for id in (*self.nodes, INPUTS, OUTPUTS)}
+        for start, end in pairs:
+            if start in found and end in self.nodes:
+                found[start].add(end)
+        return MappingProxyType({id: frozenset(ends) for id, ends in found.items()})
+
+    def _instead(self, id: str, target: Port) -> Port | None:
+        try:
+            return self.bypass(id, self.target(target))
+        except GraphError:
+            return None
+
+    def _notes(self, old: str, new: str = "") -> dict[str, Any]:
+        """`ui` and `extra` after a node was renamed, or removed if `new` is empty."""
+        places = self.ui.get("nodes")
+        ui = self.ui
+        if isinstance(places, Mapping) and old in places:
+            moved = {new or old: places[old]} if new else {}
+            ui = MappingProxyType({**ui, "nodes": MappingProxyType({**_without(places, old), **moved})})
+        return {"ui": ui, "extra": self._extra(f"nodes.{old}", f"nodes.{new}" if new else "")}
+
+    def _extra(self, old: str, new: str = "") -> Mapping[str, Mapping[str, Any]]:
+        inside = {path for path in self.extra if path == old or path.startswith(f"{old}.")}
+        kept = {path: keys for path, keys in self.extra.items() if path not in inside}
+        moved = {new + path.removeprefix(old): self.extra[path] for path in inside} if new else {}
+        return {**kept, **moved}
+
+
+# --- faces of nodes ------------------------------------------------------------------------------------------------
+
+
+def signature(item: Item) -> Signature:
+    """What a node shows to links. A group shows its body's ends, and its controls as values."""
+    if isinstance(item, Node):
+        outputs = {name: output.socket for name, output in item.outputs.items()}
+        return Signature(item.inputs, outputs, item.values, pointwise=isinstance(item, Pointwise))
+    if isinstance(item, Unknown):
+        return Signature({}, {}, {}, anything=True)
+    inputs = {name: end.socket(name) for name, end in item.graph.inputs.items()}
+    outputs = {name: end.socket(name) for name, end in item.graph.outputs.items()}
+    values = {name: value for name in item.graph.controls if (value := control_value(item.graph, name))}
+    return Signature(inputs, outputs, values)
+
+
+def control_value(graph: Graph, name: str) -> Value | None:
+    """The value behind a control, called by the control's name, its present setting as the default."""
+    control = graph.controls[name]
+    item = graph.nodes.get(control.target.node)
+    value = None if item is None else _present(item, control.target.socket)
+    return value and dataclasses.replace(value, name=name, doc=control.doc or value.doc)
+
+
+def declared(item: Item, name: str, id: str) -> Value:
+    """A value of a node or control of a group with its present setting as the default. Raises GraphError."""
+    if value := _present(item, name):
+        return value
+    face = signature(item)
+    if face.anything:
+        raise GraphError(f"'{id}.{name}' cannot be set: the type of node '{id}' is unknown")
+    if name in face.inputs:
+        raise GraphError(f"'{id}.{name}' is an input, not a value: link something to it")
+    raise GraphError(f"node '{id}' has no value '{name}'{did_you_mean(name, face.values)}")
+
+
+def _present(item: Item, name: str) -> Value | None:
+    if isinstance(item, Node) and name in item.values:
+        return dataclasses.replace(item.values[name], default=getattr(item, name))
+    if isinstance(item, Group) and name in item.graph.controls and (value := control_value(item.graph, name)):
+        return dataclasses.replace(value, default=item.values.get(name, value.default))
+    return None
+
+
+def loop_sentence(loop: Iterable[str]) -> str:
+    """What to say about nodes that feed each other."""
+    return f"the nodes {' -> '.join(loop)} form a loop; remove one of these links"
+
+
+def _type_of(item: Item) -> object:
+    return item.type if isinstance(item, Unknown) else type(item)
+
+
+def _pick[T](known: Mapping[str, T], name: str, lacking: str) -> T: ...

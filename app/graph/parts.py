@@ -1,0 +1,111 @@
+"""What a graph is made of, besides nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any, cast
+
+from ...nodes import Kind, Plain, Size, Socket, Value
+from ..errors import GraphError
+from .conversion import make_socket
+
+
+@dataclass(frozen=True, order=True)
+class Port:
+    """One end of a link, written `bloom.image`. The nodes `inputs` and `outputs` are the ends of the graph."""
+
+    node: str
+    socket: str
+
+    def __str__(self) -> str:
+        return f"{self.node}.{self.socket}"
+
+    @classmethod
+    def parse(cls, text: str) -> Port:
+        """Read `node.socket`. Raises GraphError."""
+        node, _, socket = text.partition(".")
+        if not node or not socket or "." in socket:
+            raise GraphError(f"'{text}' names no socket: write node.socket, such as 'bloom.image'")
+        return cls(node, socket)
+
+
+@dataclass(frozen=True)
+class Input:
+    """Where something enters the graph: bound by name, else `default`, else layer `layer` of `file`.
+
+    `width` counts the channels of a Vector. `default` is one number, or one per channel.
+    """
+
+    kind: Kind = Kind.IMAGE
+    width: int = 4
+    file: str = ""
+    layer: str = ""
+    default: Plain | None = None
+    doc: str = ""
+
+    def socket(self, name: str = "") -> Socket:
+        """How a link sees it. Outside a group it may stay unlinked if there is a default or a file."""
+        fallback = 0.0 if self.default is None and self.file else self.default
+        return make_socket(self.kind, self.width, fallback, name=name, doc=self.doc)
+
+
+@dataclass(frozen=True)
+class Output:
+    """Where something leaves the graph. `layer` names it in a file of several layers (default: its own name)."""
+
+    kind: Kind = Kind.IMAGE
+    width: int = 3
+    layer: str = ""
+
+    def socket(self, name: str = "") -> Socket:
+        """How a link sees it."""
+        return make_socket(self.kind, self.width, name=name)
+
+
+@dataclass(frozen=True)
+class Control:
+    """A value of a node (or a control of a group) that the graph shows under a name of its own."""
+
+    target: Port
+    label: str = ""
+    doc: str = ""
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """A node of a type that is not installed. It does nothing, and is saved back as it was read."""
+
+    type: str
+    raw: Mapping[str, Any] = field(default_factory=dict[str, Any])
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "raw", freeze(self.raw))
+
+
+@dataclass(frozen=True)
+class Settings:
+    """`size`: the canvas of nodes without image inputs; by default that of the first image read, else 1920x1080."""
+
+    size: Size | None = None
+
+
+@dataclass(frozen=True)
+class Signature:
+    """What a node shows to links: its sockets and values by name. `anything`: its type is unknown."""
+
+    inputs: Mapping[str, Socket]
+    outputs: Mapping[str, Socket]
+    values: Mapping[str, Value]
+    pointwise: bool = False
+    anything: bool = False
+
+
+def freeze(item: Any) -> Any:
+    """The same JSON tree, read-only: objects as mapping proxies, lists as tuples."""
+    if isinstance(item, Mapping):
+        return MappingProxyType({key: freeze(part) for key, part in cast("Mapping[str, Any]", item).items()})
+    if isinstance(item, list | tuple):
+        return tuple(freeze(part) for part in cast("list[Any]", item))
+    return item

@@ -1,0 +1,54 @@
+"""Walks over `steps`: which names lead to which. Iterative, so that ten thousand nodes in a row work."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from graphlib import CycleError, TopologicalSorter
+
+Steps = Mapping[str, Iterable[str]]
+
+
+def sort(steps: Steps) -> tuple[str, ...]:
+    """Every name after all that it leads to. Raises graphlib.CycleError."""
+    return tuple(TopologicalSorter(steps).static_order())
+
+
+def loops(steps: Steps, most: int = 8) -> tuple[tuple[str, ...], ...]:
+    """Loops that share no name, at most `most` of them, each written like `a, b, a`."""
+    rest, found = {name: set(after) for name, after in steps.items()}, list[tuple[str, ...]]()
+    while len(found) < most:
+        try:
+            TopologicalSorter(rest).prepare()
+            break
+        except CycleError as error:
+            loop = tuple(error.args[1])
+            found.append(loop)
+            rest = {name: after.difference(loop) for name, after in rest.items() if name not in loop}
+    return tuple(found)
+
+
+def reach(start: str, steps: Steps) -> dict[str, str]:
+    """Every name that `start` leads to, with the name it was first reached from. Nearest come first."""
+    came, front = dict[str, str](), [start]
+    while front:
+        ahead: list[str] = []
+        for name in front:
+            for after in steps.get(name, ()):
+                if after not in came:
+                    came[after] = name
+                    ahead.append(after)
+        front = ahead
+    return came
+
+
+def route(start: str, goal: str, steps: Steps) -> tuple[str, ...]:
+    """A shortest way from `start` to `goal`, both included; empty if there is none."""
+    if start == goal:
+        return (start,)
+    came = reach(start, steps)
+    if goal not in came:
+        return ()
+    way = [goal]
+    while way[-1] != start:
+        way.append(came[way[-1]])
+    return tuple(reversed(way))

@@ -1,0 +1,80 @@
+"""Opening OpenGL, with or without a display, and finding out what it can do."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass, replace
+
+import moderngl
+
+from ..compiler import Form, Target
+from ..errors import DeviceError
+
+OLDEST = 410
+"""macOS stops at OpenGL 4.1."""
+
+_SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "swrast", "lavapipe", "software", "basic render")
+
+
+@dataclass(frozen=True)
+class Device:
+    """An OpenGL context and what the compiler needs to know of it."""
+
+    context: moderngl.Context
+    target: Target
+
+    @property
+    def description(self) -> str:
+        """One line that says what does the work."""
+        kind = "software rasterizer" if self.target.software else "GPU"
+        return f"{self.target.renderer} ({kind}, OpenGL {self.target.version / 100:.1f}, {self.target.form} passes)"
+
+
+def open_device(form: Form | None = None) -> Device:
+    """Open OpenGL without a window. Raises DeviceError where there is none, or one that is too old."""
+    context = _standalone()
+    return Device(context, describe(context, form))
+
+
+def describe(context: moderngl.Context, form: Form | None = None) -> Target:
+    """What a context can do. `form` overrides how passes are emitted."""
+    info = context.info
+    renderer = str(info["GL_RENDERER"])
+    version = context.version_code
+    if version < OLDEST:
+        raise DeviceError(
+            f"{renderer} offers OpenGL {version / 100:.1f}, but at least {OLDEST / 100:.1f} is needed: "
+            "update the graphics driver, or install Mesa's software rasterizer"
+        )
+    software = any(word in renderer.lower() for word in _SOFTWARE)
+    target = Target(
+        renderer, version, software,
+        max_size=int(info["GL_MAX_TEXTURE_SIZE"]),
+        max_samplers=int(info["GL_MAX_TEXTURE_IMAGE_UNITS"]),
+        form="compute" if version >= 430 else "fragment",
+        precision="float" if software else "half",
+    )
+    if form == "compute" and version < 430:
+        raise DeviceError(
+            f"{renderer} offers OpenGL {version / 100:.1f}, but compute passes need 4.3: use fragment passes"
+        )
+    return replace(target, form=form) if form else target
+
+
+def _standalone() -> moderngl.Context:
+    backends = ({"backend": "egl"}, {}) if sys.platform.startswith("linux") else ({},)
+    faults: list[str] = []
+    for options in backends:
+        try:
+            return moderngl.create_context(standalone=True, require=OLDEST, **options)
+        except Exception as fault:  # moderngl and its loaders raise plain Exceptions
+            faults.append(str(fault).strip().rstrip("."))
+    raise DeviceError(f"OpenGL {OLDEST / 100:.1f} cannot be opened ({'; '.join(faults)}): {_way_out()}")
+
+
+def _way_out() -> str:
+    if sys.platform.startswith("linux"):
+        return "install a graphics driver or the software rasterizer (Debian, Ubuntu: apt-get install libegl1 libgl1)"
+    if sys.platform == "win32":
+        return "install the graphics driver of your card's maker"
+    return "run where a window system is available"

@@ -1,0 +1,83 @@
+"""Compiled programs by source. A value never changes a source, so dragging a slider compiles nothing."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+
+import moderngl
+
+from ..compiler import Pass, Shader
+from ..errors import ShaderError
+
+# Mesa: "2:14(5): error: ...", NVIDIA: "2(14) : error ...", Apple and AMD: "ERROR: 2:14: ..."
+_FAULT = re.compile(r"(?:ERROR:\s*)?(\d+)(?::(\d+)(?:\(\d+\))?|\((\d+)\))\s*:\s*(.*)")
+
+WEIGHTS_BYTES = 16384
+
+
+@dataclass
+class Program:
+    """One compiled program and the values its uniforms have now."""
+
+    handle: moderngl.Program | moderngl.ComputeShader
+    vertices: moderngl.VertexArray | None
+    values: dict[str, object] = field(default_factory=dict[str, object])
+
+    def set(self, name: str, value: object) -> None:
+        """Set a uniform, unless it has that value or the driver found it unused."""
+        if self.values.get(name) != value and name in self.handle:
+            self.handle[name] = value
+            self.values[name] = value
+
+
+class Programs:
+    """Compiles on first use and keeps. `compiled` counts."""
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self._context = context
+        self._known: dict[Shader, Program] = {}
+        self.compiled = 0
+
+    def get(self, one: Pass) -> Program:
+        """The program of a pass. Raises ShaderError with node, file and line where the driver refuses it."""
+        known = self._known.get(one.shader)
+        if known is None:
+            known = self._known[one.shader] = self._compile(one)
+            self.compiled += 1
+        return known
+
+    def _compile(self, one: Pass) -> Program:
+        try:
+            if one.shader.form == "compute":
+                program = Program(self._context.compute_shader(one.shader.source), None)
+            else:
+                handle = self._context.program(vertex_shader=_VERTEX, fragment_shader=one.shader.source)
+                program = Program(handle, self._context.vertex_array(handle, []))
+        except moderngl.Error as fault:
+            raise _located(one, str(fault)) from None
+        if "Weights" in program.handle:
+            program.handle["Weights"].binding = 0
+        if one.shader.form == "fragment":
+            for number in range(len(one.textures)):
+                program.set(f"t{number}", number)
+        return program
+
+
+# One triangle that covers everything.
+_VERTEX = """#version 410 core
+void main() {
+    gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, 0.0, 1.0);
+}
+"""
+
+
+def _located(one: Pass, log: str) -> ShaderError:
+    """The first fault in a driver's log, in terms of the user's files."""
+    for line in log.splitlines():
+        match = _FAULT.match(line.strip())
+        if match:
+            name, row = one.shader.locate(int(match[2] or match[3]))
+            return ShaderError(", ".join(one.nodes), name, row, match[4].strip())
+    first = next((line.strip() for line in log.splitlines() if "error" in line.lower()), log.strip())
+    return ShaderError(", ".join(one.nodes), one.shader.files[-1], 1, first)

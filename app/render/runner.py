@@ -1,0 +1,231 @@
+"""Runs plans. It knows nothing of graphs and nodes: only passes, surfaces and keys."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+
+import moderngl
+import numpy as np
+
+from ..compiler import Pass, Picture, Plan
+from ..errors import RenderError
+from .device import Device
+from .programs import WEIGHTS_BYTES, Programs
+from .textures import Texture, Textures
+
+Array = np.ndarray
+Loader = Callable[[Picture], Array]
+"""Reads a picture as [height, width, channels] of float16 or float32. Called on worker threads."""
+
+MAX_WEIGHT_BUFFERS = 64
+
+
+@dataclass
+class Counters:
+    """What a runner has done since it was made."""
+
+    passes: int = 0
+    uploads: int = 0
+    skipped: int = 0
+
+
+class Runner:
+    """Executes plans on one device, keeping programs, textures and results between them."""
+
+    def __init__(self, device: Device, load: Loader, budget: int) -> None:
+        self.device, self._load = device, load
+        self.programs = Programs(device.context)
+        self.textures = Textures(device.context, device.target.max_size, budget)
+        self.counters = Counters()
+        self._weights: dict[tuple[float, ...], moderngl.Buffer] = {}
+        self._threads = ThreadPoolExecutor(max_workers=2, thread_name_prefix="decode")
+
+    def run(self, plan: Plan) -> dict[str, Array]:
+        """Run to the end; the outputs as [height, width, channels]."""
+        outputs: dict[str, Array] = {}
+        for _ in self.steps(plan, outputs):
+            pass
+        return outputs
+
+    def steps(self, plan: Plan, outputs: dict[str, Array]) -> Iterator[Pass]:
+        """Run one pass per step, so that a caller can stop in between; fills `outputs` at the end."""
+        wanted, needed = _needed(plan, self.textures)
+        self.counters.skipped += len(plan.passes) - len(needed)
+        readers = _count_readers(plan, needed, wanted)
+        pending = self._start_decoding(plan, needed, wanted)
+        pinned: set[str] = set()
+        try:
+            for key in readers:
+                if key in self.textures:
+                    self.textures.pin(key)
+                    pinned.add(key)
+            for index in needed:
+                one = plan.passes[index]
+                self._upload(plan, pending, one.textures, pinned)
+                self._execute(plan, one, pinned)
+                for number in one.textures:
+                    self._read_once(plan.surfaces[number].key, readers, pinned)
+                yield one
+            self._upload(plan, pending, tuple(plan.outputs.values()), pinned)
+            for name, number in plan.outputs.items():
+                outputs[name] = self._download(plan, number)
+        finally:
+            for future in pending.values():
+                future.cancel()
+            for key in pinned:
+                self.textures.unpin(key)
+
+    def close(self) -> None:
+        """Give everything back."""
+        self._threads.shutdown(cancel_futures=True)
+        self.textures.clear()
+
+    # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _start_decoding(self, plan: Plan, needed: list[int], wanted: set[int]) -> dict[int, Future[Array]]:
+        """Files are decoded on other threads while shaders compile and earlier passes run."""
+        reads = {number for index in needed for number in plan.passes[index].textures} | wanted
+        return {
+            upload.surface: self._threads.submit(self._load, upload.picture)
+            for upload in plan.uploads
+            if upload.surface in reads and plan.surfaces[upload.surface].key not in self.textures
+        }
+
+    def _upload(
+        self, plan: Plan, pending: dict[int, Future[Array]], numbers: tuple[int, ...], pinned: set[str]
+    ) -> None:
+        for number in numbers:
+            if number in pending:
+                surface = plan.surfaces[number]
+                pixels = pending.pop(number).result()
+                texture = self.textures.make(surface)
+                pinned.add(surface.key)
+                texture.handle.write(_fitting(pixels, surface.components, surface.depth))
+                self.counters.uploads += 1
+
+    def _execute(self, plan: Plan, one: Pass, pinned: set[str]) -> None:
+        program = self.programs.get(one)
+        textures = [self._resident(plan, number) for number in one.textures]
+        made = [self.textures.make(plan.surfaces[number]) for number in one.targets]
+        keys = [plan.surfaces[number].key for number in one.targets]
+        pinned.update(keys)
+        try:
+            for name, value in one.uniforms:
+                program.set(name, value)
+            if one.weights:
+                self._weight_buffer(one.weights).bind_to_uniform_block(0)
+            if one.shader.form == "compute":
+                self._dispatch(one, program.handle, textures, made)
+            else:
+                self._draw(one, program.vertices, textures, made)
+            error = self.device.context.error
+            if error != "GL_NO_ERROR":
+                raise RenderError(f"node '{', '.join(one.nodes)}': {self.device.target.renderer} reports {error}")
+        except BaseException:
+            for key in keys:
+                pinned.discard(key)
+                self.textures.drop(key)
+            raise
+        self.counters.passes += 1
+
+    def _dispatch(self, one: Pass, handle: object, textures: list[Texture], made: list[Texture]) -> None:
+        assert isinstance(handle, moderngl.ComputeShader)
+        first = 0
+        if one.shader.reads_images:
+            first = len(textures)
+            for unit, texture in enumerate(textures):
+                texture.handle.bind_to_image(unit, read=True, write=False)
+        else:
+            for unit, texture in enumerate(textures):
+                texture.handle.use(unit)
+        for unit, texture in enumerate(made):
+            texture.handle.bind_to_image(first + unit, read=False, write=True)
+        handle.run(*one.groups)
+        self.device.context.memory_barrier()
+
+    def _draw(
+        self, one: Pass, vertices: moderngl.VertexArray | None, textures: list[Texture], made: list[Texture]
+    ) -> None:
+        assert vertices is not None
+        context = self.device.context
+        for unit, texture in enumerate(textures):
+            texture.handle.use(unit)
+        if len(made) == 1 and made[0].framebuffers:
+            framebuffer = made[0].framebuffers[0]
+        else:
+            framebuffer = context.framebuffer([texture.handle for texture in made])
+            made[0].framebuffers.insert(0 if len(made) == 1 else len(made[0].framebuffers), framebuffer)
+        framebuffer.use()
+        context.disable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+        vertices.render(moderngl.TRIANGLES, vertices=3)
+
+    def _weight_buffer(self, weights: tuple[float, ...]) -> moderngl.Buffer:
+        known = self._weights.get(weights)
+        if known is None:
+            if len(self._weights) >= MAX_WEIGHT_BUFFERS:
+                self._weights.pop(next(iter(self._weights))).release()
+            data = np.zeros(WEIGHTS_BYTES // 4, np.float32)
+            data[: len(weights)] = weights
+            known = self._weights[weights] = self.device.context.buffer(data)
+        return known
+
+    def _resident(self, plan: Plan, number: int) -> Texture:
+        texture = self.textures.find(plan.surfaces[number].key)
+        assert texture is not None, f"surface {number} is gone before its last reader"
+        return texture
+
+    def _read_once(self, key: str, readers: dict[str, int], pinned: set[str]) -> None:
+        """After its last reader a surface may go."""
+        readers[key] -= 1
+        if readers[key] == 0 and key in pinned:
+            pinned.discard(key)
+            self.textures.unpin(key)
+
+    def _download(self, plan: Plan, number: int) -> Array:
+        surface = plan.surfaces[number]
+        width, height = surface.size
+        pixels = np.empty((height, width, surface.components), np.float16 if surface.depth == "f2" else np.float32)
+        self._resident(plan, number).handle.read_into(pixels)
+        return pixels[..., : surface.channels]
+
+
+def _needed(plan: Plan, textures: Textures) -> tuple[set[int], list[int]]:
+    """The output surfaces, and the passes that must run because nobody has their pixels."""
+    makers = {number: index for index, one in enumerate(plan.passes) for number in one.targets}
+    wanted = set(plan.outputs.values())
+    passes: set[int] = set()
+    todo = list(wanted)
+    while todo:
+        number = todo.pop()
+        index = makers.get(number)
+        if index is None or index in passes or plan.surfaces[number].key in textures:
+            continue
+        passes.add(index)
+        todo.extend(plan.passes[index].textures)
+    return wanted, sorted(passes)
+
+
+def _count_readers(plan: Plan, needed: list[int], wanted: set[int]) -> dict[str, int]:
+    """How often each surface will be read; outputs are read once more, at the end."""
+    found: dict[str, int] = {}
+    for index in needed:
+        for number in plan.passes[index].textures:
+            key = plan.surfaces[number].key
+            found[key] = found.get(key, 0) + 1
+    for number in wanted:
+        key = plan.surfaces[number].key
+        found[key] = found.get(key, 0) + 1
+    return found
+
+
+def _fitting(pixels: Array, components: int, depth: str) -> Array:
+    """The same pixels with the components and depth of the texture."""
+    dtype = np.float16 if depth == "f2" else np.float32
+    if pixels.ndim == 2:
+        pixels = pixels[..., None]
+    missing = components - pixels.shape[2]
+    if missing > 0:
+        pixels = np.concatenate([pixels, np.zeros((*pixels.shape[:2], missing), pixels.dtype)], axis=2)
+    return np.ascontiguousarray(pixels[..., :components], dtype)

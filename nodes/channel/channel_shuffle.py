@@ -1,0 +1,26 @@
+from typing import Annotated, Literal
+
+from .._declare import Doc, Image, Pointwise
+
+Pick = Annotated[
+    Literal[
+        "red", "green", "blue", "alpha", "luminance", "zero", "one",
+        "other red", "other green", "other blue", "other alpha", "other luminance",
+    ],
+    Doc("What this channel is filled with: a channel of the image or of the other image, or a constant."),
+]
+
+
+class ChannelShuffle(Pointwise):
+    """Rearrange channels of one or two images. Values are copied as they are, without regard to alpha."""
+
+    image = Image()
+    other = Image(0.0, doc="A second image to take channels from.")
+    red: Pick = "red"
+    green: Pick = "green"
+    blue: Pick = "blue"
+    alpha: Pick = "alpha"
+
+    def identity(self) -> str | None:
+        unchanged = (self.red, self.green, self.blue, self.alpha) == ("red", "green", "blue", "alpha")
+        return "image" if unchanged else None

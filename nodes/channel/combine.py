@@ -1,0 +1,12 @@
+from .._declare import Field, Image, Output, Pointwise
+
+
+class Combine(Pointwise):
+    """Make an image of up to four channels, as they are (premultiplied)."""
+
+    red = Field(0.0)
+    green = Field(0.0)
+    blue = Field(0.0)
+    alpha = Field(1.0, doc="Opaque unless linked.")
+
+    out = Output(Image())

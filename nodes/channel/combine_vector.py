@@ -1,0 +1,11 @@
+from .._declare import Field, Output, Pointwise, Vector
+
+
+class CombineVector(Pointwise):
+    """Make a vector of three numbers (a normal, a position) from its components."""
+
+    x = Field(0.0)
+    y = Field(0.0)
+    z = Field(0.0)
+
+    vector = Output(Vector(width=3))

@@ -1,0 +1,10 @@
+from .._declare import Field, Output, Pointwise, Vector
+
+
+class CombineVector2(Pointwise):
+    """Make a vector of two numbers (uv, a displacement) from its components."""
+
+    x = Field(0.0)
+    y = Field(0.0)
+
+    vector = Output(Vector(width=2))

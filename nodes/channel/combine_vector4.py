@@ -1,0 +1,12 @@
+from .._declare import Field, Output, Pointwise, Vector
+
+
+class CombineVector4(Pointwise):
+    """Make a vector of four numbers (motion both ways) from its components."""
+
+    x = Field(0.0)
+    y = Field(0.0)
+    z = Field(0.0)
+    w = Field(0.0)
+
+    vector = Output(Vector(width=4))

@@ -1,0 +1,10 @@
+from .._declare import Image, Pointwise
+
+
+class Unpremultiply(Pointwise):
+    """Divide color by alpha, so that it is the color of the thing and not of its coverage.
+
+    Where alpha is 0 the color stays as it is.
+    """
+
+    image = Image()

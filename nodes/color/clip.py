@@ -1,0 +1,11 @@
+from typing import Annotated
+
+from .._declare import Image, Pointwise, Slider
+
+
+class Clip(Pointwise):
+    """Limit every color channel to a range. Alpha stays; the color is limited without its alpha."""
+
+    image = Image()
+    low: Annotated[float, Slider(0.0, 1.0, unit="scene", doc="Nothing is darker.")] = 0.0
+    high: Annotated[float, Slider(0.0, 16.0, unit="scene", doc="Nothing is brighter.")] = 1.0

@@ -1,0 +1,13 @@
+from typing import Annotated
+
+from .._declare import Image, Pointwise, Slider
+
+
+class Exposure(Pointwise):
+    """Brighten or darken in photographic stops: every stop doubles the light."""
+
+    image = Image()
+    stops: Annotated[float, Slider(-10.0, 10.0, unit="EV", doc="+1 doubles the light, -1 halves it.")] = 0.0
+
+    def identity(self) -> str | None:
+        return "image" if self.stops == 0.0 else None

@@ -1,0 +1,28 @@
+from typing import Annotated
+
+from .._declare import RGBA, Doc, Fraction, Image, Pointwise, Slider
+
+
+class Grade(Pointwise):
+    """Shape shadows, midtones and highlights with lift, gamma, gain and offset.
+
+    `out = (in * (gain - lift) + lift + offset) ^ (1 / gamma)` per channel, as Nuke's Grade with black point 0 and white
+    point 1: lift is what black becomes, gain what white becomes. Negative light keeps its sign and skips the gamma.
+    Works on the color without its alpha; alpha stays as it is, and so do the alphas of the four colors.
+    """
+
+    image = Image()
+    lift: Annotated[RGBA, Doc("What black becomes, while white stays.")] = (0.0, 0.0, 0.0, 0.0)
+    gamma: Annotated[RGBA, Doc("Above 1 brightens the midtones, while black and white stay.")] = (1.0, 1.0, 1.0, 1.0)
+    gain: Annotated[RGBA, Doc("What white becomes, while black stays.")] = (1.0, 1.0, 1.0, 1.0)
+    offset: Annotated[RGBA, Doc("Light added everywhere.")] = (0.0, 0.0, 0.0, 0.0)
+    amount: Annotated[Fraction, Slider(
+        0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="Mix with the input; link a mask here."
+    )] = 1.0
+
+    def identity(self) -> str | None:
+        neutral = all(
+            color[:3] == (level, level, level)
+            for color, level in ((self.lift, 0.0), (self.gamma, 1.0), (self.gain, 1.0), (self.offset, 0.0))
+        )
+        return "image" if neutral or self.amount == 0.0 else None

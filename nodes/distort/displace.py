@@ -1,0 +1,24 @@
+from typing import Annotated
+
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider, Vector
+
+
+class Displace(Filter):
+    """Push the picture about with a vector map: every pixel shows what lies `vector * amount` pixels away.
+
+    x points right and y down. Positions between pixels are interpolated (bilinear).
+    """
+
+    image = Image()
+    vector = Vector(0.0, width=2, doc="Where to look, as a multiple of `amount`. Without a link nothing moves.")
+    amount: Annotated[
+        tuple[float, float],
+        Slider(-200.0, 200.0, unit="px", doc="How far a vector of length 1 reaches, across and down."),
+    ] = (20.0, 20.0)
+    edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
+
+    def identity(self) -> str | None:
+        return "image" if self.amount == (0.0, 0.0) else None
+
+    def passes(self, draw: Draw) -> Drawn:
+        return draw("displace", self.image, self.vector, edge=self.edge, amount=self.amount)

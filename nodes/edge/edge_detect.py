@@ -1,0 +1,42 @@
+from collections.abc import Mapping
+from typing import Annotated, Literal
+
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Output, Slider
+
+
+class EdgeDetect(Filter):
+    """Show how fast the picture changes: the length of its gradient, or its Laplacian.
+
+    Every operator is scaled so that a step of height 1 along a row or column reads 1; switching operators keeps the
+    brightness. Sobel and Feldman 1968, Prewitt 1970, Scharr 2000. Alpha is kept.
+    """
+
+    image = Image()
+    operator: Annotated[
+        Literal["sobel", "scharr", "prewitt", "laplace"],
+        Doc("Scharr treats all directions most alike; Laplace draws thin double lines."),
+    ] = "sobel"
+    channels: Annotated[
+        Literal["luminance", "separate"],
+        Doc("Gray edges of the luminance, or each color channel's own. `magnitude` is then the strongest channel's."),
+    ] = "luminance"
+    strength: Annotated[float, Slider(0.0, 10.0, unit="ratio", minimum=0.0, doc="Factor on the edges.")] = 1.0
+    threshold: Annotated[
+        float,
+        Slider(0.0, 1.0, unit="scene", minimum=0.0, doc="Taken off every edge first, so that weaker ones vanish."),
+    ] = 0.0
+    edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
+
+    out = Output()
+    magnitude = Output(Field())
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        out = draw(
+            "edge_detect", self.image, edge=self.edge,
+            operator=self.operator, channels=self.channels, strength=self.strength, threshold=self.threshold,
+        )
+        magnitude = draw(
+            "edge_detect_magnitude", self.image, edge=self.edge, result=Field(),
+            operator=self.operator, channels=self.channels, strength=self.strength, threshold=self.threshold,
+        )
+        return {"out": out, "magnitude": magnitude}

@@ -1,0 +1,69 @@
+from collections.abc import Mapping
+from math import fsum
+from types import MappingProxyType
+from typing import Annotated, Literal
+
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Kernel3x3, Slider
+
+_IDENTITY: Kernel3x3 = (0, 0, 0, 0, 1, 0, 0, 0, 0)
+
+_KERNELS: Mapping[str, Kernel3x3] = MappingProxyType({
+    "sharpen": (0, -1, 0, -1, 5, -1, 0, -1, 0),
+    "box": (1 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 9),
+    "laplacian 4": (0, 1, 0, 1, -4, 1, 0, 1, 0),
+    "laplacian 8": (1, 1, 1, 1, -8, 1, 1, 1, 1),
+    "laplacian isotropic": (1 / 6, 4 / 6, 1 / 6, 4 / 6, -20 / 6, 4 / 6, 1 / 6, 4 / 6, 1 / 6),
+    "emboss": (2, 0, 0, 0, -1, 0, 0, 0, -1),
+    "relief": (-1, -2, -1, 0, 1, 0, 1, 2, 1),
+    "sobel x": (-1, 0, 1, -2, 0, 2, -1, 0, 1),
+    "sobel y": (-1, -2, -1, 0, 0, 0, 1, 2, 1),
+    "prewitt x": (-1, 0, 1, -1, 0, 1, -1, 0, 1),
+    "prewitt y": (-1, -1, -1, 0, 0, 0, 1, 1, 1),
+    "scharr x": (-3, 0, 3, -10, 0, 10, -3, 0, 3),
+    "scharr y": (-3, -10, -3, 0, 0, 0, 3, 10, 3),
+})
+
+
+class Convolve3x3(Filter):
+    """Weigh each pixel and its eight neighbors: sharpen, emboss, Laplacian, gradients or a kernel of your own.
+
+    out = scale * sum(kernel * neighbors) + bias. The kernel is drawn as it is seen (correlation: it is not flipped).
+    """
+
+    image = Image()
+    preset: Annotated[
+        Literal[
+            "custom", "sharpen", "box", "laplacian 4", "laplacian 8", "laplacian isotropic", "emboss", "relief",
+            "sobel x", "sobel y", "prewitt x", "prewitt y", "scharr x", "scharr y",
+        ],
+        Doc("A well-known kernel; `custom` uses the nine numbers below."),
+    ] = "sharpen"
+    kernel: Annotated[Kernel3x3, Doc("Nine weights in reading order, for the preset `custom`.")] = _IDENTITY
+    normalize: Annotated[
+        Literal["none", "sum", "absolute sum"],
+        Doc("Divide the weights by their sum (keeps brightness) or by the sum of their sizes, where that is not 0."),
+    ] = "none"
+    scale: Annotated[float, Slider(-4.0, 4.0, unit="ratio", doc="Factor on the filtered color.")] = 1.0
+    bias: Annotated[
+        float,
+        Slider(-1.0, 1.0, unit="scene", doc="Added to the color where alpha covers: 0.18 puts an emboss on mid-gray."),
+    ] = 0.0
+    filter_alpha: Annotated[bool, Doc("Filter alpha like a color instead of keeping it.")] = False
+    edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
+
+    def weights(self) -> Kernel3x3:
+        """The nine weights that are applied: preset, normalization and scale resolved."""
+        kernel = _KERNELS.get(self.preset, self.kernel)
+        total = {"none": 1.0, "sum": fsum(kernel), "absolute sum": fsum(map(abs, kernel))}[self.normalize]
+        factor = self.scale / total if abs(total) > 1e-9 else self.scale
+        a, b, c, d, e, f, g, h, i = (weight * factor for weight in kernel)
+        return (a, b, c, d, e, f, g, h, i)
+
+    def identity(self) -> str | None:
+        return "image" if self.weights() == _IDENTITY and self.bias == 0.0 else None
+
+    def passes(self, draw: Draw) -> Drawn:
+        return draw(
+            "convolve3x3", self.image, edge=self.edge,
+            kernel=self.weights(), bias=self.bias, filter_alpha=self.filter_alpha,
+        )

@@ -1,0 +1,77 @@
+import math
+from collections.abc import Mapping
+from typing import Annotated, Literal
+
+from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, Output, Pixels, Size, Slider
+
+_NO_LIMIT = 65504.0
+
+
+class Bloom(Filter):
+    """Let bright light bleed over its surroundings, as in a lens or on film.
+
+    A pyramid of ever smaller pictures, blurred on the way down and up again (Jimenez 2014), at a cost that does not
+    grow with the radius. `out` is the picture with its glow, `glow` the glow alone. Without threshold, limit and
+    firefly filter the glow is linear and loses no light. Alpha is kept.
+    """
+
+    image = Image()
+    radius: Annotated[
+        float,
+        Slider(
+            0.0, 0.5, unit="height", minimum=0.0, maximum=1.0, doc="Standard deviation of the glow at its widest."
+        ),
+    ] = 0.1
+    scatter: Annotated[Fraction, Doc("How much light goes on to wider levels: 0 a tight glow, 1 a wide one.")] = 0.7
+    intensity: Annotated[
+        float, Slider(0.0, 1.0, unit="ratio", minimum=0.0, doc="How much glow reaches the picture.")
+    ] = 0.04
+    mode: Annotated[
+        Literal["mix", "add"], Doc("Mix moves light into the glow and keeps the sum; add puts the glow on top.")
+    ] = "mix"
+    threshold: Annotated[
+        float, Slider(0.0, 10.0, unit="scene", minimum=0.0, doc="Only light above this luminance glows.")
+    ] = 0.0
+    knee: Annotated[Fraction, Doc("Softness of the threshold: the part of it over which light fades in.")] = 0.5
+    limit: Annotated[
+        float,
+        Slider(
+            1.0, 1000.0, unit="scene", minimum=0.0, maximum=_NO_LIMIT,
+            doc="The luminance that glows at most, for suns and noise; 65504 sets no limit.",
+        ),
+    ] = _NO_LIMIT
+    firefly: Annotated[
+        bool, Doc("Weigh down single bright pixels, which would flicker (Karis 2013). Loses some of their light.")
+    ] = False
+
+    out = Output()
+    glow = Output()
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        light: Pixels = self.image
+        if self.threshold > 0.0 or self.limit < _NO_LIMIT:
+            light = draw.point("bloom_light", self.image, threshold=self.threshold, knee=self.knee, limit=self.limit)
+        glow = self._spread(draw, light, draw.size, 0)
+        out = draw.point("bloom", self.image, glow=glow, intensity=self.intensity, mode=self.mode)
+        return {"out": out, "glow": glow}
+
+    def _spread(self, draw: Draw, light: Pixels, size: Size, level: int) -> Drawn:
+        """The glow of a level's light: half the size, spread there by the levels below, and back."""
+        last, part = _levels(self.radius)
+        half = ((size[0] + 1) // 2, (size[1] + 1) // 2)
+        steady = self.firefly and level == 0
+        below = draw("bloom_shrink_steady" if steady else "bloom_shrink", image=light, size=half)
+        if level < last:
+            below = self._spread(draw, below, half, level + 1)
+        share = (self.scatter if level > 0 else 1.0) * (part if level == last else 1.0)
+        return draw("bloom_grow", image=below, level=light, size=size, share=share)
+
+
+def _levels(sigma: float) -> tuple[int, float]:
+    """The last level to halve, and its share, such that the glow's standard deviation is `sigma` pixels.
+
+    Going down from level l and back up adds 4^l (1.75 + 2.75) square pixels: 1.5 (4^n - 1) for n halvings.
+    """
+    variance = sigma * sigma
+    last = int(math.log(1.0 + variance / 1.5, 4.0))
+    return last, (variance - 1.5 * (4.0**last - 1.0)) / (4.5 * 4.0**last)

@@ -1,0 +1,11 @@
+from typing import Annotated
+
+from .._declare import RGBA, Doc, Pointwise
+
+
+class Constant(Pointwise):
+    """One color everywhere."""
+
+    color: Annotated[RGBA, Doc("Scene-linear and premultiplied: half-covering white is 0.5, 0.5, 0.5, 0.5.")] = (
+        0.18, 0.18, 0.18, 1.0,
+    )

@@ -1,0 +1,33 @@
+from typing import Annotated, Literal
+
+from .._declare import Doc, Field, Image, Output, Pointwise, Slider, Vector
+
+
+class Noise(Pointwise):
+    """Random but repeatable texture, layered in octaves (fBm), from integer hashes: the same on every device.
+
+    Hash: pcg3d (Jarzynski and Olano, 2020). Gradient noise: Perlin (2002). The layers are divided by the sum of their
+    strengths, so that every output keeps its range whatever the octaves.
+    """
+
+    kind: Annotated[Literal["gradient", "value", "white"], Doc(
+        "Gradient is smooth and even (Perlin), value is smooth and blotchy, white has no relation between neighbors."
+    )] = "gradient"
+    size: Annotated[float, Slider(1.0, 512.0, unit="px", minimum=0.01, doc="Size of the largest features.")] = 64.0
+    octaves: Annotated[int, Slider(
+        1, 10, unit="count", minimum=1, maximum=16, doc="How many layers, each finer than the one before."
+    )] = 4
+    lacunarity: Annotated[float, Slider(
+        1.5, 4.0, unit="ratio", minimum=1.0, maximum=16.0, doc="How many times finer each layer is."
+    )] = 2.0
+    gain: Annotated[float, Slider(
+        0.0, 1.0, unit="ratio", minimum=0.0, maximum=4.0, doc="How strong each layer is compared to the one before."
+    )] = 0.5
+    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another pattern.")] = 0
+    evolution: Annotated[float, Slider(
+        0.0, 10.0, unit="ratio", doc="Changes the pattern smoothly; white noise is new at every whole number."
+    )] = 0.0
+
+    out = Output(Image(doc="The value as an opaque gray."))
+    value = Output(Field(doc="0..1, 0.5 on average."))
+    vector = Output(Vector(width=2, doc="Two more noises, each -1..1 with average 0: an offset for Displace."))

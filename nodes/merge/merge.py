@@ -1,0 +1,34 @@
+from typing import Annotated, Literal
+
+from .._declare import Doc, Field, Fraction, Image, Pointwise, Slider
+
+Mode = Literal[
+    "over", "under", "in", "out", "atop", "xor", "clear", "plus",
+    "multiply", "screen", "overlay", "soft light", "hard light", "color dodge", "color burn",
+    "darken", "lighten", "difference", "exclusion", "subtract", "divide", "hypot", "average",
+    "hue", "saturation", "color", "luminosity",
+]
+
+
+class Merge(Pointwise):
+    """Lay the foreground `a` on the background `b`.
+
+    Over to plus are the operators of Porter and Duff (1984). The others blend colors where both cover and follow the
+    W3C's Compositing and Blending Level 1: `a (1 - b.alpha) + b (1 - a.alpha) + a.alpha b.alpha blend(b, a)`. Within
+    0..1 they are the W3C's formulas; brighter light, which those do not define, continues them without a jump (the
+    comment beside each says how).
+    """
+
+    a = Image(doc="The foreground.")
+    b = Image(doc="The background.")
+    mask = Field(1.0, doc="Where the result is seen; elsewhere the background stays.")
+    mode: Annotated[Mode, Doc(
+        "Over covers, plus adds light. Subtract is b - a, divide is b / a. Hue, saturation, color and luminosity take "
+        "that of the foreground and the rest of the background."
+    )] = "over"
+    amount: Annotated[Fraction, Slider(
+        0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="Mix of the background and the result."
+    )] = 1.0
+
+    def identity(self) -> str | None:
+        return "b" if self.amount == 0.0 else None

@@ -1,0 +1,16 @@
+from typing import Annotated
+
+from .._declare import Image, Pointwise, Slider
+
+
+class MixImages(Pointwise):
+    """Mix two images, as a dissolve: `a (1 - factor) + b factor`. Link a Field to the factor to mix by a mask."""
+
+    a = Image()
+    b = Image()
+    factor: Annotated[float, Slider(
+        0.0, 1.0, unit="ratio", doc="0 is a, 1 is b. Beyond, the difference of both is exaggerated."
+    )] = 0.5
+
+    def identity(self) -> str | None:
+        return {0.0: "a", 1.0: "b"}.get(self.factor)

@@ -1,0 +1,1 @@
+"""Ready graphs, in the same JSON as user files."""

@@ -1,0 +1,6 @@
+const float displace_reach = 65536.0;  // past any picture; keeps wild vectors within what a pixel position can hold
+
+vec4 displace(vec2 amount) {
+    vec2 away = clamp(vector_at(pixel) * amount, -displace_reach, displace_reach);
+    return image_near(vec2(pixel) + 0.5 + away);
+}

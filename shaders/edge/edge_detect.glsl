@@ -1,0 +1,40 @@
+#include "lib/color.glsl"
+
+// What a row beside the middle one weighs in the smoothing across a derivative. The three rows sum to 1.
+float edge_detect_side(int operator) {
+    return operator == OPERATOR_SOBEL ? 1.0 / 4.0 : operator == OPERATOR_SCHARR ? 3.0 / 16.0 : 1.0 / 3.0;
+}
+
+vec3 edge_detect_light(int x, int y) { return image_at(pixel + ivec2(x, y)).rgb; }
+
+// How the light changes across and down. A Laplacian has no direction: it comes back whole in `across`.
+void edge_detect_change(int operator, out vec3 across, out vec3 down) {
+    vec3 left = edge_detect_light(-1, 0), right = edge_detect_light(1, 0);
+    vec3 above = edge_detect_light(0, -1), below = edge_detect_light(0, 1);
+    if (operator == OPERATOR_LAPLACE) {
+        across = left + right + above + below - 4.0 * edge_detect_light(0, 0);
+        down = vec3(0.0);
+        return;
+    }
+    vec3 rising = edge_detect_light(1, -1) - edge_detect_light(-1, 1);
+    vec3 falling = edge_detect_light(1, 1) - edge_detect_light(-1, -1);
+    float side = edge_detect_side(operator), middle = 1.0 - 2.0 * side;
+    across = middle * (right - left) + side * (falling + rising);
+    down = middle * (below - above) + side * (falling - rising);
+}
+
+vec3 edge_detect_strength(int operator, int channels, float strength, float threshold) {
+    vec3 across, down;
+    edge_detect_change(operator, across, down);
+    vec3 size = channels == CHANNELS_LUMINANCE ? vec3(length(vec2(luminance(across), luminance(down))))
+                                               : sqrt(across * across + down * down);
+    return strength * max(size - threshold, 0.0);
+}
+
+vec4 edge_detect(int operator, int channels, float strength, float threshold) {
+    return vec4(edge_detect_strength(operator, channels, strength, threshold), image_at(pixel).a);
+}
+
+float edge_detect_magnitude(int operator, int channels, float strength, float threshold) {
+    return largest(edge_detect_strength(operator, channels, strength, threshold));
+}

@@ -1,0 +1,64 @@
+#include "lib/color.glsl"
+#include "lib/finite.glsl"
+
+// The light that glows: eased in around the threshold by a quadratic knee, no brighter than the limit.
+vec4 bloom_light(vec4 image, float threshold, float knee, float limit) {
+    vec4 safe = finite(image);
+    float light = luminance(safe.rgb);
+    if (light <= 0.0) return vec4(0.0, 0.0, 0.0, safe.a);
+    float above = min(light, limit) - threshold, width = threshold * knee;
+    float eased = clamp(above + width, 0.0, 2.0 * width);
+    return vec4(safe.rgb * max(eased * eased / (4.0 * width + 1e-5), above) / light, safe.a);
+}
+
+// One step down: five overlapping boxes of 4 x 4 pixels, the middle one worth four of the others (Jimenez 2014).
+vec4 bloom_shrink() {
+    const float corners[6] = float[](1.0, 1.0, 2.0, 2.0, 1.0, 1.0);
+    const float center[6] = float[](0.0, 1.0, 1.0, 1.0, 1.0, 0.0);
+    vec4 sum = vec4(0.0);
+    for (int y = 0; y < 6; ++y)
+        for (int x = 0; x < 6; ++x)
+            sum += (corners[x] * corners[y] + 4.0 * center[x] * center[y]) * image_at(2 * pixel + ivec2(x, y) - 2);
+    return sum / 128.0;
+}
+
+vec4 bloom_box(ivec2 first) {
+    vec4 sum = vec4(0.0);
+    for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 4; ++x)
+            sum += image_at(first + ivec2(x, y));
+    return sum / 16.0;
+}
+
+// The same boxes, each counting less the brighter it is, so that a lone bright pixel does not flash (Karis 2013).
+vec4 bloom_shrink_steady() {
+    vec4 sum = vec4(0.0);
+    float total = 0.0;
+    for (int i = 0; i < 5; ++i) {
+        ivec2 first = i == 4 ? ivec2(-1) : 2 * ivec2(i & 1, i >> 1) - 2;
+        vec4 box = bloom_box(2 * pixel + first);
+        float weight = (i == 4 ? 4.0 : 1.0) / (1.0 + max(luminance(box.rgb), 0.0));
+        sum += weight * box;
+        total += weight;
+    }
+    return sum / total;
+}
+
+// One step up: the tent [1 2 1] over bilinear samples of the smaller picture is four taps along each axis, in
+// mirrored order at odd pixels. `share` of it replaces the light of this level.
+vec4 bloom_grow(float share) {
+    const vec4 tent = vec4(1.0, 5.0, 7.0, 3.0) / 16.0;
+    vec4 across = (pixel.x & 1) == 0 ? tent : tent.wzyx;
+    vec4 down = (pixel.y & 1) == 0 ? tent : tent.wzyx;
+    ivec2 first = (pixel + 1) / 2 - 2;
+    vec4 sum = vec4(0.0);
+    for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 4; ++x)
+            sum += across[x] * down[y] * image_at(first + ivec2(x, y));
+    return mix(level_at(pixel), sum, share);
+}
+
+vec4 bloom(vec4 image, vec4 glow, float intensity, int mode) {
+    vec4 safe = finite(image);
+    return vec4(mode == MODE_ADD ? safe.rgb + intensity * glow.rgb : mix(safe.rgb, glow.rgb, intensity), safe.a);
+}

@@ -1,0 +1,3 @@
+#include "lib/finite.glsl"
+
+vec4 constant(vec4 color) { return finite(color); }

@@ -1,0 +1,20 @@
+// Integer hashes: the same bits from every driver.
+
+// pcg3d (Jarzynski & Olano 2020, "Hash Functions for GPU Rendering").
+uvec3 pcg3d(uvec3 v) {
+    v = v * 1664525u + 1013904223u;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    v ^= v >> 16u;
+    v.x += v.y * v.z;
+    v.y += v.z * v.x;
+    v.z += v.x * v.y;
+    return v;
+}
+
+// 24 bits, all that a float holds exactly: 0 <= u < 1.
+vec3 unit_float(uvec3 bits) { return vec3(bits >> 8u) * (1.0 / 16777216.0); }
+
+// Three independent uniform numbers for a lattice cell.
+vec3 hash3(ivec3 cell, uvec3 seed) { return unit_float(pcg3d(uvec3(cell) + seed)); }

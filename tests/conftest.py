@@ -1,0 +1,71 @@
+"""What all tests share: one device, and the shortest way from a node to its pixels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+import numpy as np
+import pytest
+
+from halation.app.graph import Graph, Input, Output, Port
+from halation.app.render import Renderer, open_device
+from halation.nodes import Kind, Node
+
+Array = np.ndarray
+Run = Callable[..., Array]
+
+_KINDS = {1: Kind.FIELD, 2: Kind.VECTOR, 3: Kind.VECTOR, 4: Kind.IMAGE}
+
+
+@pytest.fixture(scope="session")
+def renderer() -> Iterator[Renderer]:
+    """The engine on whatever OpenGL this machine has."""
+    made = Renderer()
+    yield made
+    made.close()
+
+
+@pytest.fixture(scope="session")
+def fragment_renderer() -> Iterator[Renderer]:
+    """The engine with fragment passes, as on macOS."""
+    made = Renderer(open_device("fragment"))
+    yield made
+    made.close()
+
+
+def graph_of(node: Node, inputs: Mapping[str, Array]) -> Graph:
+    """A graph of one node with an input for every array; arrays may feed values too."""
+    graph = Graph().add("node", node)
+    for name, array in inputs.items():
+        socket = type(node).inputs.get(name)
+        channels = 1 if array.ndim == 2 else array.shape[2]
+        if socket is not None and not socket.single:
+            kind, width = socket.kind, socket.channels
+        else:
+            kind, width = _KINDS[channels], channels
+        graph = graph.add_input(name, Input(kind, width)).connect(Port("inputs", name), Port("node", name))
+    for name, output in type(node).outputs.items():
+        kind, width = output.socket.kind, output.socket.channels
+        graph = graph.add_output(name, Output(kind, width)).connect(Port("node", name), Port("outputs", name))
+    return graph
+
+
+@pytest.fixture
+def run(renderer: Renderer) -> Run:
+    """`run(Exposure(stops=1.0), {"image": rgba})` renders a node, or a graph; [h, w, channels] of float32."""
+
+    def rendered(
+        subject: Node | Graph, inputs: Mapping[str, Array] | None = None, *, size: tuple[int, int] | None = None,
+        output: str = "out", scale: float = 1.0, precision: str = "float", engine: Renderer | None = None,
+    ) -> Array:
+        arrays = {name: np.asarray(array, np.float32) for name, array in (inputs or {}).items()}
+        graph = graph_of(subject, arrays) if isinstance(subject, Node) else subject
+        if output not in graph.outputs:
+            output = next(iter(graph.outputs))
+        engine = engine or renderer
+        found = engine.render(
+            graph, arrays, size=size, scale=scale, precision=precision, targets={output: Port("outputs", output)}
+        )
+        return found[output].astype(np.float32)
+
+    return rendered

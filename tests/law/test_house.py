@@ -1,0 +1,134 @@
+"""House rules that no other tool checks: short files, few comments, documented modules, a tidy root."""
+
+from __future__ import annotations
+
+import ast
+import re
+import tokenize
+from fnmatch import fnmatch
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+ENTRIES = {
+    ".ci", ".git", ".github", ".gitattributes", ".gitignore", "LICENSE", "README.md", "app", "dev", "docs", "nodes",
+    "presets", "pyproject.toml", "shaders", "tests",
+}
+TEXT = {"", ".py", ".glsl", ".md", ".toml", ".json", ".yml", ".txt"}
+
+
+@cache
+def ignored() -> tuple[str, ...]:
+    """The patterns of .gitignore."""
+    return tuple(line.rstrip("/") for line in (ROOT / ".gitignore").read_text().split())
+
+
+def is_ours(path: Path) -> bool:
+    return not any(fnmatch(part, pattern) for part in path.relative_to(ROOT).parts for pattern in ignored())
+
+
+@cache
+def files() -> tuple[Path, ...]:
+    """Every text file of the project."""
+    tops = [ROOT / name for name in sorted(ENTRIES - {".git"})]
+    found = [path for top in tops for path in ([top] if top.is_file() else top.rglob("*"))]
+    return tuple(path for path in found if path.is_file() and is_ours(path) and path.suffix in TEXT)
+
+
+def python_files() -> list[Path]:
+    return [path for path in files() if path.suffix == ".py"]
+
+
+def label(path: Path) -> str:
+    return path.relative_to(ROOT).as_posix()
+
+
+def test_the_root_holds_only_what_belongs_there() -> None:
+    assert {path.name for path in ROOT.iterdir() if is_ours(path)} <= ENTRIES
+    assert len(files()) > 50
+
+
+def test_files_are_short() -> None:
+    lines = {label(path): path.read_text("utf-8").count("\n") for path in files() if path.suffix != ".json"}
+    assert not {name: count for name, count in lines.items() if count > 400}
+
+
+@pytest.mark.parametrize(
+    "pattern",
+    [
+        rf"\b{'TO' + 'DO'}\b|\b{'FIX' + 'ME'}\b|\b{'XX' + 'X'}\b",
+        r"(?<![\w.~*])/(?:home|root|work|Users|opt|srv|mnt)/\w",
+        r"\bpy" + r"pi\.|files\.python" + r"hosted|\bartifact" + r"ory\b",
+        r"\.\./shar" + r"ed\b|\bissue #?\d",
+        "\r\n|[^\\S\n]+$|\t",
+    ],
+)
+def test_no_text_is_unfinished_or_points_elsewhere(pattern: str) -> None:
+    """No notes to self, no machine's own paths, no registry's name, no stray white space."""
+    found = [
+        f"{label(path)}:{number}: {line.strip()}"
+        for path in files()
+        if path != Path(__file__)
+        for number, line in enumerate(path.read_bytes().decode("utf-8").split("\n"), 1)
+        if re.search(pattern, line)
+    ]
+    assert not found, "\n".join(found)
+
+
+def test_this_machine_is_not_mentioned() -> None:
+    here = [word for word in (str(ROOT), str(Path.home())) if len(word) > 5]
+    assert not [label(path) for path in files() for word in here if word in path.read_text("utf-8")]
+
+
+def undocumented(path: Path) -> list[str]:
+    """The module and its public names that have no docstring. A node's class speaks for its file."""
+    tree = ast.parse(path.read_text("utf-8"), label(path))
+    kinds = (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
+    public = [item for item in tree.body if isinstance(item, kinds) and not item.name.startswith("_")]
+    silent = [f"{label(path)}: {item.name}" for item in public if not (ast.get_docstring(item) or is_overload(item))]
+    is_node = path.parts[-3] == "nodes" and not path.name.startswith("_")
+    return silent if is_node or ast.get_docstring(tree) else [label(path), *silent]
+
+
+def is_overload(item: ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
+    return any(isinstance(mark, ast.Name) and mark.id == "overload" for mark in item.decorator_list)
+
+
+def test_everything_public_is_documented() -> None:
+    product = [path for path in python_files() if path.relative_to(ROOT).parts[0] != "tests"]
+    assert len(product) > 30
+    assert not [line for path in product for line in undocumented(path)]
+
+
+def comments(path: Path) -> int:
+    """How many comments a file has, those that talk to tools aside."""
+    with tokenize.open(path) as text:
+        found = [token.string for token in tokenize.generate_tokens(text.readline) if token.type == tokenize.COMMENT]
+    return sum(not re.match(r"#!|# (noqa|type:|pyright:|ruff:|fmt:)", comment) for comment in found)
+
+
+def test_comments_are_few() -> None:
+    """At most 8 % of the lines: what the code does is the code's to say."""
+    count = {label(path): (comments(path), len(path.read_text("utf-8").splitlines())) for path in python_files()}
+    assert not {name: pair for name, pair in count.items() if pair[0] > max(2, 0.08 * pair[1])}
+
+
+def test_no_module_keeps_mutable_state() -> None:
+    """Lists, dicts and sets at the top of a module are constants by name, or frozen."""
+    makers = (ast.List, ast.Dict, ast.Set, ast.ListComp, ast.DictComp, ast.SetComp)
+    found = [
+        f"{label(path)}:{item.lineno}"
+        for path in python_files()
+        if path.relative_to(ROOT).parts[0] in ("app", "nodes")
+        for item in ast.parse(path.read_text("utf-8")).body
+        if isinstance(item, ast.Assign | ast.AnnAssign) and isinstance(item.value, makers)
+        for target in (item.targets if isinstance(item, ast.Assign) else [item.target])
+        if not (isinstance(target, ast.Name) and (target.id.isupper() or target.id == "__all__"))
+    ]
+    assert not found
+    assert not [
+        label(path) for path in python_files() if path.relative_to(ROOT).parts[0] in ("app", "nodes")
+        for item in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(item, ast.Global)
+    ]

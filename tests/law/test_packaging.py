@@ -1,0 +1,136 @@
+"""What is installed is what is in the tree: source archive, wheel, and a program run from the wheel alone."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tarfile
+import tomllib
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+SHIPPED = {
+    "app": ("**/*.py", "py.typed"),
+    "nodes": ("**/*.py", "py.typed"),
+    "shaders": ("__init__.py", "**/*.glsl"),
+    "presets": ("__init__.py", "*.json", "samples/*"),
+}
+
+pytestmark = pytest.mark.xdist_group("packaging")
+
+
+@dataclass(frozen=True)
+class Built:
+    """The wheel, the source archive it was built from, and the wheel unpacked as pip would."""
+
+    wheel: Path
+    archive: Path
+    target: Path
+
+    def run(self, code: str, cwd: Path) -> str:
+        """What `code` prints with only the wheel and the third-party libraries on the path, away from the tree."""
+        # -S skips site-packages' .pth files, through which an editable installation would leak in.
+        path = os.pathsep.join([str(self.target), sysconfig.get_path("purelib"), sysconfig.get_path("platlib")])
+        result = subprocess.run(
+            [sys.executable, "-S", "-P", "-c", code], cwd=cwd, env={**os.environ, "PYTHONPATH": path},
+            capture_output=True, text=True,
+        )
+        assert result.returncode == 0, result.stderr
+        return result.stdout
+
+
+@pytest.fixture(scope="session")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
+    """Build from a copy of the tree, as `pip install` of a fresh clone does."""
+    folder = tmp_path_factory.mktemp("built")
+    source = folder / "tree"
+    for top in SHIPPED:
+        shutil.copytree(ROOT / top, source / top, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy(ROOT / name, source / name)
+    python("-m", "build", "--no-isolation", "--outdir", folder, source)
+    wheel, archive = next(folder.glob("*.whl")), next(folder.glob("*.tar.gz"))
+    python("-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--target", folder / "target", wheel)
+    return Built(wheel, archive, folder / "target")
+
+
+def python(*words: str | Path) -> None:
+    result = subprocess.run([sys.executable, *words], capture_output=True, text=True)
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert "would be ignored" not in result.stdout + result.stderr
+
+
+def shipped() -> set[str]:
+    """Paths of the tree, relative to it, that an installation needs."""
+    return {
+        path.relative_to(ROOT).as_posix()
+        for top, patterns in SHIPPED.items()
+        for pattern in patterns
+        for path in (ROOT / top).glob(pattern)
+    }
+
+
+def test_every_folder_with_code_is_listed() -> None:
+    folders = {path.parent.relative_to(ROOT).parts for top in SHIPPED for path in (ROOT / top).rglob("*.py")}
+    listed = PROJECT["tool"]["setuptools"]["packages"]
+    missing = sorted({".".join(("halation", *parts)) for parts in folders} ^ set(listed))
+    assert not missing, f"add to or remove from `packages` in pyproject.toml: {missing}"
+    assert len(listed) == len(set(listed))
+
+
+def test_every_folder_of_nodes_is_a_package_and_mirrors_its_shaders() -> None:
+    menus = {path.parent for path in (ROOT / "nodes").glob("*/*.py")}
+    assert all((folder / "__init__.py").is_file() for folder in menus)
+    assert not [*(ROOT / "shaders").glob("*/*.py")]
+
+
+def test_the_wheel_holds_the_tree_and_nothing_else(built: Built) -> None:
+    with zipfile.ZipFile(built.wheel) as wheel:
+        names = {name for name in wheel.namelist() if ".dist-info/" not in name}
+        notes = {name.partition("/")[2] for name in wheel.namelist()} - {name.partition("/")[2] for name in names}
+        for name in names:
+            assert wheel.read(name) == (ROOT / name.removeprefix("halation/")).read_bytes(), name
+    assert names == {f"halation/{name}" for name in shipped()}
+    assert {"METADATA", "entry_points.txt", "licenses/LICENSE"} <= notes
+
+
+def test_the_source_archive_holds_what_a_build_needs(built: Built) -> None:
+    with tarfile.open(built.archive) as archive:
+        names = {name.partition("/")[2] for name in archive.getnames()}
+    assert {*shipped(), "pyproject.toml", "README.md", "LICENSE"} <= names
+
+
+def test_the_wheel_finds_its_nodes_shaders_and_presets(built: Built, tmp_path: Path) -> None:
+    code = """
+from importlib.resources import files
+import halation.app, halation.nodes as nodes
+for node in nodes.catalogue().values():
+    shader = files("halation.shaders") / node.category / f"{node.id}.glsl"
+    print(node.id, len(shader.read_bytes()) if shader.is_file() else 0)
+for name in files("halation.presets").iterdir():
+    print(name.name, name.is_file() and len(name.read_bytes()))
+print(halation.app.__file__)
+"""
+    *lines, origin = built.run(code, tmp_path).splitlines()
+    assert Path(origin).is_relative_to(built.target)
+    sizes = dict(line.rsplit(" ", 1) for line in lines)
+    for shader in (ROOT / "shaders").glob("*/*.glsl"):
+        if (ROOT / "nodes" / shader.parent.name / f"{shader.stem}.py").is_file():
+            assert int(sizes[shader.stem]) == shader.stat().st_size, shader
+    assert {path.stem for path in (ROOT / "nodes").glob("*/[!_]*.py")} <= sizes.keys()
+    assert {path.name for path in (ROOT / "presets").glob("*.json")} <= sizes.keys()
+
+
+def test_the_wheel_has_a_working_command(built: Built, tmp_path: Path) -> None:
+    assert PROJECT["project"]["scripts"] == {"halation": "halation.app.cli:main"}
+    code = "import sys; sys.argv = ['halation', 'nodes']; from halation.app.cli import main; sys.exit(main())"
+    listing = built.run(code, tmp_path)
+    assert all(path.stem in listing for path in (ROOT / "nodes").glob("*/[!_]*.py"))

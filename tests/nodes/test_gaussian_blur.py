@@ -1,0 +1,136 @@
+"""Gaussian blur, and with it the compiler's convolution and decimation, against scipy in 64 bits and closed forms."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from halation.nodes.blur.gaussian_blur import GaussianBlur
+from scipy.ndimage import correlate1d, gaussian_filter
+
+LARGE = (7.0, 8.0, 11.3, 20.0, 50.0, 100.0)
+
+
+def blurred(image: np.ndarray, sigma: float, mode: str = "nearest", truncate: float = 6.0) -> np.ndarray:
+    return gaussian_filter(image.astype(np.float64), (sigma, sigma, 0.0), mode=mode, truncate=truncate)
+
+
+def impulse(width: int, height: int, x: int, y: int) -> np.ndarray:
+    picture = np.zeros((height, width, 4), np.float32)
+    picture[y, x] = 1.0
+    return picture
+
+
+@pytest.mark.parametrize("size", [(64, 48), (33, 17), (7, 5), (1, 9), (1, 1)])
+@pytest.mark.parametrize("sigma", [1.0, 2.5, 6.9])
+def test_small_sigmas_equal_scipy(run, hdr, edge, sigma, size):
+    picture = hdr(*size)
+    expected = blurred(picture, sigma, edge.scipy, truncate=4.0)
+    found = run(GaussianBlur(sigma=sigma, edge=edge.name), {"image": picture})
+    np.testing.assert_allclose(found, expected, rtol=1e-5, atol=1e-5 * float(np.abs(expected).max()))
+
+
+@pytest.mark.parametrize("sigma", [0.2, 0.5, 0.8])
+def test_sigmas_below_a_pixel_integrate_the_gaussian(run, hdr, edge, sigma):
+    picture = hdr(31, 22)
+    taps = np.arange(-5, 6)
+    cumulative = np.array([math.erf((tap - 0.5) / (sigma * math.sqrt(2.0))) for tap in [*taps, 6]])
+    weights = np.diff(cumulative) / 2.0
+    expected = picture.astype(np.float64)
+    for axis in (0, 1):
+        expected = correlate1d(expected, weights, axis, mode=edge.scipy)
+    found = run(GaussianBlur(sigma=sigma, edge=edge.name), {"image": picture})
+    # The tails that are cut off beyond 4 sigma hold 6e-5 of the light.
+    np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-4 * float(expected.max()))
+
+
+@pytest.mark.parametrize("sigma", [7.0, 20.0, 60.0])
+@pytest.mark.parametrize("size", [(161, 97), (40, 333), (1, 50), (1, 1)])
+def test_large_sigmas_equal_scipy(run, hdr, edge, sigma, size):
+    picture = hdr(*size)
+    expected = blurred(picture, sigma, edge.scipy)
+    error = run(GaussianBlur(sigma=sigma, edge=edge.name), {"image": picture}) - expected
+    assert np.sqrt((error**2).mean()) <= 3e-4 * np.sqrt((expected**2).mean())
+
+
+@pytest.mark.parametrize("sigma", LARGE)
+@pytest.mark.parametrize("phase", [(0, 0), (1, 3), (5, 2)])
+def test_an_impulse_becomes_a_gaussian(run, sigma, phase):
+    reach = int(5.0 * sigma) + 8
+    picture = impulse(2 * reach, 2 * reach, reach + phase[0], reach + phase[1])
+    expected = blurred(picture, sigma)
+    found = run(GaussianBlur(sigma=sigma), {"image": picture})
+    assert np.abs(found - expected).max() <= 1e-3 * expected.max()
+
+
+@pytest.mark.parametrize("sigma", [1.5, *LARGE])
+@pytest.mark.parametrize("offset", [0, 1, 3])
+def test_a_step_becomes_the_error_function(run, sigma, offset):
+    width = int(12.0 * sigma) + 16
+    step = width // 2 + offset
+    picture = np.zeros((4, width, 4), np.float32)
+    picture[:, step:] = 1.0
+    # A pixel sees the step at its center: a sum of samples is the integral between the points halfway, to 1e-4.
+    position = (np.arange(width) + 0.5 - step) / (sigma * math.sqrt(2.0))
+    expected = np.array([0.5 * (1.0 + math.erf(x)) for x in position])
+    found = run(GaussianBlur(sigma=sigma), {"image": picture})
+    tolerance = 1e-4 if sigma >= 7.0 else 5e-3 / sigma
+    assert np.abs(found - expected[None, :, None]).max() <= tolerance
+
+
+@pytest.mark.parametrize("sigma", [0.3, 2.0, 6.9, *LARGE])
+def test_a_flat_picture_stays(run, sigma):
+    flat = np.full((37, 53, 4), 3.75, np.float32)
+    np.testing.assert_allclose(run(GaussianBlur(sigma=sigma), {"image": flat}), flat, rtol=2e-6)
+
+
+@pytest.mark.parametrize("sigma", [0.3, 2.0, 7.0, 20.0])
+def test_no_light_is_lost(run, hdr, sigma):
+    margin = int(6.0 * sigma) + 8
+    picture = np.pad(hdr(23, 19), ((margin, margin), (margin, margin), (0, 0)))
+    found = run(GaussianBlur(sigma=sigma, edge="black"), {"image": picture}).sum(axis=(0, 1), dtype=np.float64)
+    np.testing.assert_allclose(found, picture.sum(axis=(0, 1), dtype=np.float64), rtol=2e-5)
+
+
+@pytest.mark.parametrize(("sigma", "tolerance"), [(2.0, 1e-7), (6.9, 1e-7), (20.0, 1e-3)])
+def test_an_impulse_spreads_alike_in_all_directions(run, sigma, tolerance):
+    side = 2 * int(5.0 * sigma) + 1
+    found = run(GaussianBlur(sigma=sigma), {"image": impulse(side, side, side // 2, side // 2)})
+    for turned in (found[::-1], found[:, ::-1], found.transpose(1, 0, 2)):
+        assert np.abs(turned - found).max() <= tolerance * found.max()
+
+
+@pytest.mark.parametrize(("sigma", "tolerance"), [(3.0, 1e-6), (20.0, 1e-3)])
+def test_moving_the_picture_moves_the_result(run, hdr, sigma, tolerance):
+    margin = int(5.0 * sigma) + 8
+    picture = np.pad(hdr(17, 13), ((margin, margin), (margin, margin), (0, 0)))
+    moved = np.roll(picture, (3, 5), (0, 1))
+    still = run(GaussianBlur(sigma=sigma), {"image": picture})
+    assert np.abs(np.roll(still, (3, 5), (0, 1)) - run(GaussianBlur(sigma=sigma), {"image": moved})).max() <= (
+        tolerance * still.max()
+    )
+
+
+def test_two_blurs_add_their_variances(run):
+    picture = impulse(301, 301, 150, 150)
+    twice = run(GaussianBlur(sigma=16.0), {"image": run(GaussianBlur(sigma=12.0), {"image": picture})})
+    once = run(GaussianBlur(sigma=20.0), {"image": picture})
+    assert np.abs(twice - once).max() <= 1e-3 * once.max()
+
+
+def test_sigma_zero_changes_nothing(run, hdr):
+    assert GaussianBlur(sigma=0.0).identity() == "image"
+    picture = hdr(13, 11)
+    np.testing.assert_array_equal(run(GaussianBlur(sigma=0.0), {"image": picture}), picture)
+
+
+@pytest.mark.parametrize("sigma", [0.5, 3.0, 20.0])
+@pytest.mark.parametrize("hole", [np.nan, np.inf, -np.inf])
+def test_a_hole_is_skipped(run, hdr, sigma, hole):
+    picture = hdr(45, 39)
+    picture[20, 22, 1] = hole
+    patched = picture.copy()
+    patched[20, 22] = 0.0
+    found = run(GaussianBlur(sigma=sigma), {"image": picture})
+    np.testing.assert_array_equal(found, run(GaussianBlur(sigma=sigma), {"image": patched}))
