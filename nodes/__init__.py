@@ -9,9 +9,39 @@ from functools import cache
 from types import MappingProxyType
 
 from ._declare import (
-    RGBA, Argument, Color, Doc, Draw, Drawn, Edge, Field, File, FilePath, Filter, Fraction, Handle, Image, Kernel3x3,
-    Kind, Node, Number, Output, Pixels, Plain, Pointwise, Position, Size, Slider, Socket, Source, Swatch, Temporal, Unit,
-    Value, Vector, glsl_type,
+    RGBA,
+    Argument,
+    Color,
+    Doc,
+    Draw,
+    Drawn,
+    Edge,
+    Field,
+    File,
+    FilePath,
+    Filter,
+    Fraction,
+    Handle,
+    Image,
+    Kernel3x3,
+    Kind,
+    Node,
+    Number,
+    Output,
+    Pixels,
+    Plain,
+    Pointwise,
+    Position,
+    Size,
+    Slider,
+    Socket,
+    Source,
+    Swatch,
+    Temporal,
+    Unit,
+    Value,
+    Vector,
+    glsl_type,
 )
 
 __all__ = [
@@ -26,7 +56,7 @@ def catalogue() -> Mapping[str, type[Node]]:
     """Every node class by id, in the order of the menu: folder, then file."""
     found: dict[str, type[Node]] = {}
     for folder in sorted(pkgutil.iter_modules(__path__), key=lambda item: item.name):
-        if not folder.ispkg:
+        if not folder.ispkg or folder.name.startswith("_"):
             continue
         package = importlib.import_module(f".{folder.name}", __package__)
         for module in sorted(pkgutil.iter_modules(package.__path__), key=lambda item: item.name):

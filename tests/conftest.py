@@ -6,9 +6,8 @@ from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 import pytest
-
 from halation.app.graph import Graph, Input, Output, Port
-from halation.app.render import Renderer, open_device
+from halation.app.render import Renderer, Wanted, open_device
 from halation.nodes import Kind, Node
 
 Array = np.ndarray
@@ -63,9 +62,8 @@ def run(renderer: Renderer) -> Run:
         if output not in graph.outputs:
             output = next(iter(graph.outputs))
         engine = engine or renderer
-        found = engine.render(
-            graph, arrays, size=size, scale=scale, precision=precision, targets={output: Port("outputs", output)}
-        )
+        targets = {output: Port("outputs", output)}
+        found = engine.render(graph, Wanted(arrays, targets, size, scale, precision=precision))
         return found[output].astype(np.float32)
 
     return rendered

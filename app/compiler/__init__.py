@@ -7,7 +7,7 @@ Stages, each a function of what the one before made: `expand` flattens groups, `
 from __future__ import annotations
 
 from ..graph import Graph
-from .explain import dot, explain
+from .explain import as_json, dot, explain
 from .fuse import fuse
 from .ir import Picture
 from .library import Library, installed
@@ -18,7 +18,7 @@ from .target import NULL, Form, Precision, Target
 
 __all__ = [
     "NULL", "Form", "Library", "Pass", "Picture", "Plan", "Precision", "Probe", "Probed", "Request", "Shader",
-    "Surface", "Target", "Upload", "compile_graph", "dot", "explain", "installed",
+    "Surface", "Target", "Upload", "as_json", "compile_graph", "dot", "explain", "installed",
 ]
 
 

@@ -10,7 +10,7 @@ from .ir import BLOCK, Accessor, Convolve, Reduce, Ref
 if TYPE_CHECKING:
     from .emit import Names
 
-OUTPUTS = 16
+OUTPUTS = 8
 """Pixels that one invocation of a sliding convolution makes: each pixel read is used for all of them."""
 
 MAX_WEIGHTS = 4096
@@ -77,7 +77,8 @@ def sliding(names: Names, root: Convolve, stores: list[str]) -> list[str]:
     glsl = glsl_type(names.shape(root.image).channels)
     lines = [
         "void main() {",
-        f"    ivec2 first = int(gl_GlobalInvocationID.x) * along.yx + int(gl_GlobalInvocationID.y) * {OUTPUTS} * along;",
+        "    ivec2 at = ivec2(gl_GlobalInvocationID.xy);",
+        f"    ivec2 first = at.x * along.yx + at.y * {OUTPUTS} * along;",
         "    if (any(greaterThanEqual(first, grid))) return;",
         "    ivec2 p = first + along * origin;",
         f"    {glsl} t, {', '.join(f's{k} = {glsl}(0.0)' for k in range(OUTPUTS))};",

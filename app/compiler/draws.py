@@ -10,7 +10,21 @@ from typing import Literal
 from ...nodes import Argument, Drawn, Edge, Filter, Image, Kind, Node, Pixels, Plain, Size, Socket, glsl_type
 from ..errors import ShaderError
 from . import gaussian
-from .ir import BLOCK, Accessor, Builder, Call, Choice, Constant, Convolve, Gather, Parameter, Picture, Reduce, Ref, Shape
+from .ir import (
+    BLOCK,
+    Accessor,
+    Builder,
+    Call,
+    Choice,
+    Constant,
+    Convolve,
+    Gather,
+    Parameter,
+    Picture,
+    Reduce,
+    Ref,
+    Shape,
+)
 from .library import Function, Library
 
 
@@ -103,7 +117,9 @@ class Recorder:
                 made = self._enlarge(made, axis, plan.factor, plan.apron, full[axis])
         return made
 
-    def convolve(self, image: Pixels, weights: tuple[float, ...], axis: Literal["x", "y"], edge: Edge = "clamp") -> Drawn:
+    def convolve(
+        self, image: Pixels, weights: tuple[float, ...], axis: Literal["x", "y"], edge: Edge = "clamp"
+    ) -> Drawn:
         made = self._pixels(image)
         along = 0 if axis == "x" else 1
         return self._convolve(made, along, weights, 1, -(len(weights) // 2), edge, made.size[along])

@@ -20,6 +20,9 @@ from .target import Form, Target
 LOCAL_SIZE = 64
 """Invocations of a work group, along a row."""
 
+NO_SEAM = (0, 0, 0, 0)
+"""What a seam between fused functions does to the bits: nothing. See primitive/settled.glsl."""
+
 
 @dataclass(frozen=True)
 class Emitted:
@@ -135,7 +138,7 @@ def emit(program: Program, fused: Fused, library: Library, target: Target, texel
         *([f"layout(local_size_x = {LOCAL_SIZE}) in;"] if target.form == "compute" else []),
         *(f"uniform {glsl} {name};" for name, glsl, _ in names.uniforms),
         *_textures(names, fused, target, texels), *_targets(names, fused, target, texels),
-        "ivec2 pixel, extent;", *_half_rounding(target, halves),
+        "ivec2 pixel = ivec2(0), extent = ivec2(0);", *_half_rounding(target, halves),
     ]
     for text in (item for item in texts if item.name != parts.reader):
         lines += _included(text, files, program, fused)
@@ -166,6 +169,8 @@ class _Parts:
 def _parts(program: Program, fused: Fused, names: Names, library: Library) -> _Parts:
     root = program.ops[fused.root]
     shaders = [op.shader for op in (program.ops[index] for index in fused.members) if isinstance(op, Call)]
+    if len(fused.members) > 1:
+        shaders.insert(0, "primitive/settled")
     if isinstance(root, Call):
         body, values = _calls(program, fused, names, "pixel")
         return _Parts(shaders, [], body, [values[ref] for ref in fused.writes])
@@ -206,19 +211,23 @@ def _calls(program: Program, fused: Fused, names: Names, where: str) -> tuple[li
         else:
             lines += [f"{glsl} {name};" for glsl, name in zip(types, outputs, strict=True)]
             lines.append(f"{op.function}({', '.join([*arguments, *outputs])});")
+        if index != fused.root:
+            lines += [f"{name} = settled({name}, {names.uniform('uvec4', NO_SEAM)});" for name in outputs]
         values |= {Ref(index, output): name for output, name in enumerate(outputs)}
     return lines, values
 
 
 def _included(text: Text, files: list[str], program: Program, fused: Fused) -> list[str]:
     """A shader file, with the macros of its node's choices around it and its own line numbers."""
-    ops = (program.ops[index] for index in fused.members)
-    choices = next((op.choices for op in ops if isinstance(op, (Call, Gather)) and op.shader == text.name), ())
+    ops = [op for op in (program.ops[index] for index in fused.members) if isinstance(op, (Call, Gather))]
+    mine = [op for op in ops if op.shader == text.name]
+    body = text.only(frozenset(op.function for op in mine)) if mine else text.body
+    choices = next((op.choices for op in mine), ())
     macros = [(macro(name, one), number) for name, all_ in choices for number, one in enumerate(all_)]
     files.append(f"shaders/{text.name}.glsl")
     return [
         *(f"#define {name} {number}" for name, number in macros),
-        f"#line {LINES_PER_FILE * (len(files) - 1) + 1}", text.body.rstrip("\n"), "#line 1",
+        f"#line {LINES_PER_FILE * (len(files) - 1) + 1}", body.rstrip("\n"), "#line 1",
         *(f"#undef {name}" for name, _ in macros),
     ]
 

@@ -1,6 +1,6 @@
 """Gaussian blur at a cost that hardly depends on sigma.
 
-Small sigmas are convolved as they are. Large ones are decimated with a Gaussian of 0.7 times the step (a box would
+Small sigmas are convolved as they are. Large ones are decimated with a Gaussian of 0.8 times the step (a box would
 move small highlights by up to half a block), convolved exactly at the small size, and enlarged with a cubic B-spline,
 whose own variance of a third of a small pixel squared is taken off first (Unser 1999). Relative error below 3e-4.
 """
@@ -13,10 +13,10 @@ from dataclasses import dataclass
 DIRECT_BELOW = 7.0
 """Up to this sigma the direct convolution is both exact and no slower."""
 
-_SPREAD = 0.7
+_SPREAD = 0.8
 """Sigma of a decimation, in steps."""
 
-_REST = 1.45
+_REST = 1.8
 """Sigma that must be left for the small size, in its pixels: less of it shows the grid."""
 
 

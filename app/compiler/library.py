@@ -16,6 +16,7 @@ _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 _INCLUDE = re.compile(r'^[ \t]*#include[ \t]+"([^"]+)"[^\n]*$', re.MULTILINE)
 _FUNCTION = re.compile(r"^(\w+)[ \t]+(\w+)[ \t]*\(([^)]*)\)\s*\{", re.MULTILINE)
 _WORD = re.compile(r"[A-Za-z_]\w*")
+_BLANK = re.compile(r"[^\n]")
 
 
 @dataclass(frozen=True)
@@ -26,20 +27,55 @@ class Function:
     result: str
     parameters: tuple[tuple[str, str], ...]
     outputs: tuple[tuple[str, str], ...]
+    start: int
+    end: int
+    """Where it lies in the text of its file."""
+    words: frozenset[str]
 
 
 @dataclass(frozen=True)
 class Text:
-    """One GLSL file without its `#include` lines (their lines stay, empty, so that numbers hold)."""
+    """One GLSL file without its `#include` lines (their lines stay, empty, so that numbers hold).
+
+    `functions` are by name; `all_functions` also has every overload, in order.
+    """
 
     name: str
     body: str
     includes: tuple[str, ...]
     functions: Mapping[str, Function]
+    all_functions: tuple[Function, ...]
     words: frozenset[str]
 
+    def only(self, entries: frozenset[str]) -> str:
+        """The text without functions that `entries` do not need: another draw may need other accessors.
 
-def _signature(result: str, name: str, inside: str) -> Function:
+        Their lines stay, empty.
+        """
+        needed: set[str] = set()
+        todo = [name for name in entries if name in self.functions]
+        while todo:
+            name = todo.pop()
+            if name not in needed:
+                needed.add(name)
+                for one in self.all_functions:
+                    if one.name == name:
+                        todo.extend(word for word in one.words if word in self.functions)
+        text = self.body
+        for one in self.all_functions:
+            if one.name not in needed:
+                blank = _BLANK.sub(" ", text[one.start : one.end])
+                text = text[: one.start] + blank + text[one.end :]
+        return text
+
+
+def _function(match: re.Match[str], code: str) -> Function:
+    result, name, inside = match.groups()
+    depth, end = 1, match.end()
+    while depth and end < len(code):
+        depth += {"{": 1, "}": -1}.get(code[end], 0)
+        end += 1
+    used = frozenset(_WORD.findall(code, match.end(), end))
     taken: list[tuple[str, str]] = []
     given: list[tuple[str, str]] = []
     for part in filter(None, (item.strip() for item in inside.split(","))):
@@ -48,17 +84,18 @@ def _signature(result: str, name: str, inside: str) -> Function:
             given.append((words[1], words[2]))
         else:
             taken.append((words[0], words[1]))
-    return Function(name, result, tuple(taken), tuple(given))
+    return Function(name, result, tuple(taken), tuple(given), match.start(), end, used)
 
 
 def parse(name: str, source: str) -> Text:
     """Read a shader file's functions and includes."""
     # Comments become spaces of the same height, so that a brace in a sentence is no code and lines keep their numbers.
-    code = _COMMENT.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), source)
-    functions = {match[2]: _signature(match[1], match[2], match[3]) for match in _FUNCTION.finditer(code)}
-    includes = tuple(_INCLUDE.findall(source))
-    body = _INCLUDE.sub("", source)
-    return Text(name, body, includes, MappingProxyType(functions), frozenset(_WORD.findall(code)))
+    code = _COMMENT.sub(lambda match: _BLANK.sub(" ", match[0]), source)
+    functions = tuple(_function(match, code) for match in _FUNCTION.finditer(code))
+    by_name = MappingProxyType({one.name: one for one in functions})
+    body = _INCLUDE.sub(lambda match: _BLANK.sub(" ", match[0]), source)
+    words = frozenset(_WORD.findall(code))
+    return Text(name, body, tuple(_INCLUDE.findall(source)), by_name, functions, words)
 
 
 @dataclass(frozen=True)
@@ -66,7 +103,9 @@ class Library:
     """Shader texts by name, such as `color/exposure` or `lib/color`."""
 
     texts: Mapping[str, Text]
-    _closures: dict[tuple[str, ...], tuple[Text, ...]] = field(default_factory=dict, compare=False, repr=False)
+    _closures: dict[tuple[str, ...], tuple[Text, ...]] = field(
+        default_factory=dict[tuple[str, ...], tuple[Text, ...]], compare=False, repr=False
+    )
 
     def text(self, name: str, asker: str = "") -> Text:
         """The file, or a ShaderError that names who asked."""
@@ -119,4 +158,4 @@ def _walk(folder: Traversable, prefix: str) -> dict[str, Text]:
 @cache
 def installed() -> Library:
     """The library that ships with Halation."""
-    return Library(MappingProxyType(_walk(resources.files(f"{__package__.split('.')[0]}.shaders"), "")))
+    return Library(MappingProxyType(_walk(resources.files(f"{__name__.partition('.')[0]}.shaders"), "")))

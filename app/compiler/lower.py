@@ -300,9 +300,10 @@ class _Lowering:
                 parameters.append(Parameter(node.inputs[name].glsl, operands[name]))
             elif node.values[name].glsl is not None:
                 parameters.append(self._value(node, node.values[name], wires.get(name), size))
+        sockets = [output.socket for output in node.outputs.values()]
         shapes = tuple(
-            Shape((1, 1) if output.socket.single else size, output.socket.channels, output.socket.kind is not Kind.IMAGE)
-            for output in node.outputs.values()
+            Shape((1, 1) if socket.single else size, socket.channels, socket.kind is not Kind.IMAGE)
+            for socket in sockets
         )
         call = Call(shapes, path, f"{node.category}/{node.id}", node.id, tuple(parameters), choices(node))
         ref = self.builder.add(call)

@@ -23,17 +23,6 @@ _VALUE_TAKES: Mapping[str, frozenset[Kind]] = MappingProxyType({
     "vector": frozenset({Kind.VECTOR, Kind.FIELD, Kind.NUMBER}),
 })
 
-_WAY_OUT: Mapping[tuple[Kind, Kind], str] = MappingProxyType({
-    (Kind.IMAGE, Kind.FIELD): "put a 'luminance' or 'separate' node between them",
-    (Kind.IMAGE, Kind.VECTOR): "put a 'separate' node, then a 'combine' node between them",
-    (Kind.VECTOR, Kind.IMAGE): "put a 'separate' node, then a 'combine' node between them",
-    (Kind.VECTOR, Kind.FIELD): "put a 'separate' node between them",
-    (Kind.VECTOR, Kind.VECTOR): "put a 'separate' node, then a 'combine' node between them",
-    (Kind.COLOR, Kind.FIELD): "put a 'luminance' or 'separate' node between them",
-    (Kind.COLOR, Kind.VECTOR): "put a 'separate' node, then a 'combine' node between them",
-})
-
-
 def make_socket(kind: Kind, width: int = 4, default: Plain | None = None, *, name: str = "", doc: str = "") -> Socket:
     """A socket that no class body declares. `width` counts the channels of a Vector."""
     start = default if isinstance(default, tuple) or default is None else float(default)
@@ -58,8 +47,9 @@ def conversion(source: Socket, target: Socket | Value) -> str | None:
         return None
     reason = f"{_word(source)} does not fit {_word(target)}"
     if target.single:
-        return f"{reason}, which holds one value for the whole picture; measure it, or feed {_singles(target)}"
-    return f"{reason}; {_WAY_OUT[source.kind, target.kind]}"
+        single = "a Number" if target.kind is Kind.NUMBER else "a Number or Color"
+        return f"{reason}, one value for the whole picture: link {single}, such as 'luminance_statistics' measures"
+    return f"{reason}: put {' and '.join(_way_out(source, target))} between them"
 
 
 def _into_value(source: Socket, target: Value) -> str | None:
@@ -82,5 +72,16 @@ def _word(socket: Socket) -> str:
     return f"{'an' if word[0] in 'AEIOU' else 'a'} {word}"
 
 
-def _singles(target: Socket) -> str:
-    return "a Number" if target.kind is Kind.NUMBER else "a Number or Color"
+def _way_out(source: Socket, target: Socket) -> tuple[str, ...]:
+    """The nodes that convert between two kinds of pixels."""
+    split = f"'separate{_suffix(source)}'"
+    if target.kind is Kind.FIELD:
+        return (split,) if source.kind is Kind.VECTOR else (f"'luminance' or {split}",)
+    return split, f"'combine{_suffix(target)}'"
+
+
+def _suffix(socket: Socket) -> str:
+    """How the nodes that take vectors apart are called: plain for colors, `_vector` for three channels."""
+    if socket.kind is not Kind.VECTOR:
+        return ""
+    return "_vector" if socket.channels == 3 else f"_vector{socket.channels}"

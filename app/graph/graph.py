@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from graphlib import CycleError
 from types import MappingProxyType
-from typing import Any, Self
+from typing import Any, Literal, Self
 
 from ...nodes import Node, Plain, Pointwise, Socket, Value
 from ..errors import GraphError
 from .conversion import conversion
-from .names import INPUTS, OUTPUTS, check_name, did_you_mean, fresh_name
+from .names import INPUTS, OUTPUTS, check_name, did_you_mean, fresh_name, pick
+from .notes import moved_keys, moved_layout, renamed, without
 from .parts import Control, Input, Output, Port, Settings, Signature, Unknown, freeze
-from .relink import relinked
+from .relink import moved_links, relinked
 from .values import coerced, value_fault
-from .walk import reach, route, sort
+from .walk import loop_sentence, neighbors, reach, route, sort
 
 
 @dataclass(frozen=True)
@@ -86,19 +87,20 @@ class Graph:
     def source(self, port: Port) -> Socket | None:
         """What leaves at `port`; None if it belongs to a node of unknown type. Raises GraphError."""
         if port.node == INPUTS:
-            return _pick(self.inputs, port.socket, "the graph has no input").socket(port.socket)
+            return pick(self.inputs, port.socket, "the graph has no input").socket(port.socket)
         face = signature(self.node(port.node))
-        return None if face.anything else _pick(face.outputs, port.socket, f"node '{port.node}' has no output")
+        return None if face.anything else pick(face.outputs, port.socket, f"node '{port.node}' has no output")
 
     def target(self, port: Port) -> Socket | Value | None:
         """What a link to `port` feeds; None if it belongs to a node of unknown type. Raises GraphError."""
         if port.node == OUTPUTS:
-            return _pick(self.outputs, port.socket, "the graph has no output").socket(port.socket)
-        face = signature(self.node(port.node))
+            return pick(self.outputs, port.socket, "the graph has no output").socket(port.socket)
+        item = self.node(port.node)
+        face = signature(item)
         if face.anything or port.socket in face.inputs:
             return face.inputs.get(port.socket)
-        value = _pick({**face.inputs, **face.values}, port.socket, f"node '{port.node}' has no input")
-        if not face.pointwise:
+        value = pick({**face.inputs, **face.values}, port.socket, f"node '{port.node}' has no input")
+        if not _is_pointwise(item, port.socket):
             raise GraphError(f"'{port}' can only be set: only values of pointwise nodes can be wired")
         return value
 
@@ -128,12 +130,12 @@ class Graph:
     @cached_property
     def feeding(self) -> Mapping[str, frozenset[str]]:
         """For every node and OUTPUTS: the nodes that feed it directly."""
-        return self._neighbors((target.node, source.node) for target, source in self.links.items())
+        return neighbors(self.nodes, OUTPUTS, ((end.node, start.node) for end, start in self.links.items()))
 
     @cached_property
     def fed(self) -> Mapping[str, frozenset[str]]:
         """For every node and INPUTS: the nodes that it feeds directly."""
-        return self._neighbors((source.node, target.node) for target, source in self.links.items())
+        return neighbors(self.nodes, INPUTS, ((start.node, end.node) for end, start in self.links.items()))
 
     def bypass(self, id: str, wanted: Socket | Value | None) -> Port | None:
         """What reaches `wanted` in place of node `id`: the source of the node's first linked input that fits."""
@@ -172,8 +174,10 @@ class Graph:
             if source.node == id != target.node and (instead := self._instead(id, target)):
                 links[target] = instead
         kept = {name: control for name, control in self.controls.items() if control.target.node != id}
-        nodes = {name: item for name, item in self.nodes.items() if name != id}
-        return self._with(nodes=nodes, links=links, controls=kept, muted=self.muted - {id}, **self._notes(id))
+        return self._with(
+            nodes=without(self.nodes, id), links=links, controls=kept, muted=self.muted - {id},
+            ui=moved_layout(self.ui, id), extra=moved_keys(self.extra, f"nodes.{id}"),
+        )
 
     def rename(self, old: str, new: str) -> Self:
         """A graph where a node has another id; links, controls and layout follow."""
@@ -182,15 +186,16 @@ class Graph:
             return self
         check_name(new, "node", self.nodes)
 
-        def moved(port: Port) -> Port:
-            return Port(new, port.socket) if port.node == old else port
-
+        ports = {*self.links, *self.links.values(), *(control.target for control in self.controls.values())}
+        moves = {port: Port(new, port.socket) for port in ports if port.node == old}
+        controls = {
+            name: dataclasses.replace(item, target=moves.get(item.target, item.target))
+            for name, item in self.controls.items()
+        }
         return self._with(
-            nodes={new if id == old else id: item for id, item in self.nodes.items()},
-            links={moved(target): moved(source) for target, source in self.links.items()},
-            controls={name: dataclasses.replace(item, target=moved(item.target)) for name, item in self.controls.items()},
+            nodes=renamed(self.nodes, old, new), links=moved_links(self.links, moves), controls=controls,
             muted={new if id == old else id for id in self.muted},
-            **self._notes(old, new),
+            ui=moved_layout(self.ui, old, new), extra=moved_keys(self.extra, f"nodes.{old}", f"nodes.{new}"),
         )
 
     def replace(self, id: str, item: Item) -> Self:
@@ -206,8 +211,8 @@ class Graph:
             name: control for name, control in self.controls.items()
             if control.target.node != id or face.anything or control.target.socket in face.values
         }
-        notes = {} if _type_of(before) == _type_of(item) else self._notes(id)
-        return after._with(links=links, controls=kept, **{**notes, "ui": self.ui})
+        extra = self.extra if type(before) is type(item) else moved_keys(self.extra, f"nodes.{id}")
+        return after._with(links=links, controls=kept, extra=extra)
 
     def mute(self, id: str, on: bool = True) -> Self:
         """A graph where the node passes its first input through, or works again."""
@@ -228,7 +233,7 @@ class Graph:
         """A graph without the link to `target`."""
         if target not in self.links:
             raise GraphError(f"nothing is linked to '{target}'")
-        return self._with(links=_without(self.links, target))
+        return self._with(links=without(self.links, target))
 
     def value(self, port: Port) -> Plain:
         """What a value of a node, or a control of a group, is set to."""
@@ -246,17 +251,17 @@ class Graph:
     def put(self, port: Port, plain: Plain) -> Self:
         """`set` without any check; a port that is not there changes nothing."""
         item = self.nodes.get(port.node)
-        if isinstance(item, Group):
+        if isinstance(item, Group) and port.socket in item.graph.controls:
             item = dataclasses.replace(item, values={**item.values, port.socket: plain})
         elif isinstance(item, Node) and port.socket in item.values:
-            item = dataclasses.replace(item, **{port.socket: plain})
+            item = item.changed(**{port.socket: plain})
         else:
             return self
         return self._with(nodes={**self.nodes, port.node: item})
 
     def set_control(self, name: str, value: object) -> Self:
         """A graph where the value behind a control is set."""
-        return self.set(_pick(self.controls, name, "the graph has no control").target, value)
+        return self.set(pick(self.controls, name, "the graph has no control").target, value)
 
     def override(self, path: str, value: object) -> Self:
         """Set what `path` names: `glow` (a control), `bloom.intensity`, `group.control` or `group.node.value`."""
@@ -290,53 +295,52 @@ class Graph:
 
     def remove_input(self, name: str) -> Self:
         """A graph without that input and its links."""
-        _pick(self.inputs, name, "the graph has no input")
-        links = {target: source for target, source in self.links.items() if source != Port(INPUTS, name)}
-        return self._with(inputs=_without(self.inputs, name), links=links, extra=self._extra(f"inputs.{name}"))
+        return self._move_end("inputs", name)
 
     def remove_output(self, name: str) -> Self:
         """A graph without that output and its link."""
-        _pick(self.outputs, name, "the graph has no output")
-        links = _without(self.links, Port(OUTPUTS, name))
-        return self._with(outputs=_without(self.outputs, name), links=links, extra=self._extra(f"outputs.{name}"))
+        return self._move_end("outputs", name)
 
     def remove_control(self, name: str) -> Self:
         """A graph without that control; the value stays as it is."""
-        _pick(self.controls, name, "the graph has no control")
-        return self._with(controls=_without(self.controls, name), extra=self._extra(f"controls.{name}"))
+        return self._move_end("controls", name)
+
+    def rename_input(self, old: str, new: str) -> Self:
+        """A graph where an input has another name; links follow."""
+        return self._move_end("inputs", old, new)
+
+    def rename_output(self, old: str, new: str) -> Self:
+        """A graph where an output has another name; its link follows."""
+        return self._move_end("outputs", old, new)
+
+    def rename_control(self, old: str, new: str) -> Self:
+        """A graph where a control has another name."""
+        return self._move_end("controls", old, new)
 
     # --- inside ------------------------------------------------------------------------------------------------
 
     def _with(self, **changes: Any) -> Self:
         return dataclasses.replace(self, **changes)
 
-    def _neighbors(self, pairs: Iterable[tuple[str, str]]) -> Mapping[str, frozenset[str]]:
-        found: dict[str, set[str]] = {id: set() for id in (*self.nodes, INPUTS, OUTPUTS)}
-        for start, end in pairs:
-            if start in found and end in self.nodes:
-                found[start].add(end)
-        return MappingProxyType({id: frozenset(ends) for id, ends in found.items()})
-
     def _instead(self, id: str, target: Port) -> Port | None:
         try:
-            return self.bypass(id, self.target(target))
+            source = self.bypass(id, self.target(target))
         except GraphError:
             return None
+        return source if source and source.node != target.node else None
 
-    def _notes(self, old: str, new: str = "") -> dict[str, Any]:
-        """`ui` and `extra` after a node was renamed, or removed if `new` is empty."""
-        places = self.ui.get("nodes")
-        ui = self.ui
-        if isinstance(places, Mapping) and old in places:
-            moved = {new or old: places[old]} if new else {}
-            ui = MappingProxyType({**ui, "nodes": MappingProxyType({**_without(places, old), **moved})})
-        return {"ui": ui, "extra": self._extra(f"nodes.{old}", f"nodes.{new}" if new else "")}
-
-    def _extra(self, old: str, new: str = "") -> Mapping[str, Mapping[str, Any]]:
-        inside = {path for path in self.extra if path == old or path.startswith(f"{old}.")}
-        kept = {path: keys for path, keys in self.extra.items() if path not in inside}
-        moved = {new + path.removeprefix(old): self.extra[path] for path in inside} if new else {}
-        return {**kept, **moved}
+    def _move_end(self, section: Literal["inputs", "outputs", "controls"], old: str, new: str | None = None) -> Self:
+        """Rename an input, output or control, or remove it if `new` is None."""
+        known: Mapping[str, Any] = getattr(self, section)
+        pick(known, old, f"the graph has no {section[:-1]}")
+        rest, here = without(known, old), Port(section, old)
+        if new is None:
+            ends, links = rest, {end: start for end, start in self.links.items() if here not in (end, start)}
+        else:
+            check_name(new, section[:-1], rest)
+            ends, links = renamed(known, old, new), moved_links(self.links, {here: Port(section, new)})
+        extra = moved_keys(self.extra, f"{section}.{old}", f"{section}.{new}" if new else "")
+        return self._with(**{section: ends}, links=links, extra=extra)
 
 
 # --- faces of nodes ------------------------------------------------------------------------------------------------
@@ -359,13 +363,13 @@ def control_value(graph: Graph, name: str) -> Value | None:
     """The value behind a control, called by the control's name, its present setting as the default."""
     control = graph.controls[name]
     item = graph.nodes.get(control.target.node)
-    value = None if item is None else _present(item, control.target.socket)
+    value = None if item is None else present_value(item, control.target.socket)
     return value and dataclasses.replace(value, name=name, doc=control.doc or value.doc)
 
 
 def declared(item: Item, name: str, id: str) -> Value:
-    """A value of a node or control of a group with its present setting as the default. Raises GraphError."""
-    if value := _present(item, name):
+    """`present_value`, or GraphError with a suggestion."""
+    if value := present_value(item, name):
         return value
     face = signature(item)
     if face.anything:
@@ -375,7 +379,8 @@ def declared(item: Item, name: str, id: str) -> Value:
     raise GraphError(f"node '{id}' has no value '{name}'{did_you_mean(name, face.values)}")
 
 
-def _present(item: Item, name: str) -> Value | None:
+def present_value(item: Item, name: str) -> Value | None:
+    """A value of a node or control of a group with its present setting as the default, or None."""
     if isinstance(item, Node) and name in item.values:
         return dataclasses.replace(item.values[name], default=getattr(item, name))
     if isinstance(item, Group) and name in item.graph.controls and (value := control_value(item.graph, name)):
@@ -383,13 +388,9 @@ def _present(item: Item, name: str) -> Value | None:
     return None
 
 
-def loop_sentence(loop: Iterable[str]) -> str:
-    """What to say about nodes that feed each other."""
-    return f"the nodes {' -> '.join(loop)} form a loop; remove one of these links"
-
-
-def _type_of(item: Item) -> object:
-    return item.type if isinstance(item, Unknown) else type(item)
-
-
-def _pick[T](known: Mapping[str, T], name: str, lacking: str) -> T: ...
+def _is_pointwise(item: Item, name: str) -> bool:
+    """True if value `name` of a node, or what a control of a group turns, can be wired."""
+    while isinstance(item, Group):
+        target = item.graph.controls[name].target
+        item, name = item.graph.nodes[target.node], target.socket
+    return isinstance(item, Pointwise)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from typing import TypeVar
 
 from ..errors import GraphError
 
@@ -11,6 +12,8 @@ INPUTS, OUTPUTS = "inputs", "outputs"
 """The ids under which links name the ends of the graph itself."""
 
 _LISTED = 12
+
+T = TypeVar("T")
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
@@ -21,6 +24,13 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     if 0 < len(lowered) <= _LISTED:
         return f"; there is {', '.join(sorted(lowered.values()))}"
     return ""
+
+
+def pick(known: Mapping[str, T], name: str, lacking: str) -> T:
+    """The entry of that name. Raises GraphError: `lacking`, the name and a suggestion."""
+    if name not in known:
+        raise GraphError(f"{lacking} '{name}'{did_you_mean(name, known)}")
+    return known[name]
 
 
 def name_fault(name: str, what: str) -> str | None:

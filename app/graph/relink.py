@@ -10,6 +10,11 @@ Fits = Callable[[Port, Port], bool]
 """Whether a link from the first port can feed the second."""
 
 
+def moved_links(links: Mapping[Port, Port], moves: Mapping[Port, Port]) -> dict[Port, Port]:
+    """All `links` with some ports replaced by others."""
+    return {moves.get(target, target): moves.get(source, source) for target, source in links.items()}
+
+
 def relinked(links: Mapping[Port, Port], id: str, old: Signature, new: Signature, fits: Fits) -> dict[Port, Port]:
     """All `links` (target to source), those of node `id` moved from its `old` sockets to its `new` ones.
 

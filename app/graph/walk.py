@@ -2,10 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from graphlib import CycleError, TopologicalSorter
+from types import MappingProxyType
 
 Steps = Mapping[str, Iterable[str]]
+
+
+def neighbors(names: Collection[str], end: str, pairs: Iterable[tuple[str, str]]) -> Mapping[str, frozenset[str]]:
+    """For every name and `end`: the names that a pair leads to from there."""
+    found: dict[str, set[str]] = {name: set() for name in (*names, end)}
+    for start, after in pairs:
+        if start in found and after in names:
+            found[start].add(after)
+    return MappingProxyType({name: frozenset(afters) for name, afters in found.items()})
 
 
 def sort(steps: Steps) -> tuple[str, ...]:
@@ -52,3 +62,8 @@ def route(start: str, goal: str, steps: Steps) -> tuple[str, ...]:
     while way[-1] != start:
         way.append(came[way[-1]])
     return tuple(reversed(way))
+
+
+def loop_sentence(loop: Iterable[str]) -> str:
+    """What to say about nodes that feed each other."""
+    return f"the nodes {' -> '.join(loop)} form a loop; remove one of these links"

@@ -1,1 +1,13 @@
-"""."""
+"""Files and arrays: every picture format that OpenImageIO reads, color through OpenColorIO."""
+
+from .color import to_display, views
+from .info import ImageInfo, content_hash, find_layer, fingerprint, info
+from .layers import Layer
+from .metadata import Attribute, read_metadata
+from .read import Pixels, Want, read, read_many
+from .write import write
+
+__all__ = [
+    "Attribute", "ImageInfo", "Layer", "Pixels", "Want", "content_hash", "find_layer", "fingerprint", "info", "read",
+    "read_many", "read_metadata", "to_display", "views", "write",
+]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 
 import moderngl
@@ -22,6 +23,12 @@ class Device:
 
     context: moderngl.Context
     target: Target
+    shared: bool = False
+    """True if the context belongs to somebody else, a window say, and is current whenever we are called."""
+
+    def current(self) -> AbstractContextManager[object]:
+        """Our context is the current one inside this block, whatever other contexts the process has."""
+        return nullcontext() if self.shared else self.context
 
     @property
     def description(self) -> str:

@@ -76,7 +76,7 @@ def _located(one: Pass, log: str) -> ShaderError:
     """The first fault in a driver's log, in terms of the user's files."""
     for line in log.splitlines():
         match = _FAULT.match(line.strip())
-        if match:
+        if match and not match[4].lower().startswith("warning"):
             name, row = one.shader.locate(int(match[2] or match[3]))
             return ShaderError(", ".join(one.nodes), name, row, match[4].strip())
     first = next((line.strip() for line in log.splitlines() if "error" in line.lower()), log.strip())

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import Any
 
 import moderngl
 import numpy as np
@@ -40,6 +41,7 @@ class Runner:
         self.textures = Textures(device.context, device.target.max_size, budget)
         self.counters = Counters()
         self._weights: dict[tuple[float, ...], moderngl.Buffer] = {}
+        self._idle: moderngl.Framebuffer | None = None
         self._threads = ThreadPoolExecutor(max_workers=2, thread_name_prefix="decode")
 
     def run(self, plan: Plan) -> dict[str, Array]:
@@ -63,14 +65,16 @@ class Runner:
                     pinned.add(key)
             for index in needed:
                 one = plan.passes[index]
-                self._upload(plan, pending, one.textures, pinned)
-                self._execute(plan, one, pinned)
-                for number in one.textures:
-                    self._read_once(plan.surfaces[number].key, readers, pinned)
+                with self.device.current():
+                    self._upload(plan, pending, one.textures, pinned)
+                    self._execute(plan, one, pinned)
+                    for number in one.textures:
+                        self._read_once(plan.surfaces[number].key, readers, pinned)
                 yield one
-            self._upload(plan, pending, tuple(plan.outputs.values()), pinned)
-            for name, number in plan.outputs.items():
-                outputs[name] = self._download(plan, number)
+            with self.device.current():
+                self._upload(plan, pending, tuple(plan.outputs.values()), pinned)
+                for name, number in plan.outputs.items():
+                    outputs[name] = self._download(plan, number)
         finally:
             for future in pending.values():
                 future.cancel()
@@ -80,7 +84,8 @@ class Runner:
     def close(self) -> None:
         """Give everything back."""
         self._threads.shutdown(cancel_futures=True)
-        self.textures.clear()
+        with self.device.current():
+            self.textures.clear()
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
@@ -130,8 +135,7 @@ class Runner:
             raise
         self.counters.passes += 1
 
-    def _dispatch(self, one: Pass, handle: object, textures: list[Texture], made: list[Texture]) -> None:
-        assert isinstance(handle, moderngl.ComputeShader)
+    def _dispatch(self, one: Pass, handle: Any, textures: list[Texture], made: list[Texture]) -> None:
         first = 0
         if one.shader.reads_images:
             first = len(textures)
@@ -152,14 +156,25 @@ class Runner:
         context = self.device.context
         for unit, texture in enumerate(textures):
             texture.handle.use(unit)
-        if len(made) == 1 and made[0].framebuffers:
-            framebuffer = made[0].framebuffers[0]
-        else:
+        alone = made[0] if len(made) == 1 else None
+        framebuffer = alone.framebuffer if alone else None
+        if framebuffer is None:
             framebuffer = context.framebuffer([texture.handle for texture in made])
-            made[0].framebuffers.insert(0 if len(made) == 1 else len(made[0].framebuffers), framebuffer)
         framebuffer.use()
         context.disable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
         vertices.render(moderngl.TRIANGLES, vertices=3)
+        self._rest().use()
+        if alone:
+            alone.framebuffer = framebuffer
+        else:
+            framebuffer.release()
+
+    def _rest(self) -> moderngl.Framebuffer:
+        """What stays bound between draws: moderngl rebinds the last framebuffer, even one that was released."""
+        if self._idle is None:
+            context = self.device.context
+            self._idle = context.framebuffer([context.texture((1, 1), 1)])
+        return self._idle
 
     def _weight_buffer(self, weights: tuple[float, ...]) -> moderngl.Buffer:
         known = self._weights.get(weights)

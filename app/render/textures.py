@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import moderngl
 
@@ -16,17 +16,17 @@ Kind = tuple[int, int, int, str]
 
 @dataclass(eq=False)
 class Texture:
-    """A texture on the device, and a framebuffer for it once a fragment pass draws to it."""
+    """A texture on the device, and a framebuffer for it once a fragment pass draws to it alone."""
 
     handle: moderngl.Texture
     kind: Kind
     nbytes: int
-    framebuffers: list[moderngl.Framebuffer] = field(default_factory=list[moderngl.Framebuffer])
+    framebuffer: moderngl.Framebuffer | None = None
 
     def release(self) -> None:
         """Give it back to the driver."""
-        for framebuffer in self.framebuffers:
-            framebuffer.release()
+        if self.framebuffer is not None:
+            self.framebuffer.release()
         self.handle.release()
 
 

@@ -7,7 +7,7 @@ class Noise(Pointwise):
     """Random but repeatable texture, layered in octaves (fBm), from integer hashes: the same on every device.
 
     Hash: pcg3d (Jarzynski and Olano, 2020). Gradient noise: Perlin (2002). The layers are divided by the sum of their
-    strengths, so that every output keeps its range whatever the octaves.
+    strengths, then scaled by the contrast: every output keeps its range whatever the values.
     """
 
     kind: Annotated[Literal["gradient", "value", "white"], Doc(
@@ -23,6 +23,10 @@ class Noise(Pointwise):
     gain: Annotated[float, Slider(
         0.0, 1.0, unit="ratio", minimum=0.0, maximum=4.0, doc="How strong each layer is compared to the one before."
     )] = 0.5
+    contrast: Annotated[float, Slider(
+        0.0, 4.0, unit="ratio", minimum=0.0, maximum=64.0,
+        doc="1 keeps the layers' own range, of which they rarely reach the ends; above, what passes the ends is cut."
+    )] = 2.0
     seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another pattern.")] = 0
     evolution: Annotated[float, Slider(
         0.0, 10.0, unit="ratio", doc="Changes the pattern smoothly; white noise is new at every whole number."

@@ -2,7 +2,7 @@
 #include "lib/noise.glsl"
 
 void noise(
-    int kind, float size, int octaves, float lacunarity, float gain, int seed, float evolution,
+    int kind, float size, int octaves, float lacunarity, float gain, float contrast, int seed, float evolution,
     out vec4 result, out float value, out vec2 vector
 ) {
     vec3 position = vec3((vec2(pixel) + 0.5) / max(finite(size), 1e-3), finite(evolution));
@@ -17,7 +17,7 @@ void noise(
         strength *= finite(gain);
         position *= finite(lacunarity);
     }
-    sum = finite(sum / max(total, 1e-6));
+    sum = clamp(finite(sum / max(total, 1e-6)) * finite(contrast), -1.0, 1.0);
     value = 0.5 + 0.5 * sum.x;
     vector = sum.yz;
     result = vec4(vec3(value), 1.0);

@@ -7,7 +7,7 @@ const float luminance_statistics_none = -3.4e38;  // below every luminance: what
 // The luminance of a pixel and how much it counts.
 vec2 luminance_statistics_light(vec4 image, bool alpha_weighted) {
     if (!is_finite(image) || (alpha_weighted && image.a <= ALPHA_NONE)) return vec2(0.0);
-    return alpha_weighted ? vec2(luminance(unpremultiply(image).rgb), image.a) : vec2(luminance(image.rgb), 1.0);
+    return alpha_weighted ? vec2(luminance(straight(image).rgb), image.a) : vec2(luminance(image.rgb), 1.0);
 }
 
 // What is summed: light, its logarithm and the count.

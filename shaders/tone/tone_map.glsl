@@ -52,7 +52,8 @@ vec4 tone_map(
         float light = max(luminance(rgb), 1e-12);
         average = max(finite(average), 1e-9), maximum = max(finite(maximum), 1e-9);
         float shown = tone_map_luminance(operator, light, finite(key), average, maximum, clamp(bias, 0.1, 1.0));
-        rgb = saturation == 1.0 ? rgb * (shown / light) : pow(max(rgb / light, 1e-12), vec3(finite(saturation))) * shown;
+        vec3 ratios = rgb / light;
+        rgb = shown * (saturation == 1.0 ? ratios : pow(max(ratios, 1e-12), vec3(finite(saturation))));
     }
     rgb = finite(rgb);
     return finite(premultiplied(vec4(clip ? clamp(rgb, 0.0, 1.0) : rgb, color.a)));

@@ -76,12 +76,13 @@ def test_venv_is_missing(checkout: Path) -> None:
 
 FAKE = """
 case $1 in
-    -c) case $2 in *version_info\\[*) echo 3 99 "$HOME" ;; *CDLL*) exit {gl} ;; esac ;;
+    -c) case $2 in *version_info\\[*) echo 3 99 ;; *_base_exec*) echo "$0" ;; *CDLL*) exit {gl} ;; esac ;;
     -m) case $2 in
-        venv) echo venv >>log; d=.venv/bin; {make} -p $d && {copy} "$0" $d/python ;;
+        venv) echo venv >>log; d=.venv/bin; {make} -p $d && {copy} "$0" $d/python && {copy} "$0" $d/halation ;;
         pip) echo pip "$@" >>log; echo Collecting a; echo ERROR: no network; exit {pip} ;;
-        *) echo run "$@" >>log; exit 7 ;;
+        pytest) echo run "$@" >>log; exit 7 ;;
     esac ;;
+    demo) echo run "$@" >>log; exit 7 ;;
 esac
 """
 
@@ -93,10 +94,10 @@ def fake(gl: int = 0, pip: int = 0) -> dict[str, str]:
 
 def test_set_up_happens_once_and_again_when_something_changed(checkout: Path) -> None:
     log = checkout / "log"
-    result = dev(checkout, "demo", "--quiet", commands=fake())
+    result = dev(checkout, "demo", "--json", commands=fake())
     assert result.returncode == 7, result.stderr
     venv, pip, run = log.read_text().splitlines()
-    assert (venv, pip.split()[-2:], run.split()[-4:]) == ("venv", ["-e", "."], ["demo", "--out", "out", "--quiet"])
+    assert (venv, pip.split()[-2:], run.split()[-4:]) == ("venv", ["-e", "."], ["demo", "-o", "out", "--json"])
 
     def steps(*words: str) -> list[str]:
         log.unlink()
@@ -139,6 +140,7 @@ def test_opengl_is_missing_and_nobody_may_install_it(checkout: Path) -> None:
     result = dev(checkout, "demo", commands=commands)
     assert result.returncode == 1
     assert result.stderr.rstrip().endswith("sudo apt-get install -y --no-install-recommends libegl1 libgl1")
+    assert not (checkout / ".venv").exists()
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems bring OpenGL")

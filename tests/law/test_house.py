@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import os
 import re
 import tokenize
 from fnmatch import fnmatch
@@ -13,8 +14,8 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 ENTRIES = {
-    ".ci", ".git", ".github", ".gitattributes", ".gitignore", "LICENSE", "README.md", "app", "dev", "docs", "nodes",
-    "presets", "pyproject.toml", "shaders", "tests",
+    ".ci", ".git", ".gitignore", "LICENSE", "README.md", "app", "dev", "docs", "nodes", "presets", "pyproject.toml",
+    "shaders", "tests",
 }
 TEXT = {"", ".py", ".glsl", ".md", ".toml", ".json", ".yml", ".txt"}
 
@@ -50,6 +51,14 @@ def test_the_root_holds_only_what_belongs_there() -> None:
     assert len(files()) > 50
 
 
+def test_scripts_can_be_run() -> None:
+    assert all(os.access(ROOT / name, os.X_OK) for name in ("dev", ".ci/run"))
+
+
+def test_the_sample_stays_small() -> None:
+    assert sum(path.stat().st_size for path in (ROOT / "presets").rglob("*") if path.is_file()) <= 6 * 2**20
+
+
 def test_files_are_short() -> None:
     lines = {label(path): path.read_text("utf-8").count("\n") for path in files() if path.suffix != ".json"}
     assert not {name: count for name, count in lines.items() if count > 400}
@@ -64,6 +73,7 @@ def test_files_are_short() -> None:
         r"\.\./shar" + r"ed\b|\bissue #?\d",
         "\r\n|[^\\S\n]+$|\t",
     ],
+    ids=["notes to self", "paths of one machine", "registries", "outside", "white space"],
 )
 def test_no_text_is_unfinished_or_points_elsewhere(pattern: str) -> None:
     """No notes to self, no machine's own paths, no registry's name, no stray white space."""

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from importlib import resources
 
 import numpy as np
+import OpenImageIO as oiio
 import pytest
 
 
@@ -45,3 +47,10 @@ def hdr():
         return picture
 
     return make
+
+
+@pytest.fixture(scope="session")
+def rendered_frame() -> np.ndarray:
+    """The color of the sample frame that ships with Halation, by OpenImageIO: [h, w, 4]."""
+    with resources.as_file(resources.files("halation.presets") / "samples" / "neon.exr") as path:
+        return np.ascontiguousarray(oiio.ImageBuf(str(path)).get_pixels(oiio.FLOAT)[..., :4])

@@ -57,8 +57,8 @@ def test_presets_are_the_kernels_of_the_literature(run, hdr, preset):
 
 def test_the_kernel_is_drawn_as_seen(run, hdr):
     picture = hdr(9, 8)
-    above_left = run(Convolve3x3(preset="custom", kernel=(1, 0, 0, 0, 0, 0, 0, 0, 0), filter_alpha=True), {"image": picture})
-    np.testing.assert_array_equal(above_left[1:, 1:], picture[:-1, :-1])
+    above_left = Convolve3x3(preset="custom", kernel=(1, 0, 0, 0, 0, 0, 0, 0, 0), filter_alpha=True)
+    np.testing.assert_array_equal(run(above_left, {"image": picture})[1:, 1:], picture[:-1, :-1])
 
 
 def test_opencv_agrees(run, hdr):

@@ -47,10 +47,10 @@ def test_whole_pixels_move_exactly(run, hdr):
 
 
 def test_nothing_moves_without_vectors_or_amount(run, hdr):
-    picture = hdr(14, 9)
-    assert Displace(amount=(0.0, 0.0)).identity() == "image"
-    np.testing.assert_array_equal(run(Displace(amount=(0.0, 0.0)), {"image": picture, "vector": vectors(14, 9)}), picture)
-    np.testing.assert_array_equal(run(Displace(), {"image": picture, "vector": np.zeros((9, 14, 2), np.float32)}), picture)
+    picture, still = hdr(14, 9), Displace(amount=(0.0, 0.0))
+    assert still.identity() == "image"
+    np.testing.assert_array_equal(run(still, {"image": picture, "vector": vectors(14, 9)}), picture)
+    np.testing.assert_array_equal(run(Displace(), {"image": picture, "vector": np.zeros((9, 14, 2))}), picture)
     np.testing.assert_array_equal(run(Displace(), {"image": picture}), picture)
 
 

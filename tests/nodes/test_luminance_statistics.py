@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from halation.app.graph import Graph, Input, Output, Port
+from halation.nodes import Kind
+from halation.nodes.color.exposure import Exposure
 from halation.nodes.measure.luminance_statistics import LuminanceStatistics
 
 WEIGHTS = np.array([0.2126, 0.7152, 0.0722])
@@ -82,3 +85,22 @@ def test_negative_light_counts_in_the_average_and_is_black_to_the_logarithm(run,
     picture = hdr(33, 21, opaque=True)
     picture[5:9, :, :3] *= -0.3
     assert measured(run, LuminanceStatistics(), picture) == pytest.approx(expected(luminance(picture)), rel=1e-5)
+
+
+def test_a_rendered_frame(run, rendered_frame):
+    assert rendered_frame[..., :3].max() > 100.0
+    for picture in (rendered_frame, rendered_frame[:-3, 5:].copy()):
+        assert measured(run, LuminanceStatistics(), picture) == pytest.approx(expected(luminance(picture)), rel=1e-5)
+
+
+def test_a_measurement_drives_a_value(run, hdr):
+    picture = hdr(41, 37, opaque=True)
+    graph = Graph().add_input("image", Input(Kind.IMAGE)).add_output("out", Output(Kind.IMAGE))
+    graph = graph.add("measure", LuminanceStatistics()).add("exposure", Exposure())
+    for source, target in (
+        ("inputs.image", "measure.image"), ("inputs.image", "exposure.image"),
+        ("measure.log_average", "exposure.stops"), ("exposure.out", "outputs.out"),
+    ):
+        graph = graph.connect(Port.parse(source), Port.parse(target))
+    factor = 2.0 ** expected(luminance(picture))["log_average"]
+    np.testing.assert_allclose(run(graph, {"image": picture})[..., :3], picture[..., :3] * factor, rtol=1e-5)

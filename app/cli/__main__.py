@@ -1,0 +1,5 @@
+"""`python -m halation.app.cli`."""
+
+from . import main
+
+main()

@@ -1,0 +1,18 @@
+"""Finding things by what a person typed."""
+
+from __future__ import annotations
+
+from ..errors import GraphError
+from .graph import Graph, signature
+from .parts import Port
+
+
+def node_output(graph: Graph, text: str) -> Port:
+    """The port behind `node` or `node.output`. Raises GraphError with what there is instead."""
+    id, _, output = text.partition(".")
+    outputs = tuple(signature(graph.node(id)).outputs)
+    if (output or "out") in outputs:
+        return Port(id, output or "out")
+    if not output and outputs:
+        return Port(id, outputs[0])
+    raise GraphError(f"node '{id}' has no output '{output}': its outputs are {', '.join(outputs) or 'none'}")

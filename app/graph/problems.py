@@ -1,0 +1,149 @@
+"""What is wrong with a live graph: values that an editor shows on the node, not exceptions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from ...nodes import Node, catalogue
+from ..errors import GraphError
+from .graph import Graph, Group, Item, present_value, signature
+from .names import INPUTS, OUTPUTS, did_you_mean, name_fault, pick
+from .parts import Input, Port, Unknown
+from .values import numbers, value_fault
+from .walk import loop_sentence, loops
+
+CONTROLS = "controls"
+"""The `node` of a problem with a control."""
+
+MAX_DEPTH = 32
+"""How deep groups may nest."""
+
+Severity = Literal["error", "warning"]
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A mistake in a graph. `sentence` names node and socket and says what to do.
+
+    `node` is a path such as `group/inner`; it ends in `inputs`, `outputs` or `controls` for the ends of a graph, and is
+    empty for the graph as a whole. An error keeps that part of the graph from rendering, a warning does not.
+    """
+
+    node: str
+    socket: str
+    sentence: str
+    severity: Severity = "error"
+
+
+def problems(graph: Graph, known: Mapping[str, type[Node]] | None = None) -> tuple[Problem, ...]:
+    """Everything that is wrong, groups included, in a stable order.
+
+    `known` holds the installed node types, for suggestions. An input without file or default is none: it may be bound.
+    """
+    found = list(_inside(graph, catalogue() if known is None else known, 0))
+    return tuple(sorted(found, key=lambda item: (item.severity, item.node, item.socket, item.sentence)))
+
+
+def _inside(graph: Graph, known: Mapping[str, type[Node]], depth: int) -> Iterator[Problem]:
+    yield from _ends(graph)
+    yield from _links(graph)
+    needed = graph.upstream(OUTPUTS)
+    for id, item in graph.nodes.items():
+        if fault := name_fault(id, "node"):
+            yield Problem(id, "", fault)
+        if isinstance(item, Unknown):
+            yield Problem(id, "", f"node '{id}' has the unknown type '{item.type}'{did_you_mean(item.type, known)}")
+            continue
+        yield from _values(id, item)
+        yield from _missing(graph, id, item, id in needed)
+        if isinstance(item, Group):
+            yield from _group(id, item, known, depth)
+    for loop in loops({id: sorted(graph.feeding[id]) for id in sorted(graph.nodes)}):
+        yield Problem(loop[0], "", loop_sentence(loop))
+    yield from _leftovers(graph)
+
+
+def _group(id: str, item: Group, known: Mapping[str, type[Node]], depth: int) -> Iterator[Problem]:
+    if depth == MAX_DEPTH:
+        yield Problem(id, "", f"group '{id}': groups nest deeper than {MAX_DEPTH}; flatten some of them")
+        return
+    for problem in _inside(item.graph, known, depth + 1):
+        where = f"{id}/{problem.node}" if problem.node else id
+        yield replace(problem, node=where, sentence=f"in group '{id}': {problem.sentence}")
+
+
+def _links(graph: Graph) -> Iterator[Problem]:
+    for target, source in graph.links.items():
+        if fault := graph.link_fault(source, target):
+            yield Problem(target.node, target.socket, f"'{source}' cannot feed '{target}': {fault}")
+
+
+def _missing(graph: Graph, id: str, item: Item, needed: bool) -> Iterator[Problem]:
+    for name, socket in signature(item).inputs.items():
+        if not socket.optional and Port(id, name) not in graph.links:
+            # A node that nothing uses yet is unfinished, not wrong.
+            severity: Severity = "error" if needed else "warning"
+            article = "an" if socket.kind[0] in "AEIOU" else "a"
+            yield Problem(id, name, f"'{id}.{name}' is not linked: it needs {article} {socket.kind}", severity)
+
+
+def _values(id: str, item: Item) -> Iterator[Problem]:
+    values = signature(item).values
+    for name, value in values.items():
+        now = present_value(item, name)
+        if now is not None and (fault := value_fault(value, now.default)):
+            yield Problem(id, name, f"{id}.{name}: {fault}")
+    for name in item.values if isinstance(item, Group) else ():
+        if name not in values:
+            yield Problem(id, name, f"group '{id}' has no control '{name}'{did_you_mean(name, values)}")
+
+
+def _ends(graph: Graph) -> Iterator[Problem]:
+    for name, end in graph.inputs.items():
+        if fault := name_fault(name, "input") or _default_fault(name, end):
+            yield Problem(INPUTS, name, fault)
+    for name in graph.outputs:
+        if fault := name_fault(name, "output"):
+            yield Problem(OUTPUTS, name, fault)
+        if Port(OUTPUTS, name) not in graph.links:
+            yield Problem(OUTPUTS, name, f"nothing feeds the output '{name}': link a node to '{OUTPUTS}.{name}'")
+    for name, control in graph.controls.items():
+        if fault := name_fault(name, "control") or _control_fault(graph, name, control.target):
+            yield Problem(CONTROLS, name, fault)
+    if not graph.outputs:
+        yield Problem("", "", "the graph has no outputs: add one and link a node to it", "warning")
+
+
+def _control_fault(graph: Graph, name: str, target: Port) -> str | None:
+    try:
+        face = signature(graph.node(target.node))
+        if not face.anything:
+            pick(face.values, target.socket, f"node '{target.node}' has no value")
+    except GraphError as error:
+        return f"control '{name}' points at '{target}': {error}"
+    return None
+
+
+def _default_fault(name: str, end: Input) -> str | None:
+    channels = end.socket().channels
+    given = (end.default,) if isinstance(end.default, int | float) else end.default
+    found = numbers(given, 1) or numbers(given, channels)
+    if given is None or (found and all(map(math.isfinite, found))):
+        return None
+    wanted = "a number" if channels == 1 else f"a number or a list of {channels} numbers"
+    return f"input '{name}': the default {end.default!r} does not fit: {end.kind} takes {wanted}"
+
+
+def _leftovers(graph: Graph) -> Iterator[Problem]:
+    """Unknown keys are kept, but whoever mistyped one should hear of it."""
+    for path, keys in graph.extra.items():
+        parts = path.split(".")
+        item = graph.nodes.get(parts[1]) if len(parts) == 3 and parts[0] == "nodes" else None
+        for key in keys:
+            hint = "" if item is None else did_you_mean(key, signature(item).values)
+            where = f"{path}.{key}" if path else key
+            node = parts[1] if len(parts) > 1 else ""
+            yield Problem(node, "", f"{where} means nothing to this version and is only kept{hint}", "warning")

@@ -1,0 +1,164 @@
+"""What a picture file holds, from its header alone."""
+
+from __future__ import annotations
+
+import difflib
+import hashlib
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import OpenImageIO as oiio
+
+from ...nodes import Size
+from ..errors import InputError
+from .layers import Layer, Part, layers_of, pick
+
+_LONGEST_SIDE = 1 << 17
+_MOST_PIXELS = 1 << 28
+_DTYPES = {"half": "float16", "uint8": "uint8", "uint16": "uint16", "uint": "uint32"}
+_FAULTS = (
+    ("subsampled", "stores color at a lower resolution than brightness, which cannot be read: save it as plain RGB"),
+    ("not an openexr file", "is not an EXR file, whatever its name says: check what wrote it"),
+    ("corrupt", "is cut short or damaged: copy or render it again"),
+    ("end of file", "is cut short or damaged: copy or render it again"),
+    ("exr_err_", "is cut short or damaged: copy or render it again"),
+    ("permission", "may not be read: check its permissions"),
+)
+
+
+@dataclass(frozen=True)
+class ImageInfo:
+    """The header of a file. `size` is the display window, upright; `fingerprint` changes when the file does."""
+
+    path: str
+    size: Size
+    layers: tuple[Layer, ...]
+    fingerprint: str
+    format: str
+
+
+def info(path: str | Path) -> ImageInfo:
+    """Read the header.
+
+    Raises:
+        InputError: missing, empty, damaged, deep or not a picture.
+    """
+    with opened(path) as handle:
+        return described(handle, str(path))
+
+
+def find_layer(header: ImageInfo, name: str) -> Layer:
+    """The layer that `name` means: `Combined`, `ViewLayer.Combined`, `Z`, or one channel such as `Position.Z`.
+
+    Letter case, blanks, `_` and `-` do not matter; "" is the first color layer.
+
+    Raises:
+        InputError: no layer, or more than one, answers to the name.
+    """
+    return pick(header.path, header.layers, name)
+
+
+def fingerprint(path: str | Path) -> str:
+    """A cheap mark of this version of the file: where it is, when it was written, how long it is."""
+    try:
+        status = Path(path).stat()
+    except OSError as error:
+        raise InputError(f"{path}: {_missing(Path(path))}") from error
+    return f"{Path(path).absolute()}:{status.st_mtime_ns}:{status.st_size}"
+
+
+def content_hash(path: str | Path) -> str:
+    """SHA-256 of the bytes of the file, in hexadecimal."""
+    try:
+        with Path(path).open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
+
+
+@contextmanager
+def opened(path: str | Path) -> Iterator[oiio.ImageInput]:
+    """The open file; alpha is left as stored, because it must be applied to linear color."""
+    file = Path(path)
+    if file.is_dir():
+        raise InputError(f"{path}: is a folder: name a picture inside it")
+    if not file.is_file():
+        raise InputError(f"{path}: {_missing(file)}")
+    if not os.access(file, os.R_OK):
+        raise InputError(f"{path}: may not be read: check its permissions")
+    if file.stat().st_size == 0:
+        raise InputError(f"{path}: is empty (0 bytes): copy or render it again")
+    wish = oiio.ImageSpec()
+    wish.attribute("oiio:UnassociatedAlpha", 1)
+    handle = None
+    try:
+        handle = oiio.ImageInput.open(str(file), wish)
+        if handle is None:
+            raise InputError(f"{path}: {fault(oiio.geterror())}")
+        yield handle
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: {fault('corrupt')}") from error
+    finally:
+        if handle is not None:
+            handle.close()
+
+
+def described(handle: oiio.ImageInput, path: str) -> ImageInfo:
+    """The header of an open file. Parts of another size (previews, pages) are left out."""
+    main = handle.spec()
+    size = _size(main)
+    if not all(0 < side <= _LONGEST_SIDE for side in size) or size[0] * size[1] > _MOST_PIXELS:
+        raise InputError(f"{path}: claims to be {size[0]}x{size[1]} pixels, more than can be read (16384x16384 in all)")
+    parts: list[Part] = []
+    index = 0
+    while handle.seek_subimage(index, 0):
+        spec = handle.spec()
+        if spec.deep:
+            raise InputError(f"{path}: holds deep samples, which cannot be read: flatten it first")
+        if _size(spec) == size:
+            parts.append(_part(index, spec))
+        index += 1
+    return ImageInfo(path, size, layers_of(parts), fingerprint(path), handle.format_name())
+
+
+def _part(index: int, spec: oiio.ImageSpec) -> Part:
+    formats = spec.channelformats or (spec.format,) * spec.nchannels
+    return Part(
+        index, _text(spec.get_string_attribute("oiio:subimagename")), tuple(map(_text, spec.channelnames)),
+        tuple(_DTYPES.get(str(item), "float32") for item in formats), space(spec),
+    )
+
+
+def space(spec: oiio.ImageSpec) -> str:
+    """The color space that the header names, "data" for none at all, "" where it says nothing."""
+    return _text(spec.get_string_attribute("oiio:ColorSpace") or spec.get_string_attribute("colorInteropID"))
+
+
+def _text(name: str) -> str:
+    """A name that can be printed, whatever bytes were in the file."""
+    return name.encode("utf-8", "replace").decode()
+
+
+def _size(spec: oiio.ImageSpec) -> Size:
+    width, height = spec.full_width or spec.width, spec.full_height or spec.height
+    return (height, width) if spec.get_int_attribute("Orientation", 1) > 4 else (width, height)
+
+
+def fault(message: str) -> str:
+    """OpenImageIO's complaint as the rest of a sentence that starts with the path."""
+    for word, sentence in _FAULTS:
+        if word in message.casefold():
+            return sentence
+    first = message.strip().splitlines()[0] if message.strip() else "no reason given"
+    return f"is no picture that can be read ({first})"
+
+
+def _missing(path: Path) -> str:
+    """What to say of a file that is not there."""
+    if not path.parent.is_dir():
+        return "there is no such file; its folder is missing too"
+    guess = difflib.get_close_matches(path.name, (item.name for item in path.parent.iterdir()), 1)
+    return f"there is no such file; did you mean '{guess[0]}'?" if guess else "there is no such file: check the name"

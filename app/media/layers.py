@@ -1,0 +1,177 @@
+"""The layers of a file: what renderers call their channels, sorted into named groups.
+
+A channel is `[view layer.]layer.component`; a part of a multi-part file may give the name instead.
+"""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+
+from ..errors import InputError
+
+_FAMILIES = (("r", "g", "b", "a"), ("red", "green", "blue", "alpha"), ("y", "a"), ("x", "y", "z", "w"), ("u", "v", "a"))
+_BEAUTY = ("combined", "beauty", "rgba", "rgb", "c", "ci")
+_DATA = re.compile(
+    r"crypto.*|.*depth.*|z|.*position|p|.*normals?|n|ng|.*motion.*|.*velocity|vector|.*mattes?|.*masks?|uvs?|st"
+    r"|((object|material|prim|node|render)?id)"
+)
+_DEPTH = re.compile(r"z|_*(z_?depth|depth_?z|depth|hitpz|linear_?depth|zfiltered)", re.IGNORECASE)
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A named group of channels of one part. `data` means numbers that are not color: never converted.
+
+    `channels` are short names in natural order (RGBA, XYZW); `indices` are their places in the part. `full` is the
+    name as the file has it, `name` the same without what all layers share (`ViewLayer.`). `format` is a numpy dtype.
+    """
+
+    name: str
+    channels: tuple[str, ...]
+    part: int
+    indices: tuple[int, ...]
+    format: str
+    data: bool
+    full: str
+
+    @property
+    def first(self) -> int:
+        """The place of its first channel in the part."""
+        return self.indices[0]
+
+    @property
+    def half(self) -> bool:
+        """True if 16-bit floats hold it without loss."""
+        return self.format == "float16"
+
+
+@dataclass(frozen=True)
+class Part:
+    """What the header of one part says: `tag` is its color space or "data", "" where nobody said."""
+
+    index: int
+    name: str
+    channels: tuple[str, ...]
+    formats: tuple[str, ...]
+    tag: str
+
+    @property
+    def label(self) -> str:
+        """Its name, or its number where it has none."""
+        return self.name or f"part{self.index}"
+
+
+def is_depth(name: str) -> bool:
+    """True for the usual names of a depth layer."""
+    return _DEPTH.fullmatch(name) is not None
+
+
+def layers_of(parts: Sequence[Part]) -> tuple[Layer, ...]:
+    """All layers in file order, each under a name of its own."""
+    several = len(parts) > 1
+    found = [(part, layer) for part in parts for layer in _split(part, several)]
+    taken = Counter(layer.full for _, layer in found)
+    found = [
+        (part, layer if taken[layer.full] == 1 else replace(layer, full=f"{part.label}.{layer.full}"))
+        for part, layer in found
+    ]
+    tokens = {layer.full.partition(".")[0] for _, layer in found}
+    shared = len(tokens) == 1 and all("." in layer.full for _, layer in found)
+    return tuple(
+        _named(layer, layer.full.partition(".")[2] if shared else layer.full, part.tag) for part, layer in found
+    )
+
+
+def _named(layer: Layer, name: str, tag: str) -> Layer:
+    """The layer under its short name, which also says whether it is data where the header does not."""
+    words = tuple(word.casefold() for word in layer.channels)
+    colored = any(set(words) <= set(family) for family in _FAMILIES[:3])
+    data = tag == "data" or not colored or (not tag and _DATA.fullmatch(_plain(name).rpartition(".")[2]) is not None)
+    return replace(layer, name=name, data=data)
+
+
+def _split(part: Part, several: bool) -> Iterable[Layer]:
+    """The layers of one part: channels grouped by prefix, bare ones by what belongs together."""
+    groups: dict[str, list[int]] = {}
+    bare = {name.casefold() for name in part.channels if "." not in name}
+    family = next((family for family in _FAMILIES if len(bare.intersection(family)) > 1), ())
+    for index, channel in enumerate(part.channels):
+        prefix = channel.rpartition(".")[0]
+        key = prefix + "." if prefix else "" if channel.casefold() in family else channel
+        groups.setdefault(key, []).append(index)
+    named = several and part.name
+    for key, places in groups.items():
+        indices = _sorted(part.channels, places)
+        short = tuple(part.channels[index].rpartition(".")[2] for index in indices)
+        full = key[:-1] if key.endswith(".") else "".join(short)
+        if named and not key.endswith("."):
+            full = part.name if len(groups) == 1 or not key else f"{part.name}.{full}"
+        formats = {part.formats[index] for index in indices}
+        kept = formats.pop() if len(formats) == 1 else "float32"
+        yield Layer("", short, part.index, indices, kept, False, full)
+
+
+def _sorted(names: Sequence[str], places: Sequence[int]) -> tuple[int, ...]:
+    """Places in the natural order of their components, or as they are where there is none."""
+    words = {index: names[index].rpartition(".")[2].casefold() for index in places}
+    family = next((family for family in _FAMILIES if set(words.values()) <= set(family)), None)
+    return tuple(sorted(places, key=lambda index: family.index(words[index])) if family else places)
+
+
+def _plain(name: str) -> str:
+    """A name for comparison: no case, no blanks, underscores or hyphens."""
+    return re.sub(r"[\s_-]", "", name.casefold())
+
+
+def pick(path: str, layers: Sequence[Layer], name: str) -> Layer:
+    """What `info.find_layer` finds among the layers of a file, from the strictest reading of `name` to the loosest."""
+    if not layers:
+        raise InputError(f"{path}: holds no channels that can be read")
+    if not name:
+        return _main(layers)
+    wanted = _plain(name)
+    tiers: tuple[Callable[[Layer], bool], ...] = (
+        lambda layer: name in (layer.full, layer.name),
+        lambda layer: wanted in (_plain(layer.full), _plain(layer.name)),
+        lambda layer: _plain(layer.full).endswith("." + wanted),
+        lambda layer: len(layer.channels) == 1 and _plain(layer.channels[0]) == wanted,
+    )
+    for tier in tiers:
+        if match := [layer for layer in layers if tier(layer)]:
+            return _only(path, name, match)
+    if match := [one for layer in layers for one in _channels(layer) if f".{_plain(one.full)}".endswith("." + wanted)]:
+        return _only(path, name, match)
+    choices = [layer.name for layer in layers]
+    near = {_plain(choice): choice for choice in choices}
+    guess = difflib.get_close_matches(wanted, near, 1, 0.5)
+    hint = f"did you mean '{near[guess[0]]}'? It" if guess else "it"
+    raise InputError(f"{path}: has no layer '{name}': {hint} holds {', '.join(choices)}")
+
+
+def _main(layers: Sequence[Layer]) -> Layer:
+    """The picture itself: by name, else the first color layer, else the first."""
+    colors = [layer for layer in layers if not layer.data]
+    for word in _BEAUTY:
+        for layer in colors:
+            if _plain(layer.name).rpartition(".")[2] == word:
+                return layer
+    return (colors or layers)[0]
+
+
+def _channels(layer: Layer) -> Iterable[Layer]:
+    """Every channel of a layer as a layer of its own."""
+    for channel, index in zip(layer.channels, layer.indices, strict=True):
+        yield replace(
+            layer, name=f"{layer.name}.{channel}", full=f"{layer.full}.{channel}", channels=(channel,),
+            indices=(index,), data=True,
+        )
+
+
+def _only(path: str, name: str, match: Sequence[Layer]) -> Layer:
+    if len(match) > 1:
+        raise InputError(f"{path}: '{name}' may mean {' or '.join(layer.full for layer in match)}: write one of them")
+    return match[0]

@@ -1,0 +1,128 @@
+"""What a graph's inputs are filled with: files and arrays, probed while compiling and read while rendering."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from hashlib import blake2b
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...nodes import Kind
+from ..compiler import Picture, Probed
+from ..errors import InputError, UsageError
+from ..graph import Graph, Input
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from .info import ImageInfo
+
+    Array = np.ndarray
+    Binding = str | Path | Array
+    """What fills a graph input: a path, `path:layer`, or an array [h, w] or [h, w, c]."""
+
+
+@dataclass
+class Pictures:
+    """Probes and loads what the pictures of one graph stand for. `repaired` counts broken pixels by path."""
+
+    arrays: Mapping[str, Array] = field(default_factory=dict[str, "Array"])
+    repaired: dict[str, int] = field(default_factory=dict[str, int])
+    _infos: dict[str, ImageInfo] = field(default_factory=dict[str, "ImageInfo"], repr=False)
+    _marks: dict[str, str] = field(default_factory=dict[str, str], repr=False)
+
+    def bind(self, graph: Graph, inputs: Mapping[str, Binding]) -> dict[str, Picture]:
+        """Pictures for graph inputs by name. Raises UsageError for a name that the graph does not have."""
+        self.arrays, self._marks = {}, {}
+        self._infos.clear()
+        return {name: self._bind(_input(graph, name), name, item) for name, item in inputs.items()}
+
+    def probe(self, picture: Picture) -> Probed:
+        """Size and precision of a picture. Raises InputError for what cannot be read."""
+        if picture.in_memory:
+            array = self.arrays[picture.path]
+            height, width = array.shape[:2]
+            return Probed((width, height), array.dtype.name == "float16", self._marks[picture.path])
+        from .info import find_layer
+
+        header = self.info(picture.path)
+        return Probed(header.size, find_layer(header, picture.layer).half, header.fingerprint)
+
+    def load(self, picture: Picture) -> Array:
+        """Its pixels as [height, width, channels] of float16 or float32."""
+        if picture.in_memory:
+            return widened(self.arrays[picture.path], picture.kind, picture.width)
+        from .read import read
+
+        pixels = read(picture.path, picture.layer, picture.kind, picture.width)
+        if pixels.repaired:
+            self.repaired[picture.path] = pixels.repaired
+        return pixels.array
+
+    def info(self, path: str) -> ImageInfo:
+        """A file's header, read once."""
+        if path not in self._infos:
+            from .info import info
+
+            self._infos[path] = info(path)
+        return self._infos[path]
+
+    def _bind(self, socket: Input, name: str, item: Binding) -> Picture:
+        if not isinstance(item, str | Path):
+            self.arrays = {**self.arrays, name: item}
+            self._marks[name] = _content(item)
+            return Picture(name, "", socket.kind, socket.socket().channels, in_memory=True)
+        path, layer = split_layer(str(item))
+        return Picture(path, layer or self._hinted(path, socket), socket.kind, socket.socket().channels)
+
+    def _hinted(self, path: str, socket: Input) -> str:
+        """The layer that the input asks for, if this file has it; a plain picture stands for any color layer."""
+        from .info import find_layer
+
+        if socket.layer and socket.kind is Kind.IMAGE:
+            try:
+                find_layer(self.info(path), socket.layer)
+            except InputError:
+                return find_layer(self.info(path), "").name
+        return socket.layer
+
+
+def _content(array: Array) -> str:
+    """A mark that changes with the pixels: the same array may be filled anew between two renders."""
+    import numpy as np
+
+    digest = blake2b(np.ascontiguousarray(array), digest_size=16).hexdigest()
+    return f"array {array.shape} {array.dtype} {digest}"
+
+
+def split_layer(text: str) -> tuple[str, str]:
+    """`shot.exr:Depth` as path and layer. A path that exists as it stands has no layer; `C:` is a drive."""
+    path, colon, layer = text.rpartition(":")
+    if not colon or len(path) < 2 or "/" in layer or "\\" in layer or Path(text).exists():
+        return text, ""
+    return path, layer
+
+
+def widened(array: Array, kind: Kind, width: int) -> Array:
+    """An array with this many channels: missing alpha is 1, a single channel is grey, other missing ones are 0."""
+    import numpy as np
+
+    if array.ndim == 2:
+        array = array[..., None]
+    have = array.shape[2]
+    if have >= width:
+        return array[..., :width]
+    if kind is Kind.IMAGE and have == 1:
+        array, have = np.repeat(array, 3, axis=2), 3
+    fill = np.zeros((*array.shape[:2], width - have), array.dtype)
+    if kind is Kind.IMAGE:
+        fill[..., -1] = 1.0
+    return np.concatenate([array, fill], axis=2)
+
+
+def _input(graph: Graph, name: str) -> Input:
+    if name not in graph.inputs:
+        known = ", ".join(graph.inputs) or "none"
+        raise UsageError(f"the graph has no input '{name}': its inputs are {known}")
+    return graph.inputs[name]

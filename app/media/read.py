@@ -1,0 +1,218 @@
+"""Pixels out of files, as the sockets of a graph want them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+
+from ...nodes import Kind
+from ..errors import InputError
+from .color import Array, as_float, available_cores, is_linear, space_of, to_linear
+from .info import ImageInfo, described, fault, find_layer, opened, space
+from .layers import Layer
+
+_READ_AS = {"float16": "half", "uint8": "uint8", "uint16": "uint16", "uint32": "uint"}
+_ALPHA = ("a", "alpha")
+
+oiio.attribute("threads", available_cores())
+oiio.attribute("exr_threads", available_cores())
+
+
+@dataclass(frozen=True)
+class Want:
+    """A layer, and the socket it is for; `width` counts the channels of a Vector."""
+
+    layer: str
+    kind: Kind = Kind.IMAGE
+    width: int = 4
+
+
+@dataclass(frozen=True)
+class Pixels:
+    """A contiguous [height, width, channels] array; row 0 is the top.
+
+    `half` says that 16 bits hold it without loss (the dtype is then float16), `repaired` how many pixels were not
+    finite in the file and were replaced.
+    """
+
+    array: Array
+    half: bool
+    repaired: int
+
+
+def read(path: str | Path, layer: str, kind: Kind, width: int = 4) -> Pixels:
+    """Read one layer over the whole display window; what the file has no data for is 0.
+
+    IMAGE is RGBA, linear Rec.709, premultiplied, alpha 1 where the file has none. FIELD is the first channel, VECTOR
+    the first `width` ones, missing ones 0: both are the numbers of the file, without any color conversion.
+    Non-finite color becomes the mean of its finite neighbors (OpenImageIO, fixNonFinite BOX3); in data a NaN
+    becomes 0 and infinity, the background of many depth passes, stays.
+
+    Raises:
+        InputError: the file or the layer is missing, or the file is damaged.
+    """
+    return read_many(path, [Want(layer, kind, width)])[0]
+
+
+def read_many(path: str | Path, wants: Sequence[Want]) -> list[Pixels]:
+    """Read several layers of one file; those that lie in one part are decoded together.
+
+    Raises:
+        InputError: as `read`.
+    """
+    with opened(path) as handle:
+        header = described(handle, str(path))
+        layers = [find_layer(header, want.layer) for want in wants]
+        blocks = _decode(handle, header, layers)
+        made: list[Pixels] = []
+        for want, layer, block in zip(wants, layers, blocks, strict=True):
+            handle.seek_subimage(layer.part, 0)
+            made.append(_pixels(block, layer, want, handle.spec(), header))
+        return made
+
+
+def _decode(handle: oiio.ImageInput, header: ImageInfo, layers: Sequence[Layer]) -> list[Array]:
+    """The channels of every layer over the data window, in the file's precision."""
+    spans: dict[tuple[int, str], list[int]] = {}
+    for layer in layers:
+        spans.setdefault((layer.part, layer.format), []).extend(layer.indices)
+    decoded: dict[tuple[int, str], Array] = {}
+    for (part, dtype), indices in spans.items():
+        try:
+            block = handle.read_image(part, 0, min(indices), max(indices) + 1, _READ_AS.get(dtype, "float"))
+        except (MemoryError, ValueError) as error:
+            width, height = header.size
+            raise InputError(f"{header.path}: {width}x{height} pixels do not fit into memory") from error
+        if block is None:
+            raise InputError(f"{header.path}: {fault(handle.geterror() or 'corrupt')}")
+        decoded[part, dtype] = np.asarray(block)
+    keys = [(layer.part, layer.format) for layer in layers]
+    return [_select(decoded[key], layer.indices, min(spans[key])) for key, layer in zip(keys, layers, strict=True)]
+
+
+def _select(block: Array, indices: Sequence[int], first: int) -> Array:
+    wanted = [index - first for index in indices]
+    run = list(range(wanted[0], wanted[0] + len(wanted)))
+    return block[..., run[0] : run[-1] + 1] if wanted == run else block[..., wanted]
+
+
+def _pixels(block: Array, layer: Layer, want: Want, spec: oiio.ImageSpec, header: ImageInfo) -> Pixels:
+    """The array that a socket wants, from the channels of its layer."""
+    if want.kind in (Kind.IMAGE, Kind.COLOR):
+        array = _data_image(block, layer) if layer.data else _image(block, layer, spec, header.path)
+    else:
+        width = want.width if want.kind is Kind.VECTOR else 1
+        array = np.zeros((*block.shape[:2], width), as_float(block[:0]).dtype)
+        array[..., : block.shape[2]] = as_float(block[..., :width])
+    color = want.kind in (Kind.IMAGE, Kind.COLOR) and not layer.data
+    array = np.ascontiguousarray(array)
+    array, repaired = _repaired_color(array) if color else _repaired_data(array)
+    array = np.ascontiguousarray(_upright(_placed(array, spec), spec.get_int_attribute("Orientation", 1)))
+    return Pixels(array, array.dtype == np.float16, repaired)
+
+
+def _data_image(block: Array, layer: Layer) -> Array:
+    """Data shown as a picture: one channel gray, else the first three as they are, opaque unless there is an alpha."""
+    rgb, alpha = _parts(block, layer)
+    return _rgba(as_float(rgb), None if alpha is None else as_float(alpha))
+
+
+def _image(block: Array, layer: Layer, spec: oiio.ImageSpec, path: str) -> Array:
+    """Linear premultiplied RGBA."""
+    rgb, alpha = _parts(block, layer)
+    primaries = spec.getattribute("chromaticities")
+    encoding = space_of(
+        space(spec), spec.get_string_attribute("ICCProfile:profile_description"),
+        primaries if isinstance(primaries, tuple) else (), block.dtype.kind in "ui",
+    )
+    straight = spec.get_int_attribute("oiio:UnassociatedAlpha") == 1
+    if alpha is not None:
+        alpha = as_float(alpha)
+    if is_linear(encoding):
+        rgb = as_float(rgb)
+    elif alpha is None or straight:
+        rgb = to_linear(rgb, encoding, path)
+    else:  # premultiplied after encoding: the encoded color must come out first
+        rgb = np.divide(as_float(rgb), alpha, out=np.zeros(rgb.shape, np.float32), where=alpha > 0.0)
+        rgb = to_linear(rgb, encoding, path) * alpha
+    if alpha is not None and straight:
+        rgb = rgb * alpha
+    return _rgba(rgb, alpha)
+
+
+def _parts(block: Array, layer: Layer) -> tuple[Array, Array | None]:
+    """Three channels of color, and alpha if there is one."""
+    names = [name.casefold() for name in layer.channels]
+    place = next((index for index, name in enumerate(names) if name in _ALPHA and len(names) > 1), None)
+    others = [index for index in range(len(names)) if index != place]
+    if len(others) == 1:
+        rgb = block[..., others * 3]
+    elif len(others) == 2:
+        rgb = np.concatenate([block[..., others], np.zeros_like(block[..., :1])], axis=2)
+    else:
+        rgb = block[..., :3] if others[:3] == [0, 1, 2] else block[..., others[:3]]
+    return rgb, None if place is None else block[..., place : place + 1]
+
+
+def _rgba(rgb: Array, alpha: Array | None) -> Array:
+    made = np.ones((*rgb.shape[:2], 4), rgb.dtype)
+    made[..., :3] = rgb
+    if alpha is not None:
+        made[..., 3:] = alpha
+    return made
+
+
+def _repaired_color(array: Array) -> tuple[Array, int]:
+    bad = int(_not_finite(array).any(axis=2).sum()) if _has_bad(array) else 0
+    if not bad:
+        return array, 0
+    buffer = oiio.ImageBuf(array)
+    # one thread: a repaired neighbor counts as finite, so the order decides the result
+    fixed = oiio.ImageBufAlgo.fixNonFinite(buffer, oiio.NONFINITE_BOX3, nthreads=1)
+    return np.asarray(fixed.get_pixels("half" if array.dtype == np.float16 else "float")), bad
+
+
+def _repaired_data(array: Array) -> tuple[Array, int]:
+    if not _has_bad(array):
+        return array, 0
+    nan = np.isnan(array)
+    array[nan] = 0.0
+    return array, int(nan.any(axis=2).sum())
+
+
+def _has_bad(array: Array) -> bool:
+    """True if anything is NaN or infinite; bits are compared, since numpy is slow on halves."""
+    return bool(_not_finite(array).any())
+
+
+def _not_finite(array: Array) -> Array:
+    if array.dtype == np.float16:
+        return (array.view(np.uint16) & 0x7C00) == 0x7C00
+    return ~np.isfinite(array)
+
+
+def _placed(array: Array, spec: oiio.ImageSpec) -> Array:
+    """The data window inside the display window; what lies outside of it is cut off."""
+    width, height = spec.full_width or spec.width, spec.full_height or spec.height
+    left, top = spec.x - spec.full_x, spec.y - spec.full_y
+    if (left, top, spec.width, spec.height) == (0, 0, width, height):
+        return array
+    placed = np.zeros((height, width, array.shape[2]), array.dtype)
+    rows = slice(max(top, 0), min(top + spec.height, height))
+    columns = slice(max(left, 0), min(left + spec.width, width))
+    if rows.start < rows.stop and columns.start < columns.stop:
+        placed[rows, columns] = array[rows.start - top : rows.stop - top, columns.start - left : columns.stop - left]
+    return placed
+
+
+def _upright(array: Array, orientation: int) -> Array:
+    """Undo the rotation that a camera noted (TIFF 6.0, tag 274)."""
+    if orientation > 4:
+        array = array.transpose(1, 0, 2)
+    rows = -1 if orientation in (3, 4, 7, 8) else 1
+    columns = -1 if orientation in (2, 3, 6, 7) else 1
+    return array[::rows, ::columns]

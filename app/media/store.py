@@ -1,0 +1,73 @@
+"""Bytes onto the disk whole or not at all."""
+
+from __future__ import annotations
+
+import errno
+import os
+import secrets
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+from ..errors import OutputError
+
+_FAULTS = {
+    errno.ENOSPC: "the disk is full: make room or write elsewhere",
+    errno.EDQUOT: "your disk quota is used up: make room or write elsewhere",
+    errno.EACCES: "the folder may not be written: choose another",
+    errno.EPERM: "the folder may not be written: choose another",
+    errno.EROFS: "the disk is read-only: choose another",
+    errno.ENOENT: "there is no such folder: create it first",
+    errno.ENOTDIR: "part of the path is a file, not a folder",
+    errno.ENAMETOOLONG: "the name is too long",
+}
+_MARGIN = 1 << 20
+
+
+def store(path: str | Path, encode: Callable[[str], None], room: int) -> None:
+    """Replace the file by what `encode` writes to the name it is given; at most about `room` bytes.
+
+    The encoders do not notice a full disk (PNG and WebP report success, JPEG ends the process: OpenImageIO 3.2), so
+    they write into memory where the system has such files. A name in the same folder is written, then renamed; on
+    any failure it is removed and an older file stays as it was.
+
+    Raises:
+        OutputError: the folder is missing or read-only, or the disk is full.
+    """
+    target = Path(os.path.realpath(path))
+    if target.is_dir():
+        raise OutputError(f"{path}: is a folder: add the name of a file")
+    part = target.with_name(f".halation-{secrets.token_hex(6)}{target.suffix}")
+    try:
+        part.open("xb").close()
+        try:
+            _fill(part, encode, room)
+            part.replace(target)
+        finally:
+            part.unlink(missing_ok=True)
+    except OSError as error:
+        reason = _FAULTS.get(error.errno or 0, error.strerror or str(error))
+        raise OutputError(f"{path}: cannot be written: {reason}") from error
+
+
+def _fill(part: Path, encode: Callable[[str], None], room: int) -> None:
+    if hasattr(os, "memfd_create") and Path("/proc/self/fd").is_dir():
+        memory = os.memfd_create("halation")
+        with open(memory, "rb") as source, part.open("r+b") as sink:  # noqa: PTH123 - a descriptor, not a path
+            encode(f"/proc/self/fd/{memory}")
+            shutil.copyfileobj(source, sink, 1 << 20)
+            _settle(sink.fileno(), sink.flush)
+        return
+    if shutil.disk_usage(part.parent).free < room + _MARGIN:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    encode(str(part))
+    with part.open("r+b") as sink:
+        _settle(sink.fileno(), sink.flush)
+
+
+def _settle(descriptor: int, flush: Callable[[], None]) -> None:
+    """Have the system report now what it would otherwise find out after the rename."""
+    flush()
+    os.fsync(descriptor)
+    if os.fstat(descriptor).st_size == 0:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))

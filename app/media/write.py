@@ -1,0 +1,178 @@
+"""Finished pictures into files."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+import OpenImageIO as oiio
+
+from ...nodes import Kind
+from ..errors import OutputError, UsageError
+from .color import WORKING, Array, find_view, to_display
+from .layers import is_depth
+from .metadata import add_metadata
+from .store import store
+
+_FORMATS = {
+    ".exr": "openexr", ".png": "png", ".jpg": "jpeg", ".jpeg": "jpeg", ".tif": "tiff", ".tiff": "tiff", ".webp": "webp",
+    ".hdr": "hdr",
+}
+_EXR_LOSSY = ("pxr24", "b44", "b44a", "dwaa", "dwab")
+_COMPRESSIONS = {
+    "openexr": ("none", "rle", "zips", "zip", "piz", *_EXR_LOSSY), "tiff": ("none", "lzw", "zip", "packbits"),
+}
+_STORED = {"uint8": "uint8", "uint16": "uint16", "float32": "float"}
+_HALF_MAX = 65504.0
+
+Precision = Literal["half", "float"]
+
+
+@dataclass(frozen=True)
+class _Part:
+    """What one part of a file will be."""
+
+    spec: oiio.ImageSpec
+    array: Array
+
+
+def extensions() -> tuple[str, ...]:
+    """The endings of the files that can be written."""
+    return tuple(_FORMATS)
+
+
+def write(
+    path: str | Path, layers: Mapping[str, Array], *, kinds: Mapping[str, Kind], precision: Precision = "half",
+    compression: str = "zip", view: str = "", metadata: Mapping[str, Any] | None = None,
+) -> None:
+    """Write [h, w, c] or [h, w] arrays; the ending of the name decides the format.
+
+    EXR: linear; one layer has plain channels (RGBA; Z or Y; XYZW), several become parts whose channels are
+    `name.R` and so on, "" staying plain. Color is stored in `precision` (beyond the range of half: clamped),
+    data always as float and never with a lossy `compression`. HDR: linear RGB of the first Image.
+    PNG, JPEG, TIFF, WebP: the first Image (or Field, as gray) seen through `view` at 8 bits, 16 in PNG and TIFF with
+    `precision="float"`, alpha straight and only where something is transparent; JPEG shows it over black.
+    `metadata` is kept as far as the format can: all of it in EXR, text in PNG.
+
+    Raises:
+        UsageError: unknown ending, compression or view, or layers that such a file cannot hold.
+        OutputError: the file could not be written; an older one is still there.
+    """
+    format = _format(Path(path))
+    if not layers:
+        raise UsageError(f"{path}: there is nothing to write: the graph has no outputs")
+    if view:
+        find_view(view)
+    metadata = metadata or {}
+    layers = {name: array if array.ndim == 3 else array[..., None] for name, array in layers.items()}
+    _check_compression(path, format, compression)
+    if format == "openexr":
+        parts = _exr_parts(path, layers, kinds, precision, compression)
+    else:
+        parts = [_picture(path, layers, kinds, format, precision, compression, view)]
+    add_metadata(parts[0].spec, metadata, format)
+    room = sum(part.array.nbytes for part in parts) + sum(len(str(value)) for value in metadata.values())
+    store(path, _encoder(path, format, parts), room)
+
+
+def _format(path: Path) -> str:
+    ending = path.suffix.casefold()
+    if ending in _FORMATS:
+        return _FORMATS[ending]
+    said = f"cannot write '{ending}' files" if ending else "its name has no ending that says what to write"
+    raise UsageError(f"{path}: {said}: use one of {', '.join(_FORMATS)}")
+
+
+def _check_compression(path: str | Path, format: str, compression: str) -> None:
+    choices = _COMPRESSIONS.get(format)
+    if choices is None or compression in choices:
+        return
+    guess = difflib.get_close_matches(compression.casefold(), choices, 1, 0.4)
+    hint = f"did you mean '{guess[0]}'? Choose" if guess else "choose"
+    raise UsageError(f"{path}: there is no compression '{compression}': {hint} from {', '.join(choices)}")
+
+
+def _exr_parts(
+    path: str | Path, layers: Mapping[str, Array], kinds: Mapping[str, Kind], precision: Precision, compression: str
+) -> list[_Part]:
+    sizes = {array.shape[:2] for array in layers.values()}
+    if len(sizes) > 1:
+        said = ", ".join(f"'{name}' {array.shape[1]}x{array.shape[0]}" for name, array in layers.items())
+        raise UsageError(f"{path}: one EXR holds layers of one size, but there are {said}: write them to several files")
+    parts: list[_Part] = []
+    for name, array in layers.items():
+        color = kinds[name] in (Kind.IMAGE, Kind.COLOR)
+        half = color and precision == "half"
+        height, width, count = array.shape
+        spec = oiio.ImageSpec(width, height, count, "half" if half else "float")
+        prefix = f"{name}." if name and len(layers) > 1 else ""
+        spec.channelnames = tuple(prefix + letter for letter in _letters(name, kinds[name], count))
+        spec.alpha_channel = 3 if color and count == 4 else -1
+        spec.attribute("compression", "zip" if compression in _EXR_LOSSY and not color else compression)
+        spec.attribute("oiio:ColorSpace", WORKING if color else "data")
+        if len(layers) > 1:
+            spec.attribute("oiio:subimagename", name or "rgba")
+        if half:
+            array = np.clip(array, -_HALF_MAX, _HALF_MAX).astype(np.float16)
+        parts.append(_Part(spec, np.ascontiguousarray(array)))
+    return parts
+
+
+def _letters(name: str, kind: Kind, count: int) -> str:
+    if kind in (Kind.IMAGE, Kind.COLOR):
+        return "RGBA"[:count] if count > 2 else "YA"[:count]
+    if kind is Kind.VECTOR:
+        return "XYZW"[:count]
+    return "Z" if is_depth(name) else "Y"
+
+
+def _picture(
+    path: str | Path, layers: Mapping[str, Array], kinds: Mapping[str, Kind], format: str, precision: Precision,
+    compression: str, view: str,
+) -> _Part:
+    """The one picture of a format that holds no layers."""
+    shown = [name for name in layers if kinds[name] in (Kind.IMAGE, Kind.COLOR)]
+    shown = shown or [name for name in layers if kinds[name] is not Kind.VECTOR]
+    if not shown:
+        raise UsageError(f"{path}: vectors are data, not a picture: write them to an .exr file")
+    array = layers[shown[0]]
+    if array.shape[2] < 3:
+        array = array[..., :1].repeat(3, axis=2)
+    if format in ("hdr", "jpeg") or (array.shape[2] == 4 and bool((array[..., 3] == 1.0).all())):
+        array = array[..., :3]
+    if format == "hdr":
+        array = np.nan_to_num(np.maximum(array, 0.0), nan=0.0).astype(np.float32)
+    else:
+        array = to_display(array, view, bits=16 if precision == "float" and format in ("png", "tiff") else 8)
+    spec = oiio.ImageSpec(array.shape[1], array.shape[0], array.shape[2], _STORED[array.dtype.name])
+    if format == "tiff":
+        spec.attribute("compression", compression)
+    if format == "jpeg":
+        spec.attribute("compression", "jpeg:95")
+        spec.attribute("jpeg:subsampling", "4:4:4")
+    if format != "hdr":
+        spec.attribute("oiio:ColorSpace", "srgb_rec709_scene")
+        spec.attribute("oiio:UnassociatedAlpha", 1)
+    return _Part(spec, np.ascontiguousarray(array))
+
+
+def _encoder(path: str | Path, format: str, parts: Sequence[_Part]) -> Callable[[str], None]:
+    def encode(file: str) -> None:
+        output = oiio.ImageOutput.create(format)
+        if output is None:
+            raise OutputError(f"{path}: cannot be written: this OpenImageIO has no encoder for {format}")
+        first = parts[0].spec
+        done = output.open(file, tuple(part.spec for part in parts)) if len(parts) > 1 else output.open(file, first)
+        for index, part in enumerate(parts):
+            done = done and (index == 0 or output.open(file, part.spec, "AppendSubimage"))
+            done = done and output.write_image(part.array)
+        said = output.geterror()
+        if not (output.close() and done):
+            said = (said or output.geterror()).strip().splitlines()
+            raise OutputError(f"{path}: cannot be written: {said[0] if said else 'the encoder gave no reason'}")
+
+    return encode

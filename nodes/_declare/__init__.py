@@ -1,0 +1,43 @@
+"""The vocabulary of nodes: a class body declares an effect, an instance holds its values.
+
+    class Exposure(Pointwise):
+        \"\"\"Brighten or darken in photographic stops.\"\"\"
+
+        image = Image()
+        stops: Annotated[float, Slider(-10.0, 10.0, unit="EV")] = 0.0
+
+- *Sockets* (`Image`, `Field`, `Vector`, `Number`, `Color`) are inputs that a link fills; one with a
+  `default` may stay unlinked. `Output(...)` declares outputs; without any there is one Image, `out`.
+- *Values* are annotated attributes with a default. Numbers carry a `Slider`, choices are `Literal`s.
+- `Pointwise` is one GLSL function of its own pixel; its numbers, colors and vectors can be wired too.
+- `Filter` records draws symbolically in `passes`, `Source` reads files there, `Temporal` also keeps history.
+
+Values reach `passes` and GLSL in working units (see `Slider.unit`), so no node converts any itself.
+"""
+
+from __future__ import annotations
+
+from .draw import Argument, Draw, Drawn, Pixels
+from .node import Filter, Node, Pointwise, Source, Temporal
+from .sockets import Color, Edge, Field, Image, Kind, Number, Output, Size, Socket, Vector, glsl_type
+from .values import (
+    RGBA,
+    Doc,
+    File,
+    FilePath,
+    Fraction,
+    Handle,
+    Kernel3x3,
+    Plain,
+    Position,
+    Slider,
+    Swatch,
+    Unit,
+    Value,
+)
+
+__all__ = [
+    "RGBA", "Argument", "Color", "Doc", "Draw", "Drawn", "Edge", "Field", "File", "FilePath", "Filter", "Fraction",
+    "Handle", "Image", "Kernel3x3", "Kind", "Node", "Number", "Output", "Pixels", "Plain", "Pointwise", "Position",
+    "Size", "Slider", "Socket", "Source", "Swatch", "Temporal", "Unit", "Value", "Vector", "glsl_type",
+]

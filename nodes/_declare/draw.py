@@ -1,0 +1,73 @@
+"""What a filter may draw. Only the compiler knows how."""
+
+from __future__ import annotations
+
+from typing import Literal, Protocol
+
+from .sockets import Edge, Size, Socket
+from .values import Plain
+
+
+class Drawn(Protocol):
+    """Pixels that a draw will make. Only the compiler looks inside."""
+
+    @property
+    def size(self) -> Size: ...
+
+
+Pixels = Socket | Drawn
+Argument = Socket | Drawn | Plain
+
+
+class Draw(Protocol):
+    """Records what a node wants drawn; nothing runs yet, but sizes are known.
+
+    Functions are looked up in the node's own GLSL file. `result` is the type of what is drawn.
+    """
+
+    @property
+    def size(self) -> Size:
+        """The size that the node's outputs have unless drawn otherwise."""
+        ...
+
+    def size_of(self, pixels: Pixels) -> Size:
+        """The size of an input or of something drawn."""
+        ...
+
+    def linked(self, socket: Socket) -> bool:
+        """True if something is linked to this input of the node."""
+        ...
+
+    def __call__(
+        self, function: str, /, *inputs: Socket, size: Size | None = None, edge: Edge = "clamp",
+        result: Socket | None = None, **arguments: Argument,
+    ) -> Drawn:
+        """Call `function` for every pixel of `size`.
+
+        Inputs, and keyword arguments that are pixels, are read through accessors named after the socket or
+        keyword: `image_at(ivec2)`, `image_near(vec2)` (bilinear, pixel positions, centers at .5) and
+        `image_size`. The other keyword arguments are the function's parameters, in order.
+        """
+        ...
+
+    def point(self, function: str, /, *inputs: Socket, result: Socket | None = None, **arguments: Argument) -> Drawn:
+        """Call a pointwise `function`; every argument, pixels too, is a parameter, in order. It can fuse."""
+        ...
+
+    def blur(self, image: Pixels, sigma: float | tuple[float, float], edge: Edge = "clamp") -> Drawn:
+        """Gaussian of `sigma` working pixels: direct where small, decimated where large."""
+        ...
+
+    def convolve(
+        self, image: Pixels, weights: tuple[float, ...], axis: Literal["x", "y"], edge: Edge = "clamp"
+    ) -> Drawn:
+        """Correlate along one axis with an odd number of centered weights."""
+        ...
+
+    def reduce(self, image: Pixels, operation: Literal["sum", "max"]) -> Drawn:
+        """Sum or maximum of every channel over all pixels, as 1x1; exact at any size."""
+        ...
+
+    def read(self, path: str, layer: str, result: Socket) -> Drawn:
+        """The pixels of a layer of an image file, as `result` says."""
+        ...

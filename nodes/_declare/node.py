@@ -1,0 +1,102 @@
+"""Nodes: what a class body becomes."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import re
+from collections.abc import Mapping
+from typing import Any, ClassVar, Self, dataclass_transform, get_type_hints
+
+from .draw import Draw, Drawn
+from .sockets import Output, Size, Socket
+from .values import Value, read_value
+
+
+def _fields(cls: Any) -> tuple[dataclasses.Field[Any], ...]:
+    return dataclasses.fields(cls)
+
+
+@dataclass_transform(frozen_default=True, kw_only_default=True)
+class Node:
+    """One effect. The class body is the declaration; an instance is one set of values."""
+
+    id: ClassVar[str] = ""
+    category: ClassVar[str] = ""
+    version: ClassVar[int] = 1
+    inputs: ClassVar[Mapping[str, Socket]] = {}
+    outputs: ClassVar[Mapping[str, Output]] = {}
+    values: ClassVar[Mapping[str, Value]] = {}
+    order: ClassVar[tuple[str, ...]] = ()
+    """Names of inputs and values in declared order: the parameters of a pointwise GLSL function."""
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        body = vars(cls)
+        cls.id = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls.__name__).lower()
+        cls.category = cls.__module__.rpartition(".")[0].rpartition(".")[2]
+        cls.inputs = {name: item for name, item in body.items() if isinstance(item, Socket)}
+        outputs = {name: item for name, item in body.items() if isinstance(item, Output)}
+        dataclasses.dataclass(frozen=True, kw_only=True)(cls)
+        if not outputs:
+            implied = Output()
+            implied.__set_name__(cls, "out")
+            outputs = {"out": implied}
+        cls.outputs = outputs
+        hints = get_type_hints(cls, include_extras=True)
+        cls.values = {
+            field.name: read_value(field.name, hints[field.name], field.default) for field in _fields(cls)
+        }
+        cls.order = tuple(name for name in body if name in cls.inputs or name in cls.values)
+
+    def identity(self) -> str | None:
+        """The input that passes through unchanged at these values, or None. Not asked while a value is wired."""
+        return None
+
+    def output_size(self, inputs: Mapping[str, Size], canvas: Size) -> Size:
+        """The size of the outputs: the first linked input's, else the graph's canvas."""
+        return next(iter(inputs.values()), canvas)
+
+    @classmethod
+    def upgrade(cls, version: int, values: dict[str, Any]) -> dict[str, Any]:
+        """Values saved by an older `version` of this node, as the next version would have saved them."""
+        return values
+
+    def working(self, scale: float, height: int) -> Self:
+        """The same values in working units, as `passes` and GLSL see them: see `Unit`."""
+        factor = {"px": scale, "height": float(height), "deg": math.pi / 180.0}
+        changed: dict[str, Any] = {}
+        for name, value in self.values.items():
+            if value.unit in factor:
+                now: float | tuple[float, ...] = getattr(self, name)
+                by = factor[value.unit]
+                changed[name] = tuple(part * by for part in now) if isinstance(now, tuple) else now * by
+        return self.changed(**changed) if changed else self
+
+    def changed(self, **values: Any) -> Self:
+        """The same node with other values."""
+        return type(self)(**({name: getattr(self, name) for name in self.values} | values))
+
+
+class Pointwise(Node):
+    """An output pixel needs only the same pixel of each input, so neighbors fuse into one pass.
+
+    `shaders/<category>/<id>.glsl` holds a function named like the node whose parameters are the sockets and
+    values in declared order. One output is returned; several are `out` parameters at the end.
+    """
+
+
+class Filter(Node):
+    """Anything that looks at other pixels or takes several passes."""
+
+    def passes(self, draw: Draw) -> Drawn | Mapping[str, Drawn]:
+        """What to draw. Several outputs come back by name."""
+        raise NotImplementedError
+
+
+class Source(Filter):
+    """Makes pixels from outside the graph."""
+
+
+class Temporal(Filter):
+    """A filter that owns history: `draw.history` gives what it drew for the frame before."""

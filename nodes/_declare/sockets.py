@@ -1,0 +1,111 @@
+"""The ends of links: what a node takes in and hands out."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import ClassVar, Literal
+
+Size = tuple[int, int]
+"""Width and height in pixels."""
+
+Edge = Literal["clamp", "mirror", "reflect", "wrap", "black"]
+"""What lies outside a picture: scipy's nearest, mirror, reflect and wrap; black is transparent."""
+
+
+
+class Kind(StrEnum):
+    """What travels on a link."""
+
+    IMAGE = "Image"
+    FIELD = "Field"
+    VECTOR = "Vector"
+    NUMBER = "Number"
+    COLOR = "Color"
+
+
+@dataclass(frozen=True)
+class Socket:
+    """A typed end of a link. With a `default` (one number per channel, or one for all) it may stay unlinked."""
+
+    kind: ClassVar[Kind]
+    default: float | tuple[float, ...] | None = None
+    doc: str = dataclasses.field(default="", kw_only=True)
+    name: str = dataclasses.field(default="", init=False, compare=False)
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        object.__setattr__(self, "name", name)
+
+    @property
+    def channels(self) -> int:
+        """Floats per pixel."""
+        return 1 if self.kind in (Kind.FIELD, Kind.NUMBER) else 4
+
+    @property
+    def optional(self) -> bool:
+        """True if the socket works without a link."""
+        return self.default is not None
+
+    @property
+    def single(self) -> bool:
+        """True if it carries one value for the whole picture instead of one per pixel."""
+        return self.kind in (Kind.NUMBER, Kind.COLOR)
+
+    @property
+    def glsl(self) -> str:
+        """The GLSL type of one pixel."""
+        return glsl_type(self.channels)
+
+
+class Image(Socket):
+    """RGBA, scene-linear, premultiplied."""
+
+    kind = Kind.IMAGE
+
+
+class Field(Socket):
+    """One channel of data: depth, mask, occlusion."""
+
+    kind = Kind.FIELD
+
+
+@dataclass(frozen=True)
+class Vector(Socket):
+    """Two to four channels of data that is not color: normal, position, velocity, uv."""
+
+    kind = Kind.VECTOR
+    width: int = dataclasses.field(default=3, kw_only=True)
+
+    @property
+    def channels(self) -> int:
+        return self.width
+
+
+class Number(Socket):
+    """One number for the whole picture; it may be measured on the GPU."""
+
+    kind = Kind.NUMBER
+
+
+class Color(Socket):
+    """One scene-linear RGBA color for the whole picture."""
+
+    kind = Kind.COLOR
+
+
+@dataclass(frozen=True)
+class Output:
+    """Something a node makes. `socket` says its type."""
+
+    socket: Socket = dataclasses.field(default_factory=Image)
+    name: str = dataclasses.field(default="", init=False, compare=False)
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        object.__setattr__(self, "name", name)
+        object.__setattr__(self.socket, "name", name)
+
+
+def glsl_type(channels: int) -> str:
+    """The GLSL type that holds `channels` floats."""
+    return ("float", "vec2", "vec3", "vec4")[channels - 1]

@@ -1,0 +1,129 @@
+"""Values: what a node lets its user set, and how that is edited."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Annotated, Any, Literal, get_args, get_origin
+
+from .sockets import glsl_type
+
+Unit = Literal["px", "height", "deg", "EV", "ratio", "count", "s", "scene"]
+"""What a number counts.
+
+`px` pixels at full size (scaled under a proxy); `height` fraction of the image height (pixels in GLSL);
+`deg` degrees (radians in GLSL); `EV` photographic stops; `ratio` a plain factor; `count` a whole number of
+things; `s` seconds; `scene` the scene's own units (radiance, depth).
+"""
+
+
+@dataclass(frozen=True)
+class Slider:
+    """How a number is edited: the soft range of the slider, the hard range that typing cannot leave, the unit."""
+
+    low: float
+    high: float
+    unit: Unit = field(kw_only=True)
+    minimum: float = field(default=float("-inf"), kw_only=True)
+    maximum: float = field(default=float("inf"), kw_only=True)
+    doc: str = field(default="", kw_only=True)
+
+
+@dataclass(frozen=True)
+class Doc:
+    """A sentence for the tooltip of a value that has no slider."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class File:
+    """The value is a path; `layer` names the sibling value that picks a layer of that file, if any."""
+
+    layer: str = ""
+
+
+@dataclass(frozen=True)
+class Swatch:
+    """The value is a scene-linear RGBA color, edited with a picker. Components may leave 0..1."""
+
+
+@dataclass(frozen=True)
+class Handle:
+    """The value is a position as a fraction of the picture (0,0 is its top left), dragged in the viewer."""
+
+
+Fraction = Annotated[float, Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0)]
+RGBA = Annotated[tuple[float, float, float, float], Swatch()]
+Position = Annotated[tuple[float, float], Handle()]
+FilePath = Annotated[str, File()]
+Kernel3x3 = tuple[float, float, float, float, float, float, float, float, float]
+
+ValueType = Literal["float", "int", "bool", "choice", "color", "vector", "matrix", "path", "text"]
+Plain = float | int | bool | str | tuple[float, ...]
+"""What a value may be: JSON scalars and flat lists of numbers."""
+
+
+@dataclass(frozen=True)
+class Value:
+    """The declaration of one value, read from its annotation."""
+
+    name: str
+    type: ValueType
+    default: Plain
+    length: int = 1
+    choices: tuple[str, ...] = ()
+    low: float = float("-inf")
+    high: float = float("inf")
+    minimum: float = float("-inf")
+    maximum: float = float("inf")
+    unit: Unit | None = None
+    doc: str = ""
+    layer_by: str = ""
+    """The value that picks a layer of this file."""
+
+    @property
+    def glsl(self) -> str | None:
+        """Its GLSL parameter type, or None where it never reaches a shader."""
+        if self.type in ("float", "int", "bool"):
+            return self.type
+        if self.type in ("color", "vector"):
+            return glsl_type(self.length)
+        return {"choice": "int", "matrix": "mat3"}.get(self.type)
+
+    @property
+    def wireable(self) -> bool:
+        """True if a link may drive it (on a pointwise node)."""
+        return self.type in ("float", "int", "bool", "color", "vector")
+
+    @property
+    def is_pixels(self) -> bool:
+        """True for lengths in pixels, which shrink under a proxy."""
+        return self.unit == "px"
+
+
+def read_value(name: str, hint: Any, default: Any) -> Value:
+    """Turn `Annotated[type, Slider(...), ...] = default` into a Value."""
+    base, notes = (hint.__origin__, hint.__metadata__) if get_origin(hint) is Annotated else (hint, ())
+    found: dict[str, Any] = {"name": name, "default": default}
+    if base in (float, int, bool):
+        found["type"] = base.__name__
+    elif get_origin(base) is Literal:
+        found |= {"type": "choice", "choices": get_args(base)}
+    elif get_origin(base) is tuple:
+        length = len(get_args(base))
+        found |= {"type": "matrix" if length == 9 else "vector", "length": length}
+    elif base is str:
+        found["type"] = "text"
+    else:
+        raise TypeError(f"value '{name}': {hint!r} is no type that a value can have")
+    for note in notes:
+        if isinstance(note, Slider):
+            found |= {key: getattr(note, key) for key in ("low", "high", "minimum", "maximum", "unit")}
+            found["doc"] = note.doc or found.get("doc", "")
+        elif isinstance(note, Doc):
+            found["doc"] = note.text
+        elif isinstance(note, Swatch):
+            found["type"] = "color"
+        elif isinstance(note, File):
+            found |= {"type": "path", "layer_by": note.layer}
+    return Value(**found)

@@ -1,0 +1,30 @@
+"""Planning needs no device: pictures are a header."""
+
+from __future__ import annotations
+
+import pytest
+
+from halation.app.compiler import Picture, Plan, Probed, Request, compile_graph
+from halation.app.graph import Graph
+
+SIZE = (37, 23)
+
+
+def probe(picture: Picture) -> Probed:
+    """Every picture has the same size."""
+    return Probed(SIZE, False, picture.path)
+
+
+@pytest.fixture(scope="session")
+def plan():
+    """`plan(graph, scale=0.5, fusion=False, ...)` with every graph input bound."""
+
+    def planned(graph: Graph, **options) -> Plan:
+        asked = {name: options.pop(name) for name in ("scale", "size", "targets", "frame") if name in options}
+        bindings = {
+            name: Picture(name, "", item.kind, item.socket().channels, in_memory=True)
+            for name, item in graph.inputs.items()
+        }
+        return compile_graph(graph, Request(bindings=bindings, **asked), probe, **options)
+
+    return planned

@@ -1,0 +1,83 @@
+"""What must hold of every plan, whatever the graph."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from random_graphs import random_graph
+
+from halation.app.compiler import NULL, Plan
+
+SEEDS = st.integers(0, 100_000)
+
+
+def check_lives(plan: Plan) -> None:
+    """Surfaces are made before they are read, and two that share a texture never live at the same time."""
+    made = {upload.surface: -1 for upload in plan.uploads}
+    for index, one in enumerate(plan.passes):
+        for number in one.textures:
+            assert made[number] < index
+            assert plan.surfaces[number].first <= index <= plan.surfaces[number].last
+        for number in one.targets:
+            assert number not in made
+            made[number] = index
+            # A pass must not write the texture that it reads.
+            assert plan.surfaces[number].slot not in {plan.surfaces[read].slot for read in one.textures}
+    assert set(plan.outputs.values()) <= set(made)
+    for slot in range(len(plan.slots)):
+        living = sorted((item.first, item.last) for item in plan.surfaces if item.slot == slot)
+        for (_, end), (start, _) in zip(living, living[1:], strict=False):
+            assert end < start
+
+
+@settings(max_examples=60, deadline=None)
+@given(SEEDS, st.booleans(), st.sampled_from(["compute", "fragment"]))
+def test_slots_never_overlap_in_life(plan, seed, fusion, form):
+    from dataclasses import replace
+
+    check_lives(plan(random_graph(seed), fusion=fusion, target=replace(NULL, form=form)))
+
+
+@settings(max_examples=40, deadline=None)
+@given(SEEDS)
+def test_slots_hold_what_lies_in_them_and_no_more(plan, seed):
+    made = plan(random_graph(seed))
+    for slot, size in enumerate(made.slots):
+        assert {item.nbytes for item in made.surfaces if item.slot == slot} == {size}
+    assert made.peak_bytes == sum(made.slots)
+
+
+@settings(max_examples=40, deadline=None)
+@given(SEEDS)
+def test_fusion_saves_passes_and_keeps_the_outputs(plan, seed):
+    graph = random_graph(seed)
+    fused, plain = plan(graph), plan(graph, fusion=False)
+    assert len(fused.passes) <= len(plain.passes)
+    for name, number in plain.outputs.items():
+        assert fused.surfaces[fused.outputs[name]].size == plain.surfaces[number].size
+
+
+@settings(max_examples=40, deadline=None)
+@given(SEEDS)
+def test_the_same_graph_gives_the_same_plan(plan, seed):
+    assert plan(random_graph(seed)) == plan(random_graph(seed))
+
+
+@settings(max_examples=40, deadline=None)
+@given(SEEDS)
+def test_keys_tell_different_pixels_apart(plan, seed):
+    made = plan(random_graph(seed))
+    keys = [item.key for item in made.surfaces]
+    assert len(set(keys)) == len(keys)
+
+
+@pytest.mark.parametrize("limit", [2, 4, 8])
+def test_a_pass_stays_within_the_device_limits(plan, limit):
+    from dataclasses import replace
+
+    for seed in range(20):
+        target = replace(NULL, form="fragment", max_samplers=limit)
+        for one in plan(random_graph(seed, 14), target=target).passes:
+            # A node that reads more by itself cannot be helped.
+            assert len(one.textures) <= limit or len(one.nodes) == 1

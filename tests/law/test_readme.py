@@ -1,0 +1,72 @@
+"""What the README shows is true."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from dataclasses import fields
+from pathlib import Path
+from types import ModuleType
+
+from halation.app import document
+from halation.app.cli.outcome import EXIT_CODES
+from halation.app.graph import problems
+from halation.nodes import Pointwise
+
+ROOT = Path(__file__).parents[2]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def block(language: str, start: str = "") -> str:
+    """The first fenced block of a language whose text begins with `start`."""
+    return next(text for text in re.findall(rf"```{language}\n(.*?)```", README, re.S) if text.startswith(start))
+
+
+def test_the_graph_loads_and_has_no_problems() -> None:
+    graph = document.loads(block("json"))
+    assert problems(graph) == ()
+    assert set(json.loads(document.dumps(graph))) == set(json.loads(block("json")))
+
+
+def test_the_node_is_declared_as_its_shader_says() -> None:
+    module = ModuleType("halation.nodes.color.posterize")
+    module.__package__ = "halation.nodes.color"
+    sys.modules[module.__name__] = module
+    try:
+        exec(compile(block("python", "# nodes/"), "README.md", "exec"), vars(module))
+    finally:
+        del sys.modules[module.__name__]
+    node = module.Posterize
+    assert issubclass(node, Pointwise) and (node.id, node.category) == ("posterize", "color")
+    shader = block("glsl")
+    declared = ", ".join(f"{(node.inputs.get(name) or node.values[name]).glsl} {name}" for name in node.order)
+    assert f"vec4 posterize({declared})" in shader
+    assert [field.name for field in fields(node)] == ["levels"]
+
+
+def test_files_and_folders_it_names_exist() -> None:
+    names = {*re.findall(r"\b(?:docs|presets|tests|nodes|shaders|app)/[\w/]+(?:\.\w+)?", README)}
+    missing = {name for name in names if not (ROOT / name).exists() and "posterize" not in name}
+    assert not missing
+    parts = re.findall(r"^  (\w+(?:/|\.py)) ", block("", "dev "), re.M)
+    assert {part.rstrip("/") for part in parts} <= {path.name for path in (ROOT / "app").iterdir()}
+
+
+def test_its_commands_and_exit_codes_exist() -> None:
+    for command in sorted(set(re.findall(r"^halation (\w+)", README, re.M))):
+        result = subprocess.run(
+            [sys.executable, "-c", "from halation.app.cli import main; main()", command, "--help"],
+            capture_output=True, text=True,
+        )
+        assert result.returncode == 0 and result.stdout, (command, result.stderr)
+    rows = re.findall(r"^\| (\d+) \|", README, re.M)
+    assert rows == re.findall(r"^(\d+) ", EXIT_CODES, re.M)
+
+
+def test_its_python_names_exist() -> None:
+    import halation.app
+
+    for name in re.findall(r"\bhal\.(\w+)\(", README):
+        assert callable(getattr(halation.app, name)), name

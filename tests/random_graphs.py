@@ -1,0 +1,63 @@
+"""Random graphs for property tests: any nodes of the catalogue, wired in any way that fits."""
+
+from __future__ import annotations
+
+from random import Random
+
+from halation.app.graph import Graph, Input, Output, Port, conversion, signature
+from halation.nodes import Kind, Node, Source, catalogue
+
+CLASSES = [node for node in catalogue().values() if not issubclass(node, Source)]
+
+
+def random_node(rng: Random) -> Node:
+    """A node with values anywhere in their soft ranges."""
+    node = rng.choice(CLASSES)
+    values = {}
+    for value in node.values.values():
+        if value.type == "choice":
+            values[value.name] = rng.choice(value.choices)
+        elif value.type == "bool":
+            values[value.name] = rng.random() < 0.5
+        elif value.unit is not None and value.type in ("float", "int"):
+            low, high = max(value.low, value.minimum), min(value.high, value.maximum)
+            number = rng.uniform(low, high)
+            values[value.name] = round(number) if value.type == "int" else number
+    return node(**values)
+
+
+def random_graph(seed: int, length: int = 10) -> Graph:
+    """A graph of `length` nodes over an image, a field and a vector; every loose end is an output."""
+    rng = Random(seed)
+    graph = Graph(inputs={"image": Input(Kind.IMAGE), "field": Input(Kind.FIELD), "vector": Input(Kind.VECTOR, 2)})
+    for index in range(length):
+        name = f"n{index}"
+        graph = graph.add(name, random_node(rng))
+        face = signature(graph.nodes[name])
+        wires = [
+            value for value in face.values if face.pointwise and face.values[value].wireable and rng.random() < 0.15
+        ]
+        for target in [*face.inputs, *wires]:
+            fitting = [
+                port for port in sources(graph, name)
+                if conversion(graph.source(port), graph.target(Port(name, target))) is None
+            ]
+            if fitting and (target in wires or not face.inputs[target].optional or rng.random() < 0.7):
+                # Late nodes are more likely, so that chains grow long.
+                graph = graph.connect(fitting[-1 - int(len(fitting) * rng.random() ** 3)], Port(name, target))
+    read = set(graph.links.values())
+    loose = [port for port in sources(graph, "") if port not in read and port.node != "inputs"]
+    for number, port in enumerate(loose[-4:]):
+        socket = graph.source(port)
+        kind = Kind.FIELD if socket.kind is Kind.NUMBER else Kind.IMAGE if socket.kind is Kind.COLOR else socket.kind
+        graph = graph.add_output(f"o{number}", Output(kind, socket.channels)).connect(port, Port("outputs", f"o{number}"))
+    return graph
+
+
+def sources(graph: Graph, but: str) -> list[Port]:
+    """Everything that a link may start from."""
+    found = [Port("inputs", name) for name in graph.inputs]
+    for name in graph.nodes:
+        if name != but:
+            found += [Port(name, output) for output in signature(graph.nodes[name]).outputs]
+    return found

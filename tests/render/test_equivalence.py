@@ -1,0 +1,75 @@
+"""However a graph is run, the pixels are the same: fused or not, as fragment or compute passes, cached or not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from random_graphs import random_graph
+
+from halation.app.compiler import Form
+from halation.app.render import Renderer, Wanted, open_device
+
+SIZE = (37, 23)
+SEEDS = range(150)
+
+
+def pictures(seed: int) -> dict[str, np.ndarray]:
+    """HDR noise; the vector is a displacement."""
+    rng = np.random.default_rng(seed)
+    width, height = SIZE
+    return {
+        "image": rng.gamma(0.6, 1.0, (height, width, 4)).astype(np.float32),
+        "field": rng.random((height, width), np.float32),
+        "vector": rng.normal(0.0, 1.0, (height, width, 2)).astype(np.float32),
+    }
+
+
+@pytest.fixture(scope="module")
+def engines():
+    """A renderer by form and fusion; none keeps results."""
+    made: dict[tuple[Form, bool], Renderer] = {}
+    for form in ("compute", "fragment"):
+        for fusion in (True, False):
+            made[form, fusion] = Renderer(open_device(form), budget=0, fusion=fusion)
+    yield made
+    for engine in made.values():
+        engine.close()
+
+
+def same_bits(one: dict[str, np.ndarray], other: dict[str, np.ndarray]) -> None:
+    assert one.keys() == other.keys()
+    for name in one:
+        np.testing.assert_array_equal(one[name].view(np.uint8), other[name].view(np.uint8), name)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_fused_equals_unfused_to_the_bit(engines, seed):
+    graph, wanted = random_graph(seed), Wanted(pictures(seed), precision="float")
+    same_bits(engines["compute", True].render(graph, wanted), engines["compute", False].render(graph, wanted))
+
+
+@pytest.mark.parametrize("seed", list(SEEDS)[:8])
+def test_both_forms_agree(engines, seed):
+    graph, wanted = random_graph(seed), Wanted(pictures(seed), precision="float")
+    compute = engines["compute", True].render(graph, wanted)
+    fragment = engines["fragment", True].render(graph, wanted)
+    for name in compute:
+        np.testing.assert_allclose(compute[name], fragment[name], rtol=1e-6, atol=1e-6, err_msg=name)
+
+
+@pytest.mark.parametrize("seed", list(SEEDS)[:6])
+def test_cached_equals_uncached(engines, renderer, seed):
+    graph, wanted = random_graph(seed), Wanted(pictures(seed), precision="float")
+    first, again = renderer.render(graph, wanted), renderer.render(graph, wanted)
+    same_bits(first, again)
+    same_bits(first, engines["compute", True].render(graph, wanted))
+
+
+@pytest.mark.parametrize("seed", list(SEEDS)[:6])
+def test_measured_peak_is_the_planned_one(seed):
+    engine = Renderer(open_device(), budget=0)
+    wanted = Wanted(pictures(seed), precision="float")
+    plan = engine.compile(random_graph(seed), wanted)
+    engine.runner.run(plan)
+    assert engine.runner.textures.peak == plan.peak_bytes
+    engine.close()

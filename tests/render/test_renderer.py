@@ -1,0 +1,155 @@
+"""What runs, what is kept, and what is said when something does not work."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from conftest import graph_of
+
+from halation.app.compiler import Library, installed
+from halation.app.compiler.library import parse
+from halation.app.errors import DeviceError, ShaderError, UsageError
+from halation.app.graph import Graph, Input, Output, Port
+from halation.app.render import Renderer, Wanted, open_device
+from halation.nodes import Kind
+from halation.nodes.blur.gaussian_blur import GaussianBlur
+from halation.nodes.color.exposure import Exposure
+from halation.nodes.color.saturation import Saturation
+
+PICTURE = np.random.default_rng(1).random((23, 37, 4), np.float32)
+
+
+def chain(stops: float, sigma: float, saturation: float) -> Graph:
+    graph = Graph(inputs={"image": Input(Kind.IMAGE)}, outputs={"image": Output()})
+    graph = graph.add("light", Exposure(stops=stops)).add("blur", GaussianBlur(sigma=sigma))
+    graph = graph.add("color", Saturation(saturation=saturation))
+    for source, target in (("inputs.image", "light.image"), ("light.out", "blur.image"), ("blur.out", "color.image"),
+                           ("color.out", "outputs.image")):
+        graph = graph.connect(Port.parse(source), Port.parse(target))
+    return graph
+
+
+@pytest.fixture
+def engine():
+    made = Renderer(open_device())
+    yield made
+    made.close()
+
+
+def test_a_second_render_executes_no_pass(engine):
+    wanted = Wanted({"image": PICTURE})
+    engine.render(chain(1.0, 2.0, 0.5), wanted)
+    passes, uploads = engine.runner.counters.passes, engine.runner.counters.uploads
+    assert passes == 4
+    engine.render(chain(1.0, 2.0, 0.5), wanted)
+    assert (engine.runner.counters.passes, engine.runner.counters.uploads) == (passes, uploads)
+
+
+def test_changing_a_value_compiles_nothing(engine):
+    wanted = Wanted({"image": PICTURE})
+    engine.render(chain(1.0, 2.0, 0.5), wanted)
+    compiled = engine.runner.programs.compiled
+    for stops, sigma, saturation in ((2.0, 2.0, 0.5), (1.0, 5.5, 0.5), (1.0, 2.0, 1.5), (-3.0, 0.6, 0.0)):
+        engine.render(chain(stops, sigma, saturation), wanted)
+    assert engine.runner.programs.compiled == compiled
+
+
+def test_only_what_depends_on_a_value_runs_again(engine):
+    wanted = Wanted({"image": PICTURE})
+    engine.render(chain(1.0, 2.0, 0.5), wanted)
+    before = engine.runner.counters.passes
+    engine.render(chain(1.0, 2.0, 0.7), wanted)
+    assert engine.runner.counters.passes == before + 1
+
+
+def test_a_changed_array_is_not_taken_for_the_old_one(engine):
+    graph, picture = graph_of(Exposure(stops=1.0), {"image": PICTURE}), PICTURE.copy()
+    first = engine.render(graph, Wanted({"image": picture}))["out"]
+    picture *= 0.5
+    np.testing.assert_allclose(engine.render(graph, Wanted({"image": picture}))["out"][..., 0], first[..., 0] * 0.5)
+
+
+def test_results_stay_within_the_budget():
+    engine = Renderer(open_device(), budget=2 * PICTURE.nbytes)
+    for stops in range(1, 12):
+        engine.render(chain(float(stops), 2.0, 0.5), Wanted({"image": PICTURE}))
+    assert engine.runner.textures.allocated <= 2 * PICTURE.nbytes + 4 * PICTURE.nbytes
+    engine.close()
+
+
+def test_half_floats_are_rounded_not_truncated(run):
+    picture = np.full((4, 64, 4), 1.0, np.float32)
+    picture[..., :3] = np.linspace(0.1, 7.0, 64, dtype=np.float32)[None, :, None]
+    result = run(Exposure(stops=0.3), {"image": picture}, precision="half")
+    exact = picture[..., :3].astype(np.float64) * 2.0**0.3
+    # Half an ulp: 11 significant bits.
+    assert np.all(np.abs(result[..., :3] - exact) <= exact * 2.0**-11 * 1.0001)
+
+
+def test_half_floats_saturate_instead_of_overflowing(run):
+    picture = np.full((1, 1, 4), 60000.0, np.float32)
+    assert np.all(run(Exposure(stops=5.0), {"image": picture}, precision="half")[..., :3] == 65504.0)
+
+
+def test_a_broken_shader_names_node_file_and_line():
+    texts = dict(installed().texts)
+    broken = "vec4 exposure(vec4 image, float stops) {\n    float unused = 1.0;\n    return image * stosp;\n}\n"
+    texts["color/exposure"] = parse("color/exposure", broken)
+    engine = Renderer(open_device(), library=Library(texts))
+    with pytest.raises(ShaderError) as caught:
+        engine.render(graph_of(Exposure(stops=1.0), {"image": PICTURE}), Wanted({"image": PICTURE}))
+    fault = caught.value
+    assert (fault.node, fault.file, fault.line) == ("node", "shaders/color/exposure.glsl", 3)
+    assert "stosp" in str(fault)
+    engine.close()
+
+
+def test_a_failed_allocation_is_one_sentence_with_numbers(engine, monkeypatch):
+    from halation.app.render.textures import Textures
+
+    monkeypatch.setattr(Textures, "_try", lambda *_: None)
+    with pytest.raises(DeviceError, match=r"no room for .* MiB more .*--scale"):
+        engine.render(graph_of(Exposure(stops=1.0), {"image": PICTURE}), Wanted({"image": PICTURE}))
+
+
+def test_more_pixels_than_the_device_has_is_refused_by_the_driver(engine):
+    """The real thing: this rasterizer reports out of memory for its largest square, and only if asked."""
+    limit = engine.device.target.max_size
+    graph = Graph(inputs={"image": Input(Kind.IMAGE)}, outputs={"image": Output()})
+    graph = graph.add("light", Exposure(stops=1.0)).connect(Port("inputs", "image"), Port("light", "image"))
+    graph = graph.connect(Port("light", "out"), Port("outputs", "image"))
+    with pytest.raises(DeviceError, match=f"'.*': {limit + 1}x8 pixels is more than the {limit}"):
+        engine.render(graph, Wanted({"image": PICTURE}, size=(limit + 1, 8)))
+
+
+def test_an_unknown_input_is_named_with_those_there_are(engine):
+    with pytest.raises(UsageError, match="no input 'beuaty': its inputs are image"):
+        engine.render(chain(1.0, 2.0, 0.5), Wanted({"beuaty": PICTURE}))
+
+
+def test_stopping_between_passes_leaves_nothing_behind(engine):
+    plan = engine.compile(chain(1.0, 2.0, 0.5), Wanted({"image": PICTURE}))
+    steps = engine.runner.steps(plan, {})
+    next(steps)
+    steps.close()
+    result = engine.render(chain(1.0, 2.0, 0.5), Wanted({"image": PICTURE}))["image"]
+    fresh = Renderer(open_device())
+    np.testing.assert_array_equal(result, fresh.render(chain(1.0, 2.0, 0.5), Wanted({"image": PICTURE}))["image"])
+    fresh.close()
+
+
+@pytest.mark.parametrize("size", [(1, 1), (1, 7), (19, 12), (64, 40), (111, 70)])
+def test_size_replaces_the_size_of_pictures(run, size):
+    graph = graph_of(Exposure(stops=1.0), {"image": PICTURE})
+    assert run(graph, {"image": PICTURE}, size=size).shape == (size[1], size[0], 4)
+
+
+def test_shrinking_averages_like_openimageio(run):
+    """The triangle filter of OpenImageIO's resize, away from the borders."""
+    oiio = pytest.importorskip("OpenImageIO")
+    picture = np.random.default_rng(3).random((64, 96, 4), np.float32)
+    spec = oiio.ImageSpec(48, 32, 4, "float")
+    small = oiio.ImageBuf(spec)
+    oiio.ImageBufAlgo.resize(small, oiio.ImageBuf(picture), filtername="triangle", filterwidth=2.0)
+    ours = run(graph_of(Exposure(stops=1e-9), {"image": picture}), {"image": picture}, scale=0.5)
+    np.testing.assert_allclose(ours[2:-2, 2:-2], small.get_pixels()[2:-2, 2:-2], atol=2e-6)
