@@ -45,6 +45,9 @@ class Input:
     default: Plain | None = None
     doc: str = ""
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "width", _width(self.kind, self.width))
+
     def socket(self, name: str = "") -> Socket:
         """How a link sees it. Outside a group it may stay unlinked if there is a default or a file."""
         fallback = 0.0 if self.default is None and self.file else self.default
@@ -58,6 +61,9 @@ class Output:
     kind: Kind = Kind.IMAGE
     width: int = 3
     layer: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "width", _width(self.kind, self.width))
 
     def socket(self, name: str = "") -> Socket:
         """How a link sees it."""
@@ -109,3 +115,12 @@ def freeze(item: Any) -> Any:
     if isinstance(item, list | tuple):
         return tuple(freeze(part) for part in cast("list[Any]", item))
     return item
+
+
+def _width(kind: Kind, width: int) -> int:
+    """Channels of an end of the graph; only those of a Vector are free."""
+    if kind is not Kind.VECTOR:
+        return make_socket(kind).channels
+    if width not in (2, 3, 4):
+        raise GraphError(f"a Vector has 2, 3 or 4 channels, not {width}")
+    return width

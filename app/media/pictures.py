@@ -92,7 +92,7 @@ def _content(array: Array) -> str:
     """A mark that changes with the pixels: the same array may be filled anew between two renders."""
     import numpy as np
 
-    digest = blake2b(np.ascontiguousarray(array), digest_size=16).hexdigest()
+    digest = blake2b(np.ascontiguousarray(array).data, digest_size=16).hexdigest()
     return f"array {array.shape} {array.dtype} {digest}"
 
 

@@ -1,4 +1,5 @@
 #include "lib/color.glsl"
+#include "lib/finite.glsl"
 
 // What a row beside the middle one weighs in the smoothing across a derivative. The three rows sum to 1.
 float edge_detect_side(int operator) {
@@ -28,7 +29,7 @@ vec3 edge_detect_strength(int operator, int channels, float strength, float thre
     edge_detect_change(operator, across, down);
     vec3 size = channels == CHANNELS_LUMINANCE ? vec3(length(vec2(luminance(across), luminance(down))))
                                                : sqrt(across * across + down * down);
-    return strength * max(size - threshold, 0.0);
+    return finite(strength * max(size - threshold, 0.0));
 }
 
 vec4 edge_detect(int operator, int channels, float strength, float threshold) {

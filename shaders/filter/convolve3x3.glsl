@@ -1,3 +1,5 @@
+#include "lib/finite.glsl"
+
 // Correlation: kernel[row][column] weighs the neighbor that it covers when the kernel is laid over the picture.
 vec4 convolve3x3(mat3 kernel, float bias, bool filter_alpha) {
     vec4 sum = vec4(0.0);
@@ -5,5 +7,5 @@ vec4 convolve3x3(mat3 kernel, float bias, bool filter_alpha) {
         for (int column = 0; column < 3; ++column)
             sum += kernel[row][column] * image_at(pixel + ivec2(column, row) - 1);
     float alpha = filter_alpha ? sum.a : image_at(pixel).a;
-    return vec4(sum.rgb + bias * alpha, alpha);
+    return finite(vec4(sum.rgb + bias * alpha, alpha));
 }

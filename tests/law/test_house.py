@@ -98,7 +98,7 @@ def undocumented(path: Path) -> list[str]:
     kinds = (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
     public = [item for item in tree.body if isinstance(item, kinds) and not item.name.startswith("_")]
     silent = [f"{label(path)}: {item.name}" for item in public if not (ast.get_docstring(item) or is_overload(item))]
-    is_node = path.parts[-3] == "nodes" and not path.name.startswith("_")
+    is_node = path.match("nodes/[!_]*/[!_]*.py")
     return silent if is_node or ast.get_docstring(tree) else [label(path), *silent]
 
 

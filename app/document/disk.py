@@ -1,0 +1,71 @@
+"""Files of text: read with a limit, written whole or not at all."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import secrets
+from pathlib import Path
+
+from ..errors import DocumentError, OutputError
+from .limits import MAX_BYTES, size_fault
+
+
+def read_text(path: Path) -> str:
+    """The text of a graph file. Raises DocumentError; a file that is too large is not read."""
+    try:
+        with path.open("rb") as file:
+            if fault := size_fault(max(os.fstat(file.fileno()).st_size, 1)):
+                raise DocumentError(str(path), "", fault)
+            found = file.read(MAX_BYTES + 1)
+    except FileNotFoundError:
+        raise DocumentError(str(path), "", "there is no such file") from None
+    except IsADirectoryError:
+        raise DocumentError(str(path), "", "this is a folder, not a graph file") from None
+    except (OSError, ValueError) as error:
+        raise DocumentError(str(path), "", f"it cannot be read ({_reason(error)})") from None
+    try:
+        return found.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise DocumentError(str(path), "", f"the text is not UTF-8 (byte {error.start}); save it as UTF-8") from None
+
+
+def write_text(path: Path, text: str) -> None:
+    """Replace `path` by `text`: after any failure the old file is still there. Raises OutputError."""
+    try:
+        # A link to a file stays a link: what it points at is replaced.
+        target = path.resolve()
+        temporary = target.with_name(f".{target.name[:100]}.{secrets.token_hex(4)}.tmp")
+        handle = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
+    except (OSError, ValueError, RuntimeError) as error:
+        raise OutputError(f"{path}: it cannot be saved here ({_reason(error)}); choose another folder") from None
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(text.encode())
+            file.flush()
+            os.fsync(file.fileno())
+        if target.exists():
+            temporary.chmod(target.stat().st_mode & 0o777)
+        os.replace(temporary, target)  # noqa: PTH105
+    except BaseException as error:
+        with contextlib.suppress(OSError):
+            temporary.unlink()
+        if isinstance(error, OSError):
+            kept = "; the old file is unchanged" if target.exists() else ""
+            raise OutputError(f"{path}: it could not be saved ({_reason(error)}){kept}") from None
+        raise
+    _sync_folder(target.parent)
+
+
+def _sync_folder(folder: Path) -> None:
+    """Make the new name last too; not every system can."""
+    with contextlib.suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
+
+
+def _reason(error: Exception) -> str:
+    return (error.strerror if isinstance(error, OSError) else None) or str(error)

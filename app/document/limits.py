@@ -1,0 +1,20 @@
+"""How large a graph file may be. Beyond that it is damaged or hostile, and refused before it costs anything."""
+
+from __future__ import annotations
+
+MAX_BYTES = 32 * 2**20
+MAX_NESTING = 64
+"""Objects and lists inside each other."""
+
+MAX_GROUPS = 32
+"""Groups inside each other."""
+
+MAX_NODES = 100_000
+"""Nodes after every group is expanded: a few files that hold each other twice would otherwise make billions."""
+
+
+def size_fault(count: int) -> str | None:
+    """Why a file of `count` bytes is refused, or None."""
+    if count > MAX_BYTES:
+        return f"the file has more than {MAX_BYTES // 2**20} MB; that is no graph"
+    return None if count else "the file is empty"

@@ -1,0 +1,235 @@
+"""JSON -> Graph. Strict about what it knows, and keeps what it does not know."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ...nodes import Node, Plain, Value, catalogue
+from ..errors import DocumentError, GraphError
+from ..graph import Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, signature
+from ..graph.names import did_you_mean, name_fault
+from ..graph.values import coerced, expected
+from . import limits, records
+from .disk import read_text
+from .migrations import MIGRATIONS, Migration, migrate, newest
+from .records import convert, read_type, unknown_keys
+from .syntax import member, parse, word
+
+Types = Mapping[str, type[Node]]
+Migrations = Mapping[int, Migration]
+Extra = dict[str, Mapping[str, Any]]
+
+_DAMAGED = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError)
+"""What a migration raises when the old file is not what it claims to be."""
+
+
+def load(path: str | Path, catalogue: Types | None = None, migrations: Migrations = MIGRATIONS) -> Graph:
+    """The graph in a file, with the groups that it names. Raises DocumentError."""
+    return _Loading(_types(catalogue), migrations).file(Path(path))[0]
+
+
+def loads(
+    text: str, file: str = "", folder: str = "", catalogue: Types | None = None, migrations: Migrations = MIGRATIONS
+) -> Graph:
+    """The graph in `text`. `file` is its name in messages, `folder` is where relative paths start."""
+    return _Loading(_types(catalogue), migrations).text(text, file, folder, ())[0]
+
+
+def _types(given: Types | None) -> Types:
+    return catalogue() if given is None else given
+
+
+@dataclass
+class _Loading:
+    """One call of `load`: every group file is read once, however often it is named."""
+
+    types: Types
+    migrations: Migrations
+    done: dict[Path, tuple[Graph, int]] = field(default_factory=dict[Path, tuple[Graph, int]])
+
+    def file(self, path: Path, outer: tuple[Path, ...] = ()) -> tuple[Graph, int]:
+        """The graph in a file, and how many nodes it has when all groups are expanded."""
+        real = path.resolve()
+        if real not in self.done:
+            self.done[real] = self.text(read_text(path), str(path), str(path.parent), (*outer, real))
+        return self.done[real]
+
+    def text(self, text: str, file: str, folder: str, outer: tuple[Path, ...]) -> tuple[Graph, int]:
+        """The graph in a text, and how many nodes it has when all groups are expanded."""
+        raw = parse(text, file)
+        if "halation" not in raw:
+            raise DocumentError(file, "", 'this is no graph: the key "halation", its format number, is missing')
+        format = convert(raw, records.FormatRecord, file, "").halation
+        now = newest(self.migrations)
+        if format > now:
+            raise DocumentError(file, "halation", _newer(f"format {format}", now))
+        try:
+            raw = migrate(raw, format, self.migrations)
+        except _DAMAGED:
+            fault = f"the file is damaged: it says format {format}, but cannot be brought to format {now}"
+            raise DocumentError(file, "halation", fault) from None
+        return _Body(self, file, folder, outer).graph(raw, "", len(outer))
+
+
+@dataclass
+class _Body:
+    """One file: what its paths and messages start from. `outer` are the files that led here, itself included."""
+
+    loading: _Loading
+    file: str
+    folder: str
+    outer: tuple[Path, ...]
+    extra: Extra = field(default_factory=Extra)
+
+    def graph(self, raw: dict[str, Any], at: str, depth: int) -> tuple[Graph, int]:
+        """The graph at JSON path `at`, and its number of nodes."""
+        reader = _Body(self.loading, self.file, self.folder, self.outer)
+        record = convert(raw, records.GraphRecord, self.file, at)
+        reader.keep("", raw, records.GraphRecord)
+        settings = convert(record.settings, records.SettingsRecord, self.file, member(at, "settings"))
+        reader.keep("settings", record.settings, records.SettingsRecord)
+        nodes, muted, count = dict[str, Item](), set[str](), 0
+        for id, node in record.nodes.items():
+            where = reader.named(at, "nodes", id, "node")
+            common = convert(node, records.TypeRecord, self.file, where)
+            nodes[id], number = reader.item(id, node, common.type, where, depth)
+            count += number
+            if count > limits.MAX_NODES:
+                raise DocumentError(self.file, where, f"with all groups there are more than {limits.MAX_NODES} nodes")
+            if common.muted:
+                muted.add(id)
+        graph = Graph(
+            nodes=nodes,
+            links={reader.port(t, at, t): reader.port(s, at, t) for t, s in record.links.items()},
+            inputs={name: reader.input(name, end, at) for name, end in record.inputs.items()},
+            outputs={name: reader.output(name, end, at) for name, end in record.outputs.items()},
+            controls={name: reader.control(name, item, at) for name, item in record.controls.items()},
+            settings=Settings(settings.size), muted=frozenset(muted), ui=record.ui, extra=reader.extra,
+            folder=self.folder,
+        )
+        return graph, count
+
+    def keep(self, path: str, raw: Mapping[str, Any], kind: records.RecordType) -> None:
+        """Note the keys of the object at `path` (inside this graph) that mean nothing."""
+        if keys := unknown_keys(raw, kind):
+            self.extra[path] = keys
+
+    def named(self, at: str, section: str, name: str, what: str) -> str:
+        """The JSON path of an entry; its name is checked."""
+        if fault := name_fault(name, what):
+            raise DocumentError(self.file, member(at, section), fault)
+        return member(member(at, section), name)
+
+    def port(self, text: str, at: str, entry: str) -> Port:
+        """A port that the link at `entry` names."""
+        try:
+            return Port.parse(text)
+        except GraphError as error:
+            raise DocumentError(self.file, member(member(at, "links"), entry), str(error)) from None
+
+    def input(self, name: str, raw: Any, at: str) -> Input:
+        """An entry of `inputs`."""
+        where = self.named(at, "inputs", name, "input")
+        found = convert(raw, records.InputRecord, self.file, where)
+        self.keep(f"inputs.{name}", raw, records.InputRecord)
+        kind, width = read_type(found.type, self.file, where)
+        return Input(kind, width, found.file, found.layer, found.default, found.doc)
+
+    def output(self, name: str, raw: Any, at: str) -> Output:
+        """An entry of `outputs`."""
+        where = self.named(at, "outputs", name, "output")
+        found = convert(raw, records.OutputRecord, self.file, where)
+        self.keep(f"outputs.{name}", raw, records.OutputRecord)
+        return Output(*read_type(found.type, self.file, where), found.layer)
+
+    def control(self, name: str, raw: Any, at: str) -> Control:
+        """An entry of `controls`."""
+        where = self.named(at, "controls", name, "control")
+        found = convert(raw, records.ControlRecord, self.file, where)
+        self.keep(f"controls.{name}", raw, records.ControlRecord)
+        try:
+            return Control(Port.parse(found.target), found.label, found.doc)
+        except GraphError as error:
+            raise DocumentError(self.file, member(where, "target"), str(error)) from None
+
+    def item(self, id: str, raw: dict[str, Any], type: str, at: str, depth: int) -> tuple[Item, int]:
+        """A node, and how many it stands for."""
+        if type == "group":
+            return self.group(id, raw, at, depth)
+        if type not in self.loading.types:
+            return Unknown(type, unknown_keys(raw, records.TypeRecord)), 1
+        self.keep(f"nodes.{id}", raw, records.NodeRecord)
+        return self.node(id, self.loading.types[type], convert(raw, records.NodeRecord, self.file, at), at), 1
+
+    def node(self, id: str, kind: type[Node], record: records.NodeRecord, at: str) -> Node:
+        """A node of a known type, its values brought up to its present version."""
+        if record.version > kind.version:
+            fault = _newer(f"version {record.version} of '{kind.id}'", kind.version)
+            raise DocumentError(self.file, member(at, "version"), fault)
+        values = dict(record.values)
+        try:
+            for version in range(record.version, kind.version):
+                values = dict(kind.upgrade(version, values))
+        except _DAMAGED:
+            fault = f"these are no values of version {record.version} of '{kind.id}'"
+            raise DocumentError(self.file, member(at, "values"), fault) from None
+        return kind(**self.values(f"nodes.{id}", values, kind.values, at))
+
+    def values(self, path: str, raw: dict[str, Any], known: Mapping[str, Value], at: str) -> dict[str, Plain]:
+        """The values that are `known`, by type; ranges and choices are for `problems`. The others are kept aside."""
+        found: dict[str, Plain] = {}
+        for name, given in raw.items():
+            if name in known:
+                plain = coerced(known[name], given)
+                if plain is None:
+                    fault = f"expected {expected(known[name])}, got {word(given)}"
+                    raise DocumentError(self.file, member(member(at, "values"), name), fault)
+                found[name] = plain
+        if others := {name: given for name, given in raw.items() if name not in known}:
+            self.extra[f"{path}.values"] = others
+        return found
+
+    def group(self, id: str, raw: dict[str, Any], at: str, depth: int) -> tuple[Group, int]:
+        """A group, and how many nodes it stands for."""
+        record = convert(raw, records.GroupRecord, self.file, at)
+        self.keep(f"nodes.{id}", raw, records.GroupRecord)
+        if depth > limits.MAX_GROUPS:
+            raise DocumentError(self.file, at, f"groups nest deeper than {limits.MAX_GROUPS}; flatten some of them")
+        if (record.graph is None) == (not record.path):
+            raise DocumentError(self.file, at, 'a group needs either "graph", its body, or "path", the file of one')
+        if record.path:
+            graph, count = self.group_file(record.path, member(at, "path"))
+        else:
+            graph, count = self.graph(record.graph or {}, member(at, "graph"), depth + 1)
+        values = self.values(f"nodes.{id}", record.values, signature(Group(graph)).values, at)
+        return Group(graph, record.path or "", values), count + 1
+
+    def group_file(self, path: str, at: str) -> tuple[Graph, int]:
+        """The graph in a group's file."""
+        inner = Path(self.folder, path)
+        try:
+            real = inner.resolve()
+            there = inner.exists()
+        except (OSError, ValueError, RuntimeError):
+            there, real = False, inner
+        if not there:
+            near = did_you_mean(inner.name, _graphs_in(inner.parent))
+            raise DocumentError(self.file, at, f"the group file '{inner}' does not exist{near}")
+        if real in self.outer:
+            loop = " -> ".join(one.name for one in (*self.outer[self.outer.index(real):], real))
+            raise DocumentError(self.file, at, f"a group cannot hold itself: {loop}")
+        return self.loading.file(inner, self.outer)
+
+
+def _newer(what: str, known: int) -> str:
+    return f"{what} is newer than {known}, the newest known here: update Halation"
+
+
+def _graphs_in(folder: Path) -> tuple[str, ...]:
+    try:
+        return tuple(path.name for path in folder.glob("*.json"))
+    except OSError:
+        return ()

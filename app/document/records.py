@@ -1,0 +1,131 @@
+"""What each object of a document may hold, and plain sentences for what does not fit."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Annotated, Any, TypeVar
+
+import msgspec
+
+from ...nodes import Kind
+from ..errors import DocumentError
+from .syntax import member
+
+Count = Annotated[int, msgspec.Meta(ge=1)]
+Section = dict[str, Any]
+
+RecordType = type[msgspec.Struct]
+R = TypeVar("R", bound=msgspec.Struct)
+
+_WORDS = {
+    "str": "a string", "int": "a whole number", "float": "a number", "bool": "true or false", "object": "an object",
+    "array": "a list", "null": "null",
+}
+
+
+class FormatRecord(msgspec.Struct):
+    """What every document begins with, whatever its format."""
+
+    halation: Count
+
+
+class GraphRecord(msgspec.Struct):
+    """A document, or the graph of an inline group."""
+
+    halation: Any = None
+    settings: Section = {}
+    inputs: Section = {}
+    outputs: Section = {}
+    controls: Section = {}
+    nodes: Section = {}
+    links: dict[str, str] = {}
+    ui: Section = {}
+
+
+class SettingsRecord(msgspec.Struct):
+    """The section `settings`."""
+
+    size: tuple[Count, Count] | None = None
+
+
+class InputRecord(msgspec.Struct):
+    """An entry of `inputs`."""
+
+    type: str = "Image"
+    file: str = ""
+    layer: str = ""
+    default: float | tuple[float, ...] | None = None
+    doc: str = ""
+
+
+class OutputRecord(msgspec.Struct):
+    """An entry of `outputs`."""
+
+    type: str = "Image"
+    layer: str = ""
+
+
+class ControlRecord(msgspec.Struct):
+    """An entry of `controls`."""
+
+    target: str
+    label: str = ""
+    doc: str = ""
+
+
+class TypeRecord(msgspec.Struct):
+    """What every node has."""
+
+    type: str
+    muted: bool = False
+
+
+class NodeRecord(TypeRecord):
+    """A node of a known type."""
+
+    version: Count = 1
+    values: Section = {}
+
+
+class GroupRecord(TypeRecord):
+    """A node of type `group`."""
+
+    graph: Section | None = None
+    path: str | None = None
+    values: Section = {}
+
+
+def convert(raw: Any, kind: type[R], file: str, path: str) -> R:
+    """`raw` as a record. Raises DocumentError with the JSON path."""
+    try:
+        return msgspec.convert(raw, kind)
+    except msgspec.ValidationError as error:
+        said, _, where = str(error).partition(" - at `$")
+        fault = re.sub("`([^`]*)`", lambda found: _plain(found[1]), said[:1].lower() + said[1:])
+        inside = where.rstrip("`").removeprefix(".")
+        raise DocumentError(file, member(path, inside) if inside[:1] != "[" else path + inside, fault) from None
+
+
+def unknown_keys(raw: Mapping[str, Any], kind: RecordType) -> dict[str, Any]:
+    """What `raw` holds besides the fields of a record."""
+    return {key: part for key, part in raw.items() if key not in kind.__struct_fields__}
+
+
+def type_name(kind: Kind, width: int) -> str:
+    """How a file calls a type: `Image`, `Vector` (of three) or `Vector2`."""
+    return f"{kind}{width}" if kind is Kind.VECTOR and width != 3 else str(kind)
+
+
+def read_type(name: str, file: str, path: str) -> tuple[Kind, int]:
+    """Kind and channels of a type name."""
+    known = {type_name(kind, width): (kind, width) for kind in Kind for width in (2, 3, 4)}
+    known["Vector3"] = (Kind.VECTOR, 3)
+    if name not in known:
+        raise DocumentError(file, member(path, "type"), f"'{name}' is no type: write {', '.join(sorted(known))}")
+    return known[name]
+
+
+def _plain(words: str) -> str:
+    parts = words.split(" | ")
+    return " or ".join(_WORDS[part] for part in parts) if all(part in _WORDS for part in parts) else f"'{words}'"

@@ -1,0 +1,101 @@
+"""Text -> JSON tree, stricter than JSON: no key twice, no NaN, limited depth; every fault has its JSON path."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any, cast
+
+from ..errors import DocumentError
+from .limits import MAX_NESTING, size_fault
+
+
+class _Twice(dict[str, Any]):
+    """An object of the text that has one key more than once."""
+
+    key = ""
+
+
+def parse(text: str, file: str) -> dict[str, Any]:
+    """The object that `text` holds. Raises DocumentError."""
+    if fault := size_fault(len(text.strip())):
+        raise DocumentError(file, "", fault)
+    try:
+        tree = json.loads(text, object_pairs_hook=_object)
+    except json.JSONDecodeError as error:
+        said = error.msg[:1].lower() + error.msg[1:].removesuffix(" at")
+        raise DocumentError(file, "", f"not valid JSON: {said} (line {error.lineno}, column {error.colno})") from None
+    except RecursionError:
+        raise DocumentError(file, "", _too_deep()) from None
+    except ValueError:
+        raise DocumentError(file, "", "it holds a whole number with too many digits") from None
+    if not isinstance(tree, dict):
+        raise DocumentError(file, "", f"expected an object, got {word(tree)}")
+    _check(tree, file)
+    return cast("dict[str, Any]", tree)
+
+
+def member(path: str, key: str | int) -> str:
+    """The JSON path of a part of what is at `path`."""
+    if isinstance(key, int):
+        return f"{path}[{key}]"
+    return f"{path}.{key}" if path else key
+
+
+def word(item: object) -> str:
+    """What a part of the tree is, for a sentence."""
+    match item:
+        case None:
+            return "null"
+        case bool():
+            return "true" if item else "false"
+        case int() | float():
+            return f"the number {item}"
+        case str():
+            return f"the string {item!r}" if len(item) < 40 else "a string"
+        case dict():
+            return "an object"
+        case _:
+            return "a list"
+
+
+def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) == len(pairs):
+        return found
+    twice, seen = _Twice(found), set[str]()
+    twice.key = next(key for key, _ in pairs if key in seen or seen.add(key))
+    return twice
+
+
+def _check(tree: Any, file: str) -> None:
+    """Look at every part, without recursion."""
+    todo: list[tuple[Any, str, int]] = [(tree, "", 1)]
+    while todo:
+        item, path, depth = todo.pop()
+        if isinstance(item, dict | list):
+            if depth > MAX_NESTING:
+                raise DocumentError(file, "", _too_deep())
+            if isinstance(item, _Twice):
+                raise DocumentError(file, member(path, item.key), "this key is there twice; remove one")
+            known = cast("dict[str, Any] | list[Any]", item)
+            parts = known.items() if isinstance(known, dict) else enumerate(known)
+            for key, part in parts:
+                if isinstance(key, str) and not _is_text(key):
+                    raise DocumentError(file, path, f"the key {key!r} is not valid Unicode")
+                if not isinstance(part, bool | None):
+                    todo.append((part, member(path, key), depth + 1))
+        elif isinstance(item, str):
+            if not _is_text(item):
+                raise DocumentError(file, path, f"the string {item!r} is not valid Unicode")
+        elif math.isnan(item) or abs(item) > 1e308:
+            raise DocumentError(file, path, "expected a finite number: JSON has no NaN or Infinity")
+
+
+def _is_text(text: str) -> bool:
+    """False for half a surrogate pair, which JSON can spell and UTF-8 cannot."""
+    return text.isascii() or not any("\ud800" <= letter <= "\udfff" for letter in text)
+
+
+def _too_deep() -> str:
+    return f"objects and lists nest deeper than {MAX_NESTING}; that is no graph"

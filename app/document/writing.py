@@ -1,0 +1,119 @@
+"""Graph -> JSON: only what differs from the default, in one canonical form."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ...nodes import Plain, Value
+from ..errors import GraphError, OutputError
+from ..graph import Control, Graph, Group, Input, Item, Output, Unknown, signature
+from ..graph.names import name_fault
+from ..graph.values import coerced, expected
+from .canonical import pretty
+from .disk import write_text
+from .limits import size_fault
+from .migrations import FORMAT
+from .records import type_name
+
+Section = dict[str, Any]
+
+
+def dumps(graph: Graph) -> str:
+    """The canonical text of a graph. Raises GraphError for a value that JSON cannot hold."""
+    text = pretty({"halation": FORMAT, **_graph(graph)})
+    try:
+        text.encode()
+    except UnicodeEncodeError as error:
+        raise GraphError(f"the graph holds {error.object[error.start]!r}, which is not valid Unicode") from None
+    return text
+
+
+def save(graph: Graph, path: str | Path) -> None:
+    """Write a graph, whole or not at all: after any failure the old file is still there.
+
+    Raises OutputError, or GraphError as `dumps` does.
+    """
+    text = dumps(graph)
+    if fault := size_fault(len(text.encode())):
+        raise OutputError(f"{path}: it is not saved, because it could not be read again: {fault}")
+    write_text(Path(path), text)
+
+
+def _graph(graph: Graph) -> Section:
+    """A body, without empty sections."""
+    size = graph.settings.size
+    extra = graph.extra
+
+    def entries(section: str, known: Mapping[str, Section]) -> Section:
+        return {name: {**extra.get(f"{section}.{name}", {}), **entry} for name, entry in known.items()}
+
+    _check_names(graph)
+    sections: dict[str, Mapping[str, Any]] = {
+        "settings": {**extra.get("settings", {}), **({"size": size} if size else {})},
+        "inputs": entries("inputs", {name: _input(name, end) for name, end in graph.inputs.items()}),
+        "outputs": entries("outputs", {name: _output(end) for name, end in graph.outputs.items()}),
+        "controls": entries("controls", {name: _control(item) for name, item in graph.controls.items()}),
+        "nodes": entries("nodes", {id: _item(id, item, graph) for id, item in graph.nodes.items()}),
+        "links": {str(target): str(source) for target, source in graph.links.items()},
+        "ui": graph.ui,
+    }
+    return {**extra.get("", {}), **{name: section for name, section in sections.items() if section}}
+
+
+def _input(name: str, end: Input) -> Section:
+    default = end.default
+    if isinstance(default, str | bool):
+        raise GraphError(f"inputs.{name}.default: {default!r} cannot be saved; set a number or a list of numbers")
+    if isinstance(default, tuple):
+        default = tuple(float(part) for part in default)
+    elif default is not None:
+        default = float(default)
+    found = {"file": end.file, "layer": end.layer, "doc": end.doc}
+    return {"type": type_name(end.kind, end.width)} | _filled(found) | ({} if default is None else {"default": default})
+
+
+def _output(end: Output) -> Section:
+    return {"type": type_name(end.kind, end.width)} | _filled({"layer": end.layer})
+
+
+def _control(item: Control) -> Section:
+    return {"target": str(item.target)} | _filled({"label": item.label, "doc": item.doc})
+
+
+def _filled(texts: Mapping[str, str]) -> Section:
+    return {name: text for name, text in texts.items() if text}
+
+
+def _item(id: str, item: Item, graph: Graph) -> Section:
+    muted = {"muted": True} if id in graph.muted else {}
+    kept = graph.extra.get(f"nodes.{id}.values", {})
+    if isinstance(item, Unknown):
+        return {**item.raw, **muted, "type": item.type}
+    if isinstance(item, Group):
+        body = {"path": item.path} if item.path else {"graph": _graph(item.graph)}
+        known = signature(item).values
+        found = {name: _value(id, known[name], plain) for name, plain in item.values.items() if name in known}
+        values = {**kept, **item.values, **found}
+        return {"type": "group"} | body | muted | ({"values": values} if values else {})
+    set_values = {name: _value(id, value, getattr(item, name)) for name, value in item.values.items()}
+    changed = {name: plain for name, plain in set_values.items() if plain != item.values[name].default}
+    values = {**kept, **changed}
+    return {"type": item.id, "version": item.version} | muted | ({"values": values} if values else {})
+
+
+def _value(id: str, value: Value, given: object) -> Plain:
+    plain = coerced(value, given)
+    if plain is None:
+        raise GraphError(f"nodes.{id}.values.{value.name}: {given!r} cannot be saved; set {expected(value)}")
+    return plain
+
+
+def _check_names(graph: Graph) -> None:
+    """Refuse what could not be read again."""
+    sections = {"input": graph.inputs, "output": graph.outputs, "control": graph.controls, "node": graph.nodes}
+    for what, section in sections.items():
+        for name in section:
+            if fault := name_fault(name, what):
+                raise GraphError(fault)

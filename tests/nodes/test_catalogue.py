@@ -1,0 +1,194 @@
+"""What every node promises, whoever wrote it."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import graph_of
+
+from halation.app.compiler import installed
+from halation.app.graph import Port
+from halation.app.render import Wanted
+from halation.nodes import Filter, Kind, Node, Pointwise, Source, catalogue
+
+ROOT = Path(__file__).parents[2]
+NODES = list(catalogue().values())
+RENDERED = [node for node in NODES if not issubclass(node, Source)]
+
+GLSL_WORDS = frozenset(
+    """abs acos acosh all any asin asinh atan atanh atomicAdd barrier bitCount bitfieldExtract bitfieldInsert
+    bitfieldReverse ceil clamp cos cosh cross dFdx dFdy degrees determinant distance dot equal exp exp2 faceforward
+    findLSB findMSB floatBitsToInt floatBitsToUint floor fma fract frexp fwidth greaterThan greaterThanEqual
+    imageLoad imageSize imageStore intBitsToFloat inverse inversesqrt isinf isnan ldexp length lessThan lessThanEqual
+    log log2 matrixCompMult max min mix mod modf noise1 noise2 noise3 noise4 normalize not notEqual outerProduct pow
+    radians reflect refract round roundEven sign sin sinh smoothstep sqrt step tan tanh texelFetch texture
+    textureGather textureGrad textureLod textureSize transpose trunc uintBitsToFloat
+    sample buffer shared filter input output common partition active half fixed template this resource patch
+    smooth flat centroid precise invariant discard switch case default struct uniform varying attribute main""".split()
+)
+
+by_id = pytest.mark.parametrize("node", NODES, ids=lambda node: node.id)
+rendered = pytest.mark.parametrize("node", RENDERED, ids=lambda node: node.id)
+
+
+def shader(node: type[Node]) -> Path:
+    return ROOT / "shaders" / node.category / f"{node.id}.glsl"
+
+
+@by_id
+def test_it_explains_itself(node):
+    doc = inspect.getdoc(node)
+    assert doc and doc != inspect.getdoc(node.__mro__[1]), "a docstring is the tooltip"
+    assert doc.splitlines()[0].endswith("."), "its first line is a sentence"
+    for value in node.values.values():
+        if value.type in ("float", "int"):
+            assert value.unit, f"'{value.name}' has no unit"
+            assert value.minimum <= value.low < value.high <= value.maximum, f"'{value.name}' has a strange range"
+            assert value.minimum <= value.default <= value.maximum, f"the default of '{value.name}' is out of range"
+        if value.type == "choice":
+            assert value.default in value.choices
+        if value.layer_by:
+            assert value.layer_by in node.values
+
+
+@by_id
+def test_file_name_is_id_is_shader_name(node):
+    path = Path(inspect.getfile(node))
+    assert path == ROOT / "nodes" / node.category / f"{node.id}.py"
+    assert node.__doc__ and len([item for item in NODES if item.id == node.id]) == 1
+    if issubclass(node, Pointwise):
+        assert shader(node).is_file()
+
+
+@pytest.mark.parametrize("node", [node for node in NODES if issubclass(node, Pointwise)], ids=lambda node: node.id)
+def test_the_glsl_signature_is_the_declaration(node):
+    function = installed().function(f"{node.category}/{node.id}", node.id, node.id)
+    declared = tuple(
+        (node.inputs[name].glsl if name in node.inputs else node.values[name].glsl, name)
+        for name in node.order if name in node.inputs or node.values[name].glsl
+    )
+    assert tuple((glsl, name) for glsl, name in function.parameters) == declared
+    outputs = [output.socket.glsl for output in node.outputs.values()]
+    if len(outputs) == 1:
+        assert (function.result, function.outputs) == (outputs[0], ())
+    else:
+        assert function.result == "void"
+        assert [glsl for glsl, _ in function.outputs] == outputs
+
+
+def face(function) -> tuple[str, tuple[str, ...]]:
+    """What GLSL tells functions apart by."""
+    return function.name, tuple(glsl for glsl, _ in (*function.parameters, *function.outputs))
+
+
+@pytest.mark.parametrize("name", sorted(installed().texts))
+def test_shader_names_do_not_clash(name):
+    """Nothing is called like a GLSL word, and a node's helpers start with its id, so that any two nodes can fuse."""
+    text = installed().texts[name]
+    taken = {face(one) for other, item in installed().texts.items() if other != name for one in item.all_functions}
+    for function in text.all_functions:
+        assert function.name not in GLSL_WORDS
+        assert face(function) not in taken, f"'{function.name}' is defined in another file too"
+        assert not {parameter for _, parameter in function.parameters} & GLSL_WORDS
+        assert not {parameter for _, parameter in function.parameters} & {"pixel", "extent", "proxy", "frame"}
+        if not name.startswith(("lib/", "primitive/")):
+            assert re.match(rf"{name.rpartition('/')[2]}(_|$)", function.name), function.name
+
+
+@pytest.mark.parametrize("name", sorted(installed().texts))
+def test_every_shader_belongs_to_a_node(name):
+    folder, _, id = name.partition("/")
+    assert folder in ("lib", "primitive") or (id in catalogue() and catalogue()[id].category == folder)
+    source = re.sub(r"//[^\n]*", "", (ROOT / "shaders" / f"{name}.glsl").read_text(encoding="utf-8"))
+    for word in ("#version", "void main", "uniform ", "texture(", "imageLoad"):
+        assert word not in source
+    assert "fract(sin(" not in source.replace(" ", "")
+
+
+def picture(node: type[Node], name: str, size: tuple[int, int], rng: np.random.Generator) -> np.ndarray:
+    width, height = size
+    return rng.gamma(0.7, 1.0, (height, width, node.inputs[name].channels)).astype(np.float32)
+
+
+def outputs_of(renderer, node: type[Node], arrays, **options):
+    targets = {name: Port("node", name) for name in node.outputs}
+    return renderer.render(graph_of(node(), arrays), Wanted(arrays, targets, precision="float", **options))
+
+
+@rendered
+@pytest.mark.parametrize("size", [(1, 1), (2, 3), (17, 11), (64, 1), (1, 63)], ids=str)
+def test_it_renders_finite_at_defaults(renderer, node, size):
+    rng = np.random.default_rng(5)
+    arrays = {
+        name: picture(node, name, size, rng) if not socket.single else np.full((1, 1), 0.4, np.float32)
+        for name, socket in node.inputs.items()
+    }
+    found = outputs_of(renderer, node, arrays, **({} if arrays else {"size": size}))
+    for name, output in node.outputs.items():
+        width, height = (1, 1) if output.socket.single else size
+        assert found[name].shape == (height, width, output.socket.channels)
+        assert np.isfinite(found[name]).all(), name
+
+
+@rendered
+def test_nothing_that_is_no_number_comes_out(renderer, node):
+    """NaN and infinity in a picture neither come out nor spread; data that passes through a wire stays as it is."""
+    size = (23, 19)
+    rng = np.random.default_rng(6)
+    arrays = {name: picture(node, name, size, rng) for name, socket in node.inputs.items() if not socket.single}
+    if not arrays:
+        pytest.skip("it has no picture to spoil")
+    for array in arrays.values():
+        array[3, 4] = np.nan
+        array[8, 15] = np.inf
+        array[11, 2] = -np.inf
+        array[12, 12] = -5.0
+        array[0, 0, 0] = np.nan
+        array[18, 22] = 3e38
+    changed = node(**neutral_off(node))
+    graph = graph_of(changed, arrays)
+    targets = {name: Port("node", name) for name in node.outputs}
+    found = renderer.render(graph, Wanted(arrays, targets, precision="float"))
+    for name in node.outputs:
+        assert np.isfinite(found[name]).all(), name
+
+
+def neutral_off(node: type[Node]) -> dict[str, object]:
+    """Values that keep a node from being taken for a neutral one."""
+    if node().identity() is None:
+        return {}
+    for value in node.values.values():
+        if value.type == "float":
+            for tried in (value.high, value.low, (value.low + value.high) / 2):
+                if node(**{value.name: tried}).identity() is None:
+                    return {value.name: tried}
+        for choice in value.choices:
+            if node(**{value.name: choice}).identity() is None:
+                return {value.name: choice}
+        if value.type == "color":
+            return {value.name: tuple(part + 0.1 for part in value.default)}
+    raise AssertionError(f"{node.id} is neutral whatever its values are")
+
+
+@rendered
+def test_its_choices_all_compile(renderer, node):
+    rng = np.random.default_rng(7)
+    arrays = {name: picture(node, name, (9, 7), rng) for name, socket in node.inputs.items() if not socket.single}
+    targets = {name: Port("node", name) for name in node.outputs}
+    for value in node.values.values():
+        for choice in value.choices[1:]:
+            graph = graph_of(node(**{value.name: choice}), arrays)
+            found = renderer.render(graph, Wanted(arrays, targets, (9, 7), precision="float"))
+            for name, array in found.items():
+                assert np.isfinite(array).all(), (value.name, choice, name)
+
+
+def test_the_vocabulary_is_used():
+    assert {issubclass(node, Pointwise) or issubclass(node, Filter) for node in NODES} == {True}
+    assert {output.socket.kind for node in NODES for output in node.outputs.values()} >= {
+        Kind.IMAGE, Kind.FIELD, Kind.VECTOR, Kind.NUMBER
+    }
