@@ -46,8 +46,8 @@ from ._declare import (
 
 __all__ = [
     "RGBA", "Argument", "Color", "Doc", "Draw", "Drawn", "Edge", "Field", "File", "FilePath", "Filter", "Fraction",
-    "Handle", "Image", "Kernel3x3", "Kind", "Node", "Number", "Output", "Pixels", "Plain", "Pointwise", "Position", "Size",
-    "Slider", "Socket", "Source", "Swatch", "Temporal", "Unit", "Value", "Vector", "catalogue", "glsl_type",
+    "Handle", "Image", "Kernel3x3", "Kind", "Node", "Number", "Output", "Pixels", "Plain", "Pointwise", "Position",
+    "Size", "Slider", "Socket", "Source", "Swatch", "Temporal", "Unit", "Value", "Vector", "catalogue", "glsl_type",
 ]
 
 

@@ -49,8 +49,9 @@ def random_graph(seed: int, length: int = 10) -> Graph:
     loose = [port for port in sources(graph, "") if port not in read and port.node != "inputs"]
     for number, port in enumerate(loose[-4:]):
         socket = graph.source(port)
-        kind = Kind.FIELD if socket.kind is Kind.NUMBER else Kind.IMAGE if socket.kind is Kind.COLOR else socket.kind
-        graph = graph.add_output(f"o{number}", Output(kind, socket.channels)).connect(port, Port("outputs", f"o{number}"))
+        kind = {Kind.NUMBER: Kind.FIELD, Kind.COLOR: Kind.IMAGE}.get(socket.kind, socket.kind)
+        name = f"o{number}"
+        graph = graph.add_output(name, Output(kind, socket.channels)).connect(port, Port("outputs", name))
     return graph
 
 

@@ -9,7 +9,20 @@ from typing import Annotated, Any, Literal
 from halation.app.errors import GraphError
 from halation.app.graph import Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, signature
 from halation.nodes import (
-    RGBA, Field, FilePath, Filter, Image, Kernel3x3, Kind, Node, Number, Pointwise, Position, Slider, Source, Vector,
+    RGBA,
+    Field,
+    FilePath,
+    Filter,
+    Image,
+    Kernel3x3,
+    Kind,
+    Node,
+    Number,
+    Pointwise,
+    Position,
+    Slider,
+    Source,
+    Vector,
 )
 from halation.nodes import Output as Made
 

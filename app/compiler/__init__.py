@@ -7,6 +7,7 @@ Stages, each a function of what the one before made: `expand` flattens groups, `
 from __future__ import annotations
 
 from ..graph import Graph
+from .draws import Memory
 from .explain import as_json, dot, explain
 from .fuse import fuse
 from .ir import Picture
@@ -17,7 +18,7 @@ from .schedule import schedule
 from .target import NULL, Form, Precision, Target
 
 __all__ = [
-    "NULL", "Form", "Library", "Pass", "Picture", "Plan", "Precision", "Probe", "Probed", "Request", "Shader",
+    "NULL", "Form", "Library", "Memory", "Pass", "Picture", "Plan", "Precision", "Probe", "Probed", "Request", "Shader",
     "Surface", "Target", "Upload", "as_json", "compile_graph", "dot", "explain", "installed",
 ]
 

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from ...nodes import Edge, glsl_type
 from .ir import BLOCK, Accessor, Convolve, Reduce, Ref
-
-if TYPE_CHECKING:
-    from .emit import Names
+from .names import Names
 
 OUTPUTS = 8
 """Pixels that one invocation of a sliding convolution makes: each pixel read is used for all of them."""

@@ -19,6 +19,7 @@ from .ir import (
     Constant,
     Convolve,
     Gather,
+    History,
     Parameter,
     Picture,
     Reduce,
@@ -40,18 +41,28 @@ class Made:
         return self.shape.size
 
 
+@dataclass(frozen=True)
+class Memory:
+    """What a node remembered of the frame before."""
+
+    key: str
+    shape: Shape
+
+
 class Recorder:
     """Implements `Draw` for one node: `resolved` holds what its inputs are linked to."""
 
     def __init__(
         self, owner: str, node: Filter, size: Size, resolved: Mapping[str, Ref | Constant], linked: frozenset[str],
-        builder: Builder, library: Library, reader: Callable[[Picture, str], Ref],
+        builder: Builder, library: Library, reader: Callable[[Picture, str], Ref], memory: Memory | None,
     ) -> None:
         self.size = size
         self._owner, self._node = owner, node
         self._resolved, self._linked = resolved, linked
         self._builder, self._library, self._reader = builder, library, reader
+        self._memory = memory
         self._shader = f"{node.category}/{node.id}"
+        self.remembered: Ref | None = None
 
     def size_of(self, pixels: Pixels) -> Size:
         operand = self._operand(pixels)
@@ -131,6 +142,17 @@ class Recorder:
             shape = Shape(size, made.shape.channels, data=True)
             made = self._made(Reduce((shape,), self._owner, made.ref, operation))
         return made
+
+    def history(self, first: Pixels) -> Drawn:
+        made, memory = self._pixels(first), self._memory
+        # A memory of another size is of another picture.
+        if memory is None or memory.shape != made.shape:
+            return made
+        return Made(self._builder.add(History((made.shape,), self._owner, memory.key)), made.shape)
+
+    def remember(self, pixels: Drawn) -> None:
+        assert isinstance(pixels, Made)
+        self.remembered = pixels.ref
 
     def read(self, path: str, layer: str, result: Socket) -> Drawn:
         ref = self._reader(Picture(path, layer, result.kind, result.channels), self._owner)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from .ir import Call, Op, Program, Read, Reduce, Ref
+from .ir import Call, History, Op, Program, Read, Reduce, Ref
 from .target import Target
 
 MAX_MEMBERS = 48
@@ -34,13 +34,13 @@ def fuse(program: Program, target: Target, *, enabled: bool = True) -> tuple[Fus
     ops = program.ops
     live = _live(program)
     readers = _readers(ops, live)
-    kept = set(program.outputs.values())
+    kept = set(kept_refs(program))
     home: dict[int, int] = {}
     members: dict[int, list[int]] = {}
     reads: dict[int, dict[Ref, None]] = {}
     for index in reversed(range(len(ops))):
         op = ops[index]
-        if index not in live or isinstance(op, Read):
+        if index not in live or isinstance(op, (Read, History)):
             continue
         outputs = [Ref(index, number) for number in range(len(op.shapes))]
         roots = {home[reader] for ref in outputs for reader in readers.get(ref, ())}
@@ -60,10 +60,15 @@ def fuse(program: Program, target: Target, *, enabled: bool = True) -> tuple[Fus
     )
 
 
+def kept_refs(program: Program) -> tuple[Ref, ...]:
+    """What must be there at the end: outputs, and what the next frame will want."""
+    return (*program.outputs.values(), *program.memories.values())
+
+
 def _live(program: Program) -> set[int]:
     """Operations that an output needs."""
     found: set[int] = set()
-    todo = [ref.op for ref in program.outputs.values()]
+    todo = [ref.op for ref in kept_refs(program)]
     while todo:
         index = todo.pop()
         if index not in found:

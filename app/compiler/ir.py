@@ -108,6 +108,13 @@ class Read(Op):
 
 
 @dataclass(frozen=True)
+class History(Op):
+    """Pixels that a node remembered of the frame before, known by their key."""
+
+    key: str
+
+
+@dataclass(frozen=True)
 class Call(Op):
     """A pointwise GLSL function. Several shapes are several `out` parameters. `choices` become macros for its file."""
 
@@ -192,6 +199,7 @@ class Builder:
         return Ref(known)
 
     def shape(self, ref: Ref) -> Shape:
+        """What an output of an operation looks like."""
         return self.ops[ref.op].shapes[ref.output]
 
 
@@ -201,5 +209,7 @@ class Program:
 
     ops: tuple[Op, ...]
     outputs: Mapping[str, Ref]
+    memories: Mapping[str, Ref]
+    """What to remember for the next frame, by node."""
     scale: float
     frame: int

@@ -17,7 +17,7 @@ from typing import Protocol, cast
 from ...nodes import Filter, Kind, Node, Pointwise, Size, Socket, Source, Value, glsl_type
 from ..errors import GraphError
 from ..graph import INPUTS, OUTPUTS, Graph, Input, Port
-from .draws import Made, Recorder, choices
+from .draws import Made, Memory, Recorder, choices
 from .expand import Flat, expand
 from .ir import Accessor, Builder, Call, Choice, Constant, Gather, Parameter, Picture, Program, Read, Ref, Shape
 from .library import Library
@@ -56,6 +56,8 @@ class Request:
     size: Size | None = None
     scale: float = 1.0
     frame: int = 1
+    memories: Mapping[str, Memory] = field(default_factory=lambda: MappingProxyType({}))
+    """What temporal nodes remembered of the frame before; none for a frame that follows no other."""
 
 
 def lower(graph: Graph, request: Request, library: Library, probe: Probe) -> Program:
@@ -69,6 +71,7 @@ class _Lowering:
         self.flat: Flat = expand(graph)
         self.builder = Builder()
         self.results: dict[Port, Operand] = {}
+        self.memories: dict[str, Ref] = {}
 
     def run(self) -> Program:
         targets = dict(self.request.targets) or self.flat.outputs
@@ -79,7 +82,8 @@ class _Lowering:
             self._node(node)
         outputs = {name: self._finished(port, name) for name, port in sources.items()}
         return Program(
-            tuple(self.builder.ops), MappingProxyType(outputs), self.request.scale, self.request.frame
+            tuple(self.builder.ops), MappingProxyType(outputs), MappingProxyType(self.memories), self.request.scale,
+            self.request.frame,
         )
 
     # --- what feeds what -------------------------------------------------------------------------------------------
@@ -325,8 +329,13 @@ class _Lowering:
         filled = dict(operands)
         for name in linked:
             filled[name] = self._as_pixels(path, node.inputs[name], operands[name], size)
-        recorder = Recorder(path, node, size, filled, linked, self.builder, self.library, self._read_for(path))
+        recorder = Recorder(
+            path, node, size, filled, linked, self.builder, self.library, self._read_for(path),
+            self.request.memories.get(path),
+        )
         drawn = node.passes(recorder)
+        if recorder.remembered is not None:
+            self.memories[path] = recorder.remembered
         made = drawn if isinstance(drawn, Mapping) else {next(iter(node.outputs)): drawn}
         for name, item in made.items():
             assert isinstance(item, Made)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ...nodes import Size
+from .draws import Memory
 from .ir import Picture
 from .target import Form, Target
 
@@ -98,6 +99,8 @@ class Plan:
     uploads: tuple[Upload, ...]
     passes: tuple[Pass, ...]
     outputs: Mapping[str, int]
+    memories: Mapping[str, Memory]
+    """What temporal nodes will want of this frame, by node."""
     slots: tuple[int, ...]
     """Bytes of each texture that the plan needs at the same time."""
 

@@ -8,9 +8,10 @@ from types import MappingProxyType
 
 from ...nodes import Size
 from ..errors import DeviceError
+from .draws import Memory
 from .emit import Emitted, emit
-from .fuse import Fused
-from .ir import Program, Read, Ref, Shape
+from .fuse import Fused, kept_refs
+from .ir import History, Program, Read, Ref, Shape
 from .library import Library
 from .plan import Depth, Pass, Plan, Surface, Upload
 from .target import Precision, Target
@@ -21,7 +22,7 @@ def schedule(
 ) -> Plan:
     """Write the program of every pass, and find a texture for everything it makes."""
     needed = dict.fromkeys(ref for fused in passes for ref in (*fused.reads, *fused.writes))
-    needed |= dict.fromkeys(program.outputs.values())
+    needed |= dict.fromkeys(kept_refs(program))
     for ref in needed:
         _check_size(program.ops[ref.op].shapes[ref.output].size, program.ops[ref.op].owner, target)
     texels = {ref: _texel(program, ref, precision) for ref in needed}
@@ -40,7 +41,9 @@ def schedule(
     return Plan(
         target, surfaces, tuple(_uploads(program, numbers)),
         tuple(_pass(program, fused, item, numbers) for fused, item in zip(passes, emitted, strict=True)),
-        MappingProxyType({name: numbers[ref] for name, ref in program.outputs.items()}), sizes,
+        MappingProxyType({name: numbers[ref] for name, ref in program.outputs.items()}),
+        MappingProxyType({node: Memory(keys[ref], _shape(program, ref)) for node, ref in program.memories.items()}),
+        sizes,
     )
 
 
@@ -76,6 +79,8 @@ def _keys(
         op = program.ops[ref.op]
         if isinstance(op, Read):
             keys[ref] = _hash("read", op.fingerprint, op.picture, op.half)
+        elif isinstance(op, History):
+            keys[ref] = op.key
     for fused, item in zip(passes, emitted, strict=True):
         inputs = [keys[ref] for ref in fused.reads]
         made = _hash(item.shader.source, item.uniforms, item.weights, inputs)
@@ -96,7 +101,7 @@ def _lives(program: Program, passes: tuple[Fused, ...]) -> tuple[dict[Ref, int],
         for ref in (*fused.writes, *fused.reads):
             first.setdefault(ref, index)
             last[ref] = index
-    for ref in program.outputs.values():
+    for ref in kept_refs(program):
         first.setdefault(ref, len(passes))
         last[ref] = len(passes)
     return first, last

@@ -143,7 +143,7 @@ class _Body:
         where = self.named(at, "outputs", name, "output")
         found = convert(raw, records.OutputRecord, self.file, where)
         self.keep(f"outputs.{name}", raw, records.OutputRecord)
-        return Output(*read_type(found.type, self.file, where), found.layer)
+        return Output(*read_type(found.type, self.file, where), found.layer, found.view)
 
     def control(self, name: str, raw: Any, at: str) -> Control:
         """An entry of `controls`."""

@@ -64,6 +64,7 @@ class OutputRecord(msgspec.Struct):
 
     type: str = "Image"
     layer: str = ""
+    view: str = ""
 
 
 class ControlRecord(msgspec.Struct):

@@ -75,7 +75,7 @@ def _input(name: str, end: Input) -> Section:
 
 
 def _output(end: Output) -> Section:
-    return {"type": type_name(end.kind, end.width)} | _filled({"layer": end.layer})
+    return {"type": type_name(end.kind, end.width)} | _filled({"layer": end.layer, "view": end.view})
 
 
 def _control(item: Control) -> Section:

@@ -225,8 +225,8 @@ class Graph:
         """A graph where `source` feeds `target`, in place of what fed it before."""
         if fault := self.link_fault(source, target):
             raise GraphError(f"'{source}' cannot feed '{target}': {fault}")
-        if loop := route(source.node, target.node, self.feeding):
-            raise GraphError(f"'{source}' cannot feed '{target}': {loop_sentence((target.node, *loop))}")
+        if loop := route(target.node, source.node, self.fed):
+            raise GraphError(f"'{source}' cannot feed '{target}': {loop_sentence((*loop, target.node))}")
         return self._with(links={**self.links, target: source})
 
     def disconnect(self, target: Port) -> Self:

@@ -56,11 +56,15 @@ class Input:
 
 @dataclass(frozen=True)
 class Output:
-    """Where something leaves the graph. `layer` names it in a file of several layers (default: its own name)."""
+    """Where something leaves the graph. `layer` names it in a file of several layers (default: its own name).
+
+    `view` is how to show it unless someone chooses: `none` for light that a tone map made ready for the display.
+    """
 
     kind: Kind = Kind.IMAGE
     width: int = 3
     layer: str = ""
+    view: str = ""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "width", _width(self.kind, self.width))

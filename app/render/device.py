@@ -69,11 +69,13 @@ def describe(context: moderngl.Context, form: Form | None = None) -> Target:
 
 
 def _standalone() -> moderngl.Context:
-    backends = ({"backend": "egl"}, {}) if sys.platform.startswith("linux") else ({},)
+    backends = ("egl", None) if sys.platform.startswith("linux") else (None,)
     faults: list[str] = []
-    for options in backends:
+    for backend in backends:
         try:
-            return moderngl.create_context(standalone=True, require=OLDEST, **options)
+            if backend is None:
+                return moderngl.create_context(standalone=True, require=OLDEST)
+            return moderngl.create_context(standalone=True, require=OLDEST, backend=backend)
         except Exception as fault:  # moderngl and its loaders raise plain Exceptions
             faults.append(str(fault).strip().rstrip("."))
     raise DeviceError(f"OpenGL {OLDEST / 100:.1f} cannot be opened ({'; '.join(faults)}): {_way_out()}")

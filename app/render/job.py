@@ -64,7 +64,8 @@ def run_job(
         layers = {_layer(graph, name): outputs[name] for name in names}
         media.write(
             path, layers, kinds={_layer(graph, name): kind for name, kind in kinds.items()},
-            precision=writing.precision, compression=writing.compression, view=writing.view, metadata=header,
+            precision=writing.precision, compression=writing.compression,
+            view=writing.view or _view(graph, wanted, names), metadata=header,
         )
     finished = time.perf_counter()
     return Report(
@@ -106,6 +107,12 @@ def _kind(graph: Graph, wanted: Wanted, name: str) -> Kind:
 def _layer(graph: Graph, name: str) -> str:
     output = graph.outputs.get(name)
     return output.layer if output is not None and output.layer else name
+
+
+def _view(graph: Graph, wanted: Wanted, names: tuple[str, ...]) -> str:
+    """The view that the first of the outputs asks for; a node alone asks for none."""
+    ports = [wanted.targets.get(name, Port("outputs", name)) for name in names[:1]]
+    return "".join(graph.outputs[port.socket].view for port in ports if port.node == "outputs")
 
 
 def _header(renderer: Renderer, plan: Plan, graph: Graph, wanted: Wanted) -> dict[str, Any]:

@@ -56,8 +56,9 @@ class Programs:
                 program = Program(handle, self._context.vertex_array(handle, []))
         except moderngl.Error as fault:
             raise _located(one, str(fault)) from None
-        if "Weights" in program.handle:
-            program.handle["Weights"].binding = 0
+        weights = program.handle.get("Weights", None)
+        if isinstance(weights, moderngl.UniformBlock):
+            weights.binding = 0
         if one.shader.form == "fragment":
             for number in range(len(one.textures)):
                 program.set(f"t{number}", number)

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from ...nodes import Size
-from ..compiler import Library, Plan, Precision, Request, compile_graph
+from ..compiler import Library, Memory, Plan, Precision, Request, compile_graph
 from ..graph import Graph, Port
 from ..media.pictures import Pictures
 from .device import Device, open_device
@@ -34,6 +34,8 @@ class Wanted:
     scale: float = 1.0
     frame: int = 1
     precision: Precision | None = None
+    follows: bool = False
+    """True if this is the frame after the one rendered last: temporal nodes then have their history."""
 
 
 class Renderer:
@@ -50,11 +52,13 @@ class Renderer:
         self.pictures = Pictures()
         self.runner = Runner(self.device, self.pictures.load, budget)
         self._library, self._fusion = library, fusion
+        self._memories: Mapping[str, Memory] = {}
 
     def compile(self, graph: Graph, wanted: Wanted = Wanted()) -> Plan:
         """Plan the rendering of what is wanted of `graph`. Raises the errors of `app.errors`."""
         bindings = self.pictures.bind(graph, wanted.inputs)
-        request = Request(wanted.targets, bindings, wanted.size, wanted.scale, wanted.frame)
+        memories = self._memories if wanted.follows else {}
+        request = Request(wanted.targets, bindings, wanted.size, wanted.scale, wanted.frame, memories)
         return compile_graph(
             graph, request, self.pictures.probe, target=self.device.target, precision=wanted.precision,
             library=self._library, fusion=self._fusion,
@@ -62,7 +66,10 @@ class Renderer:
 
     def render(self, graph: Graph, wanted: Wanted = Wanted()) -> dict[str, Array]:
         """Every wanted output by name as [height, width, channels], scene-linear. Raises the errors of `app.errors`."""
-        return self.runner.run(self.compile(graph, wanted))
+        plan = self.compile(graph, wanted)
+        outputs = self.runner.run(plan)
+        self._memories = plan.memories
+        return outputs
 
     def close(self) -> None:
         """Give back textures and threads."""

@@ -41,6 +41,7 @@ class Runner:
         self.textures = Textures(device.context, device.target.max_size, budget)
         self.counters = Counters()
         self._weights: dict[tuple[float, ...], moderngl.Buffer] = {}
+        self._remembered: set[str] = set()
         self._idle: moderngl.Framebuffer | None = None
         self._threads = ThreadPoolExecutor(max_workers=2, thread_name_prefix="decode")
 
@@ -75,6 +76,7 @@ class Runner:
                 self._upload(plan, pending, tuple(plan.outputs.values()), pinned)
                 for name, number in plan.outputs.items():
                     outputs[name] = self._download(plan, number)
+            self._remember({memory.key for memory in plan.memories.values()})
         finally:
             for future in pending.values():
                 future.cancel()
@@ -191,6 +193,14 @@ class Runner:
         assert texture is not None, f"surface {number} is gone before its last reader"
         return texture
 
+    def _remember(self, keys: set[str]) -> None:
+        """Keep what the next frame will want, and let go of what this one wanted."""
+        for key in keys - self._remembered:
+            self.textures.hold(key)
+        for key in self._remembered - keys:
+            self.textures.let_go(key)
+        self._remembered = keys
+
     def _read_once(self, key: str, readers: dict[str, int], pinned: set[str]) -> None:
         """After its last reader a surface may go."""
         readers[key] -= 1
@@ -210,8 +220,9 @@ def _needed(plan: Plan, textures: Textures) -> tuple[set[int], list[int]]:
     """The output surfaces, and the passes that must run because nobody has their pixels."""
     makers = {number: index for index, one in enumerate(plan.passes) for number in one.targets}
     wanted = set(plan.outputs.values())
+    remembered = {memory.key for memory in plan.memories.values()}
     passes: set[int] = set()
-    todo = list(wanted)
+    todo = [*wanted, *(number for number, item in enumerate(plan.surfaces) if item.key in remembered)]
     while todo:
         number = todo.pop()
         index = makers.get(number)

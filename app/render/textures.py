@@ -38,6 +38,7 @@ class Textures:
         self.budget = budget
         self._results: OrderedDict[str, Texture] = OrderedDict()
         self._pinned: set[str] = set()
+        self._held: set[str] = set()
         self._free: dict[Kind, list[Texture]] = {}
         self.allocated = 0
         self.peak = 0
@@ -70,6 +71,15 @@ class Textures:
         self._pinned.discard(key)
         self._trim()
 
+    def hold(self, key: str) -> None:
+        """Keep these pixels until `let_go`, whatever the budget says: a later frame needs them."""
+        self._held.add(key)
+
+    def let_go(self, key: str) -> None:
+        """These pixels may go like any others."""
+        self._held.discard(key)
+        self._trim()
+
     def drop(self, key: str) -> None:
         """Forget these pixels: they were not finished."""
         self._pinned.discard(key)
@@ -83,12 +93,13 @@ class Textures:
             texture.release()
         self._results.clear()
         self._pinned.clear()
+        self._held.clear()
         self._free.clear()
         self.allocated = 0
 
     def _trim(self) -> None:
         """Free unpinned results, oldest first, until what is kept fits the budget."""
-        idle = [key for key in self._results if key not in self._pinned]
+        idle = [key for key in self._results if key not in self._pinned and key not in self._held]
         kept = sum(self._results[key].nbytes for key in idle)
         for key in idle:
             if kept <= self.budget:

@@ -68,6 +68,14 @@ class Draw(Protocol):
         """Sum or maximum of every channel over all pixels, as 1x1; exact at any size."""
         ...
 
+    def history(self, first: Pixels) -> Drawn:
+        """What this node remembered of the frame before; on a first frame, `first`. For `Temporal` nodes."""
+        ...
+
+    def remember(self, pixels: Drawn) -> None:
+        """Keep these pixels for the next frame. For `Temporal` nodes."""
+        ...
+
     def read(self, path: str, layer: str, result: Socket) -> Drawn:
         """The pixels of a layer of an image file, as `result` says."""
         ...

@@ -99,4 +99,7 @@ class Source(Filter):
 
 
 class Temporal(Filter):
-    """A filter that owns history: `draw.history` gives what it drew for the frame before."""
+    """A filter that owns history: `draw.history` gives what `draw.remember` kept of the frame before.
+
+    History belongs to a rendering, not to the graph: it is never saved, and a frame that follows no other has none.
+    """

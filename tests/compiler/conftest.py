@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pytest
-
 from halation.app.compiler import Picture, Plan, Probed, Request, compile_graph
 from halation.app.graph import Graph
 

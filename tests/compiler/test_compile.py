@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pytest
-
 from halation.app.compiler import dot, explain
 from halation.app.errors import DeviceError, GraphError
 from halation.app.graph import Control, Graph, Group, Input, Output, Port, Settings
@@ -149,7 +148,7 @@ def test_a_muted_group_passes_its_input(plan):
 
 def test_an_unlinked_input_is_named(plan):
     graph = Graph(outputs={"image": Output()}).add("a", Exposure(stops=1.0))
-    with pytest.raises(GraphError, match="'a'.*'image'.*not linked"):
+    with pytest.raises(GraphError, match=r"'a'.*'image'.*not linked"):
         plan(graph.connect(Port("a", "out"), Port("outputs", "image")))
 
 

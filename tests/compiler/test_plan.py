@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
+from halation.app.compiler import NULL, Plan
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_graphs import random_graph
-
-from halation.app.compiler import NULL, Plan
 
 SEEDS = st.integers(0, 100_000)
 
@@ -27,7 +28,7 @@ def check_lives(plan: Plan) -> None:
     assert set(plan.outputs.values()) <= set(made)
     for slot in range(len(plan.slots)):
         living = sorted((item.first, item.last) for item in plan.surfaces if item.slot == slot)
-        for (_, end), (start, _) in zip(living, living[1:], strict=False):
+        for (_, end), (start, _) in pairwise(living):
             assert end < start
 
 

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import graph_of
-
 from halation.app.compiler import installed
 from halation.app.graph import Port
 from halation.app.render import Wanted
@@ -19,17 +18,20 @@ ROOT = Path(__file__).parents[2]
 NODES = list(catalogue().values())
 RENDERED = [node for node in NODES if not issubclass(node, Source)]
 
-GLSL_WORDS = frozenset(
-    """abs acos acosh all any asin asinh atan atanh atomicAdd barrier bitCount bitfieldExtract bitfieldInsert
-    bitfieldReverse ceil clamp cos cosh cross dFdx dFdy degrees determinant distance dot equal exp exp2 faceforward
-    findLSB findMSB floatBitsToInt floatBitsToUint floor fma fract frexp fwidth greaterThan greaterThanEqual
-    imageLoad imageSize imageStore intBitsToFloat inverse inversesqrt isinf isnan ldexp length lessThan lessThanEqual
-    log log2 matrixCompMult max min mix mod modf noise1 noise2 noise3 noise4 normalize not notEqual outerProduct pow
-    radians reflect refract round roundEven sign sin sinh smoothstep sqrt step tan tanh texelFetch texture
-    textureGather textureGrad textureLod textureSize transpose trunc uintBitsToFloat
-    sample buffer shared filter input output common partition active half fixed template this resource patch
-    smooth flat centroid precise invariant discard switch case default struct uniform varying attribute main""".split()
-)
+GLSL_WORDS = frozenset((
+    "abs", "acos", "acosh", "active", "all", "any", "asin", "asinh", "atan", "atanh", "atomicAdd", "attribute",
+    "barrier", "bitCount", "bitfieldExtract", "bitfieldInsert", "bitfieldReverse", "buffer", "case", "ceil",
+    "centroid", "clamp", "common", "cos", "cosh", "cross", "dFdx", "dFdy", "default", "degrees", "determinant",
+    "discard", "distance", "dot", "equal", "exp", "exp2", "faceforward", "filter", "findLSB", "findMSB", "fixed",
+    "flat", "floatBitsToInt", "floatBitsToUint", "floor", "fma", "fract", "frexp", "fwidth", "greaterThan",
+    "greaterThanEqual", "half", "imageLoad", "imageSize", "imageStore", "input", "intBitsToFloat", "invariant",
+    "inverse", "inversesqrt", "isinf", "isnan", "ldexp", "length", "lessThan", "lessThanEqual", "log", "log2", "main",
+    "matrixCompMult", "max", "min", "mix", "mod", "modf", "noise1", "noise2", "noise3", "noise4", "normalize", "not",
+    "notEqual", "outerProduct", "output", "partition", "patch", "pow", "precise", "radians", "reflect", "refract",
+    "resource", "round", "roundEven", "sample", "shared", "sign", "sin", "sinh", "smooth", "smoothstep", "sqrt",
+    "step", "struct", "switch", "tan", "tanh", "template", "texelFetch", "texture", "textureGather", "textureGrad",
+    "textureLod", "textureSize", "this", "transpose", "trunc", "uintBitsToFloat", "uniform", "varying",
+))
 
 by_id = pytest.mark.parametrize("node", NODES, ids=lambda node: node.id)
 rendered = pytest.mark.parametrize("node", RENDERED, ids=lambda node: node.id)

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from random_graphs import random_graph
-
 from halation.app.compiler import Form
 from halation.app.render import Renderer, Wanted, open_device
+from random_graphs import random_graph
 
 SIZE = (37, 23)
 SEEDS = range(150)

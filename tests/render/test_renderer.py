@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from conftest import graph_of
-
 from halation.app.compiler import Library, installed
 from halation.app.compiler.library import parse
 from halation.app.errors import DeviceError, ShaderError, UsageError

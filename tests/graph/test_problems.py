@@ -1,0 +1,209 @@
+"""Problems name node and socket and say what to do; a sound graph has none."""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from collections.abc import Callable
+from random import Random
+
+import pytest
+from halation.app.errors import GraphError
+from halation.app.graph import Control, Graph, Group, Input, Output, Port, Problem, Unknown, problems
+from halation.nodes import Kind
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from toy_nodes import TOYS, Gain, Photo, Slope, Soften, chain, random_graph, small
+
+
+def found(graph: Graph) -> list[tuple[str, str, str]]:
+    return [(problem.severity, problem.node, problem.socket) for problem in problems(graph, TOYS)]
+
+
+def only(graph: Graph) -> Problem:
+    (problem,) = problems(graph, TOYS)
+    return problem
+
+
+def changed(graph: Graph, **fields: object) -> Graph:
+    return dataclasses.replace(graph, **fields)
+
+
+def linked(graph: Graph, target: str, source: str) -> Graph:
+    return changed(graph, links={**graph.links, Port.parse(target): Port.parse(source)})
+
+
+def test_a_sound_graph_has_none() -> None:
+    assert problems(small()) == ()
+    assert problems(chain(50)) == ()
+
+
+def test_an_unbound_input_is_none() -> None:
+    assert problems(changed(small(), inputs={"beauty": Input()})) == ()
+
+
+@pytest.mark.parametrize(
+    ("source", "says"),
+    [
+        ("gian.out", "there is no node 'gian'; did you mean 'gain'?"),
+        ("gain.uot", "node 'gain' has no output 'uot'; did you mean 'out'?"),
+        ("inputs.butty", "the graph has no input 'butty'; did you mean 'beauty'?"),
+        ("slope.normal", "a Vector3 does not fit an Image: put 'separate_vector' and 'combine' between them"),
+        ("slope.flow", "a Vector2 does not fit an Image: put 'separate_vector2' and 'combine' between them"),
+    ],
+)
+def test_links_from_nowhere_or_of_the_wrong_kind(source: str, says: str) -> None:
+    graph = linked(small().add_input("z", Input(Kind.FIELD)).add("slope", Slope()), "soften.image", source)
+    assert only(linked(graph, "slope.depth", "inputs.z")) == Problem(
+        "soften", "image", f"'{source}' cannot feed 'soften.image': {says}"
+    )
+
+
+@pytest.mark.parametrize(
+    ("target", "says"),
+    [
+        ("gian.image", "there is no node 'gian'; did you mean 'gain'?"),
+        ("gain.imag", "node 'gain' has no input 'imag'; did you mean 'image'?"),
+        ("outputs.imge", "the graph has no output 'imge'; did you mean 'image'?"),
+        ("soften.sigma", "'soften.sigma' can only be set: only values of pointwise nodes can be wired"),
+    ],
+)
+def test_links_to_nowhere(target: str, says: str) -> None:
+    problem = only(linked(small(), target, "inputs.beauty"))
+    assert (f"{problem.node}.{problem.socket}", problem.severity) == (target, "error")
+    assert problem.sentence == f"'inputs.beauty' cannot feed '{target}': {says}"
+
+
+def test_loops_are_named_and_order_refuses_them() -> None:
+    graph = linked(linked(chain(9), "n1.image", "n3.out"), "n5.image", "n6.out")
+    sentences = [problem.sentence for problem in problems(graph, TOYS)]
+    assert sorted(sentences) == sorted({
+        "the nodes n1 -> n2 -> n3 -> n1 form a loop; remove one of these links",
+        "the nodes n5 -> n6 -> n5 form a loop; remove one of these links",
+    })
+    with pytest.raises(GraphError, match="form a loop"):
+        graph.order()
+    assert found(linked(small(), "gain.image", "gain.out")) == [("error", "gain", "")]
+
+
+def test_a_missing_input_is_an_error_only_where_it_matters() -> None:
+    loose = small().add("loose", Soften())
+    assert only(loose) == Problem("loose", "image", "'loose.image' is not linked: it needs an Image", "warning")
+    assert found(small().disconnect(Port("gain", "image"))) == [("error", "gain", "image")]
+    assert only(small().add("slope", Slope())).sentence.endswith("it needs a Field")
+
+
+@pytest.mark.parametrize(
+    ("values", "name", "says"),
+    [
+        ({"gain": 99.0}, "gain", "99.0 is outside the range 0 to 16"),
+        ({"gain": float("nan")}, "gain", "nan is not a finite number"),
+        ({"gain": "much"}, "gain", "'much' does not fit: it takes a number"),
+        ({"mode": "soft"}, "mode", "'soft' is no choice: it takes one of add, soft light"),
+        ({"steps": 1.5}, "steps", "1.5 does not fit: it takes a whole number"),
+        ({"tint": (1.0,)}, "tint", "(1.0,) does not fit: it takes a list of 4 numbers"),
+    ],
+)
+def test_values(values: dict[str, object], name: str, says: str) -> None:
+    graph = changed(small(), nodes={**small().nodes, "gain": Gain(**values)})
+    assert only(graph) == Problem("gain", name, f"gain.{name}: {says}")
+
+
+@pytest.mark.parametrize(
+    ("target", "says"),
+    [
+        ("gian.gain", "there is no node 'gian'; did you mean 'gain'?"),
+        ("gain.gian", "node 'gain' has no value 'gian'; did you mean 'gain'?"),
+        ("gain.image", "node 'gain' has no value 'image'"),
+    ],
+)
+def test_controls_that_point_nowhere(target: str, says: str) -> None:
+    problem = only(changed(small(), controls={"glow": Control(Port.parse(target))}))
+    assert (problem.node, problem.socket) == ("controls", "glow")
+    assert problem.sentence.startswith(f"control 'glow' points at '{target}': {says}")
+
+
+def test_ends() -> None:
+    problem = only(small().disconnect(Port("outputs", "image")))
+    assert problem == Problem("outputs", "image", "nothing feeds the output 'image': link a node to 'outputs.image'")
+    assert found(Graph()) == [("warning", "", "")]
+    for default in ((1.0, 2.0), float("inf"), "red"):
+        assert found(changed(small(), inputs={"beauty": Input(default=default)})) == [("error", "inputs", "beauty")]
+    assert found(changed(small(), inputs={"beauty": Input(default=(1.0, 0.0, 0.0, 1.0))})) == []
+    assert found(changed(small(), inputs={"beauty": Input(default=0)})) == []
+
+
+def test_unknown_types() -> None:
+    graph = small().add("x", Unknown("sofen", {})).connect(Port("x", "anything"), Port("soften", "image"))
+    assert only(graph) == Problem("x", "", "node 'x' has the unknown type 'sofen'; did you mean 'soften'?")
+
+
+def test_leftover_keys_are_mentioned() -> None:
+    graph = changed(small(), extra={"nodes.gain.values": {"gian": 2}, "": {"author": "me"}})
+    assert [(problem.severity, problem.node, problem.sentence) for problem in problems(graph)] == [
+        ("warning", "", "author means nothing to this version and is only kept"),
+        ("warning", "gain",
+         "nodes.gain.values.gian means nothing to this version and is only kept; did you mean 'gain'?"),
+    ]
+
+
+def test_groups_say_where() -> None:
+    body = linked(small(), "soften.image", "nobody.out").set(Port("gain", "gain"), 3)
+    graph = small().add("g", Group(Graph({"h": Group(body)}), values={"x": 1.0}))
+    assert found(graph) == [
+        ("error", "g", "x"), ("error", "g/h/soften", "image"), ("warning", "g", ""),
+    ]
+    assert "in group 'g': in group 'h': 'nobody.out' cannot feed" in problems(graph, TOYS)[1].sentence
+
+
+def test_values_of_groups_are_checked() -> None:
+    graph = changed(small(), inputs={"beauty": Input()})
+    graph = Graph({"g": Group(graph, values={"glow": 99.0})}, {Port("outputs", "o"): Port("g", "image")}, outputs={"o": Output()})
+    assert found(graph) == [("error", "g", "glow"), ("error", "g", "beauty")][::-1]
+
+
+def test_groups_may_not_nest_for_ever() -> None:
+    graph = small()
+    for _ in range(40):
+        graph = Graph({"g": Group(graph)})
+    assert any("nest deeper than 32" in problem.sentence for problem in problems(graph, TOYS))
+
+
+def test_names_that_a_file_could_not_hold() -> None:
+    graph = Graph({"a.b": Photo()}, inputs={"": Input()}, outputs={"x/y": Output()}, controls={"c.d": Control(Port("a.b", "path"))})
+    assert {(node, socket) for _, node, socket in found(graph)} >= {
+        ("a.b", ""), ("inputs", ""), ("outputs", "x/y"), ("controls", "c.d"),
+    }
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 2**32))
+def test_every_sentence_is_one_line_and_names_its_place(seed: int) -> None:
+    for problem in problems(random_graph(Random(seed)), TOYS):
+        assert "\n" not in problem.sentence
+        assert problem.node.rpartition("/")[2] in problem.sentence or problem.node in ("outputs", "controls", "inputs")
+        assert not problem.socket or problem.socket in problem.sentence
+
+
+@pytest.mark.parametrize("work", [Graph.order, problems], ids=["order", "problems"])
+def test_two_thousand_nodes_take_less_than_fifty_milliseconds(work: Callable[[Graph], object]) -> None:
+    def seconds(length: int) -> float:
+        best = 1.0
+        for _ in range(5):
+            graph = chain(length)
+            start = time.perf_counter()
+            work(graph)
+            best = min(best, time.perf_counter() - start)
+        return best
+
+    small_time, time_taken = seconds(500), seconds(2000)
+    assert time_taken < 0.05
+    assert time_taken < 12 * small_time
+
+
+def test_ten_thousand_nodes_in_a_row() -> None:
+    graph = chain(10_000)
+    assert graph.order() == tuple(f"n{index}" for index in range(10_000))
+    assert len(graph.upstream("outputs")) == 10_000
+    assert problems(graph) == ()
+    assert "form a loop" in problems(linked(graph, "n0.image", "n9999.out"), TOYS)[0].sentence
