@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from .compiler import Precision
     from .graph import Graph
     from .media.pictures import Binding
-    from .render import Renderer
+    from .renderer import Renderer
 
 __all__ = ["HalationError", "load", "render", "save", "write"]
 
@@ -56,7 +56,7 @@ def render(
     renders a proxy with lengths in pixels shrunk too. Programs and results are kept from call to call.
     """
     from .graph import node_output
-    from .render import Wanted
+    from .renderer import Wanted
 
     for name, value in (values or {}).items():
         graph = graph.override(name, value)
@@ -83,6 +83,6 @@ def write(
 @cache
 def _renderer() -> Renderer:
     """One device for all calls: opening another costs more than most graphs."""
-    from .render import Renderer
+    from .renderer import Renderer
 
     return Renderer()

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 import numpy as np
 import pytest
 from halation.app.graph import Graph, Input, Output, Port
-from halation.app.render import Renderer, Wanted, open_device
+from halation.app.renderer import Renderer, Wanted, open_device
 from halation.nodes import Kind, Node
 
 Array = np.ndarray

@@ -24,8 +24,8 @@ def demo(
     from ...presets import paths
     from .. import document
     from ..errors import OutputError
-    from ..render import Renderer, Wanted
-    from ..render.job import Writing, run_job
+    from ..renderer import Renderer, Wanted
+    from ..renderer.job import Writing, run_job
 
     renderer = Renderer(budget=0)
     note(renderer.device.description)

@@ -15,7 +15,7 @@ from .outcome import guarded, note, print_json
 if TYPE_CHECKING:
     from ..compiler import Pass
     from ..graph import Graph, Port
-    from ..render.job import Report
+    from ..renderer.job import Report
 
 
 @guarded
@@ -52,8 +52,8 @@ def render(
     destinations = parsing.paths(output)
     opened_graph = opened(graph, sets)
     report_problems(graph, opened_graph)
-    from ..render import Renderer, Wanted, open_device
-    from ..render.job import Writing, run_job
+    from ..renderer import Renderer, Wanted, open_device
+    from ..renderer.job import Writing, run_job
 
     wanted = Wanted(
         bound(opened_graph, inputs), _targets(opened_graph, node), parsing.size(size), parsing.scale(scale), frame,

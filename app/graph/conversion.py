@@ -25,7 +25,7 @@ _VALUE_TAKES: Mapping[str, frozenset[Kind]] = MappingProxyType({
 
 def make_socket(kind: Kind, width: int = 4, default: Plain | None = None, *, name: str = "", doc: str = "") -> Socket:
     """A socket that no class body declares. `width` counts the channels of a Vector."""
-    start = default if isinstance(default, tuple) or default is None else float(default)
+    start = float(default) if isinstance(default, int | float) else None if isinstance(default, str) else default
     if kind is Kind.VECTOR:
         socket: Socket = Vector(start, width=width, doc=doc)
     else:

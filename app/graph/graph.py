@@ -363,13 +363,13 @@ def control_value(graph: Graph, name: str) -> Value | None:
     """The value behind a control, called by the control's name, its present setting as the default."""
     control = graph.controls[name]
     item = graph.nodes.get(control.target.node)
-    value = None if item is None else present_value(item, control.target.socket)
+    value = None if item is None else _present(item, control.target.socket)
     return value and dataclasses.replace(value, name=name, doc=control.doc or value.doc)
 
 
 def declared(item: Item, name: str, id: str) -> Value:
-    """`present_value`, or GraphError with a suggestion."""
-    if value := present_value(item, name):
+    """A value of a node or control of a group with its present setting as the default. Raises GraphError."""
+    if value := _present(item, name):
         return value
     face = signature(item)
     if face.anything:
@@ -379,8 +379,7 @@ def declared(item: Item, name: str, id: str) -> Value:
     raise GraphError(f"node '{id}' has no value '{name}'{did_you_mean(name, face.values)}")
 
 
-def present_value(item: Item, name: str) -> Value | None:
-    """A value of a node or control of a group with its present setting as the default, or None."""
+def _present(item: Item, name: str) -> Value | None:
     if isinstance(item, Node) and name in item.values:
         return dataclasses.replace(item.values[name], default=getattr(item, name))
     if isinstance(item, Group) and name in item.graph.controls and (value := control_value(item.graph, name)):

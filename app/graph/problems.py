@@ -9,7 +9,7 @@ from typing import Literal
 
 from ...nodes import Node, catalogue
 from ..errors import GraphError
-from .graph import Graph, Group, Item, present_value, signature
+from .graph import Graph, Group, Item, signature
 from .names import INPUTS, OUTPUTS, did_you_mean, name_fault, pick
 from .parts import Input, Port, Unknown
 from .values import numbers, value_fault
@@ -93,8 +93,8 @@ def _missing(graph: Graph, id: str, item: Item, needed: bool) -> Iterator[Proble
 def _values(id: str, item: Item) -> Iterator[Problem]:
     values = signature(item).values
     for name, value in values.items():
-        now = present_value(item, name)
-        if now is not None and (fault := value_fault(value, now.default)):
+        now = item.values.get(name, value.default) if isinstance(item, Group) else getattr(item, name)
+        if now is not value.default and (fault := value_fault(value, now)):
             yield Problem(id, name, f"{id}.{name}: {fault}")
     for name in item.values if isinstance(item, Group) else ():
         if name not in values:

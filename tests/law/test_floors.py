@@ -16,11 +16,11 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-FLOORS = ("errors", "graph", "document", "compiler", "media", "render", "__init__", "editor", "cli")
+FLOORS = ("errors", "graph", "document", "compiler", "media", "renderer", "__init__", "editor", "cli")
 """Parts of app from the ground up. `__init__` is the public face of the engine, so it stands on the renderer."""
 
 HOMES = {
-    "moderngl": "render", "glcontext": "render",
+    "moderngl": "renderer", "glcontext": "renderer",
     "OpenImageIO": "media", "PyOpenColorIO": "media",
     "glfw": "editor", "imgui_bundle": "editor",
     "typer": "cli",
@@ -148,7 +148,7 @@ def test_every_library_is_declared() -> None:
     [
         ("halation.nodes", ("numpy", "moderngl", "msgspec")),
         ("halation.app.cli", ("numpy", "moderngl", "OpenImageIO", "PyOpenColorIO", "glfw", "imgui_bundle")),
-        ("halation.app.render", ("glfw", "imgui_bundle", "typer")),
+        ("halation.app.renderer", ("glfw", "imgui_bundle", "typer")),
     ],
 )
 def test_importing_stays_light(module: str, absent: tuple[str, ...]) -> None:

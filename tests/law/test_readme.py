@@ -68,7 +68,7 @@ def test_its_commands_and_exit_codes_exist() -> None:
 def test_its_python_names_exist() -> None:
     import halation.app
     import halation.app.cli
-    import halation.app.render
+    import halation.app.renderer
 
     # The parts of app are attributes of it as soon as they are loaded, and must not shadow a function of its face.
     for name in re.findall(r"\bhal\.(\w+)\(", README):

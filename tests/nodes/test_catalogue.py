@@ -11,7 +11,7 @@ import pytest
 from conftest import graph_of
 from halation.app.compiler import installed
 from halation.app.graph import Port
-from halation.app.render import Wanted
+from halation.app.renderer import Wanted
 from halation.nodes import Filter, Kind, Node, Pointwise, Source, catalogue
 
 ROOT = Path(__file__).parents[2]

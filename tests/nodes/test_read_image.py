@@ -9,7 +9,7 @@ import OpenImageIO as oiio
 import pytest
 from halation.app.errors import InputError
 from halation.app.graph import Graph, Output, Port
-from halation.app.render import Wanted
+from halation.app.renderer import Wanted
 from halation.nodes import Kind
 from halation.nodes.input.read_image import ReadImage
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from halation.app.compiler import Form
-from halation.app.render import Renderer, Wanted, open_device
+from halation.app.renderer import Renderer, Wanted, open_device
 from random_graphs import random_graph
 
 SIZE = (37, 23)

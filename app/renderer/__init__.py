@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .device import Device, describe, open_device
-from .renderer import Renderer, Wanted
+from .engine import Renderer, Wanted
 from .runner import Counters, Runner
 
 __all__ = ["Counters", "Device", "Renderer", "Runner", "Wanted", "describe", "open_device"]

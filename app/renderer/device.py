@@ -75,7 +75,7 @@ def _standalone() -> moderngl.Context:
         try:
             if backend is None:
                 return moderngl.create_context(standalone=True, require=OLDEST)
-            return moderngl.create_context(standalone=True, require=OLDEST, backend=backend)
+            return moderngl.create_context(standalone=True, require=OLDEST, backend=backend)  # pyright: ignore[reportArgumentType]  (its stub is wrong)
         except Exception as fault:  # moderngl and its loaders raise plain Exceptions
             faults.append(str(fault).strip().rstrip("."))
     raise DeviceError(f"OpenGL {OLDEST / 100:.1f} cannot be opened ({'; '.join(faults)}): {_way_out()}")

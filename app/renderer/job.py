@@ -14,7 +14,7 @@ from .. import document, media
 from ..compiler import Pass, Plan, Precision
 from ..errors import UsageError
 from ..graph import Graph, Port
-from .renderer import Renderer, Wanted
+from .engine import Renderer, Wanted
 from .runner import Array
 
 Progress = Callable[[int, int, Pass], None]

@@ -9,7 +9,7 @@ import pytest
 from conftest import graph_of
 from halation.app.compiler import Library, installed
 from halation.app.compiler.library import parse
-from halation.app.render import Renderer, Wanted, open_device
+from halation.app.renderer import Renderer, Wanted, open_device
 from halation.nodes import Draw, Drawn, Image, Slider, Temporal
 
 
