@@ -12,8 +12,9 @@ from .explain import as_json, dot, explain
 from .fuse import fuse
 from .ir import Picture
 from .library import Library, installed
-from .lower import Probe, Probed, Request, lower
+from .lower import lower
 from .plan import Pass, Plan, Shader, Surface, Upload
+from .request import Probe, Probed, Request
 from .schedule import schedule
 from .target import NULL, Form, Precision, Target
 

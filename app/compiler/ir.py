@@ -46,6 +46,9 @@ class Choice:
     index: int
 
 
+Operand = Ref | Constant
+
+
 @dataclass(frozen=True)
 class Parameter:
     """One argument of a GLSL function. A wired value is clamped to its hard range, then brought to working units."""

@@ -7,57 +7,30 @@ pictures of the wrong size get a fit, and values arrive in working units.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
-from functools import cached_property
-from pathlib import PurePath
+from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
-from typing import Protocol, cast
+from typing import cast
 
-from ...nodes import Filter, Kind, Node, Pointwise, Size, Socket, Source, Value, glsl_type
+from ...nodes import Filter, Kind, Node, Pointwise, Size, Socket, Value
 from ..errors import GraphError
-from ..graph import INPUTS, OUTPUTS, Graph, Input, Port
-from .draws import Made, Memory, Recorder, choices
+from ..graph import OUTPUTS, Graph, Port
+from .draws import Made, Recorder, choices
 from .expand import Flat, expand
-from .ir import Accessor, Builder, Call, Choice, Constant, Gather, Parameter, Picture, Program, Read, Ref, Shape
+from .ir import (
+    Builder,
+    Call,
+    Choice,
+    Constant,
+    Operand,
+    Parameter,
+    Picture,
+    Program,
+    Ref,
+    Shape,
+)
 from .library import Library
-
-DEFAULT_CANVAS: Size = (1920, 1080)
-
-Operand = Ref | Constant
-
-
-@dataclass(frozen=True)
-class Probed:
-    """What is known of a picture before it is read."""
-
-    size: Size
-    half: bool
-    fingerprint: str
-
-
-class Probe(Protocol):
-    """Looks at a picture's header. Raises InputError for what cannot be read."""
-
-    def __call__(self, picture: Picture) -> Probed: ...
-
-
-@dataclass(frozen=True)
-class Request:
-    """What is wanted of a graph.
-
-    `targets` are outputs of nodes or of the graph by the name they shall have; empty means every graph output.
-    `bindings` fill graph inputs by name. `size` replaces the canvas and every picture's size; `scale` below one is a
-    proxy: everything, lengths in pixels too, shrinks by it.
-    """
-
-    targets: Mapping[str, Port] = field(default_factory=lambda: MappingProxyType({}))
-    bindings: Mapping[str, Picture] = field(default_factory=lambda: MappingProxyType({}))
-    size: Size | None = None
-    scale: float = 1.0
-    frame: int = 1
-    memories: Mapping[str, Memory] = field(default_factory=lambda: MappingProxyType({}))
-    """What temporal nodes remembered of the frame before; none for a frame that follows no other."""
+from .pictures import Pictures
+from .request import Probe, Request
 
 
 def lower(graph: Graph, request: Request, library: Library, probe: Probe) -> Program:
@@ -66,10 +39,13 @@ def lower(graph: Graph, request: Request, library: Library, probe: Probe) -> Pro
 
 
 class _Lowering:
+    """The work in progress: `results` says what every port visited so far stands for."""
+
     def __init__(self, graph: Graph, request: Request, library: Library, probe: Probe) -> None:
-        self.graph, self.request, self.library, self.probe = graph, request, library, probe
+        self.request, self.library = request, library
         self.flat: Flat = expand(graph)
         self.builder = Builder()
+        self.pictures = Pictures(graph, self.flat, request, probe, self.builder)
         self.results: dict[Port, Operand] = {}
         self.memories: dict[str, Ref] = {}
 
@@ -121,65 +97,6 @@ class _Lowering:
                     todo.append((source.node, False))
         return order
 
-    @cached_property
-    def canvas(self) -> Size:
-        """The size of what is made from nothing: asked for, the graph's own, or that of the first picture."""
-        size = self.request.size or self.graph.settings.size
-        if size is None:
-            first = next(self._pictures(), None)
-            size = self.probe(first).size if first else DEFAULT_CANVAS
-        return self._scaled(size)
-
-    def _pictures(self) -> Iterator[Picture]:
-        """Pictures that the graph itself names: inputs first, then sources."""
-        for port, socket in self.flat.inputs.items():
-            picture = self._picture(port, socket) if port.node == INPUTS else None
-            if picture is not None:
-                yield picture
-        for path, node in self.flat.nodes.items():
-            for value in node.values.values() if isinstance(node, Source) else ():
-                if value.type == "path" and getattr(node, value.name):
-                    yield self._located(Picture(getattr(node, value.name), "", Kind.IMAGE, 4), path)
-
-    def _scaled(self, size: Size) -> Size:
-        scale = self.request.scale
-        return (max(1, round(size[0] * scale)), max(1, round(size[1] * scale)))
-
-    # --- pictures from outside -------------------------------------------------------------------------------------
-
-    def _picture(self, port: Port, socket: Input) -> Picture | None:
-        """The picture bound to a graph input, else its default file."""
-        kind, width = socket.kind, socket.socket().channels
-        bound = self.request.bindings.get(port.socket) if port.node == INPUTS else None
-        if bound is not None:
-            return Picture(bound.path, bound.layer or socket.layer, kind, width, bound.in_memory)
-        if not socket.file:
-            return None
-        folder = self.flat.folders[port.node.removesuffix(INPUTS)]
-        return Picture(str(PurePath(folder, socket.file)), socket.layer, kind, width)
-
-    def _read(self, picture: Picture, owner: str) -> Ref:
-        """Upload a picture, at the size wanted."""
-        probed = self.probe(picture)
-        data = picture.kind is not Kind.IMAGE
-        shape = Shape(probed.size, picture.width, data)
-        ref = self.builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half))
-        wanted = self.request.size if self.request.size and probed.size != (1, 1) else probed.size
-        return self._fit(ref, self._scaled(wanted), owner)
-
-    def _fit(self, ref: Ref, size: Size, owner: str) -> Ref:
-        """The picture at another size. Equal up to rounding: stretched; otherwise scaled to cover and cropped."""
-        shape = self.builder.shape(ref)
-        if shape.size in (size, (1, 1)):
-            return ref
-        across, down = shape.size[0] / size[0], shape.size[1] / size[1]
-        if abs(across / down - 1.0) > max(1.0 / side for side in (*size, *shape.size)):
-            across = down = min(across, down)
-        fitted = Shape(size, shape.channels, shape.data)
-        function = "fit_nearest" if shape.data else "fit"
-        accessor, scale = Accessor("image", "vec4", ref), Parameter("vec2", Constant((across, down)))
-        return self.builder.add(Gather((fitted,), owner, "primitive/fit", function, (accessor,), (scale,)))
-
     # --- nodes -----------------------------------------------------------------------------------------------------
 
     def _operand(self, port: Port) -> Operand | None:
@@ -189,9 +106,9 @@ class _Lowering:
         socket = self.flat.inputs.get(port)
         if socket is None:
             raise GraphError(f"'{port}' does not exist: link to an output of a node or to an input of the graph")
-        picture = self._picture(port, socket)
+        picture = self.pictures.bound(port, socket)
         if picture is not None:
-            self.results[port] = self._read(picture, f"{port}")
+            self.results[port] = self.pictures.read(picture, f"{port}")
         elif socket.default is not None:
             self.results[port] = Constant(cast("float | tuple[float, ...]", socket.default))
         else:
@@ -206,14 +123,7 @@ class _Lowering:
                 f"output '{name}' shows the graph input '{port.socket}', which is not bound to a picture: "
                 "give it a file, or bind it by name"
             )
-        return operand if isinstance(operand, Ref) else self._converted(operand, 4, self.canvas, name)
-
-    def _converted(self, operand: Operand, channels: int, size: Size, owner: str) -> Ref:
-        """The same as a picture with this many channels."""
-        glsl = glsl_type(channels)
-        shape = Shape(size, channels, data=False)
-        parameters = (Parameter(glsl, operand),)
-        return self.builder.add(Call((shape,), owner, "primitive/convert", f"as_{glsl}", parameters))
+        return operand if isinstance(operand, Ref) else self.pictures.converted(operand, 4, self.pictures.canvas, name)
 
     def _inputs(self, path: str, node: Node) -> tuple[dict[str, Operand], frozenset[str]]:
         """What every input reads, and which of them are linked."""
@@ -245,12 +155,12 @@ class _Lowering:
             operand = self._operand(source) if source is not None else None
             if operand is not None:
                 wires[name] = operand
+        size = self._size(node, operands, wires, linked)
         through = self._through(path, node, operands, wires)
         if through is not None:
-            for name in node.outputs:
-                self.results[Port(path, name)] = through
+            passed = self.pictures.fit(through, size, path) if isinstance(through, Ref) else through
+            self.results |= {Port(path, name): passed for name in node.outputs}
             return
-        size = self._size(node, operands, wires, linked)
         self._fit_all(path, operands, wires, size)
         working = node.working(self.request.scale, size[1])
         if isinstance(working, Pointwise):
@@ -266,7 +176,7 @@ class _Lowering:
         for group in (operands, wires):
             for name, operand in group.items():
                 if isinstance(operand, Ref):
-                    group[name] = self._fit(operand, wanted, path)
+                    group[name] = self.pictures.fit(operand, wanted, path)
 
     def _through(
         self, path: str, node: Node, operands: Mapping[str, Operand], wires: Mapping[str, Operand]
@@ -293,7 +203,7 @@ class _Lowering:
         pictures = {name: size for name, size in found.items() if size != (1, 1)}
         if found and not pictures:
             return (1, 1)
-        return node.output_size(pictures, self.canvas)
+        return node.output_size(pictures, self.pictures.canvas)
 
     def _pointwise(
         self, path: str, node: Pointwise, operands: Mapping[str, Operand], wires: Mapping[str, Operand], size: Size
@@ -318,7 +228,10 @@ class _Lowering:
         glsl = value.glsl or "float"
         if wire is not None:
             units = {"px": self.request.scale, "height": float(size[1]), "deg": math.pi / 180.0}
-            return Parameter(glsl, wire, units.get(value.unit or "", 1.0), value.minimum, value.maximum)
+            factor = units.get(value.unit or "", 1.0)
+            if isinstance(wire, Constant):
+                return Parameter(glsl, _limited(wire, value, factor))
+            return Parameter(glsl, wire, factor, value.minimum, value.maximum)
         now = getattr(node, value.name)
         operand = Choice(value.choices.index(now)) if value.type == "choice" else Constant(now)
         return Parameter(glsl, operand)
@@ -347,14 +260,17 @@ class _Lowering:
         if socket.single or (isinstance(operand, Ref) and channels == socket.channels):
             return operand
         at = self.builder.shape(operand).size if isinstance(operand, Ref) else size
-        return self._converted(operand, socket.channels, at, path)
+        return self.pictures.converted(operand, socket.channels, at, path)
 
     def _read_for(self, path: str) -> Callable[[Picture, str], Ref]:
-        return lambda picture, owner: self._read(self._located(picture, path), owner)
+        return lambda picture, owner: self.pictures.read(self.pictures.located(picture, path), owner)
 
-    def _located(self, picture: Picture, path: str) -> Picture:
-        """Relative paths start at the folder of the graph file that the node came from."""
-        return replace(picture, path=str(PurePath(self.flat.folders[path], picture.path)))
+
+def _limited(wire: Constant, value: Value, factor: float) -> Constant:
+    """A wired constant within the hard range, in working units."""
+    parts = wire.value if isinstance(wire.value, tuple) else (wire.value,)
+    limited = tuple(min(max(part, value.minimum), value.maximum) * factor for part in parts)
+    return Constant(limited if isinstance(wire.value, tuple) else limited[0])
 
 
 def _spread(socket: Socket) -> float | tuple[float, ...]:

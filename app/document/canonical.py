@@ -31,6 +31,8 @@ def _text(item: Any, indent: int, column: int, path: str, depth: int) -> str:
         raise GraphError(f"{path}: the graph nests deeper than {MAX_NESTING} and cannot be saved; save groups as files")
     if isinstance(item, Mapping):
         known = cast("Mapping[str, Any]", item)
+        if odd := next((key for key in known if type(key) is not str), None):
+            raise GraphError(f"{path}: the key {odd!r} cannot be saved; JSON has only text as keys")
         parts = [(f"{_scalar(key, path)}: ", known[key], member(path, key)) for key in sorted(known)]
         opening, closing = "{", "}"
     else:

@@ -52,7 +52,7 @@ class _Loading:
 
     def file(self, path: Path, outer: tuple[Path, ...] = ()) -> tuple[Graph, int]:
         """The graph in a file, and how many nodes it has when all groups are expanded."""
-        real = path.resolve()
+        real = _real(path) or path
         if real not in self.done:
             self.done[real] = self.text(read_text(path), str(path), str(path.parent), (*outer, real))
         return self.done[real]
@@ -103,7 +103,7 @@ class _Body:
                 muted.add(id)
         graph = Graph(
             nodes=nodes,
-            links={reader.port(t, at, t): reader.port(s, at, t) for t, s in record.links.items()},
+            links=reader.links(record.links, at),
             inputs={name: reader.input(name, end, at) for name, end in record.inputs.items()},
             outputs={name: reader.output(name, end, at) for name, end in record.outputs.items()},
             controls={name: reader.control(name, item, at) for name, item in record.controls.items()},
@@ -123,12 +123,22 @@ class _Body:
             raise DocumentError(self.file, member(at, section), fault)
         return member(member(at, section), name)
 
-    def port(self, text: str, at: str, entry: str) -> Port:
-        """A port that the link at `entry` names."""
+    def port(self, text: Any, path: str) -> Port:
+        """The port that a link or control at `path` names."""
+        if not isinstance(text, str):
+            raise DocumentError(self.file, path, f"expected a string, got {word(text)}")
         try:
             return Port.parse(text)
         except GraphError as error:
-            raise DocumentError(self.file, member(member(at, "links"), entry), str(error)) from None
+            raise DocumentError(self.file, path, str(error)) from None
+
+    def links(self, raw: Mapping[str, Any], at: str) -> dict[Port, Port]:
+        """The section `links`, target to source."""
+        where = member(at, "links")
+        return {
+            self.port(target, member(where, target)): self.port(source, member(where, target))
+            for target, source in raw.items()
+        }
 
     def input(self, name: str, raw: Any, at: str) -> Input:
         """An entry of `inputs`."""
@@ -150,10 +160,7 @@ class _Body:
         where = self.named(at, "controls", name, "control")
         found = convert(raw, records.ControlRecord, self.file, where)
         self.keep(f"controls.{name}", raw, records.ControlRecord)
-        try:
-            return Control(Port.parse(found.target), found.label, found.doc)
-        except GraphError as error:
-            raise DocumentError(self.file, member(where, "target"), str(error)) from None
+        return Control(self.port(found.target, member(where, "target")), found.label, found.doc)
 
     def item(self, id: str, raw: dict[str, Any], type: str, at: str, depth: int) -> tuple[Item, int]:
         """A node, and how many it stands for."""
@@ -210,18 +217,23 @@ class _Body:
     def group_file(self, path: str, at: str) -> tuple[Graph, int]:
         """The graph in a group's file."""
         inner = Path(self.folder, path)
-        try:
-            real = inner.resolve()
-            there = inner.exists()
-        except (OSError, ValueError, RuntimeError):
-            there, real = False, inner
-        if not there:
+        real = _real(inner)
+        if real is None:
             near = did_you_mean(inner.name, _graphs_in(inner.parent))
             raise DocumentError(self.file, at, f"the group file '{inner}' does not exist{near}")
         if real in self.outer:
             loop = " -> ".join(one.name for one in (*self.outer[self.outer.index(real):], real))
             raise DocumentError(self.file, at, f"a group cannot hold itself: {loop}")
         return self.loading.file(inner, self.outer)
+
+
+def _real(path: Path) -> Path | None:
+    """The file with links followed, or None if there is none."""
+    try:
+        real = path.resolve()
+        return real if real.is_file() else None
+    except (OSError, ValueError, RuntimeError):
+        return None
 
 
 def _newer(what: str, known: int) -> str:
@@ -231,5 +243,5 @@ def _newer(what: str, known: int) -> str:
 def _graphs_in(folder: Path) -> tuple[str, ...]:
     try:
         return tuple(path.name for path in folder.glob("*.json"))
-    except OSError:
+    except (OSError, ValueError):
         return ()

@@ -39,7 +39,7 @@ class GraphRecord(msgspec.Struct):
     outputs: Section = {}
     controls: Section = {}
     nodes: Section = {}
-    links: dict[str, str] = {}
+    links: Section = {}
     ui: Section = {}
 
 
@@ -104,8 +104,7 @@ def convert(raw: Any, kind: type[R], file: str, path: str) -> R:
     except msgspec.ValidationError as error:
         said, _, where = str(error).partition(" - at `$")
         fault = re.sub("`([^`]*)`", lambda found: _plain(found[1]), said[:1].lower() + said[1:])
-        inside = where.rstrip("`").removeprefix(".")
-        raise DocumentError(file, member(path, inside) if inside[:1] != "[" else path + inside, fault) from None
+        raise DocumentError(file, (path + where.rstrip("`")).removeprefix("."), fault) from None
 
 
 def unknown_keys(raw: Mapping[str, Any], kind: RecordType) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-import math
+import sys
 from typing import Any, cast
 
 from ..errors import DocumentError
@@ -88,7 +88,7 @@ def _check(tree: Any, file: str) -> None:
         elif isinstance(item, str):
             if not _is_text(item):
                 raise DocumentError(file, path, f"the string {item!r} is not valid Unicode")
-        elif math.isnan(item) or abs(item) > 1e308:
+        elif not abs(item) <= sys.float_info.max:
             raise DocumentError(file, path, "expected a finite number: JSON has no NaN or Infinity")
 
 

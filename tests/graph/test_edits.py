@@ -139,7 +139,7 @@ class TestConnect:
             ("inputs.beauty", "slope.depth", "an Image does not fit a Field.*'luminance'"),
             ("inputs.beauty", "soften.sigma", "only values of pointwise nodes can be wired"),
             ("inputs.beauty", "gain.mode", "a choice cannot be wired"),
-            ("slope.normal", "gain.center", "a Vector3 does not fit a vector value, which takes Field or Number or Vector2"),
+            ("slope.normal", "gain.center", "a Vector3 does not fit a vector value.* Field or Number or Vector2"),
             ("slope.norml", "gain.center", "no output 'norml'; did you mean 'normal'"),
             ("slope.normal", "gian.center", "no node 'gian'; did you mean 'gain'"),
             ("inputs.butty", "gain.image", "no input 'butty'; did you mean 'beauty'"),
@@ -297,7 +297,8 @@ class TestGroups:
     def nested() -> Graph:
         inner = Group(small())
         middle = Graph(
-            {"inner": inner}, {Port("inner", "beauty"): Port("inputs", "plate"), Port("outputs", "o"): Port("inner", "image")},
+            {"inner": inner},
+            {Port("inner", "beauty"): Port("inputs", "plate"), Port("outputs", "o"): Port("inner", "image")},
             {"plate": Input()}, {"o": Output()}, {"more": Control(Port("inner", "glow"))},
         )
         return Graph({"g": Group(middle)})

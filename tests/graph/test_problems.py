@@ -158,8 +158,9 @@ def test_groups_say_where() -> None:
 
 def test_values_of_groups_are_checked() -> None:
     graph = changed(small(), inputs={"beauty": Input()})
-    graph = Graph({"g": Group(graph, values={"glow": 99.0})}, {Port("outputs", "o"): Port("g", "image")}, outputs={"o": Output()})
-    assert found(graph) == [("error", "g", "glow"), ("error", "g", "beauty")][::-1]
+    links = {Port("outputs", "o"): Port("g", "image")}
+    graph = Graph({"g": Group(graph, values={"glow": 99.0})}, links, outputs={"o": Output()})
+    assert found(graph) == [("error", "g", "beauty"), ("error", "g", "glow")]
 
 
 def test_groups_may_not_nest_for_ever() -> None:
@@ -170,7 +171,8 @@ def test_groups_may_not_nest_for_ever() -> None:
 
 
 def test_names_that_a_file_could_not_hold() -> None:
-    graph = Graph({"a.b": Photo()}, inputs={"": Input()}, outputs={"x/y": Output()}, controls={"c.d": Control(Port("a.b", "path"))})
+    control = Control(Port("a.b", "path"))
+    graph = Graph({"a.b": Photo()}, {}, {"": Input()}, {"x/y": Output()}, {"c.d": control})
     assert {(node, socket) for _, node, socket in found(graph)} >= {
         ("a.b", ""), ("inputs", ""), ("outputs", "x/y"), ("controls", "c.d"),
     }

@@ -1,0 +1,46 @@
+"""What a compilation is asked for, and what it may ask about pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Protocol
+
+from ...nodes import Size
+from ..graph import Port
+from .draws import Memory
+from .ir import Picture
+
+
+@dataclass(frozen=True)
+class Probed:
+    """What is known of a picture before it is read."""
+
+    size: Size
+    half: bool
+    fingerprint: str
+
+
+class Probe(Protocol):
+    """Looks at a picture's header. Raises InputError for what cannot be read."""
+
+    def __call__(self, picture: Picture) -> Probed: ...
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is wanted of a graph.
+
+    `targets` are outputs of nodes or of the graph by the name they shall have; empty means every graph output.
+    `bindings` fill graph inputs by name. `size` replaces the canvas and every picture's size; `scale` below one is a
+    proxy: everything, lengths in pixels too, shrinks by it.
+    """
+
+    targets: Mapping[str, Port] = field(default_factory=lambda: MappingProxyType({}))
+    bindings: Mapping[str, Picture] = field(default_factory=lambda: MappingProxyType({}))
+    size: Size | None = None
+    scale: float = 1.0
+    frame: int = 1
+    memories: Mapping[str, Memory] = field(default_factory=lambda: MappingProxyType({}))
+    """What temporal nodes remembered of the frame before; none for a frame that follows no other."""

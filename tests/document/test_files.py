@@ -1,0 +1,193 @@
+"""Saving is whole or not at all; groups come from files of their own."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import stat
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from halation.app.document import dumps, limits, load, loads, save
+from halation.app.errors import DocumentError, OutputError
+from halation.app.graph import Graph, Group
+from toy_nodes import TOYS, Gain, small
+
+
+def write(path: Path, **sections: Any) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps({"halation": 1, **sections}))
+    return path
+
+
+def group(path: str, **values: float) -> dict[str, Any]:
+    return {"type": "group", "path": path} | ({"values": values} if values else {})
+
+
+class TestSave:
+    def test_and_load(self, tmp_path: Path) -> None:
+        path = tmp_path / "a b ü.json"
+        save(small(), path)
+        assert path.read_text("utf-8") == dumps(small())
+        assert load(path, TOYS) == small()
+        assert load(str(path), TOYS).folder == str(tmp_path)
+        assert [*tmp_path.iterdir()] == [path]
+
+    @pytest.mark.parametrize("step", ["fsync", "replace", "fdopen"])
+    @pytest.mark.parametrize("error", [OSError(errno.ENOSPC, "No space left on device"), KeyboardInterrupt()])
+    def test_a_failure_leaves_the_old_file(
+        self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, step: str, error: BaseException
+    ) -> None:
+        path = tmp_path / "x.json"
+        path.write_text("old")
+
+        def fail(*_: Any, **__: Any) -> None:
+            raise error
+
+        monkeypatch.setattr(os, step, fail)
+        wanted = OutputError if isinstance(error, OSError) else KeyboardInterrupt
+        with pytest.raises(wanted) as caught:
+            save(small(), path)
+        if isinstance(error, OSError):
+            assert str(caught.value) == (
+                f"{path}: it could not be saved (No space left on device); the old file is unchanged"
+            )
+        assert path.read_text() == "old"
+        assert [*tmp_path.iterdir()] == [path]
+
+    def test_a_killed_process_leaves_the_old_file(self, tmp_path: Path) -> None:
+        path = tmp_path / "x.json"
+        path.write_text("old")
+        code = (
+            "import os, sys; from halation.app.document import save; from halation.app.graph import Graph\n"
+            "os.fsync = lambda handle: os._exit(9)\nsave(Graph(), sys.argv[1])"
+        )
+        assert subprocess.run([sys.executable, "-c", code, str(path)]).returncode == 9
+        assert path.read_text() == "old"
+
+    def test_where_nothing_can_be_written(self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        for path in (tmp_path / "no" / "x.json", tmp_path / "a\0b"):
+            with pytest.raises(OutputError, match=r"cannot be saved here.*choose another folder"):
+                save(small(), path)
+        real = os.open
+
+        def read_only(path: Any, flags: int, *rest: Any) -> int:
+            if flags & os.O_CREAT:
+                raise PermissionError(errno.EACCES, "Permission denied")
+            return real(path, flags, *rest)
+
+        monkeypatch.setattr(os, "open", read_only)
+        with pytest.raises(OutputError, match=r"x\.json: it cannot be saved here \(Permission denied\)"):
+            save(small(), tmp_path / "x.json")
+
+    def test_over_a_folder(self, tmp_path: Path) -> None:
+        (tmp_path / "x.json").mkdir()
+        with pytest.raises(OutputError, match="could not be saved"):
+            save(small(), tmp_path / "x.json")
+        assert [path.name for path in tmp_path.iterdir()] == ["x.json"]
+
+    def test_a_graph_that_cannot_be_written_touches_nothing(self, tmp_path: Path) -> None:
+        path = tmp_path / "x.json"
+        path.write_text("old")
+        with pytest.raises(Exception, match="nan cannot be saved"):
+            save(Graph({"a": Gain(gain=float("nan"))}), path)
+        with pytest.raises(OutputError, match="it could not be read again"):
+            save(Graph(ui={"x": "y" * limits.MAX_BYTES}), path)
+        assert path.read_text() == "old"
+
+    def test_permissions_and_links_stay(self, tmp_path: Path) -> None:
+        path, link = tmp_path / "x.json", tmp_path / "link.json"
+        path.write_text("old")
+        path.chmod(0o640)
+        link.symlink_to(path)
+        save(small(), link)
+        assert link.is_symlink()
+        assert load(path, TOYS) == small()
+        assert stat.S_IMODE(path.stat().st_mode) == 0o640
+        save(small(), tmp_path / "new.json")
+        mask = os.umask(0)
+        os.umask(mask)
+        assert stat.S_IMODE((tmp_path / "new.json").stat().st_mode) == 0o666 & ~mask
+
+
+class TestGroupFiles:
+    def test_paths_start_at_the_file_that_names_them(self, tmp_path: Path) -> None:
+        (tmp_path / "lib" / "deep").mkdir(parents=True)
+        save(small(), tmp_path / "lib" / "deep" / "small.json")
+        write(tmp_path / "lib" / "middle.json", nodes={"s": group("deep/small.json", glow=5.0)})
+        top = write(tmp_path / "top.json", nodes={"m": group("lib/middle.json")})
+        graph = load(top, TOYS)
+        middle = graph.nodes["m"]
+        assert isinstance(middle, Group)
+        inner = middle.graph.nodes["s"]
+        assert isinstance(inner, Group)
+        assert inner.graph == small()
+        assert inner.body().nodes["gain"] == Gain(gain=5.0)
+        assert Path(inner.graph.folder) == tmp_path / "lib" / "deep"
+        assert json.loads(dumps(graph)) == {"halation": 1, "nodes": {"m": group("lib/middle.json")}}
+        assert loads(top.read_text(), "top.json", str(tmp_path), TOYS) == graph
+
+    def test_a_missing_file_names_both(self, tmp_path: Path) -> None:
+        write(tmp_path / "glow.json")
+        top = write(tmp_path / "top.json", nodes={"g": group("glwo.json")})
+        with pytest.raises(DocumentError) as caught:
+            load(top, TOYS)
+        assert str(caught.value) == (
+            f"{top}: nodes.g.path: the group file '{tmp_path / 'glwo.json'}' does not exist; did you mean 'glow.json'?"
+        )
+
+    @pytest.mark.parametrize("path", [".", "a\0b", "x" * 5000])
+    def test_a_path_that_is_no_file(self, tmp_path: Path, path: str) -> None:
+        with pytest.raises(DocumentError, match=r"nodes\.g\.path: the group file .* does not exist"):
+            load(write(tmp_path / "top.json", nodes={"g": group(path)}), TOYS)
+
+    def test_a_fault_inside_names_the_inner_file(self, tmp_path: Path) -> None:
+        write(tmp_path / "in.json", nodes={"a": {"type": "gain", "values": {"gain": "x"}}})
+        with pytest.raises(DocumentError, match=r"in\.json: nodes\.a\.values\.gain: expected a number"):
+            load(write(tmp_path / "top.json", nodes={"g": group("in.json")}), TOYS)
+
+    @pytest.mark.parametrize("through", [["a"], ["a", "b"], ["a", "b", "c"]])
+    def test_a_group_cannot_hold_itself(self, tmp_path: Path, through: list[str]) -> None:
+        for name, after in zip(through, [*through[1:], through[0]], strict=True):
+            inner = {"nodes": {"h": group(f"./{after}.json")}}
+            write(tmp_path / f"{name}.json", nodes={"g": {"type": "group", "graph": inner}})
+        where = r"nodes\.g\.graph\.nodes\.h\.path"
+        with pytest.raises(DocumentError, match=rf"{where}: a group cannot hold itself: a\.json -> .*a\.json"):
+            load(tmp_path / "a.json", TOYS)
+        top = write(tmp_path / "top.json", nodes={"g": group("a.json")})
+        with pytest.raises(DocumentError, match=r"cannot hold itself: a.json -> .*a.json"):
+            load(top, TOYS)
+
+    def test_depth_is_limited(self, tmp_path: Path) -> None:
+        def files(count: int) -> Path:
+            write(tmp_path / "0.json")
+            for number in range(1, count + 1):
+                write(tmp_path / f"{number}.json", nodes={"g": group(f"{number - 1}.json")})
+            return tmp_path / f"{count}.json"
+
+        load(files(limits.MAX_GROUPS), TOYS)
+        with pytest.raises(DocumentError, match="groups nest deeper than 32"):
+            load(files(limits.MAX_GROUPS + 1), TOYS)
+
+    def test_a_file_is_read_once_and_bombs_are_refused(self, tmp_path: Path) -> None:
+        """Twenty files that each hold the one before twice stand for a million nodes."""
+        write(tmp_path / "0.json", nodes={"a": {"type": "gain"}})
+        for number in range(1, 21):
+            twice = {name: group(f"{number - 1}.json") for name in ("g", "h")}
+            write(tmp_path / f"{number}.json", nodes=twice)
+        graph = load(tmp_path / "10.json", TOYS)
+        assert graph.nodes["g"].graph is graph.nodes["h"].graph
+        with pytest.raises(DocumentError, match="more than 100000 nodes"):
+            load(tmp_path / "20.json", TOYS)
+
+    def test_values_of_a_group_are_typed(self, tmp_path: Path) -> None:
+        save(small(), tmp_path / "small.json")
+        with pytest.raises(DocumentError, match=r"nodes\.g\.values\.glow: expected a number, got the string"):
+            load(write(tmp_path / "x.json", nodes={"g": {**group("small.json"), "values": {"glow": "a lot"}}}), TOYS)
+        top = write(tmp_path / "y.json", nodes={"g": group("small.json", glow=3, gone=1)})
+        assert load(top, TOYS).nodes["g"].values == {"glow": 3.0}
+        assert json.loads(dumps(load(top, TOYS)))["nodes"]["g"] == group("small.json", glow=3.0, gone=1)
