@@ -1,7 +1,11 @@
-"""What all tests share: one device, and the shortest way from a node to its pixels."""
+"""What all tests share: one device, and the shortest way from a node to its pixels.
+
+HALATION_TEST_FORM=fragment runs them with fragment passes, as on macOS.
+"""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
@@ -19,15 +23,7 @@ _KINDS = {1: Kind.FIELD, 2: Kind.VECTOR, 3: Kind.VECTOR, 4: Kind.IMAGE}
 @pytest.fixture(scope="session")
 def renderer() -> Iterator[Renderer]:
     """The engine on whatever OpenGL this machine has."""
-    made = Renderer()
-    yield made
-    made.close()
-
-
-@pytest.fixture(scope="session")
-def fragment_renderer() -> Iterator[Renderer]:
-    """The engine with fragment passes, as on macOS."""
-    made = Renderer(open_device("fragment"))
+    made = Renderer(open_device(os.environ.get("HALATION_TEST_FORM")))
     yield made
     made.close()
 

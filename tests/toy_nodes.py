@@ -156,8 +156,8 @@ def random_edit(rng: Random, graph: Graph, depth: int = 0) -> Graph:
     ids = [*graph.nodes] or [""]
     id, name, fresh = rng.choice(ids), rng.choice("abcdef"), graph.fresh_id(rng.choice("nm"))
     edits: list[tuple[int, Callable[[], Graph]]] = [
-        (4, lambda: graph.add(fresh, random_item(rng, depth))),
-        (12, lambda: graph.connect(rng.choice(_starts(graph)), rng.choice(_ends(graph)))),
+        (10, lambda: graph.add(fresh, random_item(rng, depth))),
+        (40, lambda: graph.connect(rng.choice(_starts(graph)), rng.choice(_ends(graph)))),
         (1, lambda: graph.disconnect(rng.choice([*graph.links]))),
         (1, lambda: graph.remove(id, heal=rng.random() < 0.7)),
         (1, lambda: graph.rename(id, fresh)),
@@ -178,7 +178,10 @@ def random_edit(rng: Random, graph: Graph, depth: int = 0) -> Graph:
 
 def random_graph(rng: Random, edits: int = 25, depth: int = 0) -> Graph:
     """What is left of a number of random edits."""
-    graph = Graph(settings=Settings(rng.choice([None, (64, 48)])))
+    graph = Graph(
+        inputs={"image": Input(), "depth": Input(Kind.FIELD)}, outputs={"final": Output()},
+        settings=Settings(rng.choice([None, (64, 48)])),
+    )
     for _ in range(edits):
         graph = random_edit(rng, graph, depth)
     return graph

@@ -2,63 +2,93 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..errors import HalationError
-from .options import AsJson
-from .outcome import guarded, print_json
+from .options import AsJson, Lazy
+from .outcome import print_json
+
+if TYPE_CHECKING:
+    from ..compiler import Picture, Probed
+    from ..graph import Graph, Problem
+
+_SIZE = (1920, 1080)
+"""What stands for a picture that is not there."""
 
 
-@guarded
 def check(
     graphs: Annotated[list[Path], typer.Argument(help="Graphs, as JSON.")],
     as_json: AsJson = False,
-) -> None:
+) -> int:
     """Look for faults in graphs: schema, types, links, loops, ranges, missing files and layers."""
     worst = 0
-    found: list[dict[str, Any]] = []
+    reports: list[dict[str, Any]] = []
     for path in graphs:
-        code, faults = _check(path)
+        found = list(_faults(path))
+        code = max((code for code, _ in found), default=0)
         worst = max(worst, code)
-        found.append({"graph": str(path), "ok": code == 0, "problems": faults})
+        reports.append({"graph": str(path), "exit_code": code, "problems": [asdict(problem) for _, problem in found]})
         if not as_json:
-            for fault in faults:
-                print(f"{path}: {fault['severity']}: {fault['sentence']}")
+            for _, problem in found:
+                print(f"{path}: {problem.severity}: {problem.sentence}")
             if code == 0:
                 print(f"{path}: ok")
     if as_json:
-        print_json({"graphs": found})
-    raise typer.Exit(worst)
+        print_json({"graphs": reports})
+    return worst
 
 
-def _check(path: Path) -> tuple[int, list[dict[str, Any]]]:
-    """The exit code that rendering would have, and what there is to say."""
-    from .. import compiler, document
-    from ..errors import GraphError
-    from ..graph import problems
-    from ..media.pictures import Pictures
+def _faults(path: Path) -> Iterator[tuple[int, Problem]]:
+    """What there is to say of a graph file, each with the exit code that rendering would have."""
+    from .. import document
+    from ..errors import DocumentError, GraphError
+    from ..graph import INPUTS, Problem, problems
 
-    faults: list[dict[str, Any]] = []
     try:
         graph = document.load(path)
-        faults = [asdict(problem) for problem in problems(graph)]
-        if any(fault["severity"] == "error" for fault in faults):
-            return GraphError.exit_code, faults
-        if not graph.outputs:
-            return 0, faults
-        unbound = [name for name, item in graph.inputs.items() if not item.file and item.default is None]
-        for name in unbound:
-            faults.append(_fault(f"input '{name}' has no default file: rendering needs -i {name}=FILE", "warning"))
-        if not unbound:
-            compiler.compile_graph(graph, compiler.Request(), Pictures().probe)
+    except DocumentError as fault:
+        yield fault.exit_code, Problem("", "", str(fault).removeprefix(f"{path}: "))
+        return
+    found = problems(graph)
+    for problem in found:
+        yield (GraphError.exit_code if problem.severity == "error" else 0), problem
+    for name, item in graph.inputs.items():
+        if not item.file and item.default is None:
+            sentence = f"input '{name}' has no file and no default: rendering needs -i {name}=FILE"
+            yield 0, Problem(INPUTS, name, sentence, "warning")
+    if graph.outputs and all(problem.severity == "warning" for problem in found):
+        yield from _compiled(graph)
+
+
+def _compiled(graph: Graph) -> Iterator[tuple[int, Problem]]:
+    """What only shows when the graph is compiled: pictures and their layers."""
+    from .. import compiler
+    from ..compiler import Picture, Probed
+    from ..errors import HalationError, InputError
+    from ..graph import Problem
+
+    lazy = Lazy()
+    unread: dict[str, InputError] = {}
+
+    def probe(picture: Picture) -> Probed:
+        if not picture.in_memory:
+            try:
+                return lazy.probe(picture)
+            except InputError as fault:
+                unread[str(fault)] = fault
+        return Probed(graph.settings.size or _SIZE, False, picture.path)
+
+    bindings = {
+        name: Picture(name, "", item.kind, item.socket().channels, in_memory=True)
+        for name, item in graph.inputs.items() if not item.file and item.default is None
+    }
+    try:
+        compiler.compile_graph(graph, compiler.Request(bindings=bindings), probe)
     except HalationError as fault:
-        return fault.exit_code, [*faults, _fault(str(fault).removeprefix(f"{path}: "), "error")]
-    return 0, faults
-
-
-def _fault(sentence: str, severity: str) -> dict[str, Any]:
-    return {"node": "", "socket": "", "sentence": sentence, "severity": severity}
+        yield fault.exit_code, Problem("", "", str(fault))
+    for fault in unread.values():
+        yield fault.exit_code, Problem("", "", str(fault))

@@ -8,17 +8,16 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from .options import AsJson
-from .outcome import guarded, print_json
+from .outcome import print_json
 
 if TYPE_CHECKING:
     from ...nodes import Node, Socket, Value
 
 
-@guarded
 def nodes(
     id: Annotated[str, typer.Argument(help="A node; without one, all are listed.")] = "",
     as_json: AsJson = False,
-) -> None:
+) -> int:
     """List the nodes, or show one with its sockets, values, ranges and units."""
     from ...nodes import catalogue
     from ..errors import UsageError
@@ -28,12 +27,12 @@ def nodes(
     if id and id not in known:
         raise UsageError(f"there is no node '{id}'{did_you_mean(id, known)}")
     if as_json:
-        shown = [known[id]] if id else list(known.values())
-        print_json([_facts(node) for node in shown] if not id else _facts(shown[0]))
+        print_json(_facts(known[id]) if id else {"nodes": [_facts(node) for node in known.values()]})
     elif id:
         _page(known[id])
     else:
         _list(list(known.values()))
+    return 0
 
 
 def _list(classes: list[type[Node]]) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,36 +13,48 @@ from . import parsing
 from .outcome import note
 
 if TYPE_CHECKING:
+    from ..compiler import Picture, Probed
     from ..graph import Graph
+    from ..media.pictures import Pictures
 
 Inputs = Annotated[
-    list[str],
+    list[str] | None,
     typer.Option("-i", "--input", metavar="NAME=FILE[:LAYER]", help="Bind an input of the graph to a picture."),
 ]
 Sets = Annotated[
-    list[str],
+    list[str] | None,
     typer.Option("--set", metavar="NODE.VALUE=X", help="Set a value, or a control by its name; colors as r,g,b,a."),
+]
+Node = Annotated[
+    str, typer.Option("--node", metavar="ID[.OUTPUT]", help="Take the output of this node instead of the graph's.")
 ]
 SizeText = Annotated[
     str | None, typer.Option("--size", metavar="WxH", help="Size of canvas and pictures, instead of their own.")
 ]
-Scale = Annotated[float, typer.Option(help="Render a proxy: 0.5 is half size, lengths in pixels included.")]
+Scale = Annotated[
+    float, typer.Option("--scale", metavar="X", help="Render a proxy: 0.5 is half size, lengths in pixels included.")
+]
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON object on standard output, for machines.")]
 
 
-def opened(path: Path, sets: list[str]) -> Graph:
-    """A graph with the values from the command line."""
+def opened(path: Path, sets: Sequence[str]) -> Graph:
+    """A graph with the values from the command line. Raises DocumentError, UsageError."""
     from .. import document
+    from ..errors import GraphError, UsageError
 
     graph = document.load(path)
-    for name, text in parsing.assignments(list(sets), "--set").items():
-        graph = graph.override(name, parsing.value(text))
+    for name, text in parsing.assignments(sets, "--set").items():
+        try:
+            graph = graph.override(name, parsing.value(text))
+        except GraphError as fault:
+            raise UsageError(f"--set {name}={text}: {str(fault).removeprefix(f'{name}: ')}") from None
     return graph
 
 
-def bound(graph: Graph, inputs: list[str]) -> dict[str, str]:
+def bound(graph: Graph, inputs: Sequence[str]) -> dict[str, str]:
     """Pictures by input name; a bare path goes to the only input."""
     from ..errors import UsageError
+    from ..graph import did_you_mean
 
     named: list[str] = []
     for item in inputs:
@@ -51,7 +65,12 @@ def bound(graph: Graph, inputs: list[str]) -> dict[str, str]:
         else:
             known = ", ".join(graph.inputs) or "none"
             raise UsageError(f"-i {item}: write -i NAME=FILE; the inputs of this graph are {known}")
-    return parsing.assignments(named, "-i")
+    found = parsing.assignments(named, "-i")
+    for name, text in found.items():
+        if name not in graph.inputs:
+            hint = did_you_mean(name, graph.inputs) or "; it has none"
+            raise UsageError(f"-i {name}={text}: the graph has no input '{name}'{hint}")
+    return found
 
 
 def report_problems(path: Path, graph: Graph) -> None:
@@ -66,3 +85,23 @@ def report_problems(path: Path, graph: Graph) -> None:
         raise GraphError(f"{path}: {errors[0].sentence}{more}")
     for problem in found:
         note(f"{path}: {problem.sentence}")
+
+
+class Lazy:
+    """Pictures for graphs that may have none: what decodes them is loaded when the first is asked for."""
+
+    @cached_property
+    def pictures(self) -> Pictures:
+        """The real ones."""
+        from ..media.pictures import Pictures
+
+        return Pictures()
+
+    def bind(self, graph: Graph, inputs: Sequence[str]) -> dict[str, Picture]:
+        """Pictures for the graph inputs that the command line names."""
+        found = bound(graph, inputs)
+        return self.pictures.bind(graph, found) if found else {}
+
+    def probe(self, picture: Picture) -> Probed:
+        """Size and precision of a picture."""
+        return self.pictures.probe(picture)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import json
 import os
@@ -9,10 +10,9 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
-import typer
-
 from ..errors import HalationError
 
+USAGE = 2
 INTERRUPTED = 130
 BROKEN_PIPE = 141
 BUG = 70
@@ -28,41 +28,70 @@ Exit codes:
 130  interrupted"""
 
 
-def guarded(command: Callable[..., None]) -> Callable[..., None]:
+def guarded(command: Callable[..., int]) -> Callable[..., int]:
     """Turn what a command raises into a sentence and an exit code; under `--json` into an object as well."""
 
     @functools.wraps(command)
-    def run(*args: Any, **options: Any) -> None:
+    def run(*args: Any, **options: Any) -> int:
         try:
-            command(*args, **options)
-        except HalationError as fault:
-            _fail(str(fault), fault.exit_code, type(fault).__name__, bool(options.get("as_json")))
-        except KeyboardInterrupt:
-            _fail("interrupted; nothing unfinished was left behind", INTERRUPTED, "Interrupted", False)
-        except BrokenPipeError:
-            # Whoever read our output has gone: that is no fault of ours, and nothing can be said to them.
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            raise typer.Exit(BROKEN_PIPE) from None
-        except MemoryError:
-            _fail("out of memory: render smaller with --scale or --size", 1, "MemoryError", False)
-        except typer.Exit:
-            raise
-        except Exception as fault:
-            if os.environ.get("HALATION_DEBUG"):
-                raise
-            _fail(
-                f"this is a bug in Halation ({type(fault).__name__}: {fault}); set HALATION_DEBUG=1 for the details",
-                BUG, "Bug", bool(options.get("as_json")),
-            )
+            return command(*args, **options)
+        except (Exception, KeyboardInterrupt) as fault:
+            return failed(fault, bool(options.get("as_json")))
 
     return run
 
 
-def _fail(sentence: str, code: int, kind: str, as_json: bool) -> None:
-    print(f"halation: {sentence}", file=sys.stderr)
+def failed(fault: BaseException, as_json: bool) -> int:
+    """Say what went wrong; the exit code for it."""
+    if isinstance(fault, BrokenPipeError):
+        # Whoever read our output has gone: that is no fault of ours, and nothing can be said to them.
+        _silence()
+        return BROKEN_PIPE
+    if os.environ.get("HALATION_DEBUG"):
+        raise fault
+    kind, code, sentence = _told(fault)
+    with contextlib.suppress(OSError):
+        print(f"halation: {sentence}", file=sys.stderr, flush=True)
     if as_json:
         print_json({"error": {"kind": kind, "message": sentence, "exit_code": code}})
-    raise typer.Exit(code)
+    return code
+
+
+def _told(fault: BaseException) -> tuple[str, int, str]:
+    """Kind, exit code and sentence."""
+    if isinstance(fault, HalationError):
+        return type(fault).__name__, fault.exit_code, str(fault)
+    if isinstance(fault, KeyboardInterrupt):
+        return "Interrupted", INTERRUPTED, "interrupted; nothing unfinished was left behind"
+    if isinstance(fault, MemoryError):
+        return "MemoryError", 1, "there is not enough memory: render smaller with --scale or --size"
+    if format_message := getattr(fault, "format_message", None):  # what the parser of the command line raises
+        context = getattr(fault, "ctx", None)
+        command = context.command_path if context else "halation"
+        said = str(format_message()).strip().rstrip(".")
+        return "UsageError", USAGE, f"{said[:1].lower()}{said[1:]}; see {command} --help"
+    said = " ".join(str(fault).split())
+    return "Bug", BUG, f"this is a bug in Halation ({type(fault).__name__}: {said}); HALATION_DEBUG=1 shows where"
+
+
+def settle(code: int) -> int:
+    """Get the last output out; the exit code if that works, else another."""
+    try:
+        sys.stdout.flush()
+        sys.stderr.flush()
+    except BrokenPipeError as gone:
+        return failed(gone, False)
+    except OSError as fault:
+        _silence()
+        print(f"halation: standard output cannot be written ({fault.strerror})", file=sys.stderr, flush=True)
+        return code or 1
+    return code
+
+
+def _silence() -> None:
+    """Send to nowhere what is still waiting to be written to standard output."""
+    with contextlib.suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def print_json(item: object) -> None:

@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from ..errors import UsageError
+from ..errors import GraphError, UsageError
+
+if TYPE_CHECKING:
+    from ..compiler import Form, Precision
+    from ..graph import Graph, Port
+
+_Word = TypeVar("_Word", bound=str)
 
 
-def assignments(items: list[str], flag: str) -> dict[str, str]:
+def assignments(items: Sequence[str], flag: str) -> dict[str, str]:
     """`name=text` pairs in order. Raises UsageError for anything else and for a name given twice."""
     found: dict[str, str] = {}
     for item in items:
@@ -22,16 +29,17 @@ def assignments(items: list[str], flag: str) -> dict[str, str]:
     return found
 
 
-def paths(items: list[str]) -> dict[str, Path]:
-    """`-o out.exr` or `-o name=out.exr`; the name of a bare path is empty."""
-    found: dict[str, Path] = {}
+def paths(items: Sequence[str]) -> tuple[tuple[str, Path], ...]:
+    """`-o out.exr` or `-o name=out.exr` as names and files; the name of a bare path is empty."""
+    found: list[tuple[str, Path]] = []
     for item in items:
         name, equals, text = item.partition("=")
-        name, text = (name, text) if equals and "/" not in name and "." not in name else ("", item)
-        if name in found:
-            raise UsageError(f"-o {item}: {'an output' if not name else repr(name)} is given twice")
-        found[name] = Path(text)
-    return found
+        if not equals or "/" in name or "." in name.removeprefix("."):
+            name, text = "", item
+        elif not name or not text:
+            raise UsageError(f"-o {item}: write -o FILE or -o NAME=FILE")
+        found.append((name, Path(text)))
+    return tuple(found)
 
 
 def value(text: str) -> Any:
@@ -39,7 +47,7 @@ def value(text: str) -> Any:
     for candidate in (text, f"[{text}]"):
         try:
             return json.loads(candidate, parse_constant=_refused)
-        except ValueError:
+        except (ValueError, RecursionError):
             continue
     return text
 
@@ -53,9 +61,10 @@ def size(text: str | None) -> tuple[int, int] | None:
     if text is None:
         return None
     width, cross, height = text.lower().partition("x")
-    if not cross or not width.isdecimal() or not height.isdecimal() or not int(width) or not int(height):
+    sides = [int(side) if side.isascii() and side.isdecimal() and len(side) < 7 else 0 for side in (width, height)]
+    if not cross or not all(sides):
         raise UsageError(f"--size {text}: write WIDTHxHEIGHT in pixels, such as 1920x1080")
-    return int(width), int(height)
+    return sides[0], sides[1]
 
 
 def scale(number: float) -> float:
@@ -65,8 +74,28 @@ def scale(number: float) -> float:
     return number
 
 
-def choice(text: str | None, known: tuple[str, ...], flag: str) -> str | None:
-    """One of a few words."""
-    if text is not None and text not in known:
-        raise UsageError(f"{flag} {text}: choose {' or '.join(known)}")
-    return text
+def form(text: str) -> Form:
+    """How passes run."""
+    return _choice(text, ("fragment", "compute"), "--form")
+
+
+def precision(text: str) -> Precision:
+    """How exact colors are."""
+    return _choice(text, ("half", "float"), "--precision")
+
+
+def targets(graph: Graph, node: str) -> dict[str, Port]:
+    """The output of the node that --node names."""
+    from ..graph import node_output
+
+    try:
+        return {node: node_output(graph, node)} if node else {}
+    except GraphError as fault:
+        raise UsageError(f"--node {node}: {fault}") from None
+
+
+def _choice(text: str, known: tuple[_Word, ...], flag: str) -> _Word:
+    for word in known:
+        if word == text:
+            return word
+    raise UsageError(f"{flag} {text}: choose {' or '.join(known)}")

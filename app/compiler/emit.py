@@ -58,8 +58,7 @@ def emit(program: Program, fused: Fused, library: Library, target: Target, texel
         main = _main(names, fused, parts, target, halves)
     files = ["generated"]
     lines = [
-        f"#version {430 if target.version >= 430 else 410} core",
-        *([f"layout(local_size_x = {LOCAL_SIZE}) in;"] if target.form == "compute" else []),
+        *_preamble(target),
         *(f"uniform {glsl} {name};" for name, glsl, _ in names.uniforms),
         *_textures(names, fused, target, texels), *_targets(names, fused, target, texels),
         "ivec2 pixel = ivec2(0), extent = ivec2(0);", *_half_rounding(target, halves),
@@ -74,6 +73,13 @@ def emit(program: Program, fused: Fused, library: Library, target: Target, texel
         tuple((name, value) for name, _, value in names.uniforms),
         bodies.padded_weights(root, sliding) if isinstance(root, Convolve) else (), _groups(root, sliding),
     )
+
+
+def _preamble(target: Target) -> list[str]:
+    """Fragment passes keep to what macOS has; Mesa lends them the functions that round to half floats."""
+    if target.form == "compute":
+        return ["#version 430 core", f"layout(local_size_x = {LOCAL_SIZE}) in;"]
+    return ["#version 410 core", "#extension GL_ARB_shading_language_packing : enable"]
 
 
 @dataclass(frozen=True)

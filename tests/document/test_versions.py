@@ -99,7 +99,7 @@ def test_a_damaged_old_document(damage: dict[str, Any]) -> None:
 
 
 def test_a_format_from_the_future() -> None:
-    with pytest.raises(DocumentError, match="halation: format 4 is newer than 3, .*: update Halation"):
+    with pytest.raises(DocumentError, match=r"halation: format 4 is newer than 3, .*: update Halation"):
         loads('{"halation": 4}', migrations=STEPS)
 
 

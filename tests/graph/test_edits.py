@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from random import Random
 
@@ -38,7 +39,8 @@ def check_invariants(graph: Graph) -> None:
 @given(st.integers(0, 2**32))
 def test_edits_keep_a_graph_sound(seed: int) -> None:
     rng = Random(seed)
-    graph = Graph(ui={"nodes": {}}, extra={"": {"later": 1}})
+    graph = dataclasses.replace(random_graph(rng), ui={"nodes": {"n": 1, "m": 2}}, extra={"nodes.n": {"later": 1}})
+    graph = graph if {"n", "m"} <= set(graph.nodes) else dataclasses.replace(graph, ui={}, extra={"": {"later": 1}})
     for _ in range(40):
         before = (dict(graph.nodes), dict(graph.links))
         after = random_edit(rng, graph)
@@ -127,7 +129,7 @@ class TestConnect:
         assert len(graph.links) == 3
 
     def test_refuses_and_names_a_loop(self) -> None:
-        with pytest.raises(GraphError, match=r"'n3.out' cannot feed 'n1.image'.*n1 -> n2 -> n3 -> n1 form a loop; remove one"):
+        with pytest.raises(GraphError, match=r"'n3\.out' cannot feed 'n1\.image'.*n1 -> n2 -> n3 -> n1 form a loop"):
             chain(5).connect(Port("n3", "out"), Port("n1", "image"))
         with pytest.raises(GraphError, match="n1 -> n1 form a loop"):
             chain(5).connect(Port("n1", "out"), Port("n1", "image"))
@@ -160,7 +162,7 @@ class TestConnect:
 
     def test_disconnect(self) -> None:
         assert Port("gain", "image") not in small().disconnect(Port("gain", "image")).links
-        with pytest.raises(GraphError, match="nothing is linked to 'gain.tint'"):
+        with pytest.raises(GraphError, match=r"nothing is linked to 'gain\.tint'"):
             small().disconnect(Port("gain", "tint"))
 
 

@@ -1,0 +1,50 @@
+"""The program: commands, what they share, and how they end."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+
+import typer
+from typer.main import get_command
+
+from .check import check
+from .demo import demo
+from .explain import explain
+from .fmt import fmt
+from .nodes import nodes
+from .outcome import EXIT_CODES, failed, guarded, settle
+from .render import render
+
+app = typer.Typer(
+    name="halation", add_completion=False, rich_markup_mode=None, epilog=EXIT_CODES,
+    help="A node-graph compositor for screen-space effects.",
+)
+for command in (render, check, explain, nodes, fmt, demo):
+    app.command()(guarded(command))
+
+
+@app.callback(invoke_without_command=True)
+def whole(
+    context: typer.Context,
+    version: bool = typer.Option(False, "--version", help="Print the version and stop."),
+) -> None:
+    """What there is to say without a command."""
+    if version:
+        from importlib import metadata
+
+        print(f"halation {metadata.version('halation')}")
+        raise typer.Exit
+    if context.invoked_subcommand is None:
+        print(context.get_help(), file=sys.stderr)
+        raise typer.Exit(2)
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run one command and return its exit code. Nothing is raised."""
+    as_json = "--json" in arguments
+    try:
+        code = get_command(app).main(list(arguments), prog_name="halation", standalone_mode=False)
+    except (Exception, KeyboardInterrupt) as fault:
+        code = failed(fault, as_json)
+    return settle(code if isinstance(code, int) else 0)
