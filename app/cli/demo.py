@@ -9,14 +9,13 @@ from typing import Annotated
 import typer
 
 from .options import AsJson
-from .outcome import guarded, note, print_json
+from .outcome import note, print_json
 
 
-@guarded
 def demo(
     output: Annotated[Path, typer.Option("-o", "--output", help="The folder to write to.")] = Path("out"),
     as_json: AsJson = False,
-) -> None:
+) -> int:
     """Render every preset on the sample frame, as PNG and EXR."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
@@ -24,18 +23,19 @@ def demo(
     from ...presets import paths
     from .. import document
     from ..errors import OutputError
-    from ..renderer import Renderer, Wanted
+    from ..renderer import Renderer, Wanted, open_device
     from ..renderer.job import Writing, run_job
 
-    renderer = Renderer(budget=0)
-    note(renderer.device.description)
     try:
         output.mkdir(parents=True, exist_ok=True)
     except OSError as fault:
         raise OutputError(f"{output}: the folder cannot be made ({fault.strerror}); choose another with -o") from None
+    renderer = Renderer(open_device(), budget=0)
+    note(renderer.device.description)
+    console = Console(stderr=True)
     done: list[dict[str, object]] = []
     columns = (TextColumn("{task.description:<24}"), BarColumn(), MofNCompleteColumn())
-    with Progress(*columns, console=Console(stderr=True)) as progress:
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
         files = paths()
         task = progress.add_task("", total=len(files))
         for path in files:
@@ -43,12 +43,14 @@ def demo(
             started = time.perf_counter()
             graph = document.load(path)
             first = next(iter(graph.outputs))
-            pictures = {"": output / f"{path.stem}.exr", first: output / f"{path.stem}.png"}
+            pictures = (("", output / f"{path.stem}.exr"), (first, output / f"{path.stem}.png"))
             report = run_job(renderer, graph, Wanted(), Writing(pictures))
             spent = time.perf_counter() - started
-            progress.console.print(f"{path.stem:<24} {report.passes:>3} passes  {spent:5.2f} s  {pictures[first]}")
+            line = f"{path.stem:<24} {report.passes:>3} passes  {spent:5.2f} s  {pictures[1][1]}"
+            progress.console.print(line, soft_wrap=True, markup=False, highlight=False)
             progress.advance(task)
             written = [str(item) for item in report.written]
             done.append({"preset": path.stem, "seconds": round(spent, 3), "written": written})
     if as_json:
         print_json({"device": renderer.device.description, "pictures": done})
+    return 0

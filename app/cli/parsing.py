@@ -34,7 +34,7 @@ def paths(items: Sequence[str]) -> tuple[tuple[str, Path], ...]:
     found: list[tuple[str, Path]] = []
     for item in items:
         name, equals, text = item.partition("=")
-        if not equals or "/" in name or "." in name.removeprefix("."):
+        if not equals or "/" in name or "." in name:
             name, text = "", item
         elif not name or not text:
             raise UsageError(f"-o {item}: write -o FILE or -o NAME=FILE")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -9,25 +10,23 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from . import parsing
-from .options import AsJson, Inputs, Scale, Sets, SizeText, bound, opened, report_problems
-from .outcome import guarded, note, print_json
+from .options import AsJson, Inputs, Node, Scale, Sets, SizeText, bound, opened, report_problems
+from .outcome import note, print_json
 
 if TYPE_CHECKING:
     from ..compiler import Pass
-    from ..graph import Graph, Port
     from ..renderer.job import Report
 
 
-@guarded
 def render(
     graph: Annotated[Path, typer.Argument(help="A graph, as JSON.")],
     output: Annotated[
         list[str],
         typer.Option("-o", "--output", metavar="[NAME=]FILE", help="Where to write; .exr holds all outputs as layers."),
     ],
-    inputs: Inputs = (),  # type: ignore[assignment]
-    sets: Sets = (),  # type: ignore[assignment]
-    node: Annotated[str, typer.Option(metavar="ID[.OUTPUT]", help="Render this node instead of the outputs.")] = "",
+    inputs: Inputs = None,
+    sets: Sets = None,
+    node: Node = "",
     size: SizeText = None,
     scale: Scale = 1.0,
     frame: Annotated[int, typer.Option(help="The frame that nodes which change over time show.")] = 1,
@@ -44,65 +43,56 @@ def render(
         str | None, typer.Option(metavar="fragment|compute", help="How passes run; by default what suits the device.")
     ] = None,
     as_json: AsJson = False,
-) -> None:
+) -> int:
     """Render a graph to files."""
     started = time.perf_counter()
-    parsing.choice(precision, ("half", "float"), "--precision")
-    parsing.choice(form, ("fragment", "compute"), "--form")
+    depth = parsing.precision(precision) if precision is not None else None
+    passes = parsing.form(form) if form is not None else None
     destinations = parsing.paths(output)
-    opened_graph = opened(graph, sets)
+    canvas, proxy = parsing.size(size), parsing.scale(scale)
+    opened_graph = opened(graph, sets or ())
     report_problems(graph, opened_graph)
+    bindings, targets = bound(opened_graph, inputs or ()), parsing.targets(opened_graph, node)
     from ..renderer import Renderer, Wanted, open_device
     from ..renderer.job import Writing, run_job
 
-    wanted = Wanted(
-        bound(opened_graph, inputs), _targets(opened_graph, node), parsing.size(size), parsing.scale(scale), frame,
-        precision,  # type: ignore[arg-type]
-    )
-    renderer = Renderer(open_device(form), budget=0)  # type: ignore[arg-type]
-    if not as_json:
-        note(renderer.device.description)
-    writing = Writing(destinations, view, compression, precision or "half")
-    with _Bar(quiet=as_json) as bar:
+    loaded = time.perf_counter()
+    renderer = Renderer(open_device(passes), budget=0)
+    note(renderer.device.description)
+    ready = time.perf_counter()
+    wanted = Wanted(bindings, targets, canvas, proxy, frame, depth)
+    writing = Writing(destinations, view, compression, depth or "half")
+    with _Bar() as bar:
         report = run_job(renderer, opened_graph, wanted, writing, bar.step)
-    _tell(report, renderer.device.description, time.perf_counter() - started, as_json)
+    spent = {"load": loaded - started, "open": ready - loaded, **report.seconds}
+    _tell(report, renderer.device.description, {**spent, "total": time.perf_counter() - started}, as_json)
+    return 0
 
 
-def _targets(graph: Graph, node: str) -> dict[str, Port]:
-    """The output of the node that --node names."""
-    from ..graph import node_output
-
-    return {node: node_output(graph, node)} if node else {}
-
-
-def _tell(report: Report, device: str, seconds: float, as_json: bool) -> None:
+def _tell(report: Report, device: str, seconds: dict[str, float], as_json: bool) -> None:
     from ..compiler.explain import size_text
 
     for path, count in report.repaired.items():
         note(f"{path}: {count} pixels that are not numbers were filled from their neighbors")
     if as_json:
-        spent = {name: round(part, 4) for name, part in {**report.seconds, "total": seconds}.items()}
         print_json(
             {
                 "written": [str(path) for path in report.written], "device": device, "passes": report.passes,
                 "programs": report.programs, "peak_bytes": report.peak_bytes, "repaired": dict(report.repaired),
-                "seconds": spent,
+                "seconds": {name: round(part, 4) for name, part in seconds.items()},
             }
         )
         return
+    peak = size_text(report.peak_bytes)
     for path in report.written:
-        note(
-            f"{path}  {seconds:.2f} s, {report.passes} passes, {size_text(report.peak_bytes)} of textures at the peak"
-        )
+        note(f"{path}  {seconds['total']:.2f} s, {report.passes} passes, {peak} of textures at the peak")
 
 
 class _Bar:
     """A progress bar on standard error, where that is a terminal and the work is long enough to watch."""
 
-    def __init__(self, quiet: bool) -> None:
-        import sys
-
-        self._quiet = quiet or not sys.stderr.isatty()
+    def __init__(self) -> None:
+        self._quiet = not sys.stderr.isatty()
         self._progress = None
         self._started = time.perf_counter()
 

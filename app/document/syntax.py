@@ -4,10 +4,18 @@ from __future__ import annotations
 
 import json
 import sys
-from typing import Any, cast
+from functools import reduce
+from typing import Any, NamedTuple, cast
 
 from ..errors import DocumentError
 from .limits import MAX_NESTING, size_fault
+
+
+class _Trail(NamedTuple):
+    """Where a part is, from the inside out. Most trails are never spelled as a path, which would take the time."""
+
+    outer: _Trail | None
+    key: str | int
 
 
 class _Twice(dict[str, Any]):
@@ -70,26 +78,39 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 def _check(tree: Any, file: str) -> None:
     """Look at every part, without recursion."""
-    todo: list[tuple[Any, str, int]] = [(tree, "", 1)]
+    todo: list[tuple[Any, _Trail | None, int]] = [(tree, None, 1)]
     while todo:
-        item, path, depth = todo.pop()
-        if isinstance(item, dict | list):
-            if depth > MAX_NESTING:
-                raise DocumentError(file, "", _too_deep())
-            if isinstance(item, _Twice):
-                raise DocumentError(file, member(path, item.key), "this key is there twice; remove one")
-            known = cast("dict[str, Any] | list[Any]", item)
-            parts = known.items() if isinstance(known, dict) else enumerate(known)
-            for key, part in parts:
-                if isinstance(key, str) and not _is_text(key):
-                    raise DocumentError(file, path, f"the key {key!r} is not valid Unicode")
-                if not isinstance(part, bool | None):
-                    todo.append((part, member(path, key), depth + 1))
-        elif isinstance(item, str):
-            if not _is_text(item):
-                raise DocumentError(file, path, f"the string {item!r} is not valid Unicode")
-        elif not abs(item) <= sys.float_info.max:
-            raise DocumentError(file, path, "expected a finite number: JSON has no NaN or Infinity")
+        item, trail, depth = todo.pop()
+        if depth > MAX_NESTING:
+            raise DocumentError(file, "", _too_deep())
+        if isinstance(item, _Twice):
+            raise DocumentError(file, _path(_Trail(trail, item.key)), "this key is there twice; remove one")
+        parts = cast("dict[str, Any]", item).items() if isinstance(item, dict) else enumerate(cast("list[Any]", item))
+        for key, part in parts:
+            if isinstance(key, str) and not _is_text(key):
+                raise DocumentError(file, _path(trail), f"the key {key!r} is not valid Unicode")
+            if isinstance(part, dict | list):
+                todo.append((cast("Any", part), _Trail(trail, key), depth + 1))
+            elif fault := _fault(part):
+                raise DocumentError(file, _path(_Trail(trail, key)), fault)
+
+
+def _fault(part: Any) -> str | None:
+    """Why this string, number, boolean or null is refused, or None."""
+    if isinstance(part, str):
+        return None if _is_text(part) else f"the string {part!r} is not valid Unicode"
+    if part is None or abs(part) <= sys.float_info.max:
+        return None
+    return "expected a finite number: JSON has no NaN or Infinity"
+
+
+def _path(trail: _Trail | None) -> str:
+    """The JSON path that a trail of keys stands for."""
+    keys: list[str | int] = []
+    while trail:
+        keys.append(trail.key)
+        trail = trail.outer
+    return reduce(member, reversed(keys), "")
 
 
 def _is_text(text: str) -> bool:

@@ -5,9 +5,9 @@ from .info import ImageInfo, content_hash, find_layer, fingerprint, info
 from .layers import Layer
 from .metadata import Attribute, read_metadata
 from .read import Pixels, Want, read, read_many
-from .write import write
+from .write import check_destination, write
 
 __all__ = [
-    "Attribute", "ImageInfo", "Layer", "Pixels", "Want", "content_hash", "find_layer", "fingerprint", "info", "read",
-    "read_many", "read_metadata", "to_display", "views", "write",
+    "Attribute", "ImageInfo", "Layer", "Pixels", "Want", "check_destination", "content_hash", "find_layer",
+    "fingerprint", "info", "read", "read_many", "read_metadata", "to_display", "views", "write",
 ]

@@ -6,7 +6,8 @@ import errno
 import os
 import secrets
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from ..errors import OutputError
@@ -34,15 +35,28 @@ def store(path: str | Path, encode: Callable[[str], None], room: int) -> None:
     Raises:
         OutputError: the folder is missing or read-only, or the disk is full.
     """
+    with _part(path) as (part, target):
+        _fill(part, encode, room)
+        part.replace(target)
+
+
+def check_room(path: str | Path) -> None:
+    """Find out whether the folder may be written, by making a name in it and taking that away. Raises OutputError."""
+    with _part(path):
+        pass
+
+
+@contextmanager
+def _part(path: str | Path) -> Iterator[tuple[Path, Path]]:
+    """A new file that is gone afterwards, and the one that it may replace."""
     target = Path(os.path.realpath(path))
     if target.is_dir():
         raise OutputError(f"{path}: is a folder: add the name of a file")
     part = target.with_name(f".halation-{secrets.token_hex(6)}{target.suffix}")
     try:
-        part.open("xb").close()
         try:
-            _fill(part, encode, room)
-            part.replace(target)
+            part.open("xb").close()
+            yield part, target
         finally:
             part.unlink(missing_ok=True)
     except OSError as error:

@@ -11,12 +11,12 @@ from typing import Any, Literal
 import numpy as np
 import OpenImageIO as oiio
 
-from ...nodes import Kind
+from ...nodes import Kind, Size
 from ..errors import OutputError, UsageError
 from .color import WORKING, Array, find_view, to_display
 from .layers import is_depth
 from .metadata import add_metadata
-from .store import store
+from .store import check_room, store
 
 _FORMATS = {
     ".exr": "openexr", ".png": "png", ".jpg": "jpeg", ".jpeg": "jpeg", ".tif": "tiff", ".tiff": "tiff", ".webp": "webp",
@@ -62,21 +62,48 @@ def write(
         UsageError: unknown ending, compression or view, or layers that such a file cannot hold.
         OutputError: the file could not be written; an older one is still there.
     """
-    format = _format(Path(path))
-    if not layers:
-        raise UsageError(f"{path}: there is nothing to write: the graph has no outputs")
-    if view:
-        find_view(view)
-    metadata = metadata or {}
     layers = {name: array if array.ndim == 3 else array[..., None] for name, array in layers.items()}
-    _check_compression(path, format, compression)
+    sizes = {name: (array.shape[1], array.shape[0]) for name, array in layers.items()}
+    format = _checked(path, {name: kinds[name] for name in layers}, sizes, compression, view)
+    metadata = metadata or {}
     if format == "openexr":
-        parts = _exr_parts(path, layers, kinds, precision, compression)
+        parts = _exr_parts(layers, kinds, precision, compression)
     else:
-        parts = [_picture(path, layers, kinds, format, precision, compression, view)]
+        shown = _shown(path, {name: kinds[name] for name in layers})
+        parts = [_picture(layers[shown], format, precision, compression, view)]
     add_metadata(parts[0].spec, metadata, format)
     room = sum(part.array.nbytes for part in parts) + sum(len(str(value)) for value in metadata.values())
     store(path, _encoder(path, format, parts), room)
+
+
+def check_destination(
+    path: str | Path, kinds: Mapping[str, Kind], sizes: Mapping[str, Size], *, compression: str = "zip", view: str = ""
+) -> None:
+    """Refuse, before there are pixels, what `write` would refuse: the same errors, a full disk aside."""
+    _checked(path, kinds, sizes, compression, view)
+    check_room(path)
+
+
+def _checked(
+    path: str | Path, kinds: Mapping[str, Kind], sizes: Mapping[str, Size], compression: str, view: str
+) -> str:
+    """The format, if the file can hold layers of these kinds and sizes. Raises UsageError."""
+    format = _format(Path(path))
+    if not kinds:
+        raise UsageError(f"{path}: there is nothing to write: the graph has no outputs")
+    if view:
+        find_view(view)
+    choices = _COMPRESSIONS.get(format, (compression,))
+    if compression not in choices:
+        guess = difflib.get_close_matches(compression.casefold(), choices, 1, 0.4)
+        hint = f"did you mean '{guess[0]}'? Choose" if guess else "choose"
+        raise UsageError(f"{path}: there is no compression '{compression}': {hint} from {', '.join(choices)}")
+    if format != "openexr":
+        _shown(path, kinds)
+    elif len(set(sizes.values())) > 1:
+        said = ", ".join(f"'{name}' {width}x{height}" for name, (width, height) in sizes.items())
+        raise UsageError(f"{path}: one EXR holds layers of one size, but there are {said}: write them to several files")
+    return format
 
 
 def _format(path: Path) -> str:
@@ -87,22 +114,9 @@ def _format(path: Path) -> str:
     raise UsageError(f"{path}: {said}: use one of {', '.join(_FORMATS)}")
 
 
-def _check_compression(path: str | Path, format: str, compression: str) -> None:
-    choices = _COMPRESSIONS.get(format)
-    if choices is None or compression in choices:
-        return
-    guess = difflib.get_close_matches(compression.casefold(), choices, 1, 0.4)
-    hint = f"did you mean '{guess[0]}'? Choose" if guess else "choose"
-    raise UsageError(f"{path}: there is no compression '{compression}': {hint} from {', '.join(choices)}")
-
-
 def _exr_parts(
-    path: str | Path, layers: Mapping[str, Array], kinds: Mapping[str, Kind], precision: Precision, compression: str
+    layers: Mapping[str, Array], kinds: Mapping[str, Kind], precision: Precision, compression: str
 ) -> list[_Part]:
-    sizes = {array.shape[:2] for array in layers.values()}
-    if len(sizes) > 1:
-        said = ", ".join(f"'{name}' {array.shape[1]}x{array.shape[0]}" for name, array in layers.items())
-        raise UsageError(f"{path}: one EXR holds layers of one size, but there are {said}: write them to several files")
     parts: list[_Part] = []
     for name, array in layers.items():
         color = kinds[name] in (Kind.IMAGE, Kind.COLOR)
@@ -130,16 +144,17 @@ def _letters(name: str, kind: Kind, count: int) -> str:
     return "Z" if is_depth(name) else "Y"
 
 
-def _picture(
-    path: str | Path, layers: Mapping[str, Array], kinds: Mapping[str, Kind], format: str, precision: Precision,
-    compression: str, view: str,
-) -> _Part:
-    """The one picture of a format that holds no layers."""
-    shown = [name for name in layers if kinds[name] in (Kind.IMAGE, Kind.COLOR)]
-    shown = shown or [name for name in layers if kinds[name] is not Kind.VECTOR]
+def _shown(path: str | Path, kinds: Mapping[str, Kind]) -> str:
+    """Which layer a format without layers shows: the first of color, else the first field."""
+    shown = [name for name in kinds if kinds[name] in (Kind.IMAGE, Kind.COLOR)]
+    shown = shown or [name for name in kinds if kinds[name] is not Kind.VECTOR]
     if not shown:
         raise UsageError(f"{path}: vectors are data, not a picture: write them to an .exr file")
-    array = layers[shown[0]]
+    return shown[0]
+
+
+def _picture(array: Array, format: str, precision: Precision, compression: str, view: str) -> _Part:
+    """The one picture of a format that holds no layers."""
     if array.shape[2] < 3:
         array = array[..., :1].repeat(3, axis=2)
     if format in ("hdr", "jpeg") or (array.shape[2] == 4 and bool((array[..., 3] == 1.0).all())):

@@ -1,0 +1,98 @@
+"""Where results go: which outputs into which file, and what can be refused before anything is rendered."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...nodes import Kind, Socket
+from .. import media
+from ..compiler import Picture, Plan, Precision
+from ..errors import UsageError
+from ..graph import OUTPUTS, Graph, Port, did_you_mean
+from .engine import Wanted
+
+
+@dataclass(frozen=True)
+class Writing:
+    """Where and how results are written. `files` are pairs of an output's name and a file; "" stands for all outputs.
+
+    Without a `view`, outputs are shown as they ask for themselves.
+    """
+
+    files: Sequence[tuple[str, Path]]
+    view: str = ""
+    compression: str = "zip"
+    precision: Precision = "half"
+
+
+@dataclass(frozen=True)
+class Destination:
+    """A file to be written: the output behind each of its layers, and what the layers hold."""
+
+    path: Path
+    layers: Mapping[str, str]
+    kinds: Mapping[str, Kind]
+    view: str
+
+
+def destinations(graph: Graph, wanted: Wanted, writing: Writing) -> tuple[Destination, ...]:
+    """The files to be written; an EXR may be named for several outputs. Raises UsageError."""
+    names = tuple(wanted.targets or graph.outputs)
+    files: dict[Path, tuple[str, ...]] = {}
+    known: dict[str, Path] = {}
+    for name, path in writing.files:
+        if name and name not in names:
+            hint = did_you_mean(name, names) or "; there is none at all"
+            raise UsageError(f"-o {name}={path}: there is no output '{name}'{hint}")
+        layered = path.suffix.casefold() == ".exr"
+        if not name and len(names) > 1 and not layered:
+            raise UsageError(
+                f"{path}: {path.suffix or 'such a file'} holds one picture, but the graph has the outputs "
+                f"{', '.join(names)}; choose one with -o {names[0]}={path}"
+            )
+        same = known.setdefault(os.path.realpath(path), path)
+        if same in files and not (layered and name and name not in files[same]):
+            raise UsageError(f"-o {path}: this file is given twice; give every output a file of its own")
+        files[same] = (*files.get(same, ()), *((name,) if name else names))
+    return tuple(_destination(graph, wanted, writing, path, files[path]) for path in files)
+
+
+def check(found: Sequence[Destination], plan: Plan, sources: Mapping[str, Picture], compression: str) -> None:
+    """Refuse what could not be written, or would destroy a picture that `sources` read. Raises UsageError, OutputError.
+
+    `sources` are pictures by the input or node that reads them.
+    """
+    reading = {os.path.realpath(picture.path): node for node, picture in sources.items()}
+    for file in found:
+        if node := reading.get(os.path.realpath(file.path)):
+            raise UsageError(f"{file.path}: this file is read by '{node.removeprefix('inputs.')}'; write to another")
+        sizes = {layer: plan.surfaces[plan.outputs[name]].size for layer, name in file.layers.items()}
+        media.check_destination(file.path, file.kinds, sizes, compression=compression, view=file.view)
+
+
+def _destination(graph: Graph, wanted: Wanted, writing: Writing, path: Path, names: Sequence[str]) -> Destination:
+    layers: dict[str, str] = {}
+    kinds: dict[str, Kind] = {}
+    for name in names:
+        layer = name if name in wanted.targets else graph.outputs[name].layer or name
+        if layer in layers:
+            raise UsageError(
+                f"{path}: the outputs '{layers[layer]}' and '{name}' have the same layer '{layer}'; write them to "
+                "several files"
+            )
+        layers[layer], kinds[layer] = name, _kind(graph, _port(wanted, name))
+    first = _port(wanted, names[0]) if names else Port("", "")
+    view = writing.view or (graph.outputs[first.socket].view if first.node == OUTPUTS else "")
+    return Destination(path, layers, kinds, view)
+
+
+def _port(wanted: Wanted, name: str) -> Port:
+    return wanted.targets.get(name, Port(OUTPUTS, name))
+
+
+def _kind(graph: Graph, port: Port) -> Kind:
+    socket = graph.target(port) if port.node == OUTPUTS else graph.source(port)
+    return socket.kind if isinstance(socket, Socket) else Kind.IMAGE
