@@ -17,13 +17,13 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .errors import HalationError
+from .errors import HalationError, UsageError
 
 if TYPE_CHECKING:
     import numpy as np
 
     from .compiler import Precision
-    from .graph import Graph
+    from .graph import Graph, Port
     from .media.pictures import Binding
     from .renderer import Renderer
 
@@ -55,12 +55,15 @@ def render(
     `node` renders one node (`id` or `id.output`) instead. `size` replaces the size of canvas and pictures, `scale`
     renders a proxy with lengths in pixels shrunk too. Programs and results are kept from call to call.
     """
-    from .graph import node_output
     from .renderer import Wanted
 
+    if not 0.0 < scale <= 1.0:
+        raise UsageError(f"scale {scale:g}: give a number above 0 and up to 1")
+    if size is not None and min(size) < 1:
+        raise UsageError(f"size {size[0]}x{size[1]}: give width and height in pixels, at least 1")
     for name, value in (values or {}).items():
         graph = graph.override(name, value)
-    targets = {node: node_output(graph, node)} if node else {}
+    targets = {node: _output(graph, node)} if node else {}
     return _renderer().render(graph, Wanted(inputs or {}, targets, size, scale, frame, precision))
 
 
@@ -74,10 +77,19 @@ def write(
     from ..nodes import Kind
     from . import media
 
-    kind = {1: Kind.FIELD, 2: Kind.VECTOR, 3: Kind.IMAGE, 4: Kind.IMAGE}[1 if picture.ndim == 2 else picture.shape[2]]
+    channels = {2: 1, 3: picture.shape[-1]}.get(picture.ndim, 0)
+    if not 1 <= channels <= 4:
+        raise UsageError(f"{path}: the array is {list(picture.shape)}; give [height, width] or [height, width, 1 to 4]")
+    kind = (Kind.FIELD, Kind.VECTOR, Kind.IMAGE, Kind.IMAGE)[channels - 1]
     media.write(
         Path(path), {"image": picture}, kinds={"image": kind}, precision=precision, compression=compression, view=view
     )
+
+
+def _output(of: Graph, node: str) -> Port:
+    from .graph import node_output
+
+    return node_output(of, node)
 
 
 @cache

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import sys
+from io import TextIOWrapper
 
 _INTERRUPTED = 130
 
@@ -12,9 +12,8 @@ _INTERRUPTED = 130
 def main() -> None:
     """Run the command line, and leave at once: nothing is left to tidy up that the system does not take back."""
     for stream in (sys.stdout, sys.stderr):
-        # Names of files may hold bytes that no encoding knows.
-        with contextlib.suppress(AttributeError, ValueError):
-            stream.reconfigure(errors="backslashreplace")
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # names of files may hold bytes that no encoding knows
     try:
         from .program import run
 

@@ -70,6 +70,9 @@ class Pictures:
 
     def _bind(self, socket: Input, name: str, item: Binding) -> Picture:
         if not isinstance(item, str | Path):
+            if item.ndim not in (2, 3) or not item.size or item.dtype.kind not in "fiub":
+                said = f"{item.dtype} {list(item.shape)}"
+                raise UsageError(f"input '{name}': the array is {said}; give numbers as [height, width, channels]")
             self.arrays = {**self.arrays, name: item}
             self._marks[name] = _content(item)
             return Picture(name, "", socket.kind, socket.socket().channels, in_memory=True)
