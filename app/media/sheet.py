@@ -31,18 +31,18 @@ def sheet(pictures: Mapping[str, Array], columns: int = 4, width: int = 0) -> Ar
     """
     pictures = {name: _resized(array, width or array.shape[1]) for name, array in pictures.items()}
     height, width = next(iter(pictures.values())).shape[:2]
-    step = height + 2 * _GAP + _LETTERS
-    rows = -(-len(pictures) // columns)
+    across, down = width + _GAP, height + 2 * _GAP + _LETTERS
     columns = min(columns, len(pictures))
-    made = np.full((rows * step + _GAP, columns * (width + _GAP) + _GAP, 3), _BACK, np.float32)
-    places = [(_GAP + index // columns * step, _GAP + index % columns * (width + _GAP)) for index in range(len(pictures))]
+    rows = -(-len(pictures) // columns)
+    made = np.full((rows * down + _GAP, columns * across + _GAP, 3), _BACK, np.float32)
+    places = [(_GAP + index // columns * down, _GAP + index % columns * across) for index in range(len(pictures))]
     for (top, left), array in zip(places, pictures.values(), strict=True):
         made[top : top + height, left : left + width] = array
     paper = oiio.ImageBuf(made)
     for (top, left), name in zip(places, pictures, strict=True):
         baseline = top + height + _LETTERS + 2
         oiio.ImageBufAlgo.render_text(paper, left, baseline, name.replace("_", " "), _LETTERS, "", (_INK,) * 3)
-    return paper.get_pixels(oiio.FLOAT)
+    return np.asarray(paper.get_pixels(oiio.FLOAT), np.float32)
 
 
 def _resized(array: Array, width: int) -> Array:
@@ -51,4 +51,4 @@ def _resized(array: Array, width: int) -> Array:
     if source.shape[:2] == (height, width):
         return source
     made = oiio.ImageBufAlgo.resize(oiio.ImageBuf(source), filtername="lanczos3", roi=oiio.ROI(0, width, 0, height))
-    return np.clip(made.get_pixels(oiio.FLOAT), 0.0, 1.0)
+    return np.clip(np.asarray(made.get_pixels(oiio.FLOAT), np.float32), 0.0, 1.0)

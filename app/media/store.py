@@ -50,10 +50,10 @@ def check_room(path: str | Path) -> None:
 def _part(path: str | Path) -> Iterator[tuple[Path, Path]]:
     """A new file that is gone afterwards, and the one that it may replace."""
     target = Path(os.path.realpath(path))
-    if target.is_dir():
-        raise OutputError(f"{path}: is a folder: add the name of a file")
-    part = target.with_name(f".halation-{secrets.token_hex(6)}{target.suffix}")
+    part = target.with_name(f".halation-{secrets.token_hex(6)}{target.suffix[:8]}")
     try:
+        if target.is_dir():
+            raise OutputError(f"{path}: is a folder: add the name of a file")
         try:
             part.open("xb").close()
             yield part, target

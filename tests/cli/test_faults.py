@@ -1,0 +1,217 @@
+"""Bad input: one sentence that names file or JSON path, the documented exit code, nothing lost."""
+
+from __future__ import annotations
+
+import json
+import sys
+
+import moderngl
+import pytest
+from halation.app import renderer
+
+REAL_DEVICE = renderer.open_device
+
+
+# --- pictures -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("share", [0.02, 0.3, 0.97])
+def test_a_truncated_exr(fails, graphs, shot, share):
+    data = shot.read_bytes()
+    shot.write_bytes(data[: int(len(data) * share)])
+    path = graphs(inputs={"depth": {"type": "Field", "file": "shot.exr", "layer": "Depth"}},
+                  outputs={"far": {"type": "Field"}}, links={"outputs.far": "inputs.depth"})
+    assert fails(4, "render", path) == f"{shot}: is cut short or damaged: copy or render it again"
+
+
+def test_an_empty_picture(fails, graphs, shot):
+    shot.write_bytes(b"")
+    assert fails(4, "render", graphs()) == f"{shot}: is empty (0 bytes): copy or render it again"
+
+
+def test_a_missing_layer(fails, graphs, shot):
+    said = fails(4, "render", graphs(), "-i", f"beauty={shot}:Depht")
+    assert said.startswith(f"{shot}: ") and "'Depht'" in said and "Depth" in said
+    path = graphs(inputs={"depth": {"type": "Field", "file": "shot.exr", "layer": "Depht"}},
+                  outputs={"far": {"type": "Field"}}, links={"outputs.far": "inputs.depth"})
+    assert fails(4, "render", path) == said
+
+
+def test_a_missing_picture(fails, graphs, tmp_path):
+    path = graphs(inputs={"beauty": {"type": "Image", "file": "shto.exr"}})
+    assert fails(4, "render", path) == f"{tmp_path / 'shto.exr'}: there is no such file; did you mean 'shot.exr'?"
+
+
+def test_an_input_that_nobody_filled(fails, graphs):
+    path = graphs(inputs={"beauty": {"type": "Image"}})
+    said = fails(3, "render", path)
+    assert "'beauty'" in said
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("-i", "beuaty=a.exr"), "-i beuaty=a.exr: the graph has no input 'beuaty'; did you mean 'beauty'?"),
+        (("-i", "beauty="), "-i beauty=: write -i NAME=VALUE"),
+        (("-i", "beauty=a.exr", "-i", "beauty=b.exr"), "-i beauty=b.exr: 'beauty' is given twice"),
+    ],
+)
+def test_an_unknown_input(fails, graphs, words, sentence):
+    assert fails(2, "render", graphs(), *words) == sentence
+
+
+# --- graphs -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("", "the file is empty"),
+        ("   \n", "the file is empty"),
+        ("{", "not valid JSON: "),
+        ("[1]", "expected an object, got a list"),
+        ('{"halation":99}', "halation: "),
+        ('{"halation":1,"nodes":{"a":{"type":"exposure","values":{"stops":NaN}}}}', "nodes.a.values.stops: "),
+        ('{"halation":1,"nodes":{"a":{"type":"exposure","values":{"stops":"x"}}}}', "nodes.a.values.stops: "),
+        ('{"halation":1,"nodes":[]}', "nodes: "),
+        ('{"halation":1,"ui":' + "[" * 100_000 + "]" * 100_000 + "}", "objects and lists nest deeper than "),
+        ('{"halation":1,"links":{"a":3}}', "links.a: "),
+    ],
+    ids=["empty", "blank", "cut", "list", "newer", "nan", "word", "type", "deep", "link"],
+)
+def test_a_file_that_is_no_graph(fails, tmp_path, text, sentence):
+    path = tmp_path / "bad.json"
+    path.write_text(text)
+    assert fails(3, "render", path).startswith(f"{path}: {sentence}")
+
+
+def test_a_graph_of_100_megabytes(fails, tmp_path):
+    path = tmp_path / "large.json"
+    with path.open("wb") as file:
+        file.truncate(100 * 2**20)
+    assert fails(3, "render", path) == f"{path}: the file has more than 32 MB; that is no graph"
+
+
+def test_a_graph_that_is_not_there(fails, tmp_path):
+    assert fails(3, "render", tmp_path / "no.json") == f"{tmp_path / 'no.json'}: there is no such file"
+    assert "folder" in fails(3, "render", tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("parts", "sentence"),
+    [
+        ({"nodes": {"light": {"type": "exposrue"}}}, "unknown type 'exposrue'; did you mean 'exposure'?"),
+        ({"nodes": {"vig": {"type": "vignette", "values": {"amount": 2.0}}}}, "vig.amount: 2.0 is outside the range"),
+        ({"links": {"light.image": "inputs.beuaty"}}, "'beuaty'"),
+        ({"links": {"light.imgae": "inputs.beauty"}}, "node 'light' has no input 'imgae'; did you mean 'image'?"),
+        ({"links": {"outputs.image": "light.uot"}}, "node 'light' has no output 'uot'"),
+        ({"links": {"outputs.image": "lihgt.out"}}, "there is no node 'lihgt'; did you mean 'light'?"),
+        ({"nodes": {"pair": {"type": "combine_vector2"}, "light": {"type": "exposure"}},
+          "links": {"light.image": "pair.out"}}, "'pair.out' cannot feed 'light.image'"),
+        (
+            {"nodes": {"back": {"type": "exposure"}}, "links": {"back.image": "light.out", "light.image": "back.out"}},
+            "back",
+        ),
+    ],
+    ids=["type", "range", "input", "socket", "output", "node", "kind", "cycle"],
+)
+def test_a_graph_that_cannot_work(fails, cli, graphs, parts, sentence):
+    path = graphs(**parts)
+    said = fails(3, "render", path)
+    assert said.startswith(f"{path}: ") and sentence in said
+    checked = cli("check", path)
+    assert checked.code == 3 and f"{path}: error: " in checked.out and sentence in checked.out
+
+
+def test_the_first_of_several_problems_counts_the_others(fails, graphs):
+    path = graphs(nodes={"a": {"type": "nonsense"}, "b": {"type": "nonsense"}})
+    assert fails(3, "render", path).endswith(f"(and 1 more: halation check {path})")
+
+
+# --- devices ------------------------------------------------------------------------------------------------------
+
+
+class Old:
+    """A context of a driver from 2010."""
+
+    version_code = 330
+    info = {"GL_RENDERER": "Old Card", "GL_MAX_TEXTURE_SIZE": 8192, "GL_MAX_TEXTURE_IMAGE_UNITS": 16}  # noqa: RUF012
+
+
+def test_no_opengl(fails, graphs, monkeypatch):
+    def missing(**_):
+        raise Exception("libEGL.so.1 not loaded")
+
+    monkeypatch.setattr(renderer, "open_device", REAL_DEVICE)
+    monkeypatch.setattr(moderngl, "create_context", missing)
+    said = fails(5, "render", graphs())
+    assert said.startswith("OpenGL 4.1 cannot be opened (libEGL.so.1 not loaded")
+    if sys.platform == "linux":
+        assert said.endswith("(Debian, Ubuntu: apt-get install libegl1 libgl1)")
+
+
+def test_an_opengl_that_is_too_old(fails, graphs, monkeypatch):
+    monkeypatch.setattr(renderer, "open_device", REAL_DEVICE)
+    monkeypatch.setattr(moderngl, "create_context", lambda **_: Old())
+    assert fails(5, "render", graphs()).startswith("Old Card offers OpenGL 3.3, but at least 4.1 is needed: ")
+
+
+def test_more_pixels_than_the_device_can_hold(fails, graphs):
+    said = fails(5, "render", graphs(), "--size", "99999x16")
+    assert "99999x16" in said and "--scale or --size" in said
+
+
+def test_a_shader_that_the_driver_refuses(fails, graphs, monkeypatch):
+    from halation.app import compiler
+    from halation.app.compiler.library import parse
+
+    code = "vec4 exposure(vec4 image, float stops) {\n    return image * stosp;\n}\n"
+    library = compiler.Library({**compiler.installed().texts, "color/exposure": parse("color/exposure", code)})
+    monkeypatch.setattr(compiler, "installed", lambda: library)
+    said = fails(5, "render", graphs())
+    assert said.startswith("node 'light': shaders/color/exposure.glsl, line 2: ") and "stosp" in said
+
+
+# --- the command line itself --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("rendr", "x"), "'rendr'"),
+        (("fmt", "--chekc", "x"), "--check"),
+        (("nodes", "blom"), "there is no node 'blom'; did you mean 'bloom'?"),
+        (("check",), "halation check --help"),
+        (("explain", "x", "--scale", "wide"), "--scale"),
+    ],
+)
+def test_words_that_make_no_sense(fails, words, sentence):
+    assert sentence in fails(2, *words)
+
+
+def test_render_without_a_destination(cli, graphs):
+    result = cli("render", graphs())
+    assert result.code == 2 and "'--output'" in result.err and "see halation render --help" in result.err
+
+
+def test_a_bug_is_called_a_bug(cli, graphs, tmp_path, monkeypatch):
+    from halation.app.renderer import job
+
+    monkeypatch.setattr(job, "run_job", lambda *_: 1 / 0)
+    result = cli("render", graphs(), "-o", tmp_path / "out.exr", "--json")
+    assert result.code == 70 and json.loads(result.out)["error"]["kind"] == "Bug"
+    assert "this is a bug in Halation (ZeroDivisionError: division by zero)" in result.err
+    assert "Traceback" not in result.err
+    monkeypatch.setenv("HALATION_DEBUG", "1")
+    with pytest.raises(ZeroDivisionError):
+        cli("render", graphs(), "-o", tmp_path / "out.exr")
+
+
+def test_too_little_memory(fails, graphs, monkeypatch):
+    def refuse(*_):
+        raise MemoryError
+
+    from halation.app.renderer import job
+
+    monkeypatch.setattr(job, "run_job", refuse)
+    assert fails(1, "render", graphs()) == "there is not enough memory: render smaller with --scale or --size"

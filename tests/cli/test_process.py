@@ -1,0 +1,176 @@
+"""The program as the system sees it: signals, pipes, imports, time."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+HALATION = [sys.executable, "-m", "halation.app.cli"]
+POSIX = pytest.mark.skipif(os.name == "nt", reason="POSIX signals, pipes and terminals")
+
+TEN = {
+    "bloom": ("bloom", {"intensity": 0.3}, {"image": "inputs.beauty"}),
+    "grade": ("grade", {"gamma": [1.1, 1.0, 0.9, 1.0]}, {"image": "bloom.out"}),
+    "color": ("saturation", {"saturation": 1.2}, {"image": "grade.out"}),
+    "blur": ("gaussian_blur", {"sigma": 6.0}, {"image": "color.out"}),
+    "edges": ("edge_detect", {}, {"image": "color.out"}),
+    "merge": ("merge", {"mode": "plus", "amount": 0.2}, {"a": "edges.out", "b": "blur.out"}),
+    "noise": ("noise", {"size": 40.0}, {}),
+    "warp": ("displace", {"amount": [4.0, 4.0]}, {"image": "merge.out", "vector": "noise.vector"}),
+    "frame": ("vignette", {}, {"image": "warp.out"}),
+    "tone": ("tone_map", {}, {"image": "frame.out"}),
+}
+
+
+@pytest.fixture
+def ten(tmp_path):
+    """The ten-node graph on the 480x270 frame that comes with the project."""
+    links = {f"{id}.{socket}": source for id, (_, _, wires) in TEN.items() for socket, source in wires.items()}
+    sample = Path(__file__).parents[2] / "presets" / "samples" / "neon.exr"
+    tree = {
+        "halation": 1, "inputs": {"beauty": {"type": "Image", "file": str(sample), "layer": "Combined"}},
+        "outputs": {"image": {"type": "Image"}}, "links": {**links, "outputs.image": "tone.out"},
+        "nodes": {id: {"type": type, "values": values} for id, (type, values, _) in TEN.items()},
+    }
+    path = tmp_path / "ten.json"
+    path.write_text(json.dumps(tree))
+    return path
+
+
+def halation(*words, **options):
+    return subprocess.run([*HALATION, *map(str, words)], capture_output=True, text=True, timeout=100, **options)
+
+
+def loaded(*words):
+    """The top-level modules that a command leaves loaded."""
+    code = (
+        "import sys; from halation.app.cli.program import run; code = run(sys.argv[1:]); "
+        "print('loaded', code, *{name.split('.')[0] for name in sys.modules})"
+    )
+    result = subprocess.run([sys.executable, "-c", code, *map(str, words)], capture_output=True, text=True, timeout=100)
+    status, code, *names = result.stdout.splitlines()[-1].split()
+    assert (status, code) == ("loaded", "0"), result.stderr
+    return set(names)
+
+
+WINDOWS = {"glfw", "imgui_bundle"}
+PIXELS = {"numpy", "OpenImageIO", "PyOpenColorIO", "moderngl", "glcontext", "rich"}
+
+
+def test_what_needs_no_pixels_loads_no_library_for_them(tmp_path):
+    path = tmp_path / "graph.json"
+    path.write_text(json.dumps({
+        "halation": 1, "outputs": {"image": {"type": "Image"}}, "nodes": {"fill": {"type": "constant"}},
+        "links": {"outputs.image": "fill.out"},
+    }))
+    for words in (("--help",), ("--version",), ("render", "--help"), ("nodes",), ("check", path), ("explain", path),
+                  ("fmt", path)):
+        assert not loaded(*words) & (WINDOWS | PIXELS), words
+
+
+def test_render_loads_no_window_library(ten, tmp_path):
+    names = loaded("render", ten, "-o", tmp_path / "out.png")
+    assert "moderngl" in names and not names & {*WINDOWS, "scipy", "cv2"}
+
+
+def test_without_display_home_or_a_place_for_caches(ten, tmp_path):
+    """The bare environment of a build machine."""
+    out = tmp_path / "out.png"
+    bare = {"PATH": os.environ["PATH"], "HOME": "/nonexistent/home", "TMPDIR": str(tmp_path)}
+    result = halation("render", ten, "-o", out, env=bare)
+    assert result.returncode == 0 and out.stat().st_size > 1000, result.stderr
+    assert len(result.stderr.splitlines()) == 2, result.stderr
+
+
+def test_ten_nodes_within_a_second(ten, tmp_path):
+    """Start to end, shaders compiled before, on whatever this machine is: the best of five is what it can do."""
+    times = []
+    for _ in range(5):
+        started = time.perf_counter()
+        assert halation("render", ten, "-o", tmp_path / "out.exr").returncode == 0
+        times.append(time.perf_counter() - started)
+    assert min(times) < 1.0, times
+
+
+@POSIX
+@pytest.mark.parametrize("delay", [0.0, 0.3, 0.8])
+def test_interrupting_stops_at_once_and_leaves_nothing(ten, tmp_path, delay):
+    out = tmp_path / "result" / "out.exr"
+    out.parent.mkdir()
+    out.write_bytes(b"precious")
+    with subprocess.Popen(
+        [*HALATION, "render", ten, "-o", out, "--size", "2880x1620", "--set", "blur.sigma=60"],
+        stderr=subprocess.PIPE, text=True,
+    ) as running:
+        assert running.stderr is not None
+        assert "OpenGL" in running.stderr.readline()
+        time.sleep(delay)
+        started = time.perf_counter()
+        running.send_signal(signal.SIGINT)
+        said = running.stderr.read()
+        code, spent = running.wait(), time.perf_counter() - started
+    assert (code, said) == (130, "halation: interrupted; nothing unfinished was left behind\n")
+    assert spent < 1.0
+    assert list(out.parent.iterdir()) == [out] and out.read_bytes() == b"precious"
+
+
+@POSIX
+def test_nobody_reads_our_output():
+    """As in `halation nodes --json | head -1`: no complaint, and the status that shells know."""
+    with subprocess.Popen([*HALATION, "nodes", "--json"], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:
+        assert running.stdout is not None and running.stderr is not None
+        running.stdout.close()
+        assert running.stderr.read() == b""
+        assert running.wait() == 141
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
+def test_output_onto_a_full_disk():
+    with Path("/dev/full").open("w") as full:
+        result = subprocess.run([*HALATION, "nodes"], stdout=full, stderr=subprocess.PIPE, text=True)
+    assert result.returncode == 1
+    assert result.stderr == "halation: standard output cannot be written (No space left on device)\n"
+
+
+@POSIX
+def test_progress_shows_on_a_terminal_only(ten, tmp_path):
+    import pty
+
+    words = [*HALATION, "render", str(ten), "-o", str(tmp_path / "out.exr"), "--size", "1600x900"]
+    ours, theirs = pty.openpty()
+    with subprocess.Popen(words, stderr=theirs, env={**os.environ, "TERM": "xterm", "COLUMNS": "100"}) as running:
+        os.close(theirs)
+        said = b""
+        try:
+            while block := os.read(ours, 4096):
+                said += block
+        except OSError:  # Linux: the other end is closed
+            pass
+        assert running.wait() == 0
+    os.close(ours)
+    assert b"passes" in said and b"/18 passes" in said and said.count(b"\x1b[?25l") == said.count(b"\x1b[?25h")
+    quiet = halation(*words[len(HALATION):])
+    assert "\x1b" not in quiet.stderr and "/18 passes" not in quiet.stderr and len(quiet.stderr.splitlines()) == 2
+
+
+@POSIX
+def test_names_that_no_encoding_knows(ten, tmp_path):
+    folder = os.fsencode(tmp_path) + b"/caf\xe9"
+    result = subprocess.run([*HALATION, "render", os.fspath(ten), "-o", folder + b"/out.exr"], capture_output=True)
+    assert result.returncode == 1 and result.stderr.endswith(b"caf\\udce9/out.exr: cannot be written: "
+                                                             b"there is no such folder: create it first\n")
+
+
+def test_the_installed_command(ten):
+    script = Path(sys.executable).with_name("halation")
+    if not script.exists():
+        pytest.skip("not installed as a command")
+    result = subprocess.run([script, "check", ten], capture_output=True, text=True)
+    assert (result.returncode, result.stdout) == (0, f"{ten}: ok\n")

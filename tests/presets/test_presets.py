@@ -1,0 +1,202 @@
+"""Every preset is sound, and looks on the sample as it looked when a person last approved it.
+
+After a change that is meant to be seen, look at the pictures (`./dev demo`), then renew thumbnails and docs/images:
+    HALATION_RENEW=1 python -m pytest tests/presets
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from halation.app import document, media
+from halation.app.graph import Graph, problems, signature
+from halation.app.media.sheet import sheet, shown
+from halation.app.renderer import Renderer, Wanted
+from halation.app.renderer.job import Writing, run_job
+from halation.nodes import Kind
+from halation.presets import paths
+
+Array = np.ndarray
+
+RENEW = bool(os.environ.get("HALATION_RENEW"))
+GOLDEN = Path(__file__).parent / "golden"
+IMAGES = Path(__file__).parents[2] / "docs" / "images"
+PRESETS = {path.stem: path for path in paths()}
+ASKED = {"soft_bloom", "cinematic_grade", "night_street", "emboss_and_edges", "dreamy_glow", "noise_warp"}
+LINES = {"edge_detect", "convolve3x3"}
+"""Their lines are a pixel or two wide at any size, so a proxy shows them bolder."""
+
+each = pytest.mark.parametrize("name", PRESETS)
+
+
+@cache
+def loaded(name: str) -> Graph:
+    return document.load(PRESETS[name])
+
+
+def picture(renderer: Renderer, graph: Graph, scale: float = 1.0) -> Array:
+    """The output as light of the display, [h, w, 3] within 0..1."""
+    return shown(renderer.render(graph, Wanted(scale=scale))["image"], graph.outputs["image"].view)
+
+
+def encoded(light: Array) -> Array:
+    """What the eye compares: sRGB in steps of 8 bits."""
+    return 255.0 * np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.maximum(light, 1e-9) ** (1 / 2.4) - 0.055)
+
+
+def shrunk(light: Array, width: int, height: int) -> Array:
+    return cv2.resize(light, (width, height), interpolation=cv2.INTER_AREA)
+
+
+@pytest.fixture(scope="module")
+def full(renderer: Renderer) -> dict[str, Array]:
+    """All pictures at full size."""
+    return {name: picture(renderer, loaded(name)) for name in PRESETS}
+
+
+@pytest.fixture(scope="module")
+def forgetful() -> Iterator[Renderer]:
+    """An engine that keeps no results."""
+    made = Renderer(budget=0)
+    yield made
+    made.close()
+
+
+def test_the_collection_is_complete() -> None:
+    assert PRESETS.keys() >= ASKED
+    assert len(PRESETS) >= 8
+
+
+@each
+def test_file_is_sound(name: str) -> None:
+    graph = loaded(name)
+    assert document.dumps(graph) == PRESETS[name].read_text("utf-8")
+    assert problems(graph) == ()
+    assert not graph.extra
+    assert set(graph.outputs) == {"image"}
+    assert graph.inputs["beauty"].layer == "Combined"
+    for end in graph.inputs.values():
+        assert end.doc and not Path(end.file).is_absolute() and ".." not in Path(end.file).parts
+        file = media.info(PRESETS[name].parent / end.file)
+        assert media.find_layer(file, end.layer).name == end.layer
+
+
+@each
+def test_the_canvas_has_a_place_for_everything(name: str) -> None:
+    """Left to right along the links, and nothing on top of another."""
+    graph = loaded(name)
+    places = {key: (place["x"], place["y"]) for key, place in graph.ui["nodes"].items()}
+    ends = {f"inputs.{end}" for end in graph.inputs} | {f"outputs.{end}" for end in graph.outputs}
+    assert places.keys() == {*graph.nodes, *ends}
+    assert len(set(places.values())) == len(places)
+    for target, source in graph.links.items():
+        left = places[source.node] if source.node in places else places[str(source)]
+        right = places[target.node] if target.node in places else places[str(target)]
+        assert left[0] < right[0]
+
+
+@each
+def test_every_control_changes_the_picture(name: str, renderer: Renderer, full: dict[str, Array]) -> None:
+    graph = loaded(name)
+    assert 2 <= len(graph.controls) <= 5
+    for control, item in graph.controls.items():
+        assert item.label and item.doc
+        value = signature(graph.nodes[item.target.node]).values[item.target.socket]
+        now = getattr(graph.nodes[item.target.node], item.target.socket)
+        if isinstance(now, tuple):
+            other: object = tuple(0.6 * part + 0.02 for part in now)
+        else:
+            other = type(now)(value.low if now - value.low > value.high - now else value.high)
+        changed = picture(renderer, graph.set_control(control, other))
+        assert np.abs(encoded(changed) - encoded(full[name])).mean() > 0.3, control
+
+
+@each
+def test_nothing_is_crushed_or_clipped(name: str, renderer: Renderer, full: dict[str, Array]) -> None:
+    assert np.isfinite(renderer.render(loaded(name))["image"]).all()
+    assert full[name].shape == (270, 480, 3)
+    assert (full[name].max(2) < 0.001).mean() < 0.04
+    assert (full[name].min(2) > 0.999).mean() < 0.01
+    assert encoded(full[name]).std() > 15.0
+
+
+@each
+def test_half_size_looks_the_same(name: str, renderer: Renderer, full: dict[str, Array]) -> None:
+    """Mean difference of sRGB below 6/255; where fine lines are drawn, a correlation above 0.75."""
+    graph = loaded(name)
+    proxy = encoded(picture(renderer, graph, scale=0.5))
+    expected = encoded(shrunk(full[name], 240, 135))
+    if LINES & {getattr(node, "id", "") for node in graph.nodes.values()}:
+        assert np.corrcoef(proxy.ravel(), expected.ravel())[0, 1] > 0.75
+    else:
+        assert np.abs(proxy - expected).mean() < 6.0
+
+
+@each
+def test_rendering_twice_gives_the_same_bytes(name: str, forgetful: Renderer) -> None:
+    first = forgetful.render(loaded(name))["image"].tobytes()
+    passes = forgetful.runner.counters.passes
+    assert forgetful.render(loaded(name))["image"].tobytes() == first
+    assert forgetful.runner.counters.passes > passes
+
+
+@each
+def test_another_picture_of_another_size(name: str, renderer: Renderer) -> None:
+    """Sizes follow the picture that is bound, and light from black to suns stays finite."""
+    graph = loaded(name)
+    light = np.exp2(np.random.default_rng(3).uniform(-20.0, 14.0, (37, 61, 4))).astype(np.float32)
+    light[..., 3] = 1.0
+    made = renderer.render(graph, Wanted({"beauty": light}))["image"]
+    assert made.shape == (37, 61, 4)
+    assert np.isfinite(made).all()
+
+
+@each
+def test_thumbnail_is_as_approved(name: str, full: dict[str, Array]) -> None:
+    """Mean difference below 2/255: other devices round differently."""
+    small = encoded(shrunk(full[name], 64, 36))
+    file = GOLDEN / f"{name}.png"
+    if RENEW:
+        cv2.imwrite(str(file), small[..., ::-1].round().astype(np.uint8))
+    golden = cv2.imread(str(file))[..., ::-1].astype(np.float32)
+    assert np.abs(small - golden).mean() < 2.0
+
+
+def test_no_thumbnail_is_left_over() -> None:
+    assert {file.stem for file in GOLDEN.iterdir()} == PRESETS.keys()
+
+
+def test_a_display_view_goes_with_tone_mapping(renderer: Renderer, tmp_path: Path) -> None:
+    """What a tone map finished is not tone mapped again by the view, unless someone asks for one."""
+    for name in PRESETS:
+        ends = renderer.render(loaded(name))["image"][..., :3].max() < 1.5
+        assert loaded(name).outputs["image"].view == ("none" if ends else ""), name
+    graph = loaded("night_street")
+    for view, expected in (("", "none"), ("ACES", "ACES")):
+        file = tmp_path / f"night{view}.png"
+        run_job(renderer, graph, Wanted(), Writing((("image", file),), view))
+        wanted = encoded(shown(renderer.render(graph)["image"], expected))
+        assert np.abs(cv2.imread(str(file))[..., ::-1] - wanted).max() < 1.5
+
+
+def test_pictures_of_the_documentation_are_current(renderer: Renderer, full: dict[str, Array]) -> None:
+    """docs/images: the sheet of all presets, and the sample before and after one of them."""
+    sample = document.loads(
+        '{"halation": 1, "inputs": {"beauty": {"file": "samples/neon.exr", "layer": "Combined"}},'
+        ' "outputs": {"image": {}}, "links": {"outputs.image": "inputs.beauty"}}',
+        folder=str(PRESETS["night_street"].parent),
+    )
+    hero = {"the render": picture(renderer, sample), "night_street": full["night_street"]}
+    for name, made in (("presets", sheet(full, 4, 192)), ("hero", sheet(hero, 2))):
+        file = IMAGES / f"{name}.png"
+        if RENEW:
+            media.write(file, {"image": made}, kinds={"image": Kind.IMAGE}, view="none")
+        assert file.stat().st_size <= 400_000
+        there = cv2.imread(str(file))[..., ::-1].astype(np.float32)
+        assert np.abs(there - encoded(made)).mean() < 2.0
