@@ -34,7 +34,7 @@ def demo(
     note(renderer.device.description)
     console = Console(stderr=True)
     done: list[dict[str, object]] = []
-    columns = (TextColumn("{task.description:<24}"), BarColumn(), MofNCompleteColumn())
+    columns = (TextColumn("{task.description:<24}", markup=False), BarColumn(), MofNCompleteColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
         files = paths()
         task = progress.add_task("", total=len(files))

@@ -47,9 +47,11 @@ def failed(fault: BaseException, as_json: bool) -> int:
         # Whoever read our output has gone: that is no fault of ours, and nothing can be said to them.
         _silence()
         return BROKEN_PIPE
-    if os.environ.get("HALATION_DEBUG"):
-        raise fault
+    if isinstance(fault, OSError) and fault.filename is None:
+        _silence()
     kind, code, sentence = _told(fault)
+    if code == BUG and os.environ.get("HALATION_DEBUG"):
+        raise fault
     with contextlib.suppress(OSError):
         print(f"halation: {sentence}", file=sys.stderr, flush=True)
     if as_json:
@@ -63,6 +65,8 @@ def _told(fault: BaseException) -> tuple[str, int, str]:
         return type(fault).__name__, fault.exit_code, str(fault)
     if isinstance(fault, KeyboardInterrupt):
         return "Interrupted", INTERRUPTED, "interrupted; nothing unfinished was left behind"
+    if isinstance(fault, OSError):  # one that concerns no file is of standard output
+        return "OSError", 1, f"{fault.filename or 'standard output'}: the system refuses ({fault.strerror or fault})"
     if isinstance(fault, MemoryError):
         return "MemoryError", 1, "there is not enough memory: render smaller with --scale or --size"
     if format_message := getattr(fault, "format_message", None):  # what the parser of the command line raises
@@ -79,12 +83,8 @@ def settle(code: int) -> int:
     try:
         sys.stdout.flush()
         sys.stderr.flush()
-    except BrokenPipeError as gone:
-        return failed(gone, False)
     except OSError as fault:
-        _silence()
-        print(f"halation: standard output cannot be written ({fault.strerror})", file=sys.stderr, flush=True)
-        return code or 1
+        return code or failed(fault, False)
     return code
 
 

@@ -112,7 +112,7 @@ class _Bar:
             from rich.progress import BarColumn, Progress, TextColumn
 
             count = TextColumn("{task.completed}/{task.total} passes")
-            columns = (TextColumn("{task.description}"), BarColumn(), count)
+            columns = (TextColumn("{task.description}", markup=False), BarColumn(), count)
             self._progress = Progress(*columns, console=Console(stderr=True), transient=True)
             self._progress.start()
             self._progress.add_task("render", total=total)

@@ -161,18 +161,20 @@ class _Lowering:
             passed = self.pictures.fit(through, size, path) if isinstance(through, Ref) else through
             self.results |= {Port(path, name): passed for name in node.outputs}
             return
-        self._fit_all(path, operands, wires, size)
+        self._fit_all(path, node, operands, wires, size)
         working = node.working(self.request.scale, size[1])
         if isinstance(working, Pointwise):
             self._pointwise(path, working, operands, wires, size)
         elif isinstance(working, Filter):
             self._filter(path, working, operands, linked, size)
 
-    def _fit_all(self, path: str, operands: dict[str, Operand], wires: dict[str, Operand], size: Size) -> None:
-        """Bring every picture to the size of the first one, which need not be the size of the result."""
+    def _fit_all(
+        self, path: str, node: Node, operands: dict[str, Operand], wires: dict[str, Operand], size: Size
+    ) -> None:
+        """Bring every picture to one size: that of the result, or for a filter, which may resize, of the first one."""
         refs = [operand for operand in (*operands.values(), *wires.values()) if isinstance(operand, Ref)]
         sizes = [found for found in (self.builder.shape(ref).size for ref in refs) if found != (1, 1)]
-        wanted = sizes[0] if sizes else size
+        wanted = sizes[0] if sizes and isinstance(node, Filter) else size
         for group in (operands, wires):
             for name, operand in group.items():
                 if isinstance(operand, Ref):

@@ -36,7 +36,8 @@ class Pictures:
         """Pictures for graph inputs by name. Raises UsageError for a name that the graph does not have."""
         self.arrays, self._marks = {}, {}
         self._infos.clear()
-        return {name: self._bind(_input(graph, name), name, item) for name, item in inputs.items()}
+        bound = {name: self._bind(_input(graph, name), name, item) for name, item in inputs.items()}
+        return bound | self._siblings(graph, bound)
 
     def probe(self, picture: Picture) -> Probed:
         """Size and precision of a picture. Raises InputError for what cannot be read."""
@@ -67,6 +68,25 @@ class Pictures:
 
             self._infos[path] = info(path)
         return self._infos[path]
+
+    def _siblings(self, graph: Graph, bound: Mapping[str, Picture]) -> dict[str, Picture]:
+        """Inputs whose default is another layer of a file that was replaced follow it to the new file.
+
+        Otherwise a new picture would quietly be mixed with the depth of the sample.
+        """
+        replaced = {graph.inputs[name].file: picture for name, picture in bound.items() if graph.inputs[name].file}
+        found: dict[str, Picture] = {}
+        for name, socket in graph.inputs.items():
+            new = replaced.get(socket.file)
+            if name in bound or new is None:
+                continue
+            if new.in_memory:
+                raise UsageError(
+                    f"input '{name}' is a layer of {socket.file}, which input '{new.path}' no longer comes from: "
+                    f"bind '{name}' too"
+                )
+            found[name] = Picture(new.path, self._hinted(new.path, socket), socket.kind, socket.socket().channels)
+        return found
 
     def _bind(self, socket: Input, name: str, item: Binding) -> Picture:
         if not isinstance(item, str | Path):

@@ -6,6 +6,9 @@ from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, Output, Pixels
 
 _NO_LIMIT = 65504.0
 
+_OCTAVES = 4
+"""Scatter shares light out over this many halvings of the radius, so that the glow's shape is the same at any size."""
+
 
 class Bloom(Filter):
     """Let bright light bleed over its surroundings, as in a lens or on film.
@@ -58,12 +61,15 @@ class Bloom(Filter):
     def _spread(self, draw: Draw, light: Pixels, size: Size, level: int) -> Drawn:
         """The glow of a level's light: half the size, spread there by the levels below, and back."""
         last, part = _levels(self.radius)
+        # How many octaves this level lies below the radius; what would lie below the finest level stays in it.
+        below_radius = last + part - 1.0 - level
+        octaves = max(_OCTAVES - below_radius, 0.0) if level == 0 else min(max(_OCTAVES - below_radius, 0.0), 1.0)
         half = ((size[0] + 1) // 2, (size[1] + 1) // 2)
         steady = self.firefly and level == 0
         below = draw("bloom_shrink_steady" if steady else "bloom_shrink", image=light, size=half)
         if level < last:
             below = self._spread(draw, below, half, level + 1)
-        share = (self.scatter if level > 0 else 1.0) * (part if level == last else 1.0)
+        share = self.scatter**octaves * (part if level == last else 1.0)
         return draw("bloom_grow", image=below, level=light, size=size, share=share)
 
 

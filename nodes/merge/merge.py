@@ -1,6 +1,7 @@
+from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Field, Fraction, Image, Pointwise, Slider
+from .._declare import Doc, Field, Fraction, Image, Pointwise, Size, Slider
 
 Mode = Literal[
     "over", "under", "in", "out", "atop", "xor", "clear", "plus",
@@ -11,7 +12,7 @@ Mode = Literal[
 
 
 class Merge(Pointwise):
-    """Lay the foreground `a` on the background `b`.
+    """Lay the foreground `a` on the background `b`, whose size the result has.
 
     Over to plus are the operators of Porter and Duff (1984). The others blend colors where both cover and follow the
     W3C's Compositing and Blending Level 1: `a (1 - b.alpha) + b (1 - a.alpha) + a.alpha b.alpha blend(b, a)`. Within
@@ -29,6 +30,9 @@ class Merge(Pointwise):
     amount: Annotated[Fraction, Slider(
         0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="Mix of the background and the result."
     )] = 1.0
+
+    def output_size(self, inputs: Mapping[str, Size], canvas: Size) -> Size:
+        return inputs.get("b") or super().output_size(inputs, canvas)
 
     def identity(self) -> str | None:
         return "b" if self.amount == 0.0 else None

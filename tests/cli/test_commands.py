@@ -32,7 +32,8 @@ def test_check_lists_every_problem_and_ends_with_the_worst(cli, graphs, tmp_path
     lines = result.out.splitlines()
     assert lines[0] == f"{good}: ok"
     assert [line.split(": ")[:2] for line in lines[1:]] == [
-        [str(bad), "error"], [str(bad), "error"], [str(bad), "warning"], [str(missing), "error"], [str(broken), "error"],
+        [str(bad), "error"], [str(bad), "error"], [str(bad), "warning"],
+        [str(missing), "error"], [str(broken), "error"],
     ]
     found = cli("check", good, bad, missing, broken, "--json").json["graphs"]
     assert [item["exit_code"] for item in found] == [0, 3, 4, 3]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -131,12 +132,25 @@ def test_nobody_reads_our_output():
         assert running.wait() == 141
 
 
+@POSIX
+def test_closed_streams(ten, tmp_path):
+    """`>&- 2>&-` closes them: what is said goes nowhere, and never into a picture that took their place."""
+    out = tmp_path / "out.exr"
+    for closed in ("2>&-", ">&-", ">&- 2>&-"):
+        words = [*HALATION, "render", str(ten), "-o", str(out), "--json"]
+        result = subprocess.run(["sh", "-c", f'"$@" {closed}', "sh", *words], capture_output=True, text=True)
+        assert result.returncode == 0 and out.read_bytes()[:4] == b"v/1\x01", result
+        assert not result.stdout or json.loads(result.stdout)["written"] == [str(out)]
+        out.unlink()
+
+
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
-def test_output_onto_a_full_disk():
+@pytest.mark.parametrize("words", [("nodes",), ("nodes", "--json"), ("--version",)])
+def test_output_onto_a_full_disk(words):
     with Path("/dev/full").open("w") as full:
-        result = subprocess.run([*HALATION, "nodes"], stdout=full, stderr=subprocess.PIPE, text=True)
+        result = subprocess.run([*HALATION, *words], stdout=full, stderr=subprocess.PIPE, text=True)
     assert result.returncode == 1
-    assert result.stderr == "halation: standard output cannot be written (No space left on device)\n"
+    assert result.stderr == "halation: standard output: the system refuses (No space left on device)\n"
 
 
 @POSIX
@@ -155,9 +169,10 @@ def test_progress_shows_on_a_terminal_only(ten, tmp_path):
             pass
         assert running.wait() == 0
     os.close(ours)
-    assert b"passes" in said and b"/18 passes" in said and said.count(b"\x1b[?25l") == said.count(b"\x1b[?25h")
+    assert re.search(rb"\d+/\d+ passes", said), said
+    assert said.count(b"\x1b[?25l") == said.count(b"\x1b[?25h")  # the cursor is hidden and shown again
     quiet = halation(*words[len(HALATION):])
-    assert "\x1b" not in quiet.stderr and "/18 passes" not in quiet.stderr and len(quiet.stderr.splitlines()) == 2
+    assert "\x1b" not in quiet.stderr and len(quiet.stderr.splitlines()) == 2
 
 
 @POSIX

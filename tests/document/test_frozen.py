@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-
 from halation.app import document
 from halation.app.graph import Group, Port, Settings, Unknown
 from halation.nodes import Kind

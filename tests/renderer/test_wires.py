@@ -123,3 +123,10 @@ def test_half_intermediates_stay_within_half_rounding(renderer):
         result = engine.render(graph, Wanted({"image": PICTURE}, precision="half"))["image"][..., :3]
         assert np.abs(result / exact - 1.0).max() <= roundings * 2.0**-11 * 1.001
     unfused.close()
+
+
+def test_the_background_gives_the_size_of_a_merge(renderer):
+    merge = catalogue()["merge"]
+    graph = wired(merge(), MERGE, {"a": Input(Kind.IMAGE), "b": Input(Kind.IMAGE)})
+    clear = np.zeros((9, 44, 4), np.float32)
+    np.testing.assert_allclose(image(renderer, graph, a=clear, b=PICTURE), PICTURE, rtol=1e-6)
