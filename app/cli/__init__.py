@@ -5,17 +5,22 @@ from __future__ import annotations
 import os
 import sys
 from io import TextIOWrapper
+from pathlib import Path
+from typing import TextIO
 
 _INTERRUPTED = 130
 
 
 def main() -> None:
-    """Run the command line, and leave at once: nothing is left to tidy up that the system does not take back."""
-    # Where they are closed, the next files to be opened would take their places.
-    sys.stdout, sys.stderr = (stream or open(os.devnull, "w") for stream in (sys.stdout, sys.stderr))  # noqa: PTH123
+    """Run the command line, and leave at once: nothing is left to tidy up that the system does not take back.
+
+    Closed streams are replaced, lest the next file to be opened takes their place; names of files may hold bytes
+    that no encoding knows.
+    """
+    sys.stdout, sys.stderr = sys.stdout or _nowhere(), sys.stderr or _nowhere()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")  # names of files may hold bytes that no encoding knows
+            stream.reconfigure(errors="backslashreplace")
     try:
         from .program import run
 
@@ -23,3 +28,7 @@ def main() -> None:
     except KeyboardInterrupt:  # while modules were still being loaded
         code = _INTERRUPTED
     os._exit(code)
+
+
+def _nowhere() -> TextIO:
+    return Path(os.devnull).open("w")

@@ -7,6 +7,7 @@ Stages, each a function of what the one before made: `expand` flattens groups, `
 from __future__ import annotations
 
 from ..graph import Graph
+from .bodies import MAX_WEIGHTS
 from .draws import Memory
 from .explain import as_json, dot, explain
 from .fuse import fuse
@@ -19,8 +20,8 @@ from .schedule import schedule
 from .target import NULL, Form, Precision, Target
 
 __all__ = [
-    "NULL", "Form", "Library", "Memory", "Pass", "Picture", "Plan", "Precision", "Probe", "Probed", "Request", "Shader",
-    "Surface", "Target", "Upload", "as_json", "compile_graph", "dot", "explain", "installed",
+    "MAX_WEIGHTS", "NULL", "Form", "Library", "Memory", "Pass", "Picture", "Plan", "Precision", "Probe", "Probed",
+    "Request", "Shader", "Surface", "Target", "Upload", "as_json", "compile_graph", "dot", "explain", "installed",
 ]
 
 

@@ -43,10 +43,11 @@ class Made:
 
 @dataclass(frozen=True)
 class Memory:
-    """What a node remembered of the frame before."""
+    """What a node remembered of the frame before, and whether in half floats."""
 
     key: str
     shape: Shape
+    half: bool
 
 
 class Recorder:
@@ -148,7 +149,7 @@ class Recorder:
         # A memory of another size is of another picture.
         if memory is None or memory.shape != made.shape:
             return made
-        return Made(self._builder.add(History((made.shape,), self._owner, memory.key)), made.shape)
+        return Made(self._builder.add(History((made.shape,), self._owner, memory.key, memory.half)), made.shape)
 
     def remember(self, pixels: Drawn) -> None:
         assert isinstance(pixels, Made)

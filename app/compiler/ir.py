@@ -34,6 +34,11 @@ class Constant:
 
     value: float | int | bool | tuple[float, ...]
 
+    def __post_init__(self) -> None:
+        # Operations that are equal must compute the same: -0.0 == 0.0, but not to a shader. Adding 0 leaves one zero.
+        plain = self.value
+        object.__setattr__(self, "value", tuple(part + 0 for part in plain) if isinstance(plain, tuple) else plain + 0)
+
     @property
     def channels(self) -> int:
         return len(self.value) if isinstance(self.value, tuple) else 1
@@ -115,6 +120,7 @@ class History(Op):
     """Pixels that a node remembered of the frame before, known by their key."""
 
     key: str
+    half: bool
 
 
 @dataclass(frozen=True)

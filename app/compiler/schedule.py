@@ -42,7 +42,10 @@ def schedule(
         target, surfaces, tuple(_uploads(program, numbers)),
         tuple(_pass(program, fused, item, numbers) for fused, item in zip(passes, emitted, strict=True)),
         MappingProxyType({name: numbers[ref] for name, ref in program.outputs.items()}),
-        MappingProxyType({node: Memory(keys[ref], _shape(program, ref)) for node, ref in program.memories.items()}),
+        MappingProxyType({
+            node: Memory(keys[ref], _shape(program, ref), texels[ref].endswith("16f"))
+            for node, ref in program.memories.items()
+        }),
         sizes,
     )
 
@@ -62,7 +65,7 @@ def _check_size(size: Size, owner: str, target: Target) -> None:
 def _texel(program: Program, ref: Ref, precision: Precision) -> str:
     """As narrow as the data allows: data keeps 32 bits, a file of halves stays half, color follows the precision."""
     op, shape = program.ops[ref.op], _shape(program, ref)
-    half = op.half if isinstance(op, Read) else precision == "half" and not shape.data
+    half = op.half if isinstance(op, (Read, History)) else precision == "half" and not shape.data
     return ("r", "rg", "rgba", "rgba")[shape.channels - 1] + ("16f" if half else "32f")
 
 

@@ -30,6 +30,10 @@ class Device:
         """Our context is the current one inside this block, whatever other contexts the process has."""
         return nullcontext() if self.shared else self.context
 
+    def close(self) -> None:
+        """Give the context back. Nothing made on it can be used any more."""
+        self.context.release()
+
     @property
     def description(self) -> str:
         """One line that says what does the work."""

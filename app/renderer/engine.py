@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from ...nodes import Size
-from ..compiler import Library, Memory, Plan, Precision, Request, compile_graph
+from ..compiler import Library, Plan, Precision, Request, compile_graph
 from ..graph import Graph, Port
 from ..media.pictures import Pictures
 from .device import Device, open_device
@@ -48,16 +48,16 @@ class Renderer:
         self, device: Device | None = None, *, budget: int = DEFAULT_BUDGET, library: Library | None = None,
         fusion: bool = True,
     ) -> None:
+        self._owns_device = device is None
         self.device = device or open_device()
         self.pictures = Pictures()
         self.runner = Runner(self.device, self.pictures.load, budget)
         self._library, self._fusion = library, fusion
-        self._memories: Mapping[str, Memory] = {}
 
     def compile(self, graph: Graph, wanted: Wanted = Wanted()) -> Plan:
         """Plan the rendering of what is wanted of `graph`. Raises the errors of `app.errors`."""
         bindings = self.pictures.bind(graph, wanted.inputs)
-        memories = self._memories if wanted.follows else {}
+        memories = self.runner.memories if wanted.follows else {}
         request = Request(wanted.targets, bindings, wanted.size, wanted.scale, wanted.frame, memories)
         return compile_graph(
             graph, request, self.pictures.probe, target=self.device.target, precision=wanted.precision,
@@ -66,11 +66,10 @@ class Renderer:
 
     def render(self, graph: Graph, wanted: Wanted = Wanted()) -> dict[str, Array]:
         """Every wanted output by name as [height, width, channels], scene-linear. Raises the errors of `app.errors`."""
-        plan = self.compile(graph, wanted)
-        outputs = self.runner.run(plan)
-        self._memories = plan.memories
-        return outputs
+        return self.runner.run(self.compile(graph, wanted))
 
     def close(self) -> None:
-        """Give back textures and threads."""
+        """Give back textures, programs and threads, and the device if it was not handed in."""
         self.runner.close()
+        if self._owns_device:
+            self.device.close()

@@ -5,14 +5,14 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib import metadata
 from pathlib import Path
 from typing import Any
 
 from .. import document, media
 from ..compiler import Pass, Picture, Plan
-from ..graph import Graph
+from ..graph import Graph, Group
 from .destinations import Writing, check, destinations
 from .engine import Renderer, Wanted
 from .runner import Array
@@ -88,7 +88,7 @@ def _header(
     header: dict[str, Any] = {}
     for path in hashes:
         header = media.read_metadata(path) | header
-    header["halation:graph"] = document.dumps(graph)
+    header["halation:graph"] = document.dumps(_whole(graph))
     header["halation:version"] = metadata.version("halation")
     header["halation:renderer"] = renderer.device.target.renderer
     header["halation:settings"] = _settings(wanted)
@@ -97,6 +97,15 @@ def _header(
         digest = hashes[picture.path].result()
         header[f"halation:input:{node}"] = f"{Path(picture.path).name}{layer} sha256:{digest}"
     return header
+
+
+def _whole(graph: Graph) -> Graph:
+    """The graph with the bodies of its groups in it: their files may change, and their values may differ already."""
+    nodes = {
+        id: replace(item, graph=_whole(item.graph), path="") if isinstance(item, Group) else item
+        for id, item in graph.nodes.items()
+    }
+    return replace(graph, nodes=nodes)
 
 
 def _settings(wanted: Wanted) -> str:

@@ -13,8 +13,6 @@ from ..errors import ShaderError
 # Mesa: "2:14(5): error: ...", NVIDIA: "2(14) : error ...", Apple and AMD: "ERROR: 2:14: ..."
 _FAULT = re.compile(r"(?:ERROR:\s*)?(\d+)(?::(\d+)(?:\(\d+\))?|\((\d+)\))\s*:\s*(.*)")
 
-WEIGHTS_BYTES = 16384
-
 
 @dataclass
 class Program:
@@ -46,6 +44,14 @@ class Programs:
             known = self._known[one.shader] = self._compile(one)
             self.compiled += 1
         return known
+
+    def clear(self) -> None:
+        """Give everything back to the driver."""
+        for program in self._known.values():
+            if program.vertices is not None:
+                program.vertices.release()
+            program.handle.release()
+        self._known.clear()
 
     def _compile(self, one: Pass) -> Program:
         try:

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
 
 import moderngl
 import numpy as np
 
-from ..compiler import Pass, Picture, Plan
-from ..errors import RenderError
+from ..compiler import MAX_WEIGHTS, Memory, Pass, Plan
+from ..errors import InputError, RenderError
+from .decoding import Array, Decoding, Loader
 from .device import Device
-from .programs import WEIGHTS_BYTES, Programs
-from .textures import Texture, Textures
-
-Array = np.ndarray
-Loader = Callable[[Picture], Array]
-"""Reads a picture as [height, width, channels] of float16 or float32. Called on worker threads."""
+from .programs import Programs
+from .textures import Lease, Texture, Textures
 
 MAX_WEIGHT_BUFFERS = 64
 
@@ -41,7 +38,9 @@ class Runner:
         self.textures = Textures(device.context, device.target.max_size, budget)
         self.counters = Counters()
         self._weights: dict[tuple[float, ...], moderngl.Buffer] = {}
-        self._remembered: set[str] = set()
+        self._history = Lease(self.textures)
+        self.memories: Mapping[str, Memory] = {}
+        """What temporal nodes remember of the last plan that ran to its end."""
         self._idle: moderngl.Framebuffer | None = None
         self._threads = ThreadPoolExecutor(max_workers=2, thread_name_prefix="decode")
 
@@ -53,72 +52,103 @@ class Runner:
         return outputs
 
     def steps(self, plan: Plan, outputs: dict[str, Array]) -> Iterator[Pass]:
-        """Run one pass per step, so that a caller can stop in between; fills `outputs` at the end."""
+        """Run one pass per step, so that a caller can stop in between; fills `outputs` at the end.
+
+        Several plans may be under way at once, step by step.
+        """
         wanted, needed = _needed(plan, self.textures)
         self.counters.skipped += len(plan.passes) - len(needed)
         readers = _count_readers(plan, needed, wanted)
-        pending = self._start_decoding(plan, needed, wanted)
-        pinned: set[str] = set()
+        lease = Lease(self.textures)
+        for key in readers:
+            if key in self.textures:
+                lease.take(key)
+        decoding = self._decoding(plan, needed, wanted)
         try:
-            for key in readers:
-                if key in self.textures:
-                    self.textures.pin(key)
-                    pinned.add(key)
             for index in needed:
                 one = plan.passes[index]
                 with self.device.current():
-                    self._upload(plan, pending, one.textures, pinned)
-                    self._execute(plan, one, pinned)
-                    for number in one.textures:
-                        self._read_once(plan.surfaces[number].key, readers, pinned)
+                    self._upload(plan, one.textures, decoding, lease)
+                    self._execute(plan, one, lease)
+                    for key in (plan.surfaces[number].key for number in one.textures):
+                        readers[key] -= 1
+                        if readers[key] == 0:
+                            lease.give(key)
                 yield one
             with self.device.current():
-                self._upload(plan, pending, tuple(plan.outputs.values()), pinned)
+                self._upload(plan, tuple(plan.outputs.values()), decoding, lease)
                 for name, number in plan.outputs.items():
                     outputs[name] = self._download(plan, number)
-            self._remember({memory.key for memory in plan.memories.values()})
+            self._remember(plan)
         finally:
-            for future in pending.values():
-                future.cancel()
-            for key in pinned:
-                self.textures.unpin(key)
+            decoding.cancel()
+            lease.close()
+            with self.device.current():
+                self.textures.next_round()
 
     def close(self) -> None:
         """Give everything back."""
         self._threads.shutdown(cancel_futures=True)
         with self.device.current():
             self.textures.clear()
+            self.programs.clear()
+            for buffer in self._weights.values():
+                buffer.release()
+            self._weights.clear()
+            if self._idle is not None:
+                self._idle.release()
+                self._idle = None
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _start_decoding(self, plan: Plan, needed: list[int], wanted: set[int]) -> dict[int, Future[Array]]:
-        """Files are decoded on other threads while shaders compile and earlier passes run."""
-        reads = {number for index in needed for number in plan.passes[index].textures} | wanted
-        return {
-            upload.surface: self._threads.submit(self._load, upload.picture)
-            for upload in plan.uploads
-            if upload.surface in reads and plan.surfaces[upload.surface].key not in self.textures
-        }
+    def _decoding(self, plan: Plan, needed: list[int], wanted: set[int]) -> Decoding:
+        """What must be decoded, in the order in which passes want it."""
+        reads = dict.fromkeys(number for index in needed for number in plan.passes[index].textures)
+        order = {number: place for place, number in enumerate([*reads, *(wanted - reads.keys())])}
+        uploads = [
+            upload for upload in plan.uploads
+            if upload.surface in order and plan.surfaces[upload.surface].key not in self.textures
+        ]
+        return Decoding(self._threads, self._load, sorted(uploads, key=lambda upload: order[upload.surface]))
 
-    def _upload(
-        self, plan: Plan, pending: dict[int, Future[Array]], numbers: tuple[int, ...], pinned: set[str]
-    ) -> None:
+    def _upload(self, plan: Plan, numbers: tuple[int, ...], decoding: Decoding, lease: Lease) -> None:
         for number in numbers:
-            if number in pending:
-                surface = plan.surfaces[number]
-                pixels = pending.pop(number).result()
-                texture = self.textures.make(surface)
-                pinned.add(surface.key)
-                texture.handle.write(_fitting(pixels, surface.components, surface.depth))
-                self.counters.uploads += 1
+            if number not in decoding:
+                continue
+            surface = plan.surfaces[number]
+            if surface.key in self.textures:
+                decoding.skip(number)
+                lease.take(surface.key)
+                continue
+            upload, pixels = decoding.take(number)
+            found = (pixels.shape[1], pixels.shape[0])
+            if found != surface.size:
+                raise InputError(
+                    f"{upload.picture.path}: it was {surface.size[0]}x{surface.size[1]} pixels when the rendering "
+                    f"began, and is {found[0]}x{found[1]} now; render again"
+                )
+            try:
+                lease.make(surface).handle.write(_fitting(pixels, surface.components, surface.depth))
+            except BaseException:
+                lease.spoil(surface.key)
+                raise
+            self.counters.uploads += 1
 
-    def _execute(self, plan: Plan, one: Pass, pinned: set[str]) -> None:
+    def _execute(self, plan: Plan, one: Pass, lease: Lease) -> None:
+        targets = [plan.surfaces[number] for number in one.targets]
+        missing = [surface for surface in targets if surface.key not in self.textures]
+        for surface in targets:
+            if surface not in missing:
+                lease.take(surface.key)
+        if not missing:  # another run was quicker
+            self.counters.skipped += 1
+            return
         program = self.programs.get(one)
         textures = [self._resident(plan, number) for number in one.textures]
-        made = [self.textures.make(plan.surfaces[number]) for number in one.targets]
-        keys = [plan.surfaces[number].key for number in one.targets]
-        pinned.update(keys)
         try:
+            for surface in missing:
+                lease.make(surface)
+            made = [self._resident(plan, number) for number in one.targets]
             for name, value in one.uniforms:
                 program.set(name, value)
             if one.weights:
@@ -131,9 +161,8 @@ class Runner:
             if error != "GL_NO_ERROR":
                 raise RenderError(f"node '{', '.join(one.nodes)}': {self.device.target.renderer} reports {error}")
         except BaseException:
-            for key in keys:
-                pinned.discard(key)
-                self.textures.drop(key)
+            for surface in missing:
+                lease.spoil(surface.key)
             raise
         self.counters.passes += 1
 
@@ -183,7 +212,7 @@ class Runner:
         if known is None:
             if len(self._weights) >= MAX_WEIGHT_BUFFERS:
                 self._weights.pop(next(iter(self._weights))).release()
-            data = np.zeros(WEIGHTS_BYTES // 4, np.float32)
+            data = np.zeros(MAX_WEIGHTS, np.float32)
             data[: len(weights)] = weights
             known = self._weights[weights] = self.device.context.buffer(data)
         return known
@@ -193,20 +222,13 @@ class Runner:
         assert texture is not None, f"surface {number} is gone before its last reader"
         return texture
 
-    def _remember(self, keys: set[str]) -> None:
+    def _remember(self, plan: Plan) -> None:
         """Keep what the next frame will want, and let go of what this one wanted."""
-        for key in keys - self._remembered:
-            self.textures.hold(key)
-        for key in self._remembered - keys:
-            self.textures.let_go(key)
-        self._remembered = keys
-
-    def _read_once(self, key: str, readers: dict[str, int], pinned: set[str]) -> None:
-        """After its last reader a surface may go."""
-        readers[key] -= 1
-        if readers[key] == 0 and key in pinned:
-            pinned.discard(key)
-            self.textures.unpin(key)
+        before, self._history = self._history, Lease(self.textures)
+        for memory in plan.memories.values():
+            self._history.take(memory.key)
+        self.memories = plan.memories
+        before.close()
 
     def _download(self, plan: Plan, number: int) -> Array:
         surface = plan.surfaces[number]
@@ -254,4 +276,5 @@ def _fitting(pixels: Array, components: int, depth: str) -> Array:
     missing = components - pixels.shape[2]
     if missing > 0:
         pixels = np.concatenate([pixels, np.zeros((*pixels.shape[:2], missing), pixels.dtype)], axis=2)
-    return np.ascontiguousarray(pixels[..., :components], dtype)
+    with np.errstate(over="ignore"):  # too large for the texture is infinite in it
+        return np.ascontiguousarray(pixels[..., :components], dtype)

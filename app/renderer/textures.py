@@ -1,8 +1,8 @@
-"""Textures: pooled by size and format, kept by key under a byte budget."""
+"""Textures: pooled by size and format, kept by key under a byte budget, leased by the runs that need them."""
 
 from __future__ import annotations
 
-from collections import OrderedDict
+from collections import Counter
 from dataclasses import dataclass
 
 import moderngl
@@ -22,6 +22,8 @@ class Texture:
     kind: Kind
     nbytes: int
     framebuffer: moderngl.Framebuffer | None = None
+    freed: int = 0
+    """The round in which it was last in use."""
 
     def release(self) -> None:
         """Give it back to the driver."""
@@ -31,81 +33,110 @@ class Texture:
 
 
 class Textures:
-    """Every texture we own. Results stay by key, least recently used first out; freed ones wait for the next use."""
+    """Every texture we own: results by key, of which those that nobody leases go when the budget is spent.
+
+    A freed texture waits for the next use, but not for long: `next_round` returns what a whole round did not want, so
+    that pictures of ever other sizes do not pile up.
+    """
 
     def __init__(self, context: moderngl.Context, max_size: int, budget: int) -> None:
         self._context, self._max_size = context, max_size
         self.budget = budget
-        self._results: OrderedDict[str, Texture] = OrderedDict()
-        self._pinned: set[str] = set()
-        self._held: set[str] = set()
+        self._results: dict[str, Texture] = {}
+        self._leases: Counter[str] = Counter()
+        self._idle: dict[str, None] = {}
+        """Results that nobody leases, least recently used first."""
+        self._idle_bytes = 0
         self._free: dict[Kind, list[Texture]] = {}
+        self._round = 0
         self.allocated = 0
         self.peak = 0
 
     def find(self, key: str) -> Texture | None:
         """The texture that holds these pixels, if any does."""
-        found = self._results.get(key)
-        if found is not None:
-            self._results.move_to_end(key)
-        return found
+        return self._results.get(key)
 
     def __contains__(self, key: str) -> bool:
         return key in self._results
 
+    def clear(self) -> None:
+        """Give everything back to the driver."""
+        for texture in self._results.values():
+            texture.release()
+        self._results.clear()
+        self._leases.clear()
+        self._idle.clear()
+        self._idle_bytes = 0
+        self._release_free()
+        self.allocated = 0
+
+    def next_round(self) -> None:
+        """Give back to the driver what waited in vain since the round before this one."""
+        for kind, waiting in list(self._free.items()):
+            for texture in (one for one in waiting if one.freed < self._round):
+                self._release(texture)
+            self._free[kind] = [one for one in waiting if one.freed >= self._round]
+            if not self._free[kind]:
+                del self._free[kind]
+        self._round += 1
+
+    # --- for leases --------------------------------------------------------------------------------------------------
+
     def make(self, surface: Surface) -> Texture:
-        """A texture for `surface`, pinned until `unpin`. Raises DeviceError where the device cannot hold it."""
+        """A texture for `surface`, leased. Raises DeviceError where the device cannot hold it."""
         kind = (*surface.size, surface.components, surface.depth)
         waiting = self._free.get(kind)
         texture = waiting.pop() if waiting else self._allocate(kind, surface)
         self._results[surface.key] = texture
-        self._pinned.add(surface.key)
+        self._leases[surface.key] += 1
         return texture
 
-    def pin(self, key: str) -> None:
-        """Keep these pixels until `unpin`."""
-        self._pinned.add(key)
+    def lease(self, key: str) -> None:
+        """Keep these pixels until `unlease`."""
+        self._leases[key] += 1
+        self._wake(key)
 
-    def unpin(self, key: str) -> None:
-        """These pixels may go as soon as the budget asks for it."""
-        self._pinned.discard(key)
-        self._trim()
-
-    def hold(self, key: str) -> None:
-        """Keep these pixels until `let_go`, whatever the budget says: a later frame needs them."""
-        self._held.add(key)
-
-    def let_go(self, key: str) -> None:
-        """These pixels may go like any others."""
-        self._held.discard(key)
-        self._trim()
+    def unlease(self, key: str) -> None:
+        """Unless somebody else leases them, these pixels may go as soon as the budget asks for it."""
+        self._leases[key] -= 1
+        if self._leases[key] <= 0:
+            del self._leases[key]
+            if key in self._results:
+                self._idle[key] = None
+                self._idle_bytes += self._results[key].nbytes
+                while self._idle_bytes > self.budget:
+                    self.drop(next(iter(self._idle)))
 
     def drop(self, key: str) -> None:
-        """Forget these pixels: they were not finished."""
-        self._pinned.discard(key)
-        texture = self._results.pop(key, None)
-        if texture is not None:
-            self._free.setdefault(texture.kind, []).append(texture)
+        """Forget these pixels: there is no room for them, or they were not finished."""
+        self._wake(key)
+        self._leases.pop(key, None)
+        texture = self._results.pop(key)
+        texture.freed = self._round
+        self._free.setdefault(texture.kind, []).append(texture)
 
-    def clear(self) -> None:
-        """Give everything back to the driver."""
-        for texture in (*self._results.values(), *(one for waiting in self._free.values() for one in waiting)):
-            texture.release()
-        self._results.clear()
-        self._pinned.clear()
-        self._held.clear()
+    # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _wake(self, key: str) -> None:
+        """No longer idle."""
+        if key in self._idle:
+            del self._idle[key]
+            self._idle_bytes -= self._results[key].nbytes
+
+    def _release(self, texture: Texture) -> None:
+        self.allocated -= texture.nbytes
+        texture.release()
+
+    def _release_free(self) -> None:
+        for waiting in self._free.values():
+            for texture in waiting:
+                self._release(texture)
         self._free.clear()
-        self.allocated = 0
 
-    def _trim(self) -> None:
-        """Free unpinned results, oldest first, until what is kept fits the budget."""
-        idle = [key for key in self._results if key not in self._pinned and key not in self._held]
-        kept = sum(self._results[key].nbytes for key in idle)
-        for key in idle:
-            if kept <= self.budget:
-                break
-            kept -= self._results[key].nbytes
+    def _release_idle(self) -> None:
+        for key in list(self._idle):
             self.drop(key)
+        self._release_free()
 
     def _allocate(self, kind: Kind, surface: Surface) -> Texture:
         width, height, components, depth = kind
@@ -116,13 +147,10 @@ class Textures:
             )
         self._context.error  # noqa: B018  (reading it clears what earlier calls left behind)
         handle = self._try(width, height, components, depth)
-        if handle is None:
-            for waiting in self._free.values():
-                for texture in waiting:
-                    self.allocated -= texture.nbytes
-                    texture.release()
-            self._free.clear()
-            handle = self._try(width, height, components, depth)
+        for make_room in (self._release_free, self._release_idle):
+            if handle is None:
+                make_room()
+                handle = self._try(width, height, components, depth)
         if handle is None:
             raise DeviceError(
                 f"node '{surface.label}': the device has no room for {surface.nbytes / 2**20:.0f} MiB more "
@@ -145,3 +173,40 @@ class Textures:
             handle.release()
             return None
         return handle
+
+
+class Lease:
+    """The pixels that one run still needs: they stay until it hands them back."""
+
+    def __init__(self, textures: Textures) -> None:
+        self._textures = textures
+        self._keys: set[str] = set()
+
+    def make(self, surface: Surface) -> Texture:
+        """A texture for `surface`, whose pixels are to be made. Raises DeviceError where there is no room."""
+        texture = self._textures.make(surface)
+        self._keys.add(surface.key)
+        return texture
+
+    def take(self, key: str) -> None:
+        """Keep these pixels."""
+        if key not in self._keys:
+            self._textures.lease(key)
+            self._keys.add(key)
+
+    def give(self, key: str) -> None:
+        """These pixels are not needed any more."""
+        if key in self._keys:
+            self._keys.discard(key)
+            self._textures.unlease(key)
+
+    def spoil(self, key: str) -> None:
+        """These pixels could not be made."""
+        if key in self._keys:
+            self._keys.discard(key)
+            self._textures.drop(key)
+
+    def close(self) -> None:
+        """Hand everything back."""
+        for key in list(self._keys):
+            self.give(key)

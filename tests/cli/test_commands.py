@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from importlib import metadata
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -241,3 +242,15 @@ def test_help(cli):
 def test_without_a_command_the_help_is_shown(cli):
     result = cli()
     assert (result.code, result.out) == (2, "") and result.err.startswith("Usage: halation ")
+
+
+def test_the_reference_knows_every_flag_and_exit_code(cli):
+    page = (Path(__file__).parents[2] / "docs" / "command-line.md").read_text()
+    chapters = dict(re.findall(r"^## halation (\w+).*?\n(.*?)(?=^## |\Z)", page, re.M | re.S))
+    for command, text in chapters.items():
+        flags = set(re.findall(r"(--[a-z]+)", cli(command, "--help").out)) - {"--help", "--json", "--input"}
+        assert flags <= set(re.findall(r"--[a-z]+", text)), command
+    assert set(chapters) == {"render", "check", "explain", "nodes", "fmt", "demo"}
+    assert set(re.findall(r"^(\d+)  ", cli("--help").out.replace("\n  ", "\n"), re.M)) <= set(
+        re.findall(r"^\| (\d+) \|", page, re.M)
+    )

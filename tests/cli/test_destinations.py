@@ -114,6 +114,15 @@ def test_a_full_disk(fails, graphs, monkeypatch):
     assert said.endswith("out.exr: cannot be written: the disk is full: make room or write elsewhere")
 
 
+def test_interrupted_while_writing(fails, graphs, monkeypatch):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(shutil, "copyfileobj", interrupted)
+    monkeypatch.setattr(shutil, "disk_usage", interrupted)
+    assert fails(130, "render", graphs()) == "interrupted; nothing unfinished was left behind"
+
+
 @pytest.mark.skipif(not hasattr(os, "getuid") or os.getuid() != 0 or not shutil.which("mount"), reason="needs root")
 def test_a_disk_that_is_really_full(fails, graphs, tmp_path):
     disk = tmp_path / "disk"

@@ -293,3 +293,21 @@ def test_a_written_exr_can_be_rendered_again(cli, graphs, out, tmp_path):
     assert cli("render", again, "-o", third).code == 0
     np.testing.assert_array_equal(read(out), read(third))
     assert json.loads(again.read_text())["nodes"]["light"]["values"] == {"stops": -2.0}
+
+
+def test_the_header_holds_the_bodies_of_groups_as_they_were(cli, graphs, out, tmp_path):
+    """The file of a group may change, and --set reaches into it: a reference would not say what was rendered."""
+    body = {
+        "halation": 1, "inputs": {"image": {"type": "Image"}}, "outputs": {"image": {"type": "Image"}},
+        "nodes": {"more": {"type": "exposure"}}, "links": {"more.image": "inputs.image", "outputs.image": "more.out"},
+    }
+    (tmp_path / "body.json").write_text(json.dumps(body))
+    path = graphs(nodes={"group": {"type": "group", "path": "body.json"}},
+                  links={"group.image": "light.out", "outputs.image": "group.image"})
+    assert cli("render", path, "--set", "group.more.stops=2", "-o", out).code == 0
+    np.testing.assert_allclose(read(out)[0, :, 0], 8.0 * RED, rtol=2e-3)
+    again, third = tmp_path / "again.json", tmp_path / "third.exr"
+    again.write_text(header(out)["halation:graph"])
+    (tmp_path / "body.json").unlink()
+    assert cli("render", again, "-o", third).code == 0
+    np.testing.assert_array_equal(read(out), read(third))

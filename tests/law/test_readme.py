@@ -50,7 +50,7 @@ def test_files_and_folders_it_names_exist() -> None:
     names = {*re.findall(r"\b(?:docs|presets|tests|nodes|shaders|app)/[\w/]+(?:\.\w+)?", README)}
     missing = {name for name in names if not (ROOT / name).exists() and "posterize" not in name}
     assert not missing
-    parts = re.findall(r"^  (\w+(?:/|\.py)) ", block("", "dev "), re.M)
+    parts = re.findall(r"^  (\w+(?:/|\.py)) ", block("text", "dev "), re.M)
     assert {part.rstrip("/") for part in parts} <= {path.name for path in (ROOT / "app").iterdir()}
 
 
