@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from random import Random
 
+import numpy as np
 from halation.app.graph import Graph, Input, Output, Port, conversion, signature
 from halation.nodes import Kind, Node, Source, catalogue
 
+SIZE = (37, 23)
 CLASSES = [node for node in catalogue().values() if not issubclass(node, Source)]
 
 
@@ -62,3 +64,14 @@ def sources(graph: Graph, but: str) -> list[Port]:
         if name != but:
             found += [Port(name, output) for output in signature(graph.nodes[name]).outputs]
     return found
+
+
+def pictures(seed: int) -> dict[str, np.ndarray]:
+    """HDR noise; the vector is a displacement."""
+    rng = np.random.default_rng(seed)
+    width, height = SIZE
+    return {
+        "image": rng.gamma(0.6, 1.0, (height, width, 4)).astype(np.float32),
+        "field": rng.random((height, width), np.float32),
+        "vector": rng.normal(0.0, 1.0, (height, width, 2)).astype(np.float32),
+    }

@@ -46,7 +46,8 @@ def demo(
             pictures = (("", output / f"{path.stem}.exr"), (first, output / f"{path.stem}.png"))
             report = run_job(renderer, graph, Wanted(), Writing(pictures))
             spent = time.perf_counter() - started
-            line = f"{path.stem:<24} {report.passes:>3} passes  {spent:5.2f} s  {pictures[1][1]}"
+            word = "pass  " if report.passes == 1 else "passes"
+            line = f"{path.stem:<24} {report.passes:>3} {word}  {spent:5.2f} s  {pictures[1][1]}"
             progress.console.print(line, soft_wrap=True, markup=False, highlight=False)
             progress.advance(task)
             written = [str(item) for item in report.written]

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 from ..graph import Graph
 from .bodies import MAX_WEIGHTS
-from .draws import Memory
 from .explain import as_json, dot, explain
 from .fuse import fuse
-from .ir import Picture
+from .ir import Memory, Picture
 from .library import Library, installed
 from .lower import lower
 from .plan import Pass, Plan, Shader, Surface, Upload

@@ -12,6 +12,9 @@ OUTPUTS = 8
 MAX_WEIGHTS = 4096
 """Floats in the uniform block: GL promises 16 KB."""
 
+MAX_TAPS = MAX_WEIGHTS - 2 * OUTPUTS + 1
+"""Weights of a convolution: an odd number that leaves room for the zeros past the last one."""
+
 
 def accessor(names: Names, item: Accessor, edge: Edge) -> list[str]:
     """`<name>_size`, `<name>_raw`, `<name>_at` and `<name>_near` for one picture."""

@@ -10,6 +10,7 @@ from typing import Literal
 from ...nodes import Argument, Drawn, Edge, Filter, Image, Kind, Node, Pixels, Plain, Size, Socket, glsl_type
 from ..errors import ShaderError
 from . import gaussian
+from .bodies import MAX_TAPS
 from .ir import (
     BLOCK,
     Accessor,
@@ -20,6 +21,7 @@ from .ir import (
     Convolve,
     Gather,
     History,
+    Memory,
     Parameter,
     Picture,
     Reduce,
@@ -39,15 +41,6 @@ class Made:
     @property
     def size(self) -> Size:
         return self.shape.size
-
-
-@dataclass(frozen=True)
-class Memory:
-    """What a node remembered of the frame before, and whether in half floats."""
-
-    key: str
-    shape: Shape
-    half: bool
 
 
 class Recorder:
@@ -133,6 +126,9 @@ class Recorder:
         self, image: Pixels, weights: tuple[float, ...], axis: Literal["x", "y"], edge: Edge = "clamp"
     ) -> Drawn:
         made = self._pixels(image)
+        if len(weights) % 2 == 0 or len(weights) > MAX_TAPS:
+            fault = f"a convolution takes an odd number of weights up to {MAX_TAPS}, not {len(weights)}"
+            raise ShaderError(self._owner, f"nodes/{self._shader}.py", 1, fault)
         along = 0 if axis == "x" else 1
         return self._convolve(made, along, weights, 1, -(len(weights) // 2), edge, made.size[along])
 

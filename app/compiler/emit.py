@@ -43,7 +43,7 @@ def emit(program: Program, fused: Fused, library: Library, target: Target, texel
     halves = [texels[ref].endswith("16f") for ref in fused.writes]
     sliding = isinstance(root, Convolve) and root.stride == 1 and target.form == "compute"
     parts = _parts(program, fused, names, library)
-    texts = library.closure(tuple(dict.fromkeys(parts.shaders)))
+    texts = library.closure(tuple(dict.fromkeys(parts.shaders)), root.owner)
     used = frozenset[str]().union(*(text.words for text in texts))
     names.uniform("ivec2", root.size, "grid")
     if "proxy" in used:

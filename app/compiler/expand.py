@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from itertools import chain
 from typing import Any
 
-from ...nodes import Node
+from ...nodes import Node, Socket
 from ..errors import GraphError
-from ..graph import INPUTS, OUTPUTS, Graph, Group, Input, Port, Unknown
+from ..graph import INPUTS, OUTPUTS, Graph, Group, Input, Port, Unknown, conversion
 
 MAX_DEPTH = 32
 
@@ -22,14 +23,33 @@ class Flat:
     inputs: dict[Port, Input] = field(default_factory=dict[Port, Input])
     outputs: dict[str, Port] = field(default_factory=dict[str, Port])
     muted: set[str] = field(default_factory=set[str])
+    unknown: dict[str, str] = field(default_factory=dict[str, str])
+    """Types of nodes that are not installed, by path."""
     folders: dict[str, str] = field(default_factory=dict[str, str])
 
     def source(self, port: Port) -> Port | None:
         """What is linked to an input, followed through the ends of groups to a node or a graph input."""
         found = self.links.get(port)
+        seen: set[Port] = set()
         while found is not None and found in self.links:
+            if found in seen:
+                group = found.node.rpartition("/")[0]
+                raise GraphError(f"group '{group}' feeds itself: cut one link of the loop")
+            seen.add(found)
             found = self.links[found]
         return found
+
+
+def stand_in(output: Socket, inputs: Mapping[str, Socket]) -> str | None:
+    """The input that an output of a muted node or group shows: the first of its type, else one that fits."""
+    same = (name for name, socket in inputs.items() if (socket.kind, socket.channels) == (output.kind, output.channels))
+    fitting = (name for name, socket in inputs.items() if conversion(socket, output) is None)
+    return next(chain(same, fitting), None)
+
+
+def nothing(socket: Socket) -> float | tuple[float, ...]:
+    """Zero in every channel: what a muted output shows that no input can stand in for."""
+    return 0.0 if socket.channels == 1 else (0.0,) * socket.channels
 
 
 def expand(graph: Graph) -> Flat:
@@ -48,12 +68,12 @@ def expand(graph: Graph) -> Flat:
             flat.inputs[Port(prefix + INPUTS, name)] = socket
         for name, item in body.nodes.items():
             path = prefix + name
-            if isinstance(item, Group):
+            if isinstance(item, Group) and name in body.muted:
+                _mute(flat, path + "/", item.graph)
+            elif isinstance(item, Group):
                 todo.append((path + "/", item.graph, item.values))
-                if name in body.muted:
-                    flat.muted.add(path + "/")
             elif isinstance(item, Unknown):
-                raise GraphError(f"node '{path}': its type '{item.type}' is unknown to this version of Halation")
+                flat.unknown[path] = item.type
             else:
                 flat.nodes[path] = item
                 flat.folders[path] = body.folder
@@ -63,7 +83,6 @@ def expand(graph: Graph) -> Flat:
             flat.links[_inward(body, prefix, target)] = _outward(body, prefix, source)
     for name in graph.outputs:
         flat.outputs[name] = Port(OUTPUTS, name)
-    _mute_groups(flat)
     return flat
 
 
@@ -88,11 +107,15 @@ def _outward(body: Graph, prefix: str, source: Port) -> Port:
     return replace(source, node=prefix + source.node)
 
 
-def _mute_groups(flat: Flat) -> None:
-    """A muted group passes its first input to its outputs."""
-    for path in [name for name in flat.muted if name.endswith("/")]:
-        flat.muted.discard(path)
-        first = next((port for port in flat.inputs if port.node == path + INPUTS), None)
-        for target in [port for port in flat.links if port.node == path + OUTPUTS]:
-            if first is not None:
-                flat.links[target] = first
+def _mute(flat: Flat, prefix: str, body: Graph) -> None:
+    """A muted group passes its inputs to its outputs, whatever is inside."""
+    flat.folders[prefix] = body.folder
+    inputs = {name: end.socket(name) for name, end in body.inputs.items()}
+    for name, end in body.inputs.items():
+        flat.inputs[Port(prefix + INPUTS, name)] = end
+    for name, end in body.outputs.items():
+        shown, port = stand_in(end.socket(name), inputs), Port(prefix + OUTPUTS, name)
+        if shown is not None:
+            flat.links[port] = Port(prefix + INPUTS, shown)
+        else:
+            flat.inputs[port] = Input(end.kind, end.width, default=nothing(end.socket(name)))

@@ -9,11 +9,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from .ir import Call, History, Op, Program, Read, Reduce, Ref
+from .ir import Call, Constant, History, Op, Program, Read, Reduce, Ref
 from .target import Target
 
 MAX_MEMBERS = 48
 """Longer passes would save nothing more, and take the driver long to compile."""
+
+MAX_UNIFORMS = 512
+"""Floats that the values of a pass may take as uniforms: GL promises no more to a compute shader."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,7 @@ def fuse(program: Program, target: Target, *, enabled: bool = True) -> tuple[Fus
     home: dict[int, int] = {}
     members: dict[int, list[int]] = {}
     reads: dict[int, dict[Ref, None]] = {}
+    uniforms: dict[int, int] = {}
     for index in reversed(range(len(ops))):
         op = ops[index]
         if index not in live or isinstance(op, (Read, History)):
@@ -47,12 +51,14 @@ def fuse(program: Program, target: Target, *, enabled: bool = True) -> tuple[Fus
         root = roots.pop() if len(roots) == 1 else index
         if enabled and root != index and isinstance(op, Call) and not kept.intersection(outputs):
             joined = _joined(reads[root], outputs, op)
-            if _fits(ops, op, root, len(members[root]), joined, target):
+            together = uniforms[root] + _uniforms(op)
+            if together <= MAX_UNIFORMS and _fits(ops, op, root, len(members[root]), joined, target):
                 home[index] = root
+                uniforms[root] = together
                 members[root].append(index)
                 reads[root] = joined
                 continue
-        home[index], members[index] = index, [index]
+        home[index], members[index], uniforms[index] = index, [index], _uniforms(op)
         reads[index] = dict.fromkeys(op.reads())
     return tuple(
         Fused(tuple(reversed(members[root])), tuple(reads[root]), tuple(_writes(ops, root, readers, kept)))
@@ -88,6 +94,14 @@ def _readers(ops: tuple[Op, ...], live: set[int]) -> dict[Ref, list[int]]:
 def _joined(outer: Iterable[Ref], made: list[Ref], op: Op) -> dict[Ref, None]:
     """What a pass reads once `op` is part of it."""
     return dict.fromkeys([*(ref for ref in outer if ref not in made), *op.reads()])
+
+
+def _uniforms(op: Op) -> int:
+    """Floats of uniforms that an operation takes at most: each is rounded up to four, and every output has a seam."""
+    if not isinstance(op, Call):
+        return 0
+    matrices = sum(isinstance(item.operand, Constant) and item.operand.channels == 9 for item in op.parameters)
+    return 4 * (len(op.parameters) + 2 * matrices + len(op.shapes))
 
 
 def _fits(ops: tuple[Op, ...], op: Op, root: int, count: int, reads: dict[Ref, None], target: Target) -> bool:

@@ -21,6 +21,15 @@ class Shape:
 
 
 @dataclass(frozen=True)
+class Memory:
+    """What a node remembered of the frame before, and whether in half floats."""
+
+    key: str
+    shape: Shape
+    half: bool
+
+
+@dataclass(frozen=True)
 class Ref:
     """One output of one operation."""
 
@@ -76,13 +85,17 @@ class Accessor:
 
 @dataclass(frozen=True)
 class Picture:
-    """Pixels from outside: a layer of a file, or an array bound to an input (then `path` is the input's name)."""
+    """Pixels from outside: a layer of a file, or an array bound to an input (then `path` is the input's name).
+
+    `pixels` is that array, which the compiler never looks at: a plan has all that it needs to run.
+    """
 
     path: str
     layer: str
     kind: Kind
     width: int
     in_memory: bool = False
+    pixels: object = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,11 @@ from ..errors import ShaderError
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 _INCLUDE = re.compile(r'^[ \t]*#include[ \t]+"([^"]+)"[^\n]*$', re.MULTILINE)
-_FUNCTION = re.compile(r"^(\w+)[ \t]+(\w+)[ \t]*\(([^)]*)\)\s*\{", re.MULTILINE)
+_FUNCTION = re.compile(
+    r"^[ \t]*(?:(?:highp|precise)\s+)*(\w+)\s+(?!(?:if|for|while|switch)\b)(\w+)\s*\(([^)]*)\)\s*\{", re.MULTILINE
+)
+_PARAMETER = re.compile(r"(?:(out)\s+)?((?:inout\s+)?\w+(?:\s*\[\w*\])?)\s*(\w*)\s*(\[\w*\])?")
+_QUALIFIER = re.compile(r"\b(?:const|in|highp|mediump|lowp|precise)\s+")
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _BLANK = re.compile(r"[^\n]")
 
@@ -31,18 +35,20 @@ class Function:
     end: int
     """Where it lies in the text of its file."""
     words: frozenset[str]
+    line: int
 
 
 @dataclass(frozen=True)
 class Text:
-    """One GLSL file without its `#include` lines (their lines stay, empty, so that numbers hold).
+    """One GLSL file without comments and `#include` lines (their lines stay, empty, so that numbers hold).
 
-    `functions` are by name; `all_functions` also has every overload, in order.
+    `includes` are the lines of what it includes, by name. `functions` are by name; `all_functions` also has every
+    overload, in order.
     """
 
     name: str
     body: str
-    includes: tuple[str, ...]
+    includes: Mapping[str, int]
     functions: Mapping[str, Function]
     all_functions: tuple[Function, ...]
     words: frozenset[str]
@@ -78,24 +84,31 @@ def _function(match: re.Match[str], code: str) -> Function:
     used = frozenset(_WORD.findall(code, match.end(), end))
     taken: list[tuple[str, str]] = []
     given: list[tuple[str, str]] = []
-    for part in filter(None, (item.strip() for item in inside.split(","))):
-        words = [word for word in part.split() if word not in ("const", "in", "highp")]
-        if words[0] == "out":
-            given.append((words[1], words[2]))
-        else:
-            taken.append((words[0], words[1]))
-    return Function(name, result, tuple(taken), tuple(given), match.start(), end, used)
+    for part in _QUALIFIER.sub("", inside).split(","):
+        found = _PARAMETER.match(part.strip())
+        if found is not None and found[2] != "void":
+            way, glsl, called, array = found.groups(default="")
+            (given if way else taken).append((glsl + array, called))
+    line = code.count("\n", 0, match.start(2)) + 1
+    return Function(name, result, tuple(taken), tuple(given), match.start(), end, used, line)
 
 
 def parse(name: str, source: str) -> Text:
     """Read a shader file's functions and includes."""
-    # Comments become spaces of the same height, so that a brace in a sentence is no code and lines keep their numbers.
-    code = _COMMENT.sub(lambda match: _BLANK.sub(" ", match[0]), source)
+    # Comments become spaces of the same height: a brace in a sentence is no code, lines keep their numbers, and no
+    # driver sees letters beyond ASCII.
+    code = _COMMENT.sub(_blanked, source.replace("\r\n", "\n").removeprefix("\ufeff"))
     functions = tuple(_function(match, code) for match in _FUNCTION.finditer(code))
     by_name = MappingProxyType({one.name: one for one in functions})
-    body = _INCLUDE.sub(lambda match: _BLANK.sub(" ", match[0]), source)
+    includes = {
+        match[1].removesuffix(".glsl"): code.count("\n", 0, match.start()) + 1 for match in _INCLUDE.finditer(code)
+    }
     words = frozenset(_WORD.findall(code))
-    return Text(name, body, tuple(_INCLUDE.findall(source)), by_name, functions, words)
+    return Text(name, _INCLUDE.sub(_blanked, code), MappingProxyType(includes), by_name, functions, words)
+
+
+def _blanked(match: re.Match[str]) -> str:
+    return _BLANK.sub(" ", match[0])
 
 
 @dataclass(frozen=True)
@@ -107,41 +120,43 @@ class Library:
         default_factory=dict[tuple[str, ...], tuple[Text, ...]], compare=False, repr=False
     )
 
-    def text(self, name: str, asker: str = "") -> Text:
-        """The file, or a ShaderError that names who asked."""
-        try:
-            return self.texts[name]
-        except KeyError:
-            raise ShaderError(asker or name, f"shaders/{name}.glsl", 1, "there is no such shader file") from None
-
     def function(self, shader: str, name: str, asker: str) -> Function:
         """A function of a file, or a ShaderError that names who asked."""
-        text = self.text(shader, asker)
+        text = self._text(shader, asker)
         if name not in text.functions:
             raise ShaderError(asker, f"shaders/{shader}.glsl", 1, f"there is no function '{name}' in it")
         return text.functions[name]
 
-    def closure(self, names: tuple[str, ...]) -> tuple[Text, ...]:
-        """The files and all they include, each once, includes first."""
+    def closure(self, names: tuple[str, ...], asker: str) -> tuple[Text, ...]:
+        """The files and all they include, each once, includes first. `asker` is named in a ShaderError."""
         if names not in self._closures:
             done: dict[str, Text] = {}
-
-            def visit(name: str, asker: str) -> None:
-                if name in done:
-                    return
-                text = self.text(name, asker)
-                for include in text.includes:
-                    visit(include.removesuffix(".glsl"), name)
-                done[name] = text
-
             for name in names:
-                visit(name, name)
+                self._include(name, asker, (), done)
             self._closures[names] = tuple(done.values())
         return self._closures[names]
 
-    def uses(self, shader: str, word: str) -> bool:
-        """True if the file or anything it includes says `word`."""
-        return any(word in text.words for text in self.closure((shader,)))
+    def uses(self, shader: str, words: frozenset[str], asker: str) -> bool:
+        """True if the file or anything it includes says one of `words`."""
+        return any(words & text.words for text in self.closure((shader,), asker))
+
+    def _text(self, name: str, asker: str) -> Text:
+        if name not in self.texts:
+            raise ShaderError(asker, f"shaders/{name}.glsl", 1, "there is no such shader file")
+        return self.texts[name]
+
+    def _include(self, name: str, asker: str, trail: tuple[str, ...], done: dict[str, Text]) -> None:
+        """Add a file to `done`, after all that it includes. `trail` are the files that led to it."""
+        if name in done:
+            return
+        text = self._text(name, asker)
+        for include, line in text.includes.items():
+            circle = include in (*trail, name)
+            if circle or include not in self.texts:
+                fault = "goes in a circle" if circle else "names no shader file"
+                raise ShaderError(asker, f"shaders/{name}.glsl", line, f'#include "{include}.glsl" {fault}')
+            self._include(include, asker, (*trail, name), done)
+        done[name] = text
 
 
 def _walk(folder: Traversable, prefix: str) -> dict[str, Text]:
@@ -151,7 +166,7 @@ def _walk(folder: Traversable, prefix: str) -> dict[str, Text]:
             found |= _walk(item, f"{prefix}{item.name}/")
         elif item.name.endswith(".glsl"):
             name = prefix + item.name.removesuffix(".glsl")
-            found[name] = parse(name, item.read_text(encoding="utf-8"))
+            found[name] = parse(name, item.read_bytes().decode(errors="replace"))
     return found
 
 

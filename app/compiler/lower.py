@@ -11,11 +11,12 @@ from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 from typing import cast
 
-from ...nodes import Filter, Kind, Node, Pointwise, Size, Socket, Value
-from ..errors import GraphError
-from ..graph import OUTPUTS, Graph, Port
+from ...nodes import Filter, Image, Kind, Node, Pointwise, Size, Socket, Value
+from ..errors import GraphError, ShaderError
+from ..graph import OUTPUTS, Graph, Input, Port, did_you_mean
+from ..graph.values import value_fault
 from .draws import Made, Recorder, choices
-from .expand import Flat, expand
+from .expand import Flat, expand, nothing, stand_in
 from .ir import (
     Builder,
     Call,
@@ -42,7 +43,7 @@ class _Lowering:
     """The work in progress: `results` says what every port visited so far stands for."""
 
     def __init__(self, graph: Graph, request: Request, library: Library, probe: Probe) -> None:
-        self.request, self.library = request, library
+        self.graph, self.request, self.library = graph, request, library
         self.flat: Flat = expand(graph)
         self.builder = Builder()
         self.pictures = Pictures(graph, self.flat, request, probe, self.builder)
@@ -56,7 +57,7 @@ class _Lowering:
         sources = {name: self._target(name, port) for name, port in targets.items()}
         for node in self._order(sources.values()):
             self._node(node)
-        outputs = {name: self._finished(port, name) for name, port in sources.items()}
+        outputs = {name: self._finished(port, name, self._shown(targets[name], port)) for name, port in sources.items()}
         return Program(
             tuple(self.builder.ops), MappingProxyType(outputs), MappingProxyType(self.memories), self.request.scale,
             self.request.frame,
@@ -66,12 +67,27 @@ class _Lowering:
 
     def _target(self, name: str, port: Port) -> Port:
         """The node output or graph input behind something wanted."""
+        if port.node == OUTPUTS and port.socket not in self.graph.outputs:
+            raise GraphError(f"the graph has no output '{port.socket}'{did_you_mean(port.socket, self.graph.outputs)}")
+        of_group = Port(f"{port.node}/{OUTPUTS}", port.socket)
+        if of_group in self.flat.links:
+            port = of_group
         if port.node == OUTPUTS or port.node.endswith("/" + OUTPUTS):
             source = self.flat.source(port)
             if source is None:
                 raise GraphError(f"output '{name}' is not linked to anything: link a node to it")
             return source
         return port
+
+    def _shown(self, target: Port, source: Port) -> Socket | None:
+        """What a wanted output is to look like; None for whatever comes."""
+        if target.node == OUTPUTS:
+            return self.graph.outputs[target.socket].socket()
+        if source in self.flat.inputs:
+            return self.flat.inputs[source].socket()
+        node = self.flat.nodes.get(source.node)
+        output = node.outputs.get(source.socket) if node else None
+        return output.socket if output else None
 
     def _order(self, sources: Iterable[Port]) -> list[str]:
         """Names of the nodes that `sources` need, each after what it reads."""
@@ -84,6 +100,9 @@ class _Lowering:
                 state[name] = True
                 order.append(name)
                 continue
+            if name in self.flat.unknown:
+                kind = self.flat.unknown[name]
+                raise GraphError(f"node '{name}': its type '{kind}' is unknown to this version of Halation")
             if name in state or name not in self.flat.nodes:
                 if state.get(name) is False:
                     raise GraphError(f"node '{name}' feeds itself: cut one link of the loop")
@@ -104,26 +123,33 @@ class _Lowering:
         if port in self.results:
             return self.results[port]
         socket = self.flat.inputs.get(port)
+        if socket is None and port.node.endswith("/" + OUTPUTS):
+            group = port.node.removesuffix("/" + OUTPUTS)
+            raise GraphError(f"group '{group}': nothing inside it is linked to its output '{port.socket}'")
         if socket is None:
             raise GraphError(f"'{port}' does not exist: link to an output of a node or to an input of the graph")
         picture = self.pictures.bound(port, socket)
         if picture is not None:
             self.results[port] = self.pictures.read(picture, f"{port}")
         elif socket.default is not None:
-            self.results[port] = Constant(cast("float | tuple[float, ...]", socket.default))
+            self.results[port] = _default(port, socket)
         else:
             return None
         return self.results[port]
 
-    def _finished(self, port: Port, name: str) -> Ref:
-        """What an output shows, as pixels."""
+    def _finished(self, port: Port, name: str, shown: Socket | None) -> Ref:
+        """What an output shows, as pixels of its type; a constant fills the canvas unless one value is wanted."""
         operand = self._operand(port)
         if operand is None:
             raise GraphError(
                 f"output '{name}' shows the graph input '{port.socket}', which is not bound to a picture: "
                 "give it a file, or bind it by name"
             )
-        return operand if isinstance(operand, Ref) else self.pictures.converted(operand, 4, self.pictures.canvas, name)
+        shown = shown or Image()
+        if isinstance(operand, Constant):
+            size = (1, 1) if shown.single else self.pictures.canvas
+            return self.pictures.converted(operand, shown, size, name)
+        return self._as_type(operand, shown, name)
 
     def _inputs(self, path: str, node: Node) -> tuple[dict[str, Operand], frozenset[str]]:
         """What every input reads, and which of them are linked."""
@@ -148,6 +174,7 @@ class _Lowering:
 
     def _node(self, path: str) -> None:
         node = self.flat.nodes[path]
+        _check_values(path, node)
         operands, linked = self._inputs(path, node)
         wires: dict[str, Operand] = {}
         for name in node.values:
@@ -155,11 +182,12 @@ class _Lowering:
             operand = self._operand(source) if source is not None else None
             if operand is not None:
                 wires[name] = operand
-        size = self._size(node, operands, wires, linked)
+        size = self._size(path, node, operands, wires, linked)
         through = self._through(path, node, operands, wires)
         if through is not None:
-            passed = self.pictures.fit(through, size, path) if isinstance(through, Ref) else through
-            self.results |= {Port(path, name): passed for name in node.outputs}
+            for name, passed in through.items():
+                fitted = self.pictures.fit(passed, size, path) if isinstance(passed, Ref) else passed
+                self.results[Port(path, name)] = fitted
             return
         self._fit_all(path, node, operands, wires, size)
         working = node.working(self.request.scale, size[1])
@@ -182,30 +210,34 @@ class _Lowering:
 
     def _through(
         self, path: str, node: Node, operands: Mapping[str, Operand], wires: Mapping[str, Operand]
-    ) -> Operand | None:
-        """What passes unchanged through a muted or neutral node."""
+    ) -> dict[str, Operand] | None:
+        """What the outputs of a muted or neutral node show; None if it has something to do."""
         if path in self.flat.muted:
-            for name, socket in node.inputs.items():
-                if all(output.socket.kind is socket.kind for output in node.outputs.values()):
-                    return operands[name]
-            return next(iter(operands.values()), Constant((0.0, 0.0, 0.0, 0.0)))
-        if wires or len(node.outputs) != 1:
-            return None
-        name = node.identity()
-        return operands.get(name) if name else None
+            found = {name: stand_in(output.socket, node.inputs) for name, output in node.outputs.items()}
+            return {
+                name: operands[by] if by else Constant(nothing(node.outputs[name].socket)) for name, by in found.items()
+            }
+        neutral = None if wires or len(node.outputs) != 1 else node.identity()
+        return dict.fromkeys(node.outputs, operands[neutral]) if neutral else None
 
     def _size(
-        self, node: Node, operands: Mapping[str, Operand], wires: Mapping[str, Operand], linked: frozenset[str]
+        self, path: str, node: Node, operands: Mapping[str, Operand], wires: Mapping[str, Operand],
+        linked: frozenset[str],
     ) -> Size:
+        """The size of a node's outputs. What is made of single values alone is one, unless it is a pattern."""
+        inputs = {name: operands[name] for name in node.inputs if name in linked}
         found = {
             name: self.builder.shape(operand).size
-            for name, operand in [*((name, operands[name]) for name in node.inputs if name in linked), *wires.items()]
-            if isinstance(operand, Ref)
+            for name, operand in (*inputs.items(), *wires.items()) if isinstance(operand, Ref)
         }
         pictures = {name: size for name, size in found.items() if size != (1, 1)}
-        if found and not pictures:
+        if found and not pictures and (found.keys() & inputs.keys() or not self._is_pattern(path, node)):
             return (1, 1)
         return node.output_size(pictures, self.pictures.canvas)
+
+    def _is_pattern(self, path: str, node: Node) -> bool:
+        """True for a node whose pixels differ even if all that it reads is the same everywhere."""
+        return not node.inputs or self.library.uses(_shader(node), frozenset({"pixel", "extent"}), path)
 
     def _pointwise(
         self, path: str, node: Pointwise, operands: Mapping[str, Operand], wires: Mapping[str, Operand], size: Size
@@ -221,10 +253,21 @@ class _Lowering:
             Shape((1, 1) if socket.single else size, socket.channels, socket.kind is not Kind.IMAGE)
             for socket in sockets
         )
-        call = Call(shapes, path, f"{node.category}/{node.id}", node.id, tuple(parameters), choices(node))
-        ref = self.builder.add(call)
+        self._check_function(path, node, [item.glsl for item in parameters], [item.glsl for item in sockets])
+        ref = self.builder.add(Call(shapes, path, _shader(node), node.id, tuple(parameters), choices(node)))
         for index, name in enumerate(node.outputs):
             self.results[Port(path, name)] = Ref(ref.op, index)
+
+    def _check_function(self, path: str, node: Node, taken: list[str], made: list[str]) -> None:
+        """Raise ShaderError unless the node's GLSL function takes and makes what the node declares."""
+        found = self.library.function(_shader(node), node.id, path)
+        outputs = [glsl for glsl, _ in found.outputs] or [found.result]
+        if [glsl for glsl, _ in found.parameters] != taken or outputs != made:
+            said, wanted = (f"({', '.join(a)}) to ({', '.join(b)})" for a, b in (
+                ([glsl for glsl, _ in found.parameters], outputs), (taken, made),
+            ))
+            fault = f"'{node.id}' takes {said}, but the node declares {wanted}"
+            raise ShaderError(path, f"shaders/{_shader(node)}.glsl", found.line, fault)
 
     def _value(self, node: Node, value: Value, wire: Operand | None, size: Size) -> Parameter:
         glsl = value.glsl or "float"
@@ -258,14 +301,40 @@ class _Lowering:
 
     def _as_pixels(self, path: str, socket: Socket, operand: Operand, size: Size) -> Operand:
         """A filter looks around in its input: give it real pixels with the channels that it declares."""
-        channels = self.builder.shape(operand).channels if isinstance(operand, Ref) else operand.channels
-        if socket.single or (isinstance(operand, Ref) and channels == socket.channels):
+        if socket.single:
             return operand
-        at = self.builder.shape(operand).size if isinstance(operand, Ref) else size
-        return self.pictures.converted(operand, socket.channels, at, path)
+        if isinstance(operand, Constant):
+            return self.pictures.converted(operand, socket, size, path)
+        return self._as_type(operand, socket, path)
+
+    def _as_type(self, ref: Ref, socket: Socket, owner: str) -> Ref:
+        """The same pixels with the channels that a socket declares."""
+        made = self.builder.shape(ref)
+        return ref if made.channels == socket.channels else self.pictures.converted(ref, socket, made.size, owner)
 
     def _read_for(self, path: str) -> Callable[[Picture, str], Ref]:
         return lambda picture, owner: self.pictures.read(self.pictures.located(picture, path), owner)
+
+
+def _shader(node: Node) -> str:
+    return f"{node.category}/{node.id}"
+
+
+def _check_values(path: str, node: Node) -> None:
+    """Raise GraphError for a value that no shader could take."""
+    for name, value in node.values.items():
+        now = getattr(node, name)
+        if now is not value.default and (fault := value_fault(value, now)):
+            raise GraphError(f"{path}.{name}: {fault}")
+
+
+def _default(port: Port, end: Input) -> Constant:
+    """The constant of a graph input. Raises GraphError where it does not fit."""
+    given = end.default if isinstance(end.default, tuple) else (end.default,)
+    found = tuple(part for part in given if isinstance(part, float | int) and math.isfinite(part))
+    if len(found) != len(given) or len(found) not in (1, end.width):
+        raise GraphError(f"input '{port.socket}': the default {end.default!r} does not fit {end.kind}")
+    return Constant(found if len(found) > 1 else float(*found))
 
 
 def _limited(wire: Constant, value: Value, factor: float) -> Constant:

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 from ...nodes import glsl_type
 from .ir import Choice, Constant, Parameter, Program, Ref, Shape
 from .plan import Uniform
 from .target import Form
+
+_FLOAT32 = 3.4e38
+_INT32 = 2**31
+"""Numbers that GLSL can hold. A float this large is infinite for every purpose."""
 
 
 @dataclass
@@ -42,12 +47,17 @@ class Names:
         return convert(self.load(ref, where), self.shape(ref).channels, glsl)
 
     def constant(self, item: Constant, glsl: str) -> str:
-        """A uniform; one of another width is converted like a picture would be."""
-        if item.channels == 1 and glsl in ("float", "int", "bool"):
-            return self.uniform(glsl, item.value)
-        if item.channels == 9:
-            return self.uniform("mat3", item.value)
-        return convert(self.uniform(glsl_type(item.channels), item.value), item.channels, glsl)
+        """A uniform within the range of its type; one of another type is converted like a picture would be."""
+        if isinstance(item.value, tuple):
+            value = tuple(_float32(part) for part in item.value)
+            if item.channels == 9:
+                return self.uniform("mat3", value)
+            return convert(self.uniform(glsl_type(item.channels), value), item.channels, glsl)
+        if glsl == "bool":
+            return self.uniform(glsl, item.value > 0.5)
+        if glsl == "int":
+            return self.uniform(glsl, math.floor(min(max(item.value, -_INT32), _INT32 - 1) + 0.5))
+        return convert(self.uniform("float", _float32(item.value)), 1, glsl)
 
     def argument(self, item: Parameter, values: dict[Ref, str]) -> str:
         """A parameter as an expression; `values` names what the pass has computed or loaded already."""
@@ -84,4 +94,8 @@ def glsl_channels(glsl: str) -> int:
 
 
 def _bound(limit: float) -> str:
-    return f"{min(max(limit, -3.0e38), 3.0e38)!r}"
+    return repr(_float32(limit))
+
+
+def _float32(value: float) -> float:
+    return float(min(max(value, -_FLOAT32), _FLOAT32))

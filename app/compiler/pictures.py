@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import cached_property
 from pathlib import PurePath
 
-from ...nodes import Kind, Size, Source, glsl_type
+from ...nodes import Kind, Size, Socket, Source
 from ..graph import INPUTS, Graph, Input, Port
 from .expand import Flat
 from .ir import Accessor, Builder, Call, Constant, Gather, Operand, Parameter, Picture, Read, Ref, Shape
@@ -35,7 +35,8 @@ class Pictures:
     def _named(self) -> Iterator[Picture]:
         """Pictures that the graph itself names: inputs first, then sources."""
         for port, socket in self._flat.inputs.items():
-            picture = self.bound(port, socket) if port.node == INPUTS else None
+            named = port.node == INPUTS and not socket.socket().single
+            picture = self.bound(port, socket) if named else None
             if picture is not None:
                 yield picture
         for path, node in self._flat.nodes.items():
@@ -52,7 +53,7 @@ class Pictures:
         kind, width = socket.kind, socket.socket().channels
         bound = self._request.bindings.get(port.socket) if port.node == INPUTS else None
         if bound is not None:
-            return Picture(bound.path, bound.layer, kind, width, bound.in_memory)
+            return replace(bound, kind=kind, width=width)
         if not socket.file:
             return None
         folder = self._flat.folders[port.node.removesuffix(INPUTS)]
@@ -80,10 +81,10 @@ class Pictures:
         accessor, scale = Accessor("image", "vec4", ref), Parameter("vec2", Constant((across, down)))
         return self._builder.add(Gather((fitted,), owner, "primitive/fit", function, (accessor,), (scale,)))
 
-    def converted(self, operand: Operand, channels: int, size: Size, owner: str) -> Ref:
-        """The same as a picture with this many channels."""
-        glsl = glsl_type(channels)
-        shape = Shape(size, channels, data=False)
+    def converted(self, operand: Operand, socket: Socket, size: Size, owner: str) -> Ref:
+        """The same as the pixels that `socket` stands for."""
+        glsl = socket.glsl
+        shape = Shape(size, socket.channels, socket.kind is not Kind.IMAGE)
         parameters = (Parameter(glsl, operand),)
         return self._builder.add(Call((shape,), owner, "primitive/convert", f"as_{glsl}", parameters))
 

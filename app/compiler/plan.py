@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ...nodes import Size
-from .draws import Memory
-from .ir import Picture
+from .ir import Memory, Picture
 from .target import Form, Target
 
 Depth = Literal["f2", "f4"]

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Protocol
 
 from ...nodes import Size
+from ..errors import UsageError
 from ..graph import Port
-from .draws import Memory
-from .ir import Picture
+from .ir import Memory, Picture
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,7 @@ class Request:
 
     `targets` are outputs of nodes or of the graph by the name they shall have; empty means every graph output.
     `bindings` fill graph inputs by name. `size` replaces the canvas and every picture's size; `scale` below one is a
-    proxy: everything, lengths in pixels too, shrinks by it.
+    proxy: everything, lengths in pixels too, shrinks by it. Raises UsageError for a size or scale of nothing.
     """
 
     targets: Mapping[str, Port] = field(default_factory=lambda: MappingProxyType({}))
@@ -44,3 +45,9 @@ class Request:
     frame: int = 1
     memories: Mapping[str, Memory] = field(default_factory=lambda: MappingProxyType({}))
     """What temporal nodes remembered of the frame before; none for a frame that follows no other."""
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.scale < math.inf:
+            raise UsageError(f"scale {self.scale:g}: give a number above 0; 0.5 renders at half size")
+        if self.size is not None and (len(self.size) != 2 or min(self.size) < 1):
+            raise UsageError(f"size {'x'.join(map(str, self.size))}: give width and height in pixels, at least 1")

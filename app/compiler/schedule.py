@@ -8,10 +8,9 @@ from types import MappingProxyType
 
 from ...nodes import Size
 from ..errors import DeviceError
-from .draws import Memory
 from .emit import Emitted, emit
 from .fuse import Fused, kept_refs
-from .ir import History, Program, Read, Ref, Shape
+from .ir import History, Memory, Program, Read, Ref, Shape
 from .library import Library
 from .plan import Depth, Pass, Plan, Surface, Upload
 from .target import Precision, Target

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from hashlib import blake2b
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from ...nodes import Kind
 from ..compiler import Picture, Probed
@@ -27,14 +27,13 @@ if TYPE_CHECKING:
 class Pictures:
     """Probes and loads what the pictures of one graph stand for. `repaired` counts broken pixels by path."""
 
-    arrays: Mapping[str, Array] = field(default_factory=dict[str, "Array"])
     repaired: dict[str, int] = field(default_factory=dict[str, int])
     _infos: dict[str, ImageInfo] = field(default_factory=dict[str, "ImageInfo"], repr=False)
     _marks: dict[str, str] = field(default_factory=dict[str, str], repr=False)
 
     def bind(self, graph: Graph, inputs: Mapping[str, Binding]) -> dict[str, Picture]:
         """Pictures for graph inputs by name. Raises UsageError for a name that the graph does not have."""
-        self.arrays, self._marks = {}, {}
+        self._marks = {}
         self._infos.clear()
         bound = {name: self._bind(_input(graph, name), name, item) for name, item in inputs.items()}
         return bound | self._siblings(graph, bound)
@@ -42,7 +41,7 @@ class Pictures:
     def probe(self, picture: Picture) -> Probed:
         """Size and precision of a picture. Raises InputError for what cannot be read."""
         if picture.in_memory:
-            array = self.arrays[picture.path]
+            array = cast("Array", picture.pixels)
             height, width = array.shape[:2]
             return Probed((width, height), array.dtype.name == "float16", self._marks[picture.path])
         from .info import find_layer
@@ -53,7 +52,7 @@ class Pictures:
     def load(self, picture: Picture) -> Array:
         """Its pixels as [height, width, channels] of float16 or float32."""
         if picture.in_memory:
-            return widened(self.arrays[picture.path], picture.kind, picture.width)
+            return widened(cast("Array", picture.pixels), picture.kind, picture.width)
         from .read import read
 
         pixels = read(picture.path, picture.layer, picture.kind, picture.width)
@@ -93,9 +92,8 @@ class Pictures:
             if item.ndim not in (2, 3) or not item.size or item.dtype.kind not in "fiub":
                 said = f"{item.dtype} {list(item.shape)}"
                 raise UsageError(f"input '{name}': the array is {said}; give numbers as [height, width, channels]")
-            self.arrays = {**self.arrays, name: item}
             self._marks[name] = _content(item)
-            return Picture(name, "", socket.kind, socket.socket().channels, in_memory=True)
+            return Picture(name, "", socket.kind, socket.socket().channels, in_memory=True, pixels=item)
         path, layer = split_layer(str(item))
         return Picture(path, layer or self._hinted(path, socket), socket.kind, socket.socket().channels)
 

@@ -6,21 +6,9 @@ import numpy as np
 import pytest
 from halation.app.compiler import Form
 from halation.app.renderer import Renderer, Wanted, open_device
-from random_graphs import random_graph
+from random_graphs import pictures, random_graph
 
-SIZE = (37, 23)
 SEEDS = range(150)
-
-
-def pictures(seed: int) -> dict[str, np.ndarray]:
-    """HDR noise; the vector is a displacement."""
-    rng = np.random.default_rng(seed)
-    width, height = SIZE
-    return {
-        "image": rng.gamma(0.6, 1.0, (height, width, 4)).astype(np.float32),
-        "field": rng.random((height, width), np.float32),
-        "vector": rng.normal(0.0, 1.0, (height, width, 2)).astype(np.float32),
-    }
 
 
 @pytest.fixture(scope="module")
