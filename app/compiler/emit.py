@@ -102,10 +102,10 @@ def _parts(program: Program, fused: Fused, names: Names, library: Library) -> _P
     if len(fused.members) > 1:
         shaders.insert(0, "primitive/settled")
     if isinstance(root, Call):
-        body, values = _calls(program, fused, names, "pixel")
+        body, values = _calls(program, fused, names)
         return _Parts(shaders, [], body, [values[ref] for ref in fused.writes])
     if isinstance(root, Reduce):
-        body, values = _calls(program, fused, names, "pixel")
+        body, values = _calls(program, fused, names)
         functions = bodies.source(names, root, body, values[root.image]) + bodies.reduction(names, root)
         return _Parts(shaders, functions, [], ["reduced(pixel)"])
     if isinstance(root, Convolve):
@@ -122,13 +122,13 @@ def _parts(program: Program, fused: Fused, names: Names, library: Library) -> _P
     return _Parts(["primitive/edges", root.shader], functions, [], [result], root.shader)
 
 
-def _calls(program: Program, fused: Fused, names: Names, where: str) -> tuple[list[str], dict[Ref, str]]:
+def _calls(program: Program, fused: Fused, names: Names) -> tuple[list[str], dict[Ref, str]]:
     """Statements that evaluate the pointwise members of a pass at one pixel, and the names of all they computed."""
     lines: list[str] = []
     values: dict[Ref, str] = {}
     for number, ref in enumerate(fused.reads):
         values[ref] = f"a{number}"
-        lines.append(f"{glsl_type(names.shape(ref).channels)} a{number} = {names.load(ref, where)};")
+        lines.append(f"{glsl_type(names.shape(ref).channels)} a{number} = {names.load(ref, 'pixel')};")
     for number, index in enumerate(fused.members):
         op = program.ops[index]
         if not isinstance(op, Call):

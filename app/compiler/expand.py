@@ -21,23 +21,25 @@ class Flat:
     nodes: dict[str, Node] = field(default_factory=dict[str, Node])
     links: dict[Port, Port] = field(default_factory=dict[Port, Port])
     inputs: dict[Port, Input] = field(default_factory=dict[Port, Input])
-    outputs: dict[str, Port] = field(default_factory=dict[str, Port])
     muted: set[str] = field(default_factory=set[str])
     unknown: dict[str, str] = field(default_factory=dict[str, str])
     """Types of nodes that are not installed, by path."""
+    faults: dict[Port, str] = field(default_factory=dict[Port, str])
+    """Why links cannot be, by target: said when something follows one."""
     folders: dict[str, str] = field(default_factory=dict[str, str])
 
     def source(self, port: Port) -> Port | None:
         """What is linked to an input, followed through the ends of groups to a node or a graph input."""
-        found = self.links.get(port)
-        seen: set[Port] = set()
-        while found is not None and found in self.links:
+        found, seen = port, set[Port]()
+        while found in self.links:
+            if found in self.faults:
+                raise GraphError(self.faults[found])
             if found in seen:
                 group = found.node.rpartition("/")[0]
                 raise GraphError(f"group '{group}' feeds itself: cut one link of the loop")
             seen.add(found)
             found = self.links[found]
-        return found
+        return found if seen else None
 
 
 def stand_in(output: Socket, inputs: Mapping[str, Socket]) -> str | None:
@@ -80,9 +82,11 @@ def expand(graph: Graph) -> Flat:
                 if name in body.muted:
                     flat.muted.add(path)
         for target, source in body.links.items():
-            flat.links[_inward(body, prefix, target)] = _outward(body, prefix, source)
-    for name in graph.outputs:
-        flat.outputs[name] = Port(OUTPUTS, name)
+            inward = _inward(body, prefix, target)
+            flat.links[inward] = _outward(body, prefix, source)
+            if fault := body.link_fault(source, target):
+                where = f"in group '{prefix.rstrip('/')}': " if prefix else ""
+                flat.faults[inward] = f"{where}'{source}' cannot feed '{target}': {fault}"
     return flat
 
 

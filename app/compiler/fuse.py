@@ -100,8 +100,9 @@ def _uniforms(op: Op) -> int:
     """Floats of uniforms that an operation takes at most: each is rounded up to four, and every output has a seam."""
     if not isinstance(op, Call):
         return 0
-    matrices = sum(isinstance(item.operand, Constant) and item.operand.channels == 9 for item in op.parameters)
-    return 4 * (len(op.parameters) + 2 * matrices + len(op.shapes))
+    constants = [item.operand for item in op.parameters if isinstance(item.operand, Constant)]
+    factors = [item for item in op.parameters if item.factor != 1.0]
+    return sum(12 if item.channels == 9 else 4 for item in constants) + 4 * (len(factors) + len(op.shapes))
 
 
 def _fits(ops: tuple[Op, ...], op: Op, root: int, count: int, reads: dict[Ref, None], target: Target) -> bool:

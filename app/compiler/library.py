@@ -34,8 +34,9 @@ class Function:
     start: int
     end: int
     """Where it lies in the text of its file."""
-    words: frozenset[str]
     line: int
+    words: frozenset[str]
+    """All words of its body: what it calls is among them."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +91,7 @@ def _function(match: re.Match[str], code: str) -> Function:
             way, glsl, called, array = found.groups(default="")
             (given if way else taken).append((glsl + array, called))
     line = code.count("\n", 0, match.start(2)) + 1
-    return Function(name, result, tuple(taken), tuple(given), match.start(), end, used, line)
+    return Function(name, result, tuple(taken), tuple(given), match.start(), end, line, used)
 
 
 def parse(name: str, source: str) -> Text:

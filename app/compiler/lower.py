@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
-from typing import cast
 
 from ...nodes import Filter, Image, Kind, Node, Pointwise, Size, Socket, Value
 from ..errors import GraphError, ShaderError
@@ -51,7 +50,7 @@ class _Lowering:
         self.memories: dict[str, Ref] = {}
 
     def run(self) -> Program:
-        targets = dict(self.request.targets) or self.flat.outputs
+        targets = dict(self.request.targets) or {name: Port(OUTPUTS, name) for name in self.graph.outputs}
         if not targets:
             raise GraphError("the graph has no outputs: link something to an output, or name a node to render")
         sources = {name: self._target(name, port) for name, port in targets.items()}

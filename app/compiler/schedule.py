@@ -24,6 +24,8 @@ def schedule(
     needed |= dict.fromkeys(kept_refs(program))
     for ref in needed:
         _check_size(program.ops[ref.op].shapes[ref.output].size, program.ops[ref.op].owner, target)
+    for fused in passes:
+        _check_outputs(len(fused.writes), program.ops[fused.root].owner, target)
     texels = {ref: _texel(program, ref, precision) for ref in needed}
     emitted = [emit(program, fused, library, target, texels) for fused in passes]
     keys = _keys(program, passes, emitted, needed)
@@ -58,6 +60,14 @@ def _check_size(size: Size, owner: str, target: Target) -> None:
         raise DeviceError(
             f"node '{owner}': {size[0]}x{size[1]} pixels is more than the {target.max_size} that {target.renderer} "
             "can hold on a side; render smaller with --scale or --size"
+        )
+
+
+def _check_outputs(count: int, owner: str, target: Target) -> None:
+    most = target.max_images if target.form == "compute" else target.max_targets
+    if count > most:
+        raise DeviceError(
+            f"node '{owner}': {target.renderer} writes {most} pictures at once, not {count}; link fewer of its outputs"
         )
 
 

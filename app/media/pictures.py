@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from .info import ImageInfo
 
     Array = np.ndarray
-    Binding = str | Path | Array
-    """What fills a graph input: a path, `path:layer`, or an array [h, w] or [h, w, c]."""
+    Binding = str | Path | Array | float | tuple[float, ...]
+    """What fills a graph input: a path, `path:layer`, an array [h, w] or [h, w, c], the value of a Number or Color."""
 
 
 @dataclass
@@ -89,11 +89,12 @@ class Pictures:
 
     def _bind(self, socket: Input, name: str, item: Binding) -> Picture:
         if not isinstance(item, str | Path):
-            if item.ndim not in (2, 3) or not item.size or item.dtype.kind not in "fiub":
-                said = f"{item.dtype} {list(item.shape)}"
+            array = _array(item, socket.socket().single)
+            if array.ndim not in (2, 3) or not array.size or array.dtype.kind not in "fiub":
+                said = f"{array.dtype} {list(array.shape)}"
                 raise UsageError(f"input '{name}': the array is {said}; give numbers as [height, width, channels]")
-            self._marks[name] = _content(item)
-            return Picture(name, "", socket.kind, socket.socket().channels, in_memory=True, pixels=item)
+            self._marks[name] = _content(array)
+            return Picture(name, "", socket.kind, socket.socket().channels, in_memory=True, pixels=array)
         path, layer = split_layer(str(item))
         return Picture(path, layer or self._hinted(path, socket), socket.kind, socket.socket().channels)
 
@@ -107,6 +108,14 @@ class Pictures:
             except InputError:
                 return find_layer(self.info(path), "").name
         return socket.layer
+
+
+def _array(item: Array | float | tuple[float, ...], single: bool) -> Array:
+    """An array that is bound to an input; one number, or one per channel, will do where the input takes one value."""
+    import numpy as np
+
+    array = np.asarray(item)
+    return array.reshape(1, 1, -1) if single and array.ndim < 2 else array
 
 
 def _content(array: Array) -> str:

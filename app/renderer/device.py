@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import sys
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from threading import current_thread, get_ident
 
 import moderngl
 
 from ..compiler import Form, Target
-from ..errors import DeviceError
+from ..errors import DeviceError, UsageError
 
 OLDEST = 410
 """macOS stops at OpenGL 4.1."""
@@ -25,9 +26,17 @@ class Device:
     target: Target
     shared: bool = False
     """True if the context belongs to somebody else, a window say, and is current whenever we are called."""
+    thread: int = field(default_factory=get_ident)
+    """The thread that opened it: a context is current on one thread, and only there can it be used."""
 
     def current(self) -> AbstractContextManager[object]:
-        """Our context is the current one inside this block, whatever other contexts the process has."""
+        """Our context is the current one inside this block, whatever other contexts the process has.
+
+        Raises UsageError on another thread than the one that opened the device.
+        """
+        if get_ident() != self.thread:
+            name = current_thread().name
+            raise UsageError(f"thread '{name}' did not open this device and cannot render on it: open one there")
         return nullcontext() if self.shared else self.context
 
     def close(self) -> None:

@@ -39,9 +39,9 @@ class Wanted:
 
 
 class Renderer:
-    """Renders graphs on one device, keeping programs, textures and results for the next time.
+    """Renders graphs on one device and one thread, keeping programs, textures and results for the next time.
 
-    `budget` is how many bytes of results may stay on the device.
+    `budget` is how many bytes of results may stay on the device. Without a `device` it opens one, and closes it too.
     """
 
     def __init__(
@@ -72,4 +72,5 @@ class Renderer:
         """Give back textures, programs and threads, and the device if it was not handed in."""
         self.runner.close()
         if self._owns_device:
+            self._owns_device = False
             self.device.close()

@@ -13,6 +13,9 @@ from ..errors import ShaderError
 # Mesa: "2:14(5): error: ...", NVIDIA: "2(14) : error ...", Apple and AMD: "ERROR: 2:14: ..."
 _FAULT = re.compile(r"(?:ERROR:\s*)?(\d+)(?::(\d+)(?:\(\d+\))?|\((\d+)\))\s*:\s*(.*)")
 
+MAX_PROGRAMS = 512
+"""Programs kept: more than any graph needs, and an end to hours of editing."""
+
 
 @dataclass
 class Program:
@@ -29,8 +32,15 @@ class Program:
             self.values[name] = value
 
 
+    def release(self) -> None:
+        """Give it back to the driver."""
+        if self.vertices is not None:
+            self.vertices.release()
+        self.handle.release()
+
+
 class Programs:
-    """Compiles on first use and keeps. `compiled` counts."""
+    """Compiles on first use and keeps those used last. `compiled` counts."""
 
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context
@@ -39,18 +49,19 @@ class Programs:
 
     def get(self, one: Pass) -> Program:
         """The program of a pass. Raises ShaderError with node, file and line where the driver refuses it."""
-        known = self._known.get(one.shader)
+        known = self._known.pop(one.shader, None)
         if known is None:
-            known = self._known[one.shader] = self._compile(one)
+            known = self._compile(one)
             self.compiled += 1
+        self._known[one.shader] = known
+        if len(self._known) > MAX_PROGRAMS:
+            self._known.pop(next(iter(self._known))).release()
         return known
 
     def clear(self) -> None:
         """Give everything back to the driver."""
         for program in self._known.values():
-            if program.vertices is not None:
-                program.vertices.release()
-            program.handle.release()
+            program.release()
         self._known.clear()
 
     def _compile(self, one: Pass) -> Program:

@@ -11,7 +11,7 @@ import moderngl
 import numpy as np
 
 from ..compiler import MAX_WEIGHTS, Memory, Pass, Plan
-from ..errors import InputError, RenderError
+from ..errors import InputError, RenderError, UsageError
 from .decoding import Array, Decoding, Loader
 from .device import Device
 from .programs import Programs
@@ -42,6 +42,7 @@ class Runner:
         self.memories: Mapping[str, Memory] = {}
         """What temporal nodes remember of the last plan that ran to its end."""
         self._idle: moderngl.Framebuffer | None = None
+        self._closed = False
         self._threads = ThreadPoolExecutor(max_workers=2, thread_name_prefix="decode")
 
     def run(self, plan: Plan) -> dict[str, Array]:
@@ -56,15 +57,17 @@ class Runner:
 
         Several plans may be under way at once, step by step.
         """
+        if self._closed:
+            raise UsageError("this renderer is closed: make another one")
         wanted, needed = _needed(plan, self.textures)
         self.counters.skipped += len(plan.passes) - len(needed)
         readers = _count_readers(plan, needed, wanted)
-        lease = Lease(self.textures)
-        for key in readers:
-            if key in self.textures:
-                lease.take(key)
         decoding = self._decoding(plan, needed, wanted)
+        lease = Lease(self.textures)
         try:
+            for key in readers:
+                if key in self.textures:
+                    lease.take(key)
             for index in needed:
                 one = plan.passes[index]
                 with self.device.current():
@@ -82,12 +85,16 @@ class Runner:
             self._remember(plan)
         finally:
             decoding.cancel()
-            lease.close()
-            with self.device.current():
-                self.textures.next_round()
+            if not self._closed:
+                lease.close()
+                with self.device.current():
+                    self.textures.next_round()
 
     def close(self) -> None:
-        """Give everything back."""
+        """Give everything back. Runs that are under way end here."""
+        if self._closed:
+            return
+        self._closed = True
         self._threads.shutdown(cancel_futures=True)
         with self.device.current():
             self.textures.clear()
@@ -97,7 +104,6 @@ class Runner:
             self._weights.clear()
             if self._idle is not None:
                 self._idle.release()
-                self._idle = None
 
     # --- parts -------------------------------------------------------------------------------------------------------
 

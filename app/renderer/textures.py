@@ -72,12 +72,12 @@ class Textures:
 
     def next_round(self) -> None:
         """Give back to the driver what waited in vain since the round before this one."""
-        for kind, waiting in list(self._free.items()):
-            for texture in (one for one in waiting if one.freed < self._round):
+        waiting, self._free = [one for kind in self._free.values() for one in kind], {}
+        for texture in waiting:
+            if texture.freed < self._round:
                 self._release(texture)
-            self._free[kind] = [one for one in waiting if one.freed >= self._round]
-            if not self._free[kind]:
-                del self._free[kind]
+            else:
+                self._free.setdefault(texture.kind, []).append(texture)
         self._round += 1
 
     # --- for leases --------------------------------------------------------------------------------------------------
@@ -99,13 +99,13 @@ class Textures:
     def unlease(self, key: str) -> None:
         """Unless somebody else leases them, these pixels may go as soon as the budget asks for it."""
         self._leases[key] -= 1
-        if self._leases[key] <= 0:
-            del self._leases[key]
-            if key in self._results:
-                self._idle[key] = None
-                self._idle_bytes += self._results[key].nbytes
-                while self._idle_bytes > self.budget:
-                    self.drop(next(iter(self._idle)))
+        if self._leases[key] > 0:
+            return
+        del self._leases[key]
+        self._idle[key] = None
+        self._idle_bytes += self._results[key].nbytes
+        while self._idle_bytes > self.budget:
+            self.drop(next(iter(self._idle)))
 
     def drop(self, key: str) -> None:
         """Forget these pixels: there is no room for them, or they were not finished."""

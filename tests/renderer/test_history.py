@@ -82,3 +82,22 @@ def test_memory_does_not_grow_with_frames(engine):
     early = engine.runner.textures.allocated
     rendered(engine, range(4, 40), Trail(), follows=True)
     assert engine.runner.textures.allocated == early
+
+
+@pytest.mark.parametrize("precisions", [("float", "half"), ("half", "float")])
+def test_history_keeps_the_precision_that_it_was_made_with(engine, precisions):
+    """The next frame may be rendered with another: 3 remembered three quarters, 5 new one."""
+    for number, precision in zip((3, 5), precisions, strict=True):
+        picture = {"image": frame(number)}
+        wanted = Wanted(picture, precision=precision, frame=number, follows=number == 5)
+        found = engine.render(graph_of(Trail(), picture), wanted)["out"]
+    np.testing.assert_array_equal(found, np.full_like(found, 0.75 * 3.0 + 0.25 * 5.0))
+
+
+def test_history_belongs_to_what_ran_last_however_it_was_run(engine):
+    """A frame rendered pass by pass in between, without history, leaves none."""
+    rendered(engine, range(1, 5), Trail())
+    between = graph_of(Trail(), {"image": frame(7)})
+    for _ in engine.runner.steps(engine.compile(between, Wanted({"image": frame(7)}, precision="float")), {}):
+        pass
+    assert rendered(engine, range(7, 8), Trail(), follows=True) == [7.0]

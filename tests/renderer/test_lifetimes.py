@@ -1,0 +1,299 @@
+"""Textures, programs and pixels live as long as somebody needs them, whatever goes wrong in between."""
+
+from __future__ import annotations
+
+import threading
+import time
+from itertools import zip_longest
+
+import numpy as np
+import pytest
+from conftest import graph_of
+from halation.app.errors import DeviceError, InputError, UsageError
+from halation.app.graph import Graph, Input, Output, Port, Settings
+from halation.app.renderer import Renderer, Wanted, open_device
+from halation.app.renderer.decoding import AHEAD
+from halation.nodes import Kind, catalogue
+from halation.nodes.blur.gaussian_blur import GaussianBlur
+from halation.nodes.color.exposure import Exposure
+from halation.nodes.color.saturation import Saturation
+
+PICTURE = np.random.default_rng(5).random((23, 37, 4), np.float32)
+
+
+def chain(stops: float = 1.0, sigma: float = 2.0) -> Graph:
+    graph = Graph(inputs={"image": Input(Kind.IMAGE)}, outputs={"image": Output()})
+    last = Port("inputs", "image")
+    nodes = {"light": Exposure(stops=stops), "blur": GaussianBlur(sigma=sigma), "color": Saturation(saturation=0.5)}
+    for name, node in nodes.items():
+        graph = graph.add(name, node).connect(last, Port(name, "image"))
+        last = Port(name, "out")
+    return graph.connect(last, Port("outputs", "image"))
+
+
+def merged(count: int) -> Graph:
+    """The sum of `count` pictures."""
+    merge = catalogue()["merge"](mode="plus")
+    graph = Graph(inputs={f"i{number:02}": Input() for number in range(count)}, outputs={"image": Output()})
+    last = Port("inputs", "i00")
+    for number in range(1, count):
+        graph = graph.add(f"m{number:02}", merge).connect(last, Port(f"m{number:02}", "b"))
+        graph = graph.connect(Port("inputs", f"i{number:02}"), Port(f"m{number:02}", "a"))
+        last = Port(f"m{number:02}", "out")
+    return graph.connect(last, Port("outputs", "image"))
+
+
+def wanted(picture=PICTURE, **rest) -> Wanted:
+    return Wanted({"image": picture}, precision="float", **rest)
+
+
+@pytest.fixture
+def engine():
+    made = Renderer()
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def forgetful():
+    made = Renderer(budget=0)
+    yield made
+    made.close()
+
+
+def held(engine: Renderer) -> int:
+    """Bytes of all textures that the pool can name."""
+    textures = engine.runner.textures
+    waiting = [one for kind in textures._free.values() for one in kind]
+    return sum(one.nbytes for one in (*textures._results.values(), *waiting))
+
+
+def test_pictures_of_ever_other_sizes_do_not_pile_up():
+    engine = Renderer(budget=2**20)
+    for width in range(64, 160):
+        engine.render(chain(), wanted(np.zeros((width // 2, width, 4), np.float32)))
+    textures, largest = engine.runner.textures, 80 * 160 * 16
+    assert textures.allocated == held(engine)
+    # The budget, and what this round and the one before did not want any more: five surfaces each.
+    assert textures.allocated <= 2**20 + 2 * 5 * largest
+    assert not textures._leases
+    engine.close()
+    assert textures.allocated == 0
+
+
+def test_two_plans_made_before_either_runs_keep_their_pictures(engine):
+    graph = graph_of(Exposure(stops=1.0), {"image": PICTURE})
+    plans = [engine.compile(graph, wanted(PICTURE * factor)) for factor in (1.0, 3.0)]
+    for plan, factor in zip(plans, (1.0, 3.0), strict=True):
+        found = engine.runner.run(plan)["out"]
+        np.testing.assert_allclose(found[..., :3], 2.0 * factor * PICTURE[..., :3], rtol=1e-6)
+
+
+@pytest.mark.parametrize("first", [1, 2, 3])
+def test_two_runs_of_a_plan_may_take_turns(renderer, forgetful, first):
+    plan = forgetful.compile(chain(), wanted())
+    results: list[dict[str, np.ndarray]] = [{}, {}]
+    one, other = (forgetful.runner.steps(plan, result) for result in results)
+    for _ in range(first):
+        next(one)
+    for _ in zip_longest(other, one):
+        pass
+    expected = renderer.render(chain(), wanted())["image"]
+    for result in results:
+        np.testing.assert_array_equal(result["image"], expected)
+    assert forgetful.runner.textures.allocated == held(forgetful)
+    assert not forgetful.runner.textures._leases
+
+
+def test_dropping_a_run_does_not_disturb_the_next(renderer, forgetful):
+    plan, result = forgetful.compile(chain(), wanted()), {}
+    old, new = forgetful.runner.steps(plan, {}), forgetful.runner.steps(plan, result)
+    next(old), next(old), next(new)
+    old.close()
+    for _ in new:
+        pass
+    np.testing.assert_array_equal(result["image"], renderer.render(chain(), wanted())["image"])
+
+
+def test_two_devices_may_take_turns(renderer):
+    engines = [Renderer(open_device(form), budget=0) for form in ("compute", "fragment")]
+    results: list[dict[str, np.ndarray]] = [{}, {}]
+    runs = [
+        engine.runner.steps(engine.compile(chain(sigma=9.0), wanted()), result)
+        for engine, result in zip(engines, results, strict=True)
+    ]
+    for _ in zip_longest(*runs):
+        pass
+    expected = renderer.render(chain(sigma=9.0), wanted())["image"]
+    for engine, result in zip(engines, results, strict=True):
+        np.testing.assert_allclose(result["image"], expected, rtol=1e-6, atol=1e-6)
+        engine.close()
+        engine.device.close()
+
+
+def test_every_thread_needs_a_device_of_its_own(renderer, engine):
+    found: list[np.ndarray | UsageError] = []
+
+    def borrowed() -> None:
+        try:
+            engine.render(chain(1.3), wanted())
+        except UsageError as fault:
+            found.append(fault)
+
+    def own() -> None:
+        mine = Renderer()
+        found.append(mine.render(chain(1.3), wanted())["image"])
+        mine.close()
+
+    for work in (borrowed, own):
+        thread = threading.Thread(target=work, name="helper")
+        thread.start()
+        thread.join()
+    assert "thread 'helper' did not open this device" in str(found[0])
+    assert not engine.runner.textures._results and not engine.runner.textures._leases
+    for one in (renderer, engine):
+        np.testing.assert_array_equal(found[1], one.render(chain(1.3), wanted())["image"])
+
+
+def test_a_picture_that_changed_its_size_spoils_nothing(engine):
+    load, graph = engine.runner._load, graph_of(Exposure(stops=1.0), {"image": PICTURE})
+    engine.runner._load = lambda picture: load(picture)[:-2]
+    with pytest.raises(InputError, match="it was 37x23 pixels when the rendering began, and is 37x21 now"):
+        engine.render(graph, wanted())
+    engine.runner._load = load
+    np.testing.assert_allclose(engine.render(graph, wanted())["out"][..., :3], 2.0 * PICTURE[..., :3], rtol=1e-6)
+
+
+def test_an_upload_that_is_interrupted_spoils_nothing(engine, monkeypatch):
+    from halation.app.renderer import runner
+
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    graph, fitting = graph_of(Exposure(stops=1.0), {"image": PICTURE}), runner._fitting
+    monkeypatch.setattr(runner, "_fitting", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        engine.render(graph, wanted())
+    monkeypatch.setattr(runner, "_fitting", fitting)
+    np.testing.assert_allclose(engine.render(graph, wanted())["out"][..., :3], 2.0 * PICTURE[..., :3], rtol=1e-6)
+
+
+def test_a_pass_without_room_for_all_its_outputs_leaves_none(engine, monkeypatch):
+    graph = Graph(outputs={"image": Output(), "mask": Output(Kind.FIELD)}, settings=Settings((16, 9)))
+    graph = graph.add("c", catalogue()["checker"](size=4.0)).connect(Port("c", "out"), Port("outputs", "image"))
+    graph = graph.connect(Port("c", "value"), Port("outputs", "mask"))
+    textures, calls = engine.runner.textures, []
+    allocate = textures._allocate
+
+    def second_fails(*arguments):
+        calls.append(arguments)
+        if len(calls) == 2:
+            raise DeviceError("no room")
+        return allocate(*arguments)
+
+    monkeypatch.setattr(textures, "_allocate", second_fails)
+    with pytest.raises(DeviceError, match="no room"):
+        engine.render(graph)
+    assert not textures._results and not textures._leases
+    assert set(np.unique(engine.render(graph)["mask"])) == {0.0, 1.0}
+
+
+def test_results_make_room_before_an_allocation_fails(engine, monkeypatch):
+    """The budget is a wish: what the device can hold is less."""
+    textures = engine.runner.textures
+    real, room = textures._try, 16 * PICTURE.nbytes
+
+    def limited(width, height, components, depth):
+        wanted = width * height * components * 4
+        return real(width, height, components, depth) if textures.allocated + wanted <= room else None
+
+    monkeypatch.setattr(textures, "_try", limited)
+    for stops in range(12):
+        picture = PICTURE + np.float32(stops)
+        engine.render(chain(stops + 0.5), wanted(picture))
+    assert textures.allocated <= room
+
+
+def test_only_a_few_pictures_are_decoded_ahead(forgetful):
+    count, loaded = 8 + 2 * AHEAD, []
+    load = forgetful.runner._load
+
+    def watched(picture):
+        loaded.append(picture.path)
+        return load(picture)
+
+    forgetful.runner._load = watched
+    pictures = {f"i{number:02}": PICTURE * (number + 1) for number in range(count)}
+    plan = forgetful.compile(merged(count), Wanted(pictures, precision="float"))
+    result: dict[str, np.ndarray] = {}
+    steps = forgetful.runner.steps(plan, result)
+    next(steps)
+    taken = len(plan.passes[0].textures)
+    time.sleep(0.1)
+    assert len(loaded) <= taken + AHEAD < count
+    for _ in steps:
+        pass
+    assert sorted(loaded) == sorted(pictures)
+    np.testing.assert_allclose(result["image"][..., :3], PICTURE[..., :3] * count * (count + 1) / 2, rtol=1e-5)
+
+
+def test_a_loader_that_fails_on_its_thread_is_heard(forgetful):
+    load, calls = forgetful.runner._load, []
+
+    def second_fails(picture):
+        calls.append(picture)
+        if len(calls) == 2:
+            raise InputError("broken.exr: it ends too soon")
+        return load(picture)
+
+    forgetful.runner._load = second_fails
+    pictures = Wanted({"i00": PICTURE, "i01": PICTURE, "i02": PICTURE}, precision="float")
+    with pytest.raises(InputError, match="ends too soon"):
+        forgetful.render(merged(3), pictures)
+    assert not forgetful.runner.textures._leases
+    found = forgetful.render(merged(3), pictures)["image"]
+    np.testing.assert_allclose(found[..., :3], 3.0 * PICTURE[..., :3], rtol=1e-6)
+
+
+def test_programs_that_were_not_used_for_long_go(renderer, engine, monkeypatch):
+    from halation.app.renderer import programs
+
+    monkeypatch.setattr(programs, "MAX_PROGRAMS", 2)
+    for _ in range(2):
+        for sigma in (2.0, 9.0):
+            found = engine.render(chain(sigma=sigma), wanted(PICTURE * (1 + engine.runner.counters.passes)))["image"]
+            assert np.isfinite(found).all()
+    assert len(engine.runner.programs._known) == 2
+    assert engine.runner.programs.compiled > 6
+    np.testing.assert_array_equal(engine.render(chain(), wanted())["image"],
+                                  renderer.render(chain(), wanted())["image"])
+
+
+def test_closing_gives_everything_back():
+    threads = threading.active_count()
+    for _ in range(4):
+        engine = Renderer()
+        engine.render(chain(sigma=9.0), wanted())
+        engine.close()
+        assert (engine.runner.textures.allocated, engine.runner._weights) == (0, {})
+    assert threading.active_count() == threads
+
+
+def test_a_closed_renderer_says_so():
+    engine = Renderer()
+    steps = engine.runner.steps(engine.compile(chain(), wanted()), {})
+    next(steps)
+    engine.close()
+    steps.close()
+    engine.close()
+    with pytest.raises(UsageError, match="renderer is closed"):
+        engine.render(chain(), wanted())
+
+
+@pytest.mark.parametrize("budget", [0, PICTURE.nbytes])
+def test_a_tiny_budget_changes_no_pixel(renderer, budget):
+    engine = Renderer(budget=budget)
+    for stops, sigma in ((1.0, 2.0), (2.0, 9.0), (1.0, 2.0), (1.0, 9.0), (2.0, 9.0)):
+        found = engine.render(chain(stops, sigma), wanted())["image"]
+        np.testing.assert_array_equal(found, renderer.render(chain(stops, sigma), wanted())["image"])
+    engine.close()
