@@ -42,12 +42,14 @@ from ._declare import (
     Value,
     Vector,
     glsl_type,
+    working_factor,
 )
 
 __all__ = [
     "RGBA", "Argument", "Color", "Doc", "Draw", "Drawn", "Edge", "Field", "File", "FilePath", "Filter", "Fraction",
     "Handle", "Image", "Kernel3x3", "Kind", "Node", "Number", "Output", "Pixels", "Plain", "Pointwise", "Position",
-    "Size", "Slider", "Socket", "Source", "Swatch", "Temporal", "Unit", "Value", "Vector", "catalogue", "glsl_type",
+    "Size", "Slider", "Socket", "Source", "Swatch", "Temporal", "Unit", "Value", "Vector", "catalogue",
+    "glsl_type", "working_factor",
 ]
 
 

@@ -6,28 +6,16 @@ pictures of the wrong size get a fit, and values arrive in working units.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
-from ...nodes import Filter, Image, Kind, Node, Pointwise, Size, Socket, Value
+from ...nodes import Filter, Image, Kind, Node, Pointwise, Size, Socket, Value, working_factor
 from ..errors import GraphError, ShaderError
-from ..graph import OUTPUTS, Graph, Input, Port, did_you_mean
-from ..graph.values import value_fault
+from ..graph import OUTPUTS, Graph, Port, did_you_mean
+from . import constants
 from .draws import Made, Recorder, choices
 from .expand import Flat, expand, nothing, stand_in
-from .ir import (
-    Builder,
-    Call,
-    Choice,
-    Constant,
-    Operand,
-    Parameter,
-    Picture,
-    Program,
-    Ref,
-    Shape,
-)
+from .ir import Builder, Call, Choice, Constant, Operand, Parameter, Picture, Program, Ref, Shape
 from .library import Library
 from .pictures import Pictures
 from .request import Probe, Request
@@ -54,7 +42,7 @@ class _Lowering:
         if not targets:
             raise GraphError("the graph has no outputs: link something to an output, or name a node to render")
         sources = {name: self._target(name, port) for name, port in targets.items()}
-        for node in self._order(sources.values()):
+        for node in self.flat.order(sources.values()):
             self._node(node)
         outputs = {name: self._finished(port, name, self._shown(targets[name], port)) for name, port in sources.items()}
         return Program(
@@ -88,33 +76,6 @@ class _Lowering:
         output = node.outputs.get(source.socket) if node else None
         return output.socket if output else None
 
-    def _order(self, sources: Iterable[Port]) -> list[str]:
-        """Names of the nodes that `sources` need, each after what it reads."""
-        order: list[str] = []
-        state: dict[str, bool] = {}
-        todo: list[tuple[str, bool]] = [(port.node, False) for port in sources]
-        while todo:
-            name, leaving = todo.pop()
-            if leaving:
-                state[name] = True
-                order.append(name)
-                continue
-            if name in self.flat.unknown:
-                kind = self.flat.unknown[name]
-                raise GraphError(f"node '{name}': its type '{kind}' is unknown to this version of Halation")
-            if name in state or name not in self.flat.nodes:
-                if state.get(name) is False:
-                    raise GraphError(f"node '{name}' feeds itself: cut one link of the loop")
-                continue
-            state[name] = False
-            todo.append((name, True))
-            node = self.flat.nodes[name]
-            for socket in (*node.inputs, *node.values):
-                source = self.flat.source(Port(name, socket))
-                if source is not None and state.get(source.node) is not True:
-                    todo.append((source.node, False))
-        return order
-
     # --- nodes -----------------------------------------------------------------------------------------------------
 
     def _operand(self, port: Port) -> Operand | None:
@@ -131,7 +92,7 @@ class _Lowering:
         if picture is not None:
             self.results[port] = self.pictures.read(picture, f"{port}")
         elif socket.default is not None:
-            self.results[port] = _default(port, socket)
+            self.results[port] = constants.of_input(port, socket)
         else:
             return None
         return self.results[port]
@@ -161,7 +122,7 @@ class _Lowering:
                 found[name] = operand
                 linked.add(name)
             elif socket.optional:
-                found[name] = Constant(_spread(socket))
+                found[name] = Constant(constants.of_socket(socket))
             elif source is not None:
                 raise GraphError(
                     f"node '{path}': input '{name}' comes from the graph input '{source.socket}', which is not bound "
@@ -173,7 +134,7 @@ class _Lowering:
 
     def _node(self, path: str) -> None:
         node = self.flat.nodes[path]
-        _check_values(path, node)
+        constants.check_values(path, node)
         operands, linked = self._inputs(path, node)
         wires: dict[str, Operand] = {}
         for name in node.values:
@@ -271,10 +232,9 @@ class _Lowering:
     def _value(self, node: Node, value: Value, wire: Operand | None, size: Size) -> Parameter:
         glsl = value.glsl or "float"
         if wire is not None:
-            units = {"px": self.request.scale, "height": float(size[1]), "deg": math.pi / 180.0}
-            factor = units.get(value.unit or "", 1.0)
+            factor = working_factor(value.unit, self.request.scale, size[1])
             if isinstance(wire, Constant):
-                return Parameter(glsl, _limited(wire, value, factor))
+                return Parameter(glsl, constants.limited(wire, value, factor))
             return Parameter(glsl, wire, factor, value.minimum, value.maximum)
         now = getattr(node, value.name)
         operand = Choice(value.choices.index(now)) if value.type == "choice" else Constant(now)
@@ -317,35 +277,3 @@ class _Lowering:
 
 def _shader(node: Node) -> str:
     return f"{node.category}/{node.id}"
-
-
-def _check_values(path: str, node: Node) -> None:
-    """Raise GraphError for a value that no shader could take."""
-    for name, value in node.values.items():
-        now = getattr(node, name)
-        if now is not value.default and (fault := value_fault(value, now)):
-            raise GraphError(f"{path}.{name}: {fault}")
-
-
-def _default(port: Port, end: Input) -> Constant:
-    """The constant of a graph input. Raises GraphError where it does not fit."""
-    given = end.default if isinstance(end.default, tuple) else (end.default,)
-    found = tuple(part for part in given if isinstance(part, float | int) and math.isfinite(part))
-    if len(found) != len(given) or len(found) not in (1, end.width):
-        raise GraphError(f"input '{port.socket}': the default {end.default!r} does not fit {end.kind}")
-    return Constant(found if len(found) > 1 else float(*found))
-
-
-def _limited(wire: Constant, value: Value, factor: float) -> Constant:
-    """A wired constant within the hard range, in working units."""
-    parts = wire.value if isinstance(wire.value, tuple) else (wire.value,)
-    limited = tuple(min(max(part, value.minimum), value.maximum) * factor for part in parts)
-    return Constant(limited if isinstance(wire.value, tuple) else limited[0])
-
-
-def _spread(socket: Socket) -> float | tuple[float, ...]:
-    """A socket's default with one number per channel."""
-    default = socket.default if socket.default is not None else 0.0
-    if socket.channels == 1 or isinstance(default, tuple):
-        return default
-    return (default,) * socket.channels

@@ -93,6 +93,11 @@ class Pictures:
             if array.ndim not in (2, 3) or not array.size or array.dtype.kind not in "fiub":
                 said = f"{array.dtype} {list(array.shape)}"
                 raise UsageError(f"input '{name}': the array is {said}; give numbers as [height, width, channels]")
+            if array.dtype.kind == "u" and array.dtype.itemsize < 4:
+                raise UsageError(
+                    f"input '{name}': {array.dtype} pixels are those of a file and encoded for a display; give "
+                    "scene-linear floats, or the path of the file"
+                )
             self._marks[name] = _content(array)
             return Picture(name, "", socket.kind, socket.socket().channels, in_memory=True, pixels=array)
         path, layer = split_layer(str(item))

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 import re
 from collections.abc import Mapping
 from typing import Any, ClassVar, Self, dataclass_transform, get_type_hints
 
 from .draw import Draw, Drawn
 from .sockets import Output, Size, Socket
-from .values import Value, read_value
+from .values import Value, read_value, working_factor
 
 
 def _fields(cls: Any) -> tuple[dataclasses.Field[Any], ...]:
@@ -64,13 +63,12 @@ class Node:
 
     def working(self, scale: float, height: int) -> Self:
         """The same values in working units, as `passes` and GLSL see them: see `Unit`."""
-        factor = {"px": scale, "height": float(height), "deg": math.pi / 180.0}
         changed: dict[str, Any] = {}
         for name, value in self.values.items():
-            if value.unit in factor:
+            factor = working_factor(value.unit, scale, height)
+            if factor != 1.0:
                 now: float | tuple[float, ...] = getattr(self, name)
-                by = factor[value.unit]
-                changed[name] = tuple(part * by for part in now) if isinstance(now, tuple) else now * by
+                changed[name] = tuple(part * factor for part in now) if isinstance(now, tuple) else now * factor
         return self.changed(**changed) if changed else self
 
     def changed(self, **values: Any) -> Self:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal, get_args, get_origin
 
@@ -14,6 +15,11 @@ Unit = Literal["px", "height", "deg", "EV", "ratio", "count", "s", "scene"]
 `deg` degrees (radians in GLSL); `EV` photographic stops; `ratio` a plain factor; `count` a whole number of
 things; `s` seconds; `scene` the scene's own units (radiance, depth).
 """
+
+
+def working_factor(unit: Unit | None, scale: float, height: float) -> float:
+    """What turns a number into working units, for a proxy of `scale` and a picture `height` pixels high."""
+    return {"px": scale, "height": height, "deg": math.pi / 180.0}.get(unit or "", 1.0)
 
 
 @dataclass(frozen=True)
@@ -94,11 +100,6 @@ class Value:
     def wireable(self) -> bool:
         """True if a link may drive it (on a pointwise node)."""
         return self.type in ("float", "int", "bool", "color", "vector")
-
-    @property
-    def is_pixels(self) -> bool:
-        """True for lengths in pixels, which shrink under a proxy."""
-        return self.unit == "px"
 
 
 def read_value(name: str, hint: Any, default: Any) -> Value:

@@ -1,4 +1,4 @@
-"""Inputs that are layers of one file go to a new file together."""
+"""Pictures bound to inputs: arrays, files, and the layers that follow their file."""
 
 from __future__ import annotations
 
@@ -50,3 +50,9 @@ def test_what_is_bound_by_name_stays(tmp_path):
     path = written(tmp_path, Combined=np.ones((4, 6, 4), np.float32), Depth=np.full((4, 6), 7.0, np.float32))
     bound = Pictures().bind(GRAPH, {"beauty": path, "depth": "other.exr:Z"})
     assert (bound["depth"].path, bound["depth"].layer) == ("other.exr", "Z")
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+def test_encoded_pixels_are_not_taken_for_light(dtype):
+    with pytest.raises(UsageError, match=r"'dirt': uint\d+ pixels .* scene-linear floats"):
+        Pictures().bind(GRAPH, {"dirt": np.zeros((4, 6, 3), dtype)})
