@@ -37,9 +37,10 @@ def parse(text: str, file: str) -> dict[str, Any]:
         raise DocumentError(file, "", _too_deep()) from None
     except ValueError:
         raise DocumentError(file, "", "it holds a whole number with too many digits") from None
+    if isinstance(tree, dict | list):
+        _check(tree, file)
     if not isinstance(tree, dict):
         raise DocumentError(file, "", f"expected an object, got {word(tree)}")
-    _check(tree, file)
     return cast("dict[str, Any]", tree)
 
 
