@@ -29,7 +29,7 @@ def parse(text: str, file: str) -> dict[str, Any]:
     if fault := size_fault(len(text.strip())):
         raise DocumentError(file, "", fault)
     try:
-        tree = json.loads(text, object_pairs_hook=_object)
+        tree = cast("object", json.loads(text, object_pairs_hook=_object))
     except json.JSONDecodeError as error:
         said = error.msg[:1].lower() + error.msg[1:].removesuffix(" at")
         raise DocumentError(file, "", f"not valid JSON: {said} (line {error.lineno}, column {error.colno})") from None
