@@ -29,7 +29,7 @@ def parse(text: str, file: str) -> dict[str, Any]:
     if fault := size_fault(len(text.strip())):
         raise DocumentError(file, "", fault)
     try:
-        tree = cast("object", json.loads(text, object_pairs_hook=_object))
+        tree: Any = json.loads(text, object_pairs_hook=_object)
     except json.JSONDecodeError as error:
         said = error.msg[:1].lower() + error.msg[1:].removesuffix(" at")
         raise DocumentError(file, "", f"not valid JSON: {said} (line {error.lineno}, column {error.colno})") from None
@@ -38,9 +38,9 @@ def parse(text: str, file: str) -> dict[str, Any]:
     except ValueError:
         raise DocumentError(file, "", "it holds a whole number with too many digits") from None
     if isinstance(tree, dict | list):
-        _check(tree, file)
+        _check(cast("Any", tree), file)
     if not isinstance(tree, dict):
-        raise DocumentError(file, "", f"expected an object, got {word(tree)}")
+        raise DocumentError(file, "", "expected an object, got " + word(cast("object", tree)))
     return cast("dict[str, Any]", tree)
 
 

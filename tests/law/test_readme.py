@@ -47,7 +47,7 @@ def test_the_node_is_declared_as_its_shader_says() -> None:
 
 
 def test_files_and_folders_it_names_exist() -> None:
-    names = {*re.findall(r"\b(?:docs|presets|tests|nodes|shaders|app)/[\w/]+(?:\.\w+)?", README)}
+    names = {*re.findall(r"\b(?:docs|presets|tests|nodes|shaders|app)/[\w/-]+(?:\.\w+)?", README)}
     missing = {name for name in names if not (ROOT / name).exists() and "posterize" not in name}
     assert not missing
     parts = re.findall(r"^  (\w+(?:/|\.py)) ", block("text", "dev "), re.M)
