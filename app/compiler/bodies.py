@@ -76,7 +76,7 @@ def sliding(names: Names, root: Convolve, stores: list[str]) -> list[str]:
     glsl = glsl_type(names.shape(root.image).channels)
     lines = [
         "void main() {",
-        "    ivec2 at = ivec2(gl_GlobalInvocationID.xy);",
+        "    ivec2 at = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, first_row);",
         f"    ivec2 first = at.x * along.yx + at.y * {OUTPUTS} * along;",
         "    if (any(greaterThanEqual(first, grid))) return;",
         "    ivec2 p = first + along * origin;",

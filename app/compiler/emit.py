@@ -76,9 +76,12 @@ def emit(program: Program, fused: Fused, library: Library, target: Target, texel
 
 
 def _preamble(target: Target) -> list[str]:
-    """Fragment passes keep to what macOS has; Mesa lends them the functions that round to half floats."""
+    """Fragment passes keep to what macOS has; Mesa lends them the functions that round to half floats.
+
+    Compute passes may be dispatched in bands: `first_row` is the row of work groups that a band starts with.
+    """
     if target.form == "compute":
-        return ["#version 430 core", f"layout(local_size_x = {LOCAL_SIZE}) in;"]
+        return ["#version 430 core", f"layout(local_size_x = {LOCAL_SIZE}) in;", "uniform int first_row;"]
     return ["#version 410 core", "#extension GL_ARB_shading_language_packing : enable"]
 
 
@@ -198,7 +201,10 @@ def _half_rounding(target: Target, halves: list[bool]) -> list[str]:
 def _main(names: Names, fused: Fused, parts: _Parts, target: Target, halves: list[bool]) -> list[str]:
     """A main that makes one pixel per invocation."""
     if target.form == "compute":
-        start = ["pixel = ivec2(gl_GlobalInvocationID.xy);", "if (any(greaterThanEqual(pixel, grid))) return;"]
+        start = [
+            "pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, first_row);",
+            "if (any(greaterThanEqual(pixel, grid))) return;",
+        ]
     else:
         start = ["pixel = ivec2(gl_FragCoord.xy);"]
     stores = [

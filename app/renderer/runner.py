@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import Any
 
 import moderngl
 import numpy as np
@@ -14,10 +13,13 @@ from ..compiler import MAX_WEIGHTS, Memory, Pass, Plan
 from ..errors import InputError, RenderError, UsageError
 from .decoding import Array, Decoding, Loader
 from .device import Device
-from .programs import Programs
+from .programs import Program, Programs
 from .textures import Lease, Texture, Textures
 
 MAX_WEIGHT_BUFFERS = 64
+
+BAND_PIXELS = 2**21
+"""The software rasterizer computes at most so many pixels at a time: an interrupt is heard only in between."""
 
 
 @dataclass
@@ -160,7 +162,7 @@ class Runner:
             if one.weights:
                 self._weight_buffer(one.weights).bind_to_uniform_block(0)
             if one.shader.form == "compute":
-                self._dispatch(one, program.handle, textures, made)
+                self._dispatch(plan, one, program, textures, made)
             else:
                 self._draw(one, program.vertices, textures, made)
             error = self.device.context.error
@@ -172,7 +174,10 @@ class Runner:
             raise
         self.counters.passes += 1
 
-    def _dispatch(self, one: Pass, handle: Any, textures: list[Texture], made: list[Texture]) -> None:
+    def _dispatch(
+        self, plan: Plan, one: Pass, program: Program, textures: list[Texture], made: list[Texture]
+    ) -> None:
+        assert isinstance(program.handle, moderngl.ComputeShader)
         first = 0
         if one.shader.reads_images:
             first = len(textures)
@@ -183,7 +188,13 @@ class Runner:
                 texture.handle.use(unit)
         for unit, texture in enumerate(made):
             texture.handle.bind_to_image(first + unit, read=False, write=True)
-        handle.run(*one.groups)
+        across, down = one.groups
+        width, height = plan.surfaces[one.targets[0]].size
+        bands = -(-width * height // BAND_PIXELS) if self.device.target.software else 1
+        step = -(-down // bands)
+        for row in range(0, down, step):
+            program.set("first_row", row)
+            program.handle.run(across, min(step, down - row))
         self.device.context.memory_barrier()
 
     def _draw(
