@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import get_args, get_type_hints
 
 import cv2
@@ -278,3 +279,22 @@ def test_statistics_may_be_measured_numbers(run):
 def test_every_operator_is_tested():
     hint = get_type_hints(ToneMap)["operator"]
     assert {*FORMULAS, *PER_CHANNEL, "agx"} == set(get_args(hint))
+
+
+# --- the authors' own programs ---------------------------------------------------------------------------------------
+
+PFSTMO = np.load(Path(__file__).parents[1] / "data" / "pfstmo.npz")
+DELTAS = {"reinhard": 1e-5, "drago": 1e-4}
+"""What each program adds to luminance before the logarithm."""
+
+
+@pytest.mark.parametrize(("kind", "wanted"), [("gray", 2e-6), ("color", 5e-4)])
+@pytest.mark.parametrize(("program", "operator"), [("reinhard", "reinhard extended"), ("drago", "drago")])
+def test_it_is_what_pfstmo_makes(run, program, operator, kind, wanted):
+    """See data/make_pfstmo.py. Colors differ in the fourth digit, because pfstmo's luminance weights do."""
+    rgb = PFSTMO[kind]
+    light = rgb.astype(np.float64) @ WEIGHTS
+    average = float(np.exp(np.log(DELTAS[program] + light).mean()))
+    node = ToneMap(operator=operator, key=0.18, average=average, maximum=float(light.max()), bias=0.85, clip=False)
+    image = np.concatenate([rgb, np.ones_like(rgb[..., :1])], -1)
+    np.testing.assert_allclose(run(node, {"image": image})[..., :3], PFSTMO[f"{program}_{kind}"], rtol=0, atol=wanted)
