@@ -8,56 +8,19 @@ from collections.abc import Mapping
 from functools import cache
 from types import MappingProxyType
 
-from ._declare import (
-    RGBA,
-    Argument,
-    Color,
-    Doc,
-    Draw,
-    Drawn,
-    Edge,
-    Field,
-    File,
-    FilePath,
-    Filter,
-    Fraction,
-    Handle,
-    Image,
-    Kernel3x3,
-    Kind,
-    Node,
-    Number,
-    Output,
-    Pixels,
-    Plain,
-    Pointwise,
-    Position,
-    Size,
-    Slider,
-    Socket,
-    Source,
-    Swatch,
-    Temporal,
-    Unit,
-    Value,
-    Vector,
-    glsl_type,
-    working_factor,
-)
+from . import _declare
+from ._declare import *  # noqa: F403  (the vocabulary: `_declare.__all__` names it)
+from ._declare import Node
 
-__all__ = [
-    "RGBA", "Argument", "Color", "Doc", "Draw", "Drawn", "Edge", "Field", "File", "FilePath", "Filter", "Fraction",
-    "Handle", "Image", "Kernel3x3", "Kind", "Node", "Number", "Output", "Pixels", "Plain", "Pointwise", "Position",
-    "Size", "Slider", "Socket", "Source", "Swatch", "Temporal", "Unit", "Value", "Vector", "catalogue",
-    "glsl_type", "working_factor",
-]
+__all__ = ["catalogue"]
+__all__ += _declare.__all__
 
 
 @cache
 def catalogue() -> Mapping[str, type[Node]]:
     """Every node class by id, in the order of the menu: folder, then file."""
     found: dict[str, type[Node]] = {}
-    for folder in sorted(pkgutil.iter_modules(__path__), key=lambda item: item.name):
+    for folder in sorted(pkgutil.iter_modules(__path__), key=lambda item: item.name):  # noqa: F405
         if not folder.ispkg or folder.name.startswith("_"):
             continue
         package = importlib.import_module(f".{folder.name}", __package__)

@@ -13,7 +13,6 @@ from .options import AsJson, Lazy
 from .outcome import print_json
 
 if TYPE_CHECKING:
-    from ..compiler import Picture, Probed
     from ..graph import Graph, Problem
 
 _SIZE = (1920, 1080)

@@ -55,7 +55,7 @@ class Recorder:
         self._resolved, self._linked = resolved, linked
         self._builder, self._library, self._reader = builder, library, reader
         self._memory = memory
-        self._shader = f"{node.category}/{node.id}"
+        self._shader = shader(node)
         self.remembered: Ref | None = None
 
     def size_of(self, pixels: Pixels) -> Size:
@@ -208,6 +208,11 @@ class Recorder:
         accessor = Accessor("image", "vec4", made.ref)
         numbers = tuple(Parameter("int", Constant(value)) for value in (axis, factor, apron))
         return self._made(Gather((shape,), self._owner, "primitive/enlarge", "enlarge", (accessor,), numbers))
+
+
+def shader(node: Node) -> str:
+    """The name of a node's GLSL file."""
+    return f"{node.category}/{node.id}"
 
 
 def choices(node: Node) -> tuple[tuple[str, tuple[str, ...]], ...]:

@@ -13,7 +13,7 @@ from ...nodes import Filter, Image, Kind, Node, Pointwise, Size, Socket, Value, 
 from ..errors import GraphError, ShaderError
 from ..graph import OUTPUTS, Graph, Port, did_you_mean
 from . import constants
-from .draws import Made, Recorder, choices
+from .draws import Made, Recorder, choices, shader
 from .expand import Flat, expand, nothing, stand_in
 from .ir import Builder, Call, Choice, Constant, Operand, Parameter, Picture, Program, Ref, Shape
 from .library import Library
@@ -197,7 +197,7 @@ class _Lowering:
 
     def _is_pattern(self, path: str, node: Node) -> bool:
         """True for a node whose pixels differ even if all that it reads is the same everywhere."""
-        return not node.inputs or self.library.uses(_shader(node), frozenset({"pixel", "extent"}), path)
+        return not node.inputs or self.library.uses(shader(node), frozenset({"pixel", "extent"}), path)
 
     def _pointwise(
         self, path: str, node: Pointwise, operands: Mapping[str, Operand], wires: Mapping[str, Operand], size: Size
@@ -214,20 +214,20 @@ class _Lowering:
             for socket in sockets
         )
         self._check_function(path, node, [item.glsl for item in parameters], [item.glsl for item in sockets])
-        ref = self.builder.add(Call(shapes, path, _shader(node), node.id, tuple(parameters), choices(node)))
+        ref = self.builder.add(Call(shapes, path, shader(node), node.id, tuple(parameters), choices(node)))
         for index, name in enumerate(node.outputs):
             self.results[Port(path, name)] = Ref(ref.op, index)
 
     def _check_function(self, path: str, node: Node, taken: list[str], made: list[str]) -> None:
         """Raise ShaderError unless the node's GLSL function takes and makes what the node declares."""
-        found = self.library.function(_shader(node), node.id, path)
+        found = self.library.function(shader(node), node.id, path)
         outputs = [glsl for glsl, _ in found.outputs] or [found.result]
         if [glsl for glsl, _ in found.parameters] != taken or outputs != made:
             said, wanted = (f"({', '.join(a)}) to ({', '.join(b)})" for a, b in (
                 ([glsl for glsl, _ in found.parameters], outputs), (taken, made),
             ))
             fault = f"'{node.id}' takes {said}, but the node declares {wanted}"
-            raise ShaderError(path, f"shaders/{_shader(node)}.glsl", found.line, fault)
+            raise ShaderError(path, f"shaders/{shader(node)}.glsl", found.line, fault)
 
     def _value(self, node: Node, value: Value, wire: Operand | None, size: Size) -> Parameter:
         glsl = value.glsl or "float"
@@ -273,7 +273,3 @@ class _Lowering:
 
     def _read_for(self, path: str) -> Callable[[Picture, str], Ref]:
         return lambda picture, owner: self.pictures.read(self.pictures.located(picture, path), owner)
-
-
-def _shader(node: Node) -> str:
-    return f"{node.category}/{node.id}"

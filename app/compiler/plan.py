@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -15,6 +15,17 @@ LINES_PER_FILE = 1000
 """Line n of file f of a program is line f * LINES_PER_FILE + n: not all drivers report file numbers."""
 
 Uniform = float | int | bool | tuple[float, ...]
+
+
+def texel(channels: int, half: bool) -> str:
+    """The format of a texture with at least this many channels, as GLSL image layouts spell it."""
+    return ("r", "rg", "rgba", "rgba")[channels - 1] + ("16f" if half else "32f")
+
+
+def texture_bytes(size: Size, texel: str) -> int:
+    """What a texture of this size and format takes."""
+    letters, bits = texel[:-3], int(texel[-3:-1])
+    return size[0] * size[1] * len(letters) * bits // 8
 
 
 @dataclass(frozen=True)
@@ -40,12 +51,12 @@ class Surface:
 
     @property
     def nbytes(self) -> int:
-        return self.size[0] * self.size[1] * self.components * (2 if self.depth == "f2" else 4)
+        return texture_bytes(self.size, self.texel)
 
     @property
     def texel(self) -> str:
         """Format as GLSL image layouts spell it."""
-        return {1: "r", 2: "rg", 4: "rgba"}[self.components] + ("16f" if self.depth == "f2" else "32f")
+        return texel(self.channels, self.depth == "f2")
 
 
 @dataclass(frozen=True)
@@ -107,7 +118,3 @@ class Plan:
     def peak_bytes(self) -> int:
         """Texture memory needed at once."""
         return sum(self.slots)
-
-    def releases(self, index: int) -> Iterator[int]:
-        """Surfaces that nothing reads after pass `index`."""
-        return (number for number, surface in enumerate(self.surfaces) if surface.last == index)

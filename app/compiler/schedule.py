@@ -12,7 +12,7 @@ from .emit import Emitted, emit
 from .fuse import Fused, kept_refs
 from .ir import History, Memory, Program, Read, Ref, Shape
 from .library import Library
-from .plan import Depth, Pass, Plan, Surface, Upload
+from .plan import Depth, Pass, Plan, Surface, Upload, texel, texture_bytes
 from .target import Precision, Target
 
 
@@ -75,11 +75,11 @@ def _texel(program: Program, ref: Ref, precision: Precision) -> str:
     """As narrow as the data allows: data keeps 32 bits, a file of halves stays half, color follows the precision."""
     op, shape = program.ops[ref.op], _shape(program, ref)
     half = op.half if isinstance(op, (Read, History)) else precision == "half" and not shape.data
-    return ("r", "rg", "rgba", "rgba")[shape.channels - 1] + ("16f" if half else "32f")
+    return texel(shape.channels, half)
 
 
-def _depth(texel: str) -> Depth:
-    return "f2" if texel.endswith("16f") else "f4"
+def _depth(format: str) -> Depth:
+    return "f2" if format.endswith("16f") else "f4"
 
 
 def _keys(
@@ -141,9 +141,7 @@ def _slots(
             slots[ref] = free[kind].pop()
             continue
         slots[ref] = len(bytes_)
-        (width, height), texel = kind
-        components = {"r": 1, "rg": 2}.get(texel[:-3], 4)
-        bytes_.append(width * height * components * (2 if texel.endswith("16f") else 4))
+        bytes_.append(texture_bytes(*kind))
     return slots, tuple(bytes_)
 
 

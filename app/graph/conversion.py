@@ -53,9 +53,9 @@ def conversion(source: Socket, target: Socket | Value) -> str | None:
 
 
 def _into_value(source: Socket, target: Value) -> str | None:
-    takes = _VALUE_TAKES.get(target.type)
-    if takes is None:
+    if not target.wireable:
         return f"a {target.type} cannot be wired, only set"
+    takes = _VALUE_TAKES[target.type]
     if source.kind in takes and not _widths_differ(source, Kind.VECTOR, target.length):
         return None
     width = str(target.length) if target.type == "vector" else ""

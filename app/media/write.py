@@ -40,11 +40,6 @@ class _Part:
     array: Array
 
 
-def extensions() -> tuple[str, ...]:
-    """The endings of the files that can be written."""
-    return tuple(_FORMATS)
-
-
 def write(
     path: str | Path, layers: Mapping[str, Array], *, kinds: Mapping[str, Kind], precision: Precision = "half",
     compression: str = "zip", view: str = "", metadata: Mapping[str, Any] | None = None,

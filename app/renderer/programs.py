@@ -31,7 +31,6 @@ class Program:
             self.handle[name] = value
             self.values[name] = value
 
-
     def release(self) -> None:
         """Give it back to the driver."""
         if self.vertices is not None:

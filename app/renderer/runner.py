@@ -37,7 +37,7 @@ class Runner:
     def __init__(self, device: Device, load: Loader, budget: int) -> None:
         self.device, self._load = device, load
         self.programs = Programs(device.context)
-        self.textures = Textures(device.context, device.target.max_size, budget)
+        self.textures = Textures(device.context, budget)
         self.counters = Counters()
         self._weights: dict[tuple[float, ...], moderngl.Buffer] = {}
         self._history = Lease(self.textures)

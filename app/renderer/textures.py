@@ -39,8 +39,8 @@ class Textures:
     that pictures of ever other sizes do not pile up.
     """
 
-    def __init__(self, context: moderngl.Context, max_size: int, budget: int) -> None:
-        self._context, self._max_size = context, max_size
+    def __init__(self, context: moderngl.Context, budget: int) -> None:
+        self._context = context
         self.budget = budget
         self._results: dict[str, Texture] = {}
         self._leases: Counter[str] = Counter()
@@ -140,11 +140,6 @@ class Textures:
 
     def _allocate(self, kind: Kind, surface: Surface) -> Texture:
         width, height, components, depth = kind
-        if max(width, height) > self._max_size:
-            raise DeviceError(
-                f"node '{surface.label}': {width}x{height} pixels is more than the {self._max_size} that this device "
-                "can hold on a side; render smaller with --scale or --size"
-            )
         self._context.error  # noqa: B018  (reading it clears what earlier calls left behind)
         handle = self._try(width, height, components, depth)
         for make_room in (self._release_free, self._release_idle):

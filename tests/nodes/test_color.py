@@ -12,6 +12,7 @@ from halation.nodes.color.grade import Grade
 from halation.nodes.color.luminance import Luminance
 from halation.nodes.color.saturation import Saturation
 from halation.nodes.color.vignette import Vignette
+from oiio_pictures import buffer
 
 ALGO = oiio.ImageBufAlgo
 
@@ -22,13 +23,6 @@ def picture(seed: int = 0, opaque: bool = False, low: float = 0.0, size: tuple[i
     rgb = 0.18 * 2 ** random.uniform(-5, 5, (size[1], size[0], 3)) + low
     alpha = np.ones((size[1], size[0], 1)) if opaque else random.uniform(0.05, 1.0, (size[1], size[0], 1))
     return np.concatenate([rgb * alpha, alpha], -1).astype(np.float32)
-
-
-def buffer(pixels: np.ndarray) -> oiio.ImageBuf:
-    made = oiio.ImageBuf(oiio.ImageSpec(pixels.shape[1], pixels.shape[0], pixels.shape[2], "float"))
-    made.set_pixels(oiio.ROI.All, pixels)
-    made.specmod().alpha_channel = 3
-    return made
 
 
 def relative(out: np.ndarray, expected: np.ndarray) -> float:

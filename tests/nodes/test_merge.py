@@ -9,6 +9,7 @@ import OpenImageIO as oiio
 import pytest
 from halation.nodes.merge.merge import Merge, Mode
 from halation.nodes.merge.mix_images import MixImages
+from oiio_pictures import buffer
 
 ALGO = oiio.ImageBufAlgo
 WEIGHTS = np.array([0.2126, 0.7152, 0.0722])
@@ -19,13 +20,6 @@ def picture(seed: int, high: float = 1.0, opaque: bool = False) -> np.ndarray:
     straight = random.uniform(0.0, high, (19, 23, 3))
     alpha = random.uniform(0.02, 1.0, (19, 23, 1)) if not opaque else np.ones((19, 23, 1))
     return np.concatenate([straight * alpha, alpha], -1).astype(np.float32)
-
-
-def buffer(array: np.ndarray) -> oiio.ImageBuf:
-    made = oiio.ImageBuf(oiio.ImageSpec(array.shape[1], array.shape[0], array.shape[2], "float"))
-    made.set_pixels(oiio.ROI.All, array)
-    made.specmod().alpha_channel = 3
-    return made
 
 
 # --- the W3C's Compositing and Blending Level 1, written as its text: straight colors, B(Cb, Cs) -------------------
