@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import re
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 import moderngl
@@ -50,8 +54,9 @@ class Programs:
         """The program of a pass. Raises ShaderError with node, file and line where the driver refuses it."""
         known = self._known.pop(one.shader, None)
         if known is None:
-            known = self._compile(one)
-            self.compiled += 1
+            with _undisturbed():
+                known = self._known[one.shader] = self._compile(one)
+                self.compiled += 1
         self._known[one.shader] = known
         if len(self._known) > MAX_PROGRAMS:
             self._known.pop(next(iter(self._known))).release()
@@ -79,6 +84,23 @@ class Programs:
             for number in range(len(one.textures)):
                 program.set(f"t{number}", number)
         return program
+
+
+@contextmanager
+def _undisturbed() -> Iterator[None]:
+    """An interrupt is heard after this block: moderngl calls Python while it links, and crashes if that raises."""
+    before = signal.getsignal(signal.SIGINT)
+    if threading.current_thread() is not threading.main_thread() or before is None:
+        yield
+        return
+    heard: list[int] = []
+    signal.signal(signal.SIGINT, lambda number, _: heard.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+    if heard:
+        signal.raise_signal(signal.SIGINT)
 
 
 # One triangle that covers everything.

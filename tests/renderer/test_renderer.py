@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import signal
+
 import numpy as np
 import pytest
 from conftest import graph_of
@@ -10,6 +12,7 @@ from halation.app.compiler.library import parse
 from halation.app.errors import DeviceError, ShaderError, UsageError
 from halation.app.graph import Graph, Input, Output, Port
 from halation.app.renderer import Renderer, Wanted, open_device
+from halation.app.renderer.programs import Programs
 from halation.nodes import Kind
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
@@ -152,3 +155,23 @@ def test_shrinking_averages_like_openimageio(run):
     oiio.ImageBufAlgo.resize(small, oiio.ImageBuf(picture), filtername="triangle", filterwidth=2.0)
     ours = run(graph_of(Exposure(stops=1e-9), {"image": picture}), {"image": picture}, scale=0.5)
     np.testing.assert_allclose(ours[2:-2, 2:-2], small.get_pixels()[2:-2, 2:-2], atol=2e-6)
+
+
+def test_an_interrupt_during_compilation_is_heard_after_it(engine, monkeypatch):
+    """moderngl crashes the process if an exception is raised in the middle of it."""
+    compile_ = Programs._compile
+    reached = []
+
+    def interrupted(self, one):
+        signal.raise_signal(signal.SIGINT)
+        reached.append(one)
+        return compile_(self, one)
+
+    monkeypatch.setattr(Programs, "_compile", interrupted)
+    handler = signal.getsignal(signal.SIGINT)
+    graph = graph_of(Exposure(stops=1.0), {"image": PICTURE})
+    with pytest.raises(KeyboardInterrupt):
+        engine.render(graph, Wanted({"image": PICTURE}))
+    assert len(reached) == 1 and signal.getsignal(signal.SIGINT) is handler
+    np.testing.assert_allclose(engine.render(graph, Wanted({"image": PICTURE}))["out"][..., 0], PICTURE[..., 0] * 2.0)
+    assert len(reached) == 1
