@@ -17,9 +17,16 @@ from __future__ import annotations
 
 
 class HalationError(Exception):
-    """One sentence that names the file, node and value and says what to do."""
+    """One sentence that names the file, node and value and says what to do.
+
+    `node` is the node at fault as a path through groups, such as `glow/bloom` or `inputs.beauty`, where it is known.
+    """
 
     exit_code = 1
+
+    def __init__(self, sentence: str = "", *, node: str = "") -> None:
+        super().__init__(sentence)
+        self.node = node
 
 
 class UsageError(HalationError):
@@ -58,8 +65,8 @@ class ShaderError(DeviceError):
     """A driver refused a shader. `node`, `file` and `line` say where."""
 
     def __init__(self, node: str, file: str, line: int, fault: str) -> None:
-        self.node, self.file, self.line, self.fault = node, file, line, fault
-        super().__init__(f"node '{node}': {file}, line {line}: {fault}")
+        self.file, self.line, self.fault = file, line, fault
+        super().__init__(f"node '{node}': {file}, line {line}: {fault}", node=node)
 
 
 class RenderError(HalationError):

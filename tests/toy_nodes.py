@@ -18,10 +18,12 @@ from halation.nodes import (
     Kind,
     Node,
     Number,
+    Points,
     Pointwise,
     Position,
     Slider,
     Source,
+    Stops,
     Vector,
 )
 from halation.nodes import Output as Made
@@ -93,8 +95,16 @@ class Photo(Source):
     path: FilePath = ""
 
 
+class Tint(Filter):
+    """A curve and a color ramp."""
+
+    image = Image()
+    curve: Points = (0.0, 0.0, 1.0, 1.0)
+    ramp: Stops = (0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0)
+
+
 TOYS: dict[str, type[Node]] = {
-    kind.id: kind for kind in (Gain, Soften, Blend, Split, Slope, Flow, Meter, Photo)
+    kind.id: kind for kind in (Gain, Soften, Blend, Split, Slope, Flow, Meter, Photo, Tint)
 }
 
 
@@ -148,6 +158,11 @@ def random_value(rng: Random, kind: type[Node], name: str) -> Any:
         return rng.randint(1, 8)
     if value.type == "float":
         return rng.choice([0.0, 1.0, rng.uniform(0.0, 4.0), 1e-7])
+    if value.type in ("curve", "ramp"):
+        places = sorted(rng.sample(range(9), rng.randint(2, 5)))
+        return tuple(
+            part for place in places for part in (place / 8, *(rng.uniform(-9.0, 9.0) for _ in range(value.length - 1)))
+        )
     return tuple(rng.uniform(-1e3, 1e3) for _ in range(value.length))
 
 

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from . import parsing
-from .options import AsJson, Inputs, Lazy, Node, Scale, Sets, SizeText, opened, report_problems
+from .options import AsJson, GraphFile, Inputs, Lazy, Node, Scale, Sets, SizeText, opened, report_problems
 from .outcome import print_json
 
 
 def explain(
-    graph: Annotated[Path, typer.Argument(help="A graph, as JSON.")],
+    graph: GraphFile,
     inputs: Inputs = None,
     sets: Sets = None,
     node: Node = "",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
@@ -35,20 +36,35 @@ Scale = Annotated[
     float, typer.Option("--scale", metavar="X", help="Render a proxy: 0.5 is half size, lengths in pixels included.")
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON object on standard output, for machines.")]
+GraphFile = Annotated[Path, typer.Argument(help="A graph, as JSON; - reads it from standard input.")]
 
 
 def opened(path: Path, sets: Sequence[str]) -> Graph:
-    """A graph with the values from the command line. Raises DocumentError, UsageError."""
+    """A graph with the values from the command line. Raises DocumentError, UsageError.
+
+    The paths in one from standard input start at the current folder.
+    """
     from .. import document
     from ..errors import GraphError, UsageError
 
-    graph = document.load(path)
+    piped = str(path) == "-"
+    graph = document.loads(_standard_input(), "-") if piped else document.load(path)
     for name, text in parsing.assignments(sets, "--set").items():
         try:
             graph = graph.override(name, parsing.value(text))
         except GraphError as fault:
             raise UsageError(f"--set {name}={text}: {str(fault).removeprefix(f'{name}: ')}") from None
     return graph
+
+
+def _standard_input() -> str:
+    """All of it. Raises DocumentError."""
+    from ..errors import DocumentError
+
+    try:
+        return sys.stdin.buffer.read().decode("utf-8-sig") if sys.stdin else ""
+    except UnicodeDecodeError as error:
+        raise DocumentError("-", "", f"the text is not UTF-8 (byte {error.start}); save it as UTF-8") from None
 
 
 def bound(graph: Graph, inputs: Sequence[str]) -> dict[str, str]:
@@ -81,7 +97,8 @@ def report_problems(path: Path, graph: Graph) -> None:
     found = problems(graph)
     errors = [problem for problem in found if problem.severity == "error"]
     if errors:
-        more = f" (and {len(errors) - 1} more: halation check {path})" if len(errors) > 1 else ""
+        how = "" if str(path) == "-" else f": halation check {path}"
+        more = f" (and {len(errors) - 1} more{how})" if len(errors) > 1 else ""
         raise GraphError(f"{path}: {errors[0].sentence}{more}")
     for problem in found:
         note(f"{path}: {problem.sentence}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from ..errors import GraphError, UsageError
 
@@ -82,6 +82,11 @@ def form(text: str) -> Form:
 def precision(text: str) -> Precision:
     """How exact colors are."""
     return _choice(text, ("half", "float"), "--precision")
+
+
+def progress(text: str) -> Literal["bar", "json"]:
+    """How progress is told."""
+    return _choice(text, ("bar", "json"), "--progress")
 
 
 def targets(graph: Graph, node: str) -> dict[str, Port]:

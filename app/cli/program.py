@@ -10,6 +10,7 @@ from typer.main import get_command
 
 from .check import check
 from .demo import demo
+from .edit import edit
 from .explain import explain
 from .fmt import fmt
 from .nodes import nodes
@@ -20,7 +21,7 @@ app = typer.Typer(
     name="halation", add_completion=False, rich_markup_mode=None, epilog=EXIT_CODES,
     help="A node-graph compositor for screen-space effects.",
 )
-for command in (render, check, explain, nodes, fmt, demo):
+for command in (edit, render, check, explain, nodes, fmt, demo):
     app.command()(guarded(command))
 
 

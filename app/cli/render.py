@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import sys
 import time
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from . import parsing
-from .options import AsJson, Inputs, Node, Scale, Sets, SizeText, bound, opened, report_problems
+from .options import AsJson, GraphFile, Inputs, Node, Scale, Sets, SizeText, bound, opened, report_problems
 from .outcome import note, print_json
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def render(
-    graph: Annotated[Path, typer.Argument(help="A graph, as JSON.")],
+    graph: GraphFile,
     output: Annotated[
         list[str],
         typer.Option("-o", "--output", metavar="[NAME=]FILE", help="Where to write; .exr holds all outputs as layers."),
@@ -42,12 +42,16 @@ def render(
     form: Annotated[
         str | None, typer.Option(metavar="fragment|compute", help="How passes run; by default what suits the device.")
     ] = None,
+    progress: Annotated[
+        str, typer.Option(metavar="bar|json", help="A bar, on a terminal only, or a JSON object per pass.")
+    ] = "bar",
     as_json: AsJson = False,
 ) -> int:
     """Render a graph to files."""
     started = time.perf_counter()
     depth = parsing.precision(precision) if precision is not None else None
     passes = parsing.form(form) if form is not None else None
+    step = _print_step if parsing.progress(progress) == "json" else None
     destinations = parsing.paths(output)
     canvas, proxy = parsing.size(size), parsing.scale(scale)
     opened_graph = opened(graph, sets or ())
@@ -63,7 +67,7 @@ def render(
     wanted = Wanted(bindings, targets, canvas, proxy, frame, depth)
     writing = Writing(destinations, view, compression, depth or "half")
     with _Bar() as bar:
-        report = run_job(renderer, opened_graph, wanted, writing, bar.step)
+        report = run_job(renderer, opened_graph, wanted, writing, step or bar.step)
     spent = {"load": loaded - started, "open": ready - loaded, **report.seconds}
     _tell(report, renderer.device.description, {**spent, "total": time.perf_counter() - started}, as_json)
     return 0
@@ -86,6 +90,11 @@ def _tell(report: Report, device: str, seconds: dict[str, float], as_json: bool)
     peak = size_text(report.peak_bytes)
     for path in report.written:
         note(f"{path}  {seconds['total']:.2f} s, {report.passes} passes, {peak} of textures at the peak")
+
+
+def _print_step(done: int, total: int, one: Pass) -> None:
+    """One line of JSON on standard error."""
+    note(json.dumps({"pass": done, "passes": total, "nodes": one.nodes}))
 
 
 class _Bar:

@@ -33,13 +33,21 @@ class Flat:
         found, seen = port, set[Port]()
         while found in self.links:
             if found in self.faults:
-                raise GraphError(self.faults[found])
+                raise GraphError(self.faults[found], node=found.node)
             if found in seen:
                 group = found.node.rpartition("/")[0]
-                raise GraphError(f"group '{group}' feeds itself: cut one link of the loop")
+                raise GraphError(f"group '{group}' feeds itself: cut one link of the loop", node=group)
             seen.add(found)
             found = self.links[found]
         return found if seen else None
+
+    def behind(self, end: Port) -> Port:
+        """`source` without any check, for what has been followed before; the end itself if nothing feeds it."""
+        for _ in range(len(self.links)):
+            if end not in self.links:
+                break
+            end = self.links[end]
+        return end
 
     def order(self, sources: Iterable[Port]) -> list[str]:
         """Names of the nodes that `sources` need, each after what it reads."""
@@ -54,10 +62,12 @@ class Flat:
                 continue
             if name in self.unknown:
                 kind = self.unknown[name]
-                raise GraphError(f"node '{name}': its type '{kind}' is unknown to this version of Halation")
+                raise GraphError(
+                    f"node '{name}': its type '{kind}' is unknown to this version of Halation", node=name
+                )
             if name in state or name not in self.nodes:
                 if state.get(name) is False:
-                    raise GraphError(f"node '{name}' feeds itself: cut one link of the loop")
+                    raise GraphError(f"node '{name}' feeds itself: cut one link of the loop", node=name)
                 continue
             state[name] = False
             todo.append((name, True))
@@ -89,7 +99,9 @@ def expand(graph: Graph) -> Flat:
     while todo:
         prefix, body, values = todo.pop()
         if prefix.count("/") > MAX_DEPTH:
-            raise GraphError(f"group '{prefix.rstrip('/')}': groups nest deeper than {MAX_DEPTH}; flatten some of them")
+            group = prefix.rstrip("/")
+            fault = f"group '{group}': groups nest deeper than {MAX_DEPTH}; flatten some of them"
+            raise GraphError(fault, node=group)
         for name, value in values.items():
             body = body.set_control(name, value)
         flat.folders[prefix] = body.folder

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
 from ...nodes import Edge, Kind, Size
+from ..graph import Port
 
 
 @dataclass(frozen=True)
@@ -233,5 +234,7 @@ class Program:
     outputs: Mapping[str, Ref]
     memories: Mapping[str, Ref]
     """What to remember for the next frame, by node."""
+    results: Mapping[Port, Ref]
+    """What outputs of nodes and groups, and inputs of graphs, stand for, in the order in which they were lowered."""
     scale: float
     frame: int

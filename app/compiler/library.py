@@ -53,12 +53,18 @@ class Text:
     functions: Mapping[str, Function]
     all_functions: tuple[Function, ...]
     words: frozenset[str]
+    _cuts: dict[frozenset[str], str] = field(default_factory=dict[frozenset[str], str], compare=False, repr=False)
 
     def only(self, entries: frozenset[str]) -> str:
         """The text without functions that `entries` do not need: another draw may need other accessors.
 
         Their lines stay, empty.
         """
+        if entries not in self._cuts:
+            self._cuts[entries] = self._only(entries)
+        return self._cuts[entries]
+
+    def _only(self, entries: frozenset[str]) -> str:
         needed: set[str] = set()
         todo = [name for name in entries if name in self.functions]
         while todo:

@@ -10,8 +10,8 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 from ...nodes import Filter, Image, Kind, Node, Pointwise, Size, Socket, Value, working_factor
-from ..errors import GraphError, ShaderError
-from ..graph import OUTPUTS, Graph, Port, did_you_mean
+from ..errors import GraphError, HalationError, ShaderError
+from ..graph import INPUTS, OUTPUTS, Graph, Port, did_you_mean
 from . import constants
 from .draws import Made, Recorder, choices, shader
 from .expand import Flat, expand, nothing, stand_in
@@ -43,12 +43,25 @@ class _Lowering:
             raise GraphError("the graph has no outputs: link something to an output, or name a node to render")
         sources = {name: self._target(name, port) for name, port in targets.items()}
         for node in self.flat.order(sources.values()):
-            self._node(node)
+            try:
+                self._node(node)
+            except HalationError as error:
+                error.node = error.node or node
+                raise
         outputs = {name: self._finished(port, name, self._shown(targets[name], port)) for name, port in sources.items()}
         return Program(
-            tuple(self.builder.ops), MappingProxyType(outputs), MappingProxyType(self.memories), self.request.scale,
-            self.request.frame,
+            tuple(self.builder.ops), MappingProxyType(outputs), MappingProxyType(self.memories),
+            MappingProxyType(self._materialized()), self.request.scale, self.request.frame,
         )
+
+    def _materialized(self) -> dict[Port, Ref]:
+        """What is not a constant, also by the outputs of groups and the inputs of their bodies."""
+        found = {port: operand for port, operand in self.results.items() if isinstance(operand, Ref)}
+        for end in self.flat.links:
+            group, slash, side = end.node.rpartition("/")
+            if slash and side in (INPUTS, OUTPUTS) and (ref := found.get(self.flat.behind(end))):
+                found[Port(group, end.socket) if side == OUTPUTS else end] = ref
+        return found
 
     # --- what feeds what -------------------------------------------------------------------------------------------
 
@@ -56,15 +69,13 @@ class _Lowering:
         """The node output or graph input behind something wanted."""
         if port.node == OUTPUTS and port.socket not in self.graph.outputs:
             raise GraphError(f"the graph has no output '{port.socket}'{did_you_mean(port.socket, self.graph.outputs)}")
-        of_group = Port(f"{port.node}/{OUTPUTS}", port.socket)
-        if of_group in self.flat.links:
-            port = of_group
-        if port.node == OUTPUTS or port.node.endswith("/" + OUTPUTS):
-            source = self.flat.source(port)
-            if source is None:
-                raise GraphError(f"output '{name}' is not linked to anything: link a node to it")
-            return source
-        return port
+        if f"{port.node}/" in self.flat.folders:
+            port = Port(f"{port.node}/{OUTPUTS}", port.socket)
+        side = port.node.rpartition("/")[2]
+        source = self.flat.source(port) if side in (INPUTS, OUTPUTS) else None
+        if source is None and side == OUTPUTS and port not in self.flat.inputs:
+            raise GraphError(f"output '{name}' is not linked to anything: link a node to it", node=f"{port}")
+        return source or port
 
     def _shown(self, target: Port, source: Port) -> Socket | None:
         """What a wanted output is to look like; None for whatever comes."""
@@ -85,9 +96,12 @@ class _Lowering:
         socket = self.flat.inputs.get(port)
         if socket is None and port.node.endswith("/" + OUTPUTS):
             group = port.node.removesuffix("/" + OUTPUTS)
-            raise GraphError(f"group '{group}': nothing inside it is linked to its output '{port.socket}'")
+            fault = f"group '{group}': nothing inside it is linked to its output '{port.socket}'"
+            raise GraphError(fault, node=group)
         if socket is None:
-            raise GraphError(f"'{port}' does not exist: link to an output of a node or to an input of the graph")
+            raise GraphError(
+                f"'{port}' does not exist: link to an output of a node or to an input of the graph", node=port.node
+            )
         picture = self.pictures.bound(port, socket)
         if picture is not None:
             self.results[port] = self.pictures.read(picture, f"{port}")
@@ -103,7 +117,7 @@ class _Lowering:
         if operand is None:
             raise GraphError(
                 f"output '{name}' shows the graph input '{port.socket}', which is not bound to a picture: "
-                "give it a file, or bind it by name"
+                "give it a file, or bind it by name", node=f"{port}",
             )
         shown = shown or Image()
         if isinstance(operand, Constant):

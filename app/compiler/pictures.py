@@ -8,10 +8,11 @@ from functools import cached_property
 from pathlib import PurePath
 
 from ...nodes import Kind, Size, Socket, Source
+from ..errors import HalationError
 from ..graph import INPUTS, Graph, Input, Port
 from .expand import Flat
 from .ir import Accessor, Builder, Call, Constant, Gather, Operand, Parameter, Picture, Read, Ref, Shape
-from .request import Probe, Request
+from .request import Probe, Probed, Request
 
 DEFAULT_CANVAS: Size = (1920, 1080)
 
@@ -29,20 +30,27 @@ class Pictures:
         size = self._request.size or self._settled
         if size is None:
             first = next(self._named(), None)
-            size = self._probe(first).size if first else DEFAULT_CANVAS
+            size = self._probed(*first).size if first else DEFAULT_CANVAS
         return self._scaled(size)
 
-    def _named(self) -> Iterator[Picture]:
-        """Pictures that the graph itself names: inputs first, then sources."""
+    def _probed(self, picture: Picture, owner: str) -> Probed:
+        try:
+            return self._probe(picture)
+        except HalationError as error:
+            error.node = owner
+            raise
+
+    def _named(self) -> Iterator[tuple[Picture, str]]:
+        """Pictures that the graph itself names, and who reads them: inputs first, then sources."""
         for port, socket in self._flat.inputs.items():
             named = port.node == INPUTS and not socket.socket().single
             picture = self.bound(port, socket) if named else None
             if picture is not None:
-                yield picture
+                yield picture, f"{port}"
         for path, node in self._flat.nodes.items():
             for value in node.values.values() if isinstance(node, Source) else ():
                 if value.type == "path" and getattr(node, value.name):
-                    yield self.located(Picture(getattr(node, value.name), "", Kind.IMAGE, 4), path)
+                    yield self.located(Picture(getattr(node, value.name), "", Kind.IMAGE, 4), path), path
 
     def _scaled(self, size: Size) -> Size:
         scale = self._request.scale
@@ -61,7 +69,7 @@ class Pictures:
 
     def read(self, picture: Picture, owner: str) -> Ref:
         """Upload a picture, at the size wanted."""
-        probed = self._probe(picture)
+        probed = self._probed(picture, owner)
         data = picture.kind is not Kind.IMAGE
         shape = Shape(probed.size, picture.width, data)
         ref = self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from ...nodes import Size
+from ..graph import Port
 from .ir import Memory, Picture
 from .target import Form, Target
 
@@ -109,6 +110,11 @@ class Plan:
     uploads: tuple[Upload, ...]
     passes: tuple[Pass, ...]
     outputs: Mapping[str, int]
+    results: Mapping[Port, int]
+    """The surface of every output of a node or group, and input of a graph, whose pixels the plan makes.
+
+    Nodes are paths such as `glow/bloom`; the inputs of a group are `glow/inputs`. What was fused away is not there.
+    """
     memories: Mapping[str, Memory]
     """What temporal nodes will want of this frame, by node."""
     slots: tuple[int, ...]

@@ -43,6 +43,7 @@ def schedule(
         target, surfaces, tuple(_uploads(program, numbers)),
         tuple(_pass(program, fused, item, numbers) for fused, item in zip(passes, emitted, strict=True)),
         MappingProxyType({name: numbers[ref] for name, ref in program.outputs.items()}),
+        MappingProxyType({port: numbers[ref] for port, ref in program.results.items() if ref in numbers}),
         MappingProxyType({
             node: Memory(keys[ref], _shape(program, ref), texels[ref].endswith("16f"))
             for node, ref in program.memories.items()
@@ -59,7 +60,7 @@ def _check_size(size: Size, owner: str, target: Target) -> None:
     if max(size) > target.max_size:
         raise DeviceError(
             f"node '{owner}': {size[0]}x{size[1]} pixels is more than the {target.max_size} that {target.renderer} "
-            "can hold on a side; render smaller with --scale or --size"
+            "can hold on a side; render smaller with --scale or --size", node=owner,
         )
 
 
@@ -67,7 +68,8 @@ def _check_outputs(count: int, owner: str, target: Target) -> None:
     most = target.max_images if target.form == "compute" else target.max_targets
     if count > most:
         raise DeviceError(
-            f"node '{owner}': {target.renderer} writes {most} pictures at once, not {count}; link fewer of its outputs"
+            f"node '{owner}': {target.renderer} writes {most} pictures at once, not {count}; link fewer of its outputs",
+            node=owner,
         )
 
 

@@ -14,7 +14,7 @@ from ...nodes import Node, Plain, Pointwise, Socket, Value
 from ..errors import GraphError
 from .conversion import conversion
 from .names import INPUTS, OUTPUTS, check_name, did_you_mean, fresh_name, pick
-from .notes import moved_keys, moved_layout, renamed, without
+from .notes import linked_routes, moved_keys, moved_layout, renamed, without, without_route
 from .parts import Control, Input, Output, Port, Settings, Signature, Unknown, freeze
 from .relink import moved_links, relinked
 from .values import coerced, value_fault
@@ -52,8 +52,8 @@ Item = Node | Group | Unknown
 class Graph:
     """Nodes by id, links by *target*: an input has at most one source.
 
-    `ui["nodes"]` holds the layout by node id. `extra` keeps keys that mean nothing here, by the JSON path of the
-    object that holds them. `folder` is where relative paths start; it is not saved.
+    `ui` is the layout: nodes, ends, routes and viewers by name. `extra` keeps keys that mean nothing here, by the JSON
+    path of the object that holds them. `folder` is where relative paths start; it is not saved.
     """
 
     nodes: Mapping[str, Item] = field(default_factory=dict[str, Item])
@@ -227,7 +227,8 @@ class Graph:
             raise GraphError(f"'{source}' cannot feed '{target}': {fault}")
         if loop := route(target.node, source.node, self.fed):
             raise GraphError(f"'{source}' cannot feed '{target}': {loop_sentence((*loop, target.node))}")
-        return self._with(links={**self.links, target: source})
+        ui = self.ui if self.links.get(target) == source else without_route(self.ui, str(target))
+        return self._with(links={**self.links, target: source}, ui=ui)
 
     def disconnect(self, target: Port) -> Self:
         """A graph without the link to `target`."""
@@ -320,6 +321,9 @@ class Graph:
     # --- inside ------------------------------------------------------------------------------------------------
 
     def _with(self, **changes: Any) -> Self:
+        if "links" in changes and "routes" in self.ui:
+            ends = {str(target) for target in changes["links"]}
+            changes["ui"] = linked_routes(changes.get("ui", self.ui), ends)
         return dataclasses.replace(self, **changes)
 
     def _instead(self, id: str, target: Port) -> Port | None:
@@ -339,8 +343,9 @@ class Graph:
         else:
             check_name(new, section[:-1], rest)
             ends, links = renamed(known, old, new), moved_links(self.links, {here: Port(section, new)})
-        extra = moved_keys(self.extra, f"{section}.{old}", f"{section}.{new}" if new else "")
-        return self._with(**{section: ends}, links=links, extra=extra)
+        place, there = f"{section}.{old}", f"{section}.{new}" if new else ""
+        ui, extra = moved_layout(self.ui, place, there), moved_keys(self.extra, place, there)
+        return self._with(**{section: ends}, links=links, ui=ui, extra=extra)
 
 
 # --- faces of nodes ------------------------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import Any, cast
 
 from ...nodes import Plain, Value
@@ -27,6 +28,8 @@ def coerced(value: Value, given: object) -> Plain | None:
             return given if isinstance(given, str) else None
         case "color" | "vector" | "matrix":
             return numbers(given, 4 if value.type == "color" else value.length)
+        case "curve" | "ramp":
+            return _points(given, value.length)
 
 
 def numbers(given: object, length: int) -> tuple[float, ...] | None:
@@ -36,6 +39,14 @@ def numbers(given: object, length: int) -> tuple[float, ...] | None:
     parts = [_number(part) for part in cast("tuple[Any, ...]", given)]
     found = tuple(part for part in parts if part is not None)
     return found if len(found) == len(parts) == length else None
+
+
+def _points(given: object, width: int) -> tuple[float, ...] | None:
+    """A list of at least two points of `width` numbers each, else None."""
+    if not isinstance(given, list | tuple):
+        return None
+    parts = cast("tuple[Any, ...]", given)
+    return numbers(parts, len(parts)) if len(parts) >= 2 * width and len(parts) % width == 0 else None
 
 
 def expected(value: Value) -> str:
@@ -55,6 +66,10 @@ def expected(value: Value) -> str:
             return "a list of 4 numbers"
         case "vector" | "matrix":
             return f"a list of {value.length} numbers"
+        case "curve":
+            return "a list of x, y for every point, at least two"
+        case "ramp":
+            return "a list of t, red, green, blue, alpha for every stop, at least two"
 
 
 def value_fault(value: Value, given: object) -> str | None:
@@ -64,13 +79,30 @@ def value_fault(value: Value, given: object) -> str | None:
         return f"{given!r} does not fit: it takes {expected(value)}"
     if isinstance(plain, str):
         return f"'{plain}' is no choice: it takes {expected(value)}" if _no_choice(value, plain) else None
-    for part in plain if isinstance(plain, tuple) else (plain,):
+    for index, part in enumerate(plain if isinstance(plain, tuple) else (plain,)):
         if isinstance(part, float) and not math.isfinite(part):
             return f"{part} is not a finite number"
+        if value.type == "curve" and index % 2 == 0:
+            continue
         if not value.minimum <= part <= value.maximum:
             return f"{given!r} is outside the range {_range(value)}"
         if abs(part) > (_FLOAT32 if isinstance(part, float) else _INT32 - 1):
             return f"{given!r} is too large for 32 bits"
+    return _order_fault(value, plain) if isinstance(plain, tuple) else None
+
+
+def _order_fault(value: Value, plain: tuple[float, ...]) -> str | None:
+    """Why the points of a curve or ramp do not follow each other from 0 to 1, or None."""
+    if value.type not in ("curve", "ramp"):
+        return None
+    places = plain[:: value.length]
+    name = "x" if value.type == "curve" else "t"
+    for place in places:
+        if not 0.0 <= place <= 1.0:
+            return f"{name} = {place:g} is outside the range 0 to 1"
+    for before, after in pairwise(places):
+        if after < before or (after == before and value.type == "curve"):
+            return f"{name} = {after:g} follows {before:g}: list the points from left to right"
     return None
 
 

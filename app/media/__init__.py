@@ -1,6 +1,6 @@
 """Files and arrays: every picture format that OpenImageIO reads, color through OpenColorIO."""
 
-from .color import to_display, views
+from .color import GpuView, displays, gpu_view, to_display, views
 from .info import ImageInfo, content_hash, find_layer, fingerprint, info
 from .layers import Layer
 from .metadata import Attribute, read_metadata
@@ -8,6 +8,7 @@ from .read import Pixels, Want, read, read_many
 from .write import check_destination, write
 
 __all__ = [
-    "Attribute", "ImageInfo", "Layer", "Pixels", "Want", "check_destination", "content_hash", "find_layer",
-    "fingerprint", "info", "read", "read_many", "read_metadata", "to_display", "views", "write",
+    "Attribute", "GpuView", "ImageInfo", "Layer", "Pixels", "Want", "check_destination", "content_hash", "displays",
+    "find_layer", "fingerprint", "gpu_view", "info", "read", "read_many", "read_metadata", "to_display", "views",
+    "write",
 ]

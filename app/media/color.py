@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import difflib
 import os
+from dataclasses import dataclass
 from functools import cache
 from typing import Any, Literal
 
@@ -98,18 +99,27 @@ def _srgb_table(dtype: str) -> Array:
     return decode_srgb(np.arange(count + 1) / count).astype(np.float32)
 
 
-def views() -> tuple[str, ...]:
-    """The views that a written picture may have, the default first; `none` only encodes as sRGB."""
-    return (*_config().getViews(_DISPLAY), NO_VIEW)
+def displays() -> tuple[str, ...]:
+    """The kinds of screen that pictures can be shown on, the default first."""
+    return tuple(_config().getDisplays())
 
 
-def find_view(name: str) -> str:
+def views(display: str = "") -> tuple[str, ...]:
+    """The views that a picture on a display may have, the default first; `none` only encodes as sRGB.
+
+    Raises:
+        UsageError: unknown display.
+    """
+    return (*_config().getViews(_find_display(display)), NO_VIEW)
+
+
+def find_view(name: str, display: str = "") -> str:
     """The view that `name`, or its beginning in any case, means; "" is the default.
 
     Raises:
         UsageError: there is none, or more than one.
     """
-    known = views()
+    known = views(display)
     if not name:
         return known[0]
     wanted = name.casefold()
@@ -124,8 +134,15 @@ def find_view(name: str) -> str:
     raise UsageError(f"there is no view '{name}': {hint} from {', '.join(known)}")
 
 
-def to_display(array: Array, view: str = "", *, bits: Literal[8, 16, 32] = 8) -> Array:
-    """Working-space pixels [h, w, 3 or 4] as seen on an sRGB display, the same shape.
+def _find_display(name: str) -> str:
+    known = displays()
+    if name and name not in known:
+        raise UsageError(f"there is no display '{name}': choose from {', '.join(known)}")
+    return name or _DISPLAY
+
+
+def to_display(array: Array, view: str = "", *, bits: Literal[8, 16, 32] = 8, display: str = "") -> Array:
+    """Working-space pixels [h, w, 3 or 4] as seen on a display, sRGB by default, the same shape.
 
     Four channels are premultiplied on the way in and straight on the way out, since no display transform is
     linear; color without alpha (a glow over nothing) stays as bright as it is. NaN becomes black.
@@ -133,9 +150,9 @@ def to_display(array: Array, view: str = "", *, bits: Literal[8, 16, 32] = 8) ->
     Returns uint8, uint16 or float32, by `bits`.
 
     Raises:
-        UsageError: unknown view.
+        UsageError: unknown view or display.
     """
-    chosen = find_view(view)
+    processor = _processor(view, display).getDefaultCPUProcessor()
     pixels = np.array(array, dtype=np.float32)
     np.nan_to_num(pixels, copy=False, nan=0.0, posinf=_LARGEST, neginf=-_LARGEST)
     rgb = np.ascontiguousarray(pixels[..., :3])
@@ -143,13 +160,55 @@ def to_display(array: Array, view: str = "", *, bits: Literal[8, 16, 32] = 8) ->
         alpha = pixels[..., 3:]
         np.divide(rgb, alpha, out=rgb, where=alpha > 0.0)
     np.clip(rgb, -_LARGEST, _LARGEST, out=rgb)
-    _apply(_view_processor(_PLAIN_VIEW if chosen == NO_VIEW else chosen), rgb)
+    _apply(processor, rgb)
     pixels[..., :3] = rgb
     if bits == 32:
         return pixels
     top = (1 << bits) - 1
     np.clip(pixels, 0.0, 1.0, out=pixels)
     return (pixels * top + 0.5).astype(np.uint8 if bits == 8 else np.uint16)
+
+
+@dataclass(frozen=True)
+class Lut:
+    """A table that a view's GLSL reads: [height, width, channels], or [depth, height, width, channels], float32."""
+
+    sampler: str
+    values: Array
+    linear: bool
+
+
+@dataclass(frozen=True)
+class GpuView:
+    """A view as GLSL 4.00: `text` declares `vec4 <function>(vec4)` and the samplers of `luts`, clamped at the edges."""
+
+    text: str
+    function: str
+    luts: tuple[Lut, ...]
+
+
+def gpu_view(view: str = "", display: str = "") -> GpuView:
+    """The shader that computes what `to_display` computes, from straight working-space color.
+
+    Raises:
+        UsageError: unknown view or display.
+    """
+    ocio, name = _ocio(), "view_transform"
+    processor = _processor(view, display).getDefaultGPUProcessor()
+    text = ocio.GpuShaderDesc.CreateShaderDesc(
+        language=ocio.GPU_LANGUAGE_GLSL_4_0, functionName=name, resourcePrefix="view_"
+    )
+    text.setAllowTexture1D(False)
+    processor.extractGpuShaderInfo(text)
+    luts: list[Lut] = []
+    for table in text.getTextures():
+        channels = 1 if table.channel == text.TEXTURE_RED_CHANNEL else 3
+        values = np.array(table.getValues(), np.float32).reshape(table.height, table.width, channels)
+        luts.append(Lut(table.samplerName, values, table.interpolation != ocio.INTERP_NEAREST))
+    for cube in text.get3DTextures():
+        values = np.array(cube.getValues(), np.float32).reshape(*[cube.edgeLen] * 3, 3)
+        luts.append(Lut(cube.samplerName, values, cube.interpolation != ocio.INTERP_NEAREST))
+    return GpuView(text.getShaderText(), name, tuple(luts))
 
 
 def _ocio() -> Any:
@@ -165,9 +224,12 @@ def _config() -> Any:
 
 
 @cache
-def _view_processor(view: str) -> Any:
-    forward = _ocio().TRANSFORM_DIR_FORWARD
-    return _config().getProcessor(WORKING, _DISPLAY, view, forward).getDefaultCPUProcessor()
+def _processor(view: str, display: str) -> Any:
+    """From the working space to what a display shows."""
+    screen, chosen = _find_display(display), find_view(view, display)
+    if chosen == NO_VIEW:
+        screen, chosen = _DISPLAY, _PLAIN_VIEW
+    return _config().getProcessor(WORKING, screen, chosen, _ocio().TRANSFORM_DIR_FORWARD)
 
 
 def _apply(processor: Any, rgb: Array) -> None:

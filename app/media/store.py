@@ -40,6 +40,11 @@ def store(path: str | Path, encode: Callable[[str], None], room: int) -> None:
         part.replace(target)
 
 
+def part_prefix(process: int) -> str:
+    """How the names of unfinished files of a process begin: one that was killed cannot remove them itself."""
+    return f".halation-{process}-"
+
+
 def check_room(path: str | Path) -> None:
     """Find out whether the folder may be written, by making a name in it and taking that away. Raises OutputError."""
     with _part(path):
@@ -50,7 +55,7 @@ def check_room(path: str | Path) -> None:
 def _part(path: str | Path) -> Iterator[tuple[Path, Path]]:
     """A new file that is gone afterwards, and the one that it may replace."""
     target = Path(os.path.realpath(path))
-    part = target.with_name(f".halation-{secrets.token_hex(6)}{target.suffix[:8]}")
+    part = target.with_name(f"{part_prefix(os.getpid())}{secrets.token_hex(6)}{target.suffix[:8]}")
     try:
         if target.is_dir():
             raise OutputError(f"{path}: is a folder: add the name of a file")

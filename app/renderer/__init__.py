@@ -3,7 +3,16 @@
 from __future__ import annotations
 
 from .device import Device, describe, open_device
+from .display import Display, Drawable
 from .engine import Renderer, Wanted
-from .runner import Counters, Runner
+from .executor import Counters
+from .look import Look, fitted, to_panel, to_picture
+from .probe import Nonfinite, Probe, first_nonfinite
+from .run import Run
+from .runner import Runner
+from .textures import Lease
 
-__all__ = ["Counters", "Device", "Renderer", "Runner", "Wanted", "describe", "open_device"]
+__all__ = [
+    "Counters", "Device", "Display", "Drawable", "Lease", "Look", "Nonfinite", "Probe", "Renderer", "Run", "Runner",
+    "Wanted", "describe", "first_nonfinite", "fitted", "open_device", "to_panel", "to_picture",
+]

@@ -19,25 +19,38 @@ AHEAD = 4
 
 
 class Decoding:
-    """Decodes `uploads` in order, a few ahead of what is taken."""
+    """Decodes `uploads`, given with the keys of their pixels, in order, a few ahead of what is taken.
 
-    def __init__(self, threads: Executor, load: Loader, uploads: Iterable[Upload]) -> None:
-        self._threads, self._load = threads, load
-        self._waiting = deque(uploads)
-        self._uploads = {upload.surface: upload for upload in self._waiting}
+    What was begun and is not wanted any more stays in `begun` for the next one, which may well want it.
+    """
+
+    def __init__(
+        self, threads: Executor, load: Loader, uploads: Iterable[tuple[Upload, str]], begun: dict[str, Future[Array]]
+    ) -> None:
+        self._threads, self._load, self._begun = threads, load, begun
+        self._uploads = {upload.surface: (upload, key) for upload, key in uploads}
+        self._waiting = deque(self._uploads)
         self._started: dict[int, Future[Array]] = {}
         self._go_ahead()
 
     def __contains__(self, surface: int) -> bool:
         return surface in self._uploads
 
-    def take(self, surface: int) -> tuple[Upload, Array]:
+    def upload(self, surface: int) -> Upload:
+        """What is decoded for a surface."""
+        return self._uploads[surface][0]
+
+    def ready(self, surface: int) -> bool:
+        """True if `take` would not wait."""
+        return self._start(surface).done()
+
+    def take(self, surface: int) -> Array:
         """The pixels for a surface, once. Raises what the loader raised."""
-        upload = self._uploads.pop(surface)
-        future = self._started.pop(surface, None) or self._threads.submit(self._load, upload.picture)
+        future = self._start(surface)
+        del self._uploads[surface], self._started[surface]
         pixels = future.result()
         self._go_ahead()
-        return upload, pixels
+        return pixels
 
     def skip(self, surface: int) -> None:
         """These pixels have come from elsewhere."""
@@ -49,14 +62,21 @@ class Decoding:
 
     def cancel(self) -> None:
         """Nothing more is wanted."""
-        for future in self._started.values():
-            future.cancel()
+        left = {self._uploads[surface][1]: future for surface, future in self._started.items() if not future.cancel()}
+        self._begun.clear()
+        self._begun.update(left)
         self._waiting.clear()
         self._uploads.clear()
         self._started.clear()
 
+    def _start(self, surface: int) -> Future[Array]:
+        if surface not in self._started:
+            upload, key = self._uploads[surface]
+            self._started[surface] = self._begun.pop(key, None) or self._threads.submit(self._load, upload.picture)
+        return self._started[surface]
+
     def _go_ahead(self) -> None:
         while self._waiting and len(self._started) < AHEAD:
-            upload = self._waiting.popleft()
-            if upload.surface in self._uploads:
-                self._started[upload.surface] = self._threads.submit(self._load, upload.picture)
+            surface = self._waiting.popleft()
+            if surface in self._uploads:
+                self._start(surface)

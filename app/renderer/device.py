@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import sys
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from threading import current_thread, get_ident
 
 import moderngl
+import numpy as np
 
 from ..compiler import Form, Target
 from ..errors import DeviceError, UsageError
@@ -39,6 +42,32 @@ class Device:
             raise UsageError(f"thread '{name}' did not open this device and cannot render on it: open one there")
         return nullcontext() if self.shared else self.context
 
+    def to_screen(self) -> None:
+        """What is drawn next by others goes to the window again."""
+        self.context.screen.use()
+
+    def read_screen(self) -> np.ndarray:
+        """The window as it was shown last: [height, width, 3] of 8 bits, row 0 on top."""
+        width, height = self.context.screen.size
+        pixels = np.frombuffer(self.context.screen.read(components=3, alignment=1), np.uint8)
+        return pixels.reshape(height, width, 3)[::-1]
+
+    @contextmanager
+    def drawing(self) -> Iterator[moderngl.Context]:
+        """Our context is current inside this block; afterwards the framebuffer is bound that was bound before."""
+        with self.current():
+            before = self.context.fbo or self.idle
+            try:
+                self.context.disable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+                yield self.context
+            finally:
+                before.use()
+
+    @cached_property
+    def idle(self) -> moderngl.Framebuffer:
+        """What stays bound between draws: moderngl rebinds the last framebuffer, even one that was released."""
+        return self.context.framebuffer([self.context.texture((1, 1), 1)])
+
     def close(self) -> None:
         """Give the context back. Nothing made on it can be used any more."""
         self.context.release()
@@ -54,6 +83,13 @@ def open_device(form: Form | None = None) -> Device:
     """Open OpenGL without a window. Raises DeviceError where there is none, or one that is too old."""
     context = _standalone()
     return Device(context, describe(context, form))
+
+
+def adopt() -> Device:
+    """The device of the OpenGL context that is current on this thread, a window's. Raises DeviceError if it is old."""
+    moderngl.init_context()
+    context = moderngl.get_context()
+    return Device(context, describe(context), shared=True)
 
 
 def describe(context: moderngl.Context, form: Form | None = None) -> Target:

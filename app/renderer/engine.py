@@ -11,8 +11,9 @@ from ...nodes import Size
 from ..compiler import Library, Plan, Precision, Request, compile_graph
 from ..graph import Graph, Port
 from ..media.pictures import Pictures
+from .decoding import Array
 from .device import Device, open_device
-from .runner import Array, Runner
+from .runner import Runner
 
 if TYPE_CHECKING:
     from ..media.pictures import Binding
@@ -52,16 +53,18 @@ class Renderer:
         self.device = device or open_device()
         self.pictures = Pictures()
         self.runner = Runner(self.device, self.pictures.load, budget)
-        self._library, self._fusion = library, fusion
+        self.library = library
+        """The shaders of nodes; None for those that ship with Halation."""
+        self._fusion = fusion
 
-    def compile(self, graph: Graph, wanted: Wanted = Wanted()) -> Plan:
+    def compile(self, graph: Graph, wanted: Wanted = Wanted(), *, fusion: bool = True) -> Plan:
         """Plan the rendering of what is wanted of `graph`. Raises the errors of `app.errors`."""
         bindings = self.pictures.bind(graph, wanted.inputs)
         memories = self.runner.memories if wanted.follows else {}
         request = Request(wanted.targets, bindings, wanted.size, wanted.scale, wanted.frame, memories)
         return compile_graph(
             graph, request, self.pictures.probe, target=self.device.target, precision=wanted.precision,
-            library=self._library, fusion=self._fusion,
+            library=self.library, fusion=fusion and self._fusion,
         )
 
     def render(self, graph: Graph, wanted: Wanted = Wanted()) -> dict[str, Array]:

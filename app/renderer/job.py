@@ -13,9 +13,9 @@ from typing import Any
 from .. import document, media
 from ..compiler import Pass, Picture, Plan
 from ..graph import Graph, Group
+from .decoding import Array
 from .destinations import Writing, check, destinations
 from .engine import Renderer, Wanted
-from .runner import Array
 
 __all__ = ["Progress", "Report", "Writing", "run_job"]
 
@@ -52,10 +52,7 @@ def run_job(
     check(files, plan, sources, writing.compression)
     hashes = _hashes({picture.path for picture in sources.values()})
     compiled = time.perf_counter()
-    outputs: dict[str, Array] = {}
-    for done, one in enumerate(renderer.runner.steps(plan, outputs), 1):
-        if progress is not None:
-            progress(done, len(plan.passes), one)
+    outputs = _rendered(renderer, plan, progress)
     rendered = time.perf_counter()
     header = _header(renderer, graph, wanted, sources, hashes)
     for file in files:
@@ -70,6 +67,19 @@ def run_job(
         renderer.runner.programs.compiled - programs, renderer.runner.textures.peak, dict(renderer.pictures.repaired),
         {"compile": compiled - started, "render": rendered - compiled, "write": finished - rendered},
     )
+
+
+def _rendered(renderer: Renderer, plan: Plan, progress: Progress | None) -> dict[str, Array]:
+    """The outputs of the plan by name."""
+    kept = renderer.runner.lease()
+    try:
+        with renderer.runner.steps(plan, kept) as steps:
+            for done, one in enumerate(steps, 1):
+                if progress is not None:
+                    progress(done, len(plan.passes), one)
+        return renderer.runner.download(plan)
+    finally:
+        kept.close()
 
 
 def _hashes(paths: Iterable[str]) -> dict[str, Future[str]]:

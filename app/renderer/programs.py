@@ -54,7 +54,7 @@ class Programs:
         """The program of a pass. Raises ShaderError with node, file and line where the driver refuses it."""
         known = self._known.pop(one.shader, None)
         if known is None:
-            with _undisturbed():
+            with undisturbed():
                 known = self._known[one.shader] = self._compile(one)
                 self.compiled += 1
         self._known[one.shader] = known
@@ -73,7 +73,7 @@ class Programs:
             if one.shader.form == "compute":
                 program = Program(self._context.compute_shader(one.shader.source), None)
             else:
-                handle = self._context.program(vertex_shader=_VERTEX, fragment_shader=one.shader.source)
+                handle = self._context.program(vertex_shader=VERTEX, fragment_shader=one.shader.source)
                 program = Program(handle, self._context.vertex_array(handle, []))
         except moderngl.Error as fault:
             raise _located(one, str(fault)) from None
@@ -87,7 +87,7 @@ class Programs:
 
 
 @contextmanager
-def _undisturbed() -> Iterator[None]:
+def undisturbed() -> Iterator[None]:
     """An interrupt is heard after this block: moderngl calls Python while it links, and crashes if that raises."""
     before = signal.getsignal(signal.SIGINT)
     if threading.current_thread() is not threading.main_thread() or before is None:
@@ -104,7 +104,7 @@ def _undisturbed() -> Iterator[None]:
 
 
 # One triangle that covers everything.
-_VERTEX = """#version 410 core
+VERTEX = """#version 410 core
 void main() {
     gl_Position = vec4(vec2((gl_VertexID << 1) & 2, gl_VertexID & 2) * 2.0 - 1.0, 0.0, 1.0);
 }

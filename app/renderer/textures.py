@@ -70,6 +70,12 @@ class Textures:
         self._release_free()
         self.allocated = 0
 
+    def forget(self) -> None:
+        """Give back to the driver whatever nobody leases."""
+        for key in list(self._idle):
+            self.drop(key)
+        self._release_free()
+
     def next_round(self) -> None:
         """Give back to the driver what waited in vain since the round before this one."""
         waiting, self._free = [one for kind in self._free.values() for one in kind], {}
@@ -98,6 +104,8 @@ class Textures:
 
     def unlease(self, key: str) -> None:
         """Unless somebody else leases them, these pixels may go as soon as the budget asks for it."""
+        if key not in self._leases:  # everything was given back to the driver
+            return
         self._leases[key] -= 1
         if self._leases[key] > 0:
             return
@@ -133,16 +141,11 @@ class Textures:
                 self._release(texture)
         self._free.clear()
 
-    def _release_idle(self) -> None:
-        for key in list(self._idle):
-            self.drop(key)
-        self._release_free()
-
     def _allocate(self, kind: Kind, surface: Surface) -> Texture:
         width, height, components, depth = kind
         self._context.error  # noqa: B018  (reading it clears what earlier calls left behind)
         handle = self._try(width, height, components, depth)
-        for make_room in (self._release_free, self._release_idle):
+        for make_room in (self._release_free, self.forget):
             if handle is None:
                 make_room()
                 handle = self._try(width, height, components, depth)

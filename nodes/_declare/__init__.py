@@ -17,11 +17,13 @@ Values reach `passes` and GLSL in working units (see `Slider.unit`), so no node 
 
 from __future__ import annotations
 
+from .curves import curve_at, ramp_at
 from .draw import Argument, Draw, Drawn, Pixels
 from .node import Filter, Node, Pointwise, Source, Temporal
 from .sockets import Color, Edge, Field, Image, Kind, Number, Output, Size, Socket, Vector, glsl_type
 from .values import (
     RGBA,
+    Curve,
     Doc,
     File,
     FilePath,
@@ -29,8 +31,11 @@ from .values import (
     Handle,
     Kernel3x3,
     Plain,
+    Points,
     Position,
+    Ramp,
     Slider,
+    Stops,
     Swatch,
     Unit,
     Value,
@@ -38,8 +43,9 @@ from .values import (
 )
 
 __all__ = [
-    "RGBA", "Argument", "Color", "Doc", "Draw", "Drawn", "Edge", "Field", "File", "FilePath", "Filter", "Fraction",
-    "Handle", "Image", "Kernel3x3", "Kind", "Node", "Number", "Output", "Pixels", "Plain", "Pointwise", "Position",
-    "Size", "Slider", "Socket", "Source", "Swatch", "Temporal", "Unit", "Value", "Vector",
-    "glsl_type", "working_factor",
+    "RGBA", "Argument", "Color", "Curve", "Doc", "Draw", "Drawn", "Edge", "Field", "File", "FilePath", "Filter",
+    "Fraction", "Handle", "Image", "Kernel3x3", "Kind", "Node", "Number", "Output", "Pixels", "Plain", "Points",
+    "Pointwise", "Position", "Ramp", "Size", "Slider", "Socket", "Source", "Stops", "Swatch", "Temporal", "Unit",
+    "Value", "Vector",
+    "curve_at", "glsl_type", "ramp_at", "working_factor",
 ]

@@ -58,13 +58,33 @@ class Handle:
     """The value is a position as a fraction of the picture (0,0 is its top left), dragged in the viewer."""
 
 
+@dataclass(frozen=True)
+class Curve:
+    """The value is a smooth curve through points `x0, y0, x1, y1, ...`, x growing within 0..1: see `curve_at`.
+
+    `low` and `high` are the soft range of y, `minimum` and `maximum` its hard range.
+    """
+
+    low: float = 0.0
+    high: float = 1.0
+    minimum: float = field(default=float("-inf"), kw_only=True)
+    maximum: float = field(default=float("inf"), kw_only=True)
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """The value is a color ramp of stops `t, r, g, b, a, ...`, scene-linear, t never falling: see `ramp_at`."""
+
+
 Fraction = Annotated[float, Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0)]
 RGBA = Annotated[tuple[float, float, float, float], Swatch()]
 Position = Annotated[tuple[float, float], Handle()]
 FilePath = Annotated[str, File()]
+Points = Annotated[tuple[float, ...], Curve()]
+Stops = Annotated[tuple[float, ...], Ramp()]
 Kernel3x3 = tuple[float, float, float, float, float, float, float, float, float]
 
-ValueType = Literal["float", "int", "bool", "choice", "color", "vector", "matrix", "path", "text"]
+ValueType = Literal["float", "int", "bool", "choice", "color", "vector", "matrix", "curve", "ramp", "path", "text"]
 Plain = float | int | bool | str | tuple[float, ...]
 """What a value may be: JSON scalars and flat lists of numbers."""
 
@@ -77,6 +97,7 @@ class Value:
     type: ValueType
     default: Plain
     length: int = 1
+    """How many numbers: of a curve per point, of a ramp per stop."""
     choices: tuple[str, ...] = ()
     low: float = float("-inf")
     high: float = float("inf")
@@ -86,6 +107,8 @@ class Value:
     doc: str = ""
     layer_by: str = ""
     """The value that picks a layer of this file."""
+    handle: bool = False
+    """True for a position that is dragged in the viewer."""
 
     @property
     def glsl(self) -> str | None:
@@ -111,8 +134,7 @@ def read_value(name: str, hint: Any, default: Any) -> Value:
     elif get_origin(base) is Literal:
         found |= {"type": "choice", "choices": get_args(base)}
     elif get_origin(base) is tuple:
-        length = len(get_args(base))
-        found |= {"type": "matrix" if length == 9 else "vector", "length": length}
+        found |= _tuple_type(name, get_args(base), notes)
     elif base is str:
         found["type"] = "text"
     else:
@@ -127,4 +149,18 @@ def read_value(name: str, hint: Any, default: Any) -> Value:
             found["type"] = "color"
         elif isinstance(note, File):
             found |= {"type": "path", "layer_by": note.layer}
+        elif isinstance(note, Handle):
+            found |= {"handle": True, "low": 0.0, "high": 1.0}
+        elif isinstance(note, Curve):
+            found |= {key: getattr(note, key) for key in ("low", "high", "minimum", "maximum")}
     return Value(**found)
+
+
+def _tuple_type(name: str, parts: tuple[Any, ...], notes: tuple[Any, ...]) -> dict[str, Any]:
+    """The type and length of a flat list of numbers; that of a curve is 2 per point, that of a ramp 5 per stop."""
+    if Ellipsis not in parts:
+        return {"type": "matrix" if len(parts) == 9 else "vector", "length": len(parts)}
+    for note in notes:
+        if isinstance(note, Curve | Ramp):
+            return {"type": "curve", "length": 2} if isinstance(note, Curve) else {"type": "ramp", "length": 5}
+    raise TypeError(f"value '{name}': a list of any length is a Curve or a Ramp")

@@ -187,6 +187,33 @@ def test_progress_shows_on_a_terminal_only(long, tmp_path):
     assert "\x1b" not in quiet.stderr and len(quiet.stderr.splitlines()) == 2
 
 
+def test_progress_for_programs(ten, tmp_path):
+    """A line of JSON for every pass, and nothing else that begins like one."""
+    result = halation("render", ten, "-o", tmp_path / "out.exr", "--progress", "json", "--json")
+    assert result.returncode == 0, result.stderr
+    told = [json.loads(line) for line in result.stderr.splitlines() if line.startswith("{")]
+    count = json.loads(result.stdout)["passes"]
+    assert [(one["pass"], one["passes"]) for one in told] == [(number, count) for number in range(1, count + 1)]
+    assert told[-1]["nodes"][-1] == "tone" and {name for one in told for name in one["nodes"]} <= set(TEN)
+    refused = halation("render", ten, "-o", tmp_path / "out.exr", "--progress", "loud")
+    assert (refused.returncode, refused.stderr) == (2, "halation: --progress loud: choose bar or json\n")
+
+
+def test_a_graph_from_standard_input(ten, tmp_path):
+    """Relative paths start at the current folder."""
+    tree = json.loads(ten.read_text())
+    sample = Path(tree["inputs"]["beauty"]["file"])
+    tree["inputs"]["beauty"]["file"] = sample.name
+    out = tmp_path / "out.exr"
+    result = halation("render", "-", "-o", out, input=json.dumps(tree), cwd=sample.parent)
+    assert result.returncode == 0 and out.stat().st_size > 1000, result.stderr
+    assert halation("explain", "-", input=json.dumps(tree), cwd=sample.parent).stdout.count("\n") > 5
+    broken = halation("render", "-", "-o", out, input="{", cwd=tmp_path)
+    assert broken.returncode == 3 and broken.stderr.startswith("halation: -: not valid JSON")
+    bytes = subprocess.run([*HALATION, "explain", "-"], input=b"\xff", capture_output=True)
+    assert (bytes.returncode, bytes.stderr) == (3, b"halation: -: the text is not UTF-8 (byte 0); save it as UTF-8\n")
+
+
 @POSIX
 def test_names_that_no_encoding_knows(ten, tmp_path):
     folder = os.fsencode(tmp_path) + b"/caf\xe9"

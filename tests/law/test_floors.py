@@ -121,6 +121,17 @@ def test_a_library_has_one_home(library: str) -> None:
     assert all(name.startswith(f"app.{HOMES[library]}.") or name == f"app.{HOMES[library]}" for name in users), users
 
 
+def test_the_editor_works_without_a_window_below_its_panels() -> None:
+    drawn = ("theme", "window", "canvas", "inspector", "viewer", "panels", "keys")
+    assert not [
+        f"{name} imports {target}"
+        for name, target in links()
+        if name.startswith("app.editor.") and name.split(".")[2] not in drawn
+        and (target.split(".")[0] in {"glfw", "imgui_bundle"} or target.startswith("app.editor.window."))
+        and name != "app.editor.__init__"
+    ]
+
+
 @pytest.mark.parametrize("part", ["errors", "graph", "document", "cli"])
 def test_parts_without_pixels_do_without_numpy(part: str) -> None:
     assert not {name for name, target in links() if name.startswith(f"app.{part}") and target.split(".")[0] == "numpy"}

@@ -12,7 +12,7 @@ import OpenImageIO as oiio
 import PyOpenColorIO as ocio
 import pytest
 from halation.app.errors import InputError, UsageError
-from halation.app.media import read, to_display, views
+from halation.app.media import displays, gpu_view, read, to_display, views
 from halation.app.media.color import find_view
 from halation.nodes import Kind
 
@@ -184,3 +184,36 @@ def test_opencolorio_is_loaded_when_needed() -> None:
     code = "import sys, halation.app.media; print('PyOpenColorIO' in sys.modules)"
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert result.stdout.strip() == "False"
+
+
+def test_displays_have_views_of_their_own() -> None:
+    known = tuple(ocio.Config.CreateFromBuiltinConfig("ocio://default").getDisplays())
+    assert displays() == known and displays()[0] == "sRGB - Display"
+    assert views(displays()[0]) == views()
+    assert views("Display P3 - Display")[0] == "ACES 2.0 - SDR 100 nits (P3 D65)"
+    with pytest.raises(UsageError, match="there is no display 'CRT': choose from sRGB - Display"):
+        views("CRT")
+    with pytest.raises(UsageError, match=r"there is no view 'ACES 2.0 - SDR 100 nits \(P3 D65\)'"):
+        to_display(np.zeros((1, 1, 3)), "ACES 2.0 - SDR 100 nits (P3 D65)")
+
+
+def test_another_display_shows_other_numbers(rng: Random) -> None:
+    colors = rng.random((4, 4, 3), np.float32)
+    processor = ocio.Config.CreateFromBuiltinConfig("ocio://default").getProcessor(
+        "lin_rec709_scene", "Display P3 - Display", "Un-tone-mapped", ocio.TRANSFORM_DIR_FORWARD
+    )
+    expected = colors.copy()
+    processor.getDefaultCPUProcessor().applyRGB(expected)
+    np.testing.assert_array_equal(to_display(colors, "Un-tone", bits=32, display="Display P3 - Display"), expected)
+    plain = to_display(colors, "none", bits=32)
+    np.testing.assert_array_equal(to_display(colors, "none", bits=32, display="Display P3 - Display"), plain)
+
+
+@pytest.mark.parametrize("display", displays())
+def test_a_view_for_shaders_declares_all_that_it_reads(display: str) -> None:
+    for view in views(display):
+        found = gpu_view(view, display)
+        assert f"vec4 {found.function}(vec4" in found.text and "sampler1D" not in found.text
+        assert found.text.count("uniform sampler") == len(found.luts)
+        for lut in found.luts:
+            assert lut.sampler in found.text and lut.values.dtype == np.float32 and np.isfinite(lut.values).all()

@@ -98,6 +98,7 @@ def test_history_belongs_to_what_ran_last_however_it_was_run(engine):
     """A frame rendered pass by pass in between, without history, leaves none."""
     rendered(engine, range(1, 5), Trail())
     between = graph_of(Trail(), {"image": frame(7)})
-    for _ in engine.runner.steps(engine.compile(between, Wanted({"image": frame(7)}, precision="float")), {}):
+    plan = engine.compile(between, Wanted({"image": frame(7)}, precision="float"))
+    for _ in engine.runner.steps(plan, engine.runner.lease()):
         pass
     assert rendered(engine, range(7, 8), Trail(), follows=True) == [7.0]

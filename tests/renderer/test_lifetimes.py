@@ -92,41 +92,85 @@ def test_two_plans_made_before_either_runs_keep_their_pictures(engine):
 @pytest.mark.parametrize("first", [1, 2, 3])
 def test_two_runs_of_a_plan_may_take_turns(renderer, forgetful, first):
     plan = forgetful.compile(chain(), wanted())
-    results: list[dict[str, np.ndarray]] = [{}, {}]
-    one, other = (forgetful.runner.steps(plan, result) for result in results)
+    kept = [forgetful.runner.lease(), forgetful.runner.lease()]
+    one, other = (forgetful.runner.steps(plan, lease) for lease in kept)
     for _ in range(first):
         next(one)
     for _ in zip_longest(other, one):
         pass
     expected = renderer.render(chain(), wanted())["image"]
-    for result in results:
-        np.testing.assert_array_equal(result["image"], expected)
+    for lease in kept:
+        np.testing.assert_array_equal(forgetful.runner.download(plan)["image"], expected)
+        lease.close()
     assert forgetful.runner.textures.allocated == held(forgetful)
     assert not forgetful.runner.textures._leases
 
 
 def test_dropping_a_run_does_not_disturb_the_next(renderer, forgetful):
-    plan, result = forgetful.compile(chain(), wanted()), {}
-    old, new = forgetful.runner.steps(plan, {}), forgetful.runner.steps(plan, result)
+    plan, kept = forgetful.compile(chain(), wanted()), forgetful.runner.lease()
+    old, new = forgetful.runner.steps(plan, forgetful.runner.lease()), forgetful.runner.steps(plan, kept)
     next(old), next(old), next(new)
     old.close()
     for _ in new:
         pass
-    np.testing.assert_array_equal(result["image"], renderer.render(chain(), wanted())["image"])
+    expected = renderer.render(chain(), wanted())["image"]
+    np.testing.assert_array_equal(forgetful.runner.download(plan)["image"], expected)
+    kept.close()
+
+
+def test_outputs_stay_on_the_device_as_long_as_they_are_leased(forgetful):
+    plan, kept = forgetful.compile(chain(), wanted()), forgetful.runner.lease()
+    key = plan.surfaces[plan.outputs["image"]].key
+    for _ in forgetful.runner.steps(plan, kept):
+        pass
+    texture = forgetful.runner.texture(key)
+    assert texture is not None and texture.handle.size == (37, 23)
+    for stops in (2.0, 3.0):
+        forgetful.render(chain(stops), wanted())
+    assert forgetful.runner.texture(key) is texture
+    np.testing.assert_array_equal(
+        forgetful.runner.download(plan)["image"], forgetful.render(chain(), wanted())["image"]
+    )
+    kept.close()
+    assert forgetful.runner.texture(key) is None
+
+
+def test_passes_are_timed_on_request(forgetful):
+    plan, timings = forgetful.compile(chain(), wanted()), []
+    with forgetful.runner.steps(plan, forgetful.runner.lease(), timings=timings) as steps:
+        passes = list(steps)
+        assert (steps.done, steps.total) == (len(passes), len(plan.passes))
+    assert [one for one, _ in timings] == passes == list(plan.passes)
+    assert all(seconds > 0.0 for _, seconds in timings)
+
+
+def test_a_run_says_whether_it_would_wait_for_a_file(forgetful):
+    load, gate = forgetful.runner._load, threading.Event()
+
+    def slow(picture):
+        gate.wait(10.0)
+        return load(picture)
+
+    forgetful.runner._load = slow
+    plan = forgetful.compile(chain(), wanted())
+    with forgetful.runner.steps(plan, forgetful.runner.lease()) as steps:
+        assert not steps.ready
+        gate.set()
+        next(steps)
+        assert steps.ready
+        assert len(list(steps)) == len(plan.passes) - 1
+        assert steps.ready
 
 
 def test_two_devices_may_take_turns(renderer):
     engines = [Renderer(open_device(form), budget=0) for form in ("compute", "fragment")]
-    results: list[dict[str, np.ndarray]] = [{}, {}]
-    runs = [
-        engine.runner.steps(engine.compile(chain(sigma=9.0), wanted()), result)
-        for engine, result in zip(engines, results, strict=True)
-    ]
-    for _ in zip_longest(*runs):
+    plans = [engine.compile(chain(sigma=9.0), wanted()) for engine in engines]
+    pairs = list(zip(engines, plans, strict=True))
+    for _ in zip_longest(*(engine.runner.steps(plan, engine.runner.lease()) for engine, plan in pairs)):
         pass
     expected = renderer.render(chain(sigma=9.0), wanted())["image"]
-    for engine, result in zip(engines, results, strict=True):
-        np.testing.assert_allclose(result["image"], expected, rtol=1e-6, atol=1e-6)
+    for engine, plan in pairs:
+        np.testing.assert_allclose(engine.runner.download(plan)["image"], expected, rtol=1e-6, atol=1e-6)
         engine.close()
         engine.device.close()
 
@@ -165,16 +209,16 @@ def test_a_picture_that_changed_its_size_spoils_nothing(engine):
 
 
 def test_an_upload_that_is_interrupted_spoils_nothing(engine, monkeypatch):
-    from halation.app.renderer import runner
+    from halation.app.renderer import executor
 
     def interrupt(*_):
         raise KeyboardInterrupt
 
-    graph, fitting = graph_of(Exposure(stops=1.0), {"image": PICTURE}), runner._fitting
-    monkeypatch.setattr(runner, "_fitting", interrupt)
+    graph, fitting = graph_of(Exposure(stops=1.0), {"image": PICTURE}), executor._fitting
+    monkeypatch.setattr(executor, "_fitting", interrupt)
     with pytest.raises(KeyboardInterrupt):
         engine.render(graph, wanted())
-    monkeypatch.setattr(runner, "_fitting", fitting)
+    monkeypatch.setattr(executor, "_fitting", fitting)
     np.testing.assert_allclose(engine.render(graph, wanted())["out"][..., :3], 2.0 * PICTURE[..., :3], rtol=1e-6)
 
 
@@ -225,8 +269,8 @@ def test_only_a_few_pictures_are_decoded_ahead(forgetful):
     forgetful.runner._load = watched
     pictures = {f"i{number:02}": PICTURE * (number + 1) for number in range(count)}
     plan = forgetful.compile(merged(count), Wanted(pictures, precision="float"))
-    result: dict[str, np.ndarray] = {}
-    steps = forgetful.runner.steps(plan, result)
+    kept = forgetful.runner.lease()
+    steps = forgetful.runner.steps(plan, kept)
     next(steps)
     taken = len(plan.passes[0].textures)
     time.sleep(0.1)
@@ -234,6 +278,8 @@ def test_only_a_few_pictures_are_decoded_ahead(forgetful):
     for _ in steps:
         pass
     assert sorted(loaded) == sorted(pictures)
+    result = forgetful.runner.download(plan)
+    kept.close()
     np.testing.assert_allclose(result["image"][..., :3], PICTURE[..., :3] * count * (count + 1) / 2, rtol=1e-5)
 
 
@@ -253,6 +299,25 @@ def test_a_loader_that_fails_on_its_thread_is_heard(forgetful):
     assert not forgetful.runner.textures._leases
     found = forgetful.render(merged(3), pictures)["image"]
     np.testing.assert_allclose(found[..., :3], 3.0 * PICTURE[..., :3], rtol=1e-6)
+
+
+def test_a_picture_that_was_begun_for_a_dropped_run_is_not_decoded_again(forgetful):
+    load, loaded, gate = forgetful.runner._load, [], threading.Event()
+
+    def slow(picture):
+        loaded.append(picture.path)
+        gate.wait(10.0)
+        return load(picture)
+
+    forgetful.runner._load = slow
+    for stops in (1.0, 2.0, 3.0):
+        dropped = forgetful.runner.steps(forgetful.compile(chain(stops), wanted()), forgetful.runner.lease())
+        while not loaded:
+            time.sleep(0.001)
+        dropped.close()
+    gate.set()
+    forgetful.render(chain(4.0), wanted())
+    assert loaded == ["image"] and not forgetful.runner._begun
 
 
 def test_programs_that_were_not_used_for_long_go(renderer, engine, monkeypatch):
@@ -275,16 +340,18 @@ def test_closing_gives_everything_back():
         engine = Renderer()
         engine.render(chain(sigma=9.0), wanted())
         engine.close()
-        assert (engine.runner.textures.allocated, engine.runner._weights) == (0, {})
+        assert (engine.runner.textures.allocated, engine.runner._executor._weights) == (0, {})
     assert threading.active_count() == threads
 
 
 def test_a_closed_renderer_says_so():
     engine = Renderer()
-    steps = engine.runner.steps(engine.compile(chain(), wanted()), {})
+    kept = engine.runner.lease()
+    steps = engine.runner.steps(engine.compile(chain(), wanted()), kept)
     next(steps)
     engine.close()
     steps.close()
+    kept.close()
     engine.close()
     with pytest.raises(UsageError, match="renderer is closed"):
         engine.render(chain(), wanted())

@@ -1,0 +1,30 @@
+"""`halation edit`: the desktop editor."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .options import Inputs, bound
+
+
+def edit(
+    graph: Annotated[Path | None, typer.Argument(help="A graph, as JSON; none opens the start screen.")] = None,
+    inputs: Inputs = None,
+) -> int:
+    """Open the editor."""
+    from ..errors import UsageError
+
+    if graph is None and inputs:
+        raise UsageError("-i fills an input of a graph: name the graph file too")
+    bindings: dict[str, str] = {}
+    if graph is not None:
+        from .. import document
+
+        bindings = bound(document.load(graph), inputs or ())
+    from ..editor import edit as open_editor
+
+    open_editor(graph, bindings)
+    return 0

@@ -1,0 +1,19 @@
+"""One table of everything that can be done: menus, shortcuts, context menus and the command palette read it."""
+
+from __future__ import annotations
+
+from ..action import Action
+from .documents import DOCUMENTS
+from .edits import EDITS
+from .graph import GRAPH
+from .view import VIEW
+from .viewer import VIEWER
+
+__all__ = ["MENUS", "table"]
+
+MENUS = ("File", "Edit", "Graph", "Viewer", "View", "Help")
+
+
+def table() -> tuple[Action, ...]:
+    """Every action, in the order of the menus."""
+    return (*DOCUMENTS, *EDITS, *GRAPH, *VIEWER, *VIEW)

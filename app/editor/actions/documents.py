@@ -1,0 +1,129 @@
+"""Actions on the document as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..action import Action
+from ..dialogs import Browse, Question
+
+if TYPE_CHECKING:
+    from ..editor import Editor
+
+
+def _unless_unsaved(editor: Editor, then: Callable[[], object], verb: str) -> None:
+    """Ask before unsaved work is left behind."""
+    if not editor.session.dirty:
+        then()
+        return
+
+    def saved() -> None:
+        _save(editor, then)
+
+    editor.dialogs.question = Question(
+        "Unsaved changes", f"'{editor.session.name}' has changes that are not saved.",
+        ((f"Save and {verb}", saved), (f"{verb.capitalize()} without saving", then), ("Cancel", _nothing)),
+    )
+
+
+def _nothing() -> None:
+    """An answer that changes nothing."""
+
+
+def _new(editor: Editor) -> None:
+    _unless_unsaved(editor, lambda: start_new(editor), "start anew")
+
+
+def start_new(editor: Editor) -> None:
+    """An empty graph."""
+    editor.session.new()
+    editor.canvas.fit()
+    editor.dialogs.open.discard("start")
+
+
+def _open(editor: Editor) -> None:
+    browse = Browse("Open a graph", "graph", lambda path: open_graph(editor, path))
+    editor.dialogs.browse = browse
+
+
+def open_graph(editor: Editor, path: Path) -> None:
+    """Open a file, after asking about unsaved work."""
+
+    def opened() -> None:
+        editor.session.open(path)
+        editor.store.opened(path)
+        editor.canvas.fit()
+        editor.dialogs.open.discard("start")
+
+    _unless_unsaved(editor, lambda: editor.attempt(opened), "open")
+
+
+def open_preset(editor: Editor, path: Path) -> None:
+    """Open a preset as a new document, after asking about unsaved work."""
+
+    def opened() -> None:
+        editor.session.open_copy(path)
+        editor.canvas.fit()
+        editor.dialogs.open.discard("start")
+
+    _unless_unsaved(editor, lambda: editor.attempt(opened), "open the preset")
+
+
+def _save(editor: Editor, then: Callable[[], object] = _nothing) -> None:
+    if editor.session.path is None:
+        _save_as(editor, then)
+        return
+    editor.session.save()
+    editor.watcher.expect(editor.session.path)
+    editor.say(f"saved {editor.session.path.name}")
+    then()
+
+
+def _save_as(editor: Editor, then: Callable[[], object] = _nothing) -> None:
+    def saved(path: Path) -> None:
+        named = path if path.suffix else path.with_suffix(".json")
+
+        def act() -> None:
+            editor.session.save_as(named)
+            editor.watcher.expect(named)
+            editor.store.opened(named)
+            editor.say(f"saved {named.name}")
+            then()
+
+        editor.attempt(act)
+
+    editor.dialogs.browse = Browse("Save the graph as", "graph", saved, saving=True, name=f"{editor.session.name}.json")
+
+
+def _revert(editor: Editor) -> None:
+    editor.dialogs.question = Question(
+        "Revert", "Go back to what was saved last? This can be undone.",
+        (("Revert", lambda: editor.attempt(editor.session.revert)), ("Cancel", _nothing)),
+    )
+
+
+def _quit(editor: Editor) -> None:
+    def close() -> None:
+        editor.closing = True
+
+    _unless_unsaved(editor, close, "quit")
+
+
+def ask_to_close(editor: Editor) -> bool:
+    """True if the window may close now; else a question is open."""
+    if not editor.closing:
+        _quit(editor)
+    return editor.closing
+
+
+DOCUMENTS: tuple[Action, ...] = (
+    Action("file.new", "New", _new, "File", "Ctrl+N"),
+    Action("file.open", "Open...", _open, "File", "Ctrl+O"),
+    Action("file.start", "Presets and Recent Files...", lambda e: e.dialogs.open.add("start"), "File"),
+    Action("file.save", "Save", _save, "File", "Ctrl+S", separated=True),
+    Action("file.save_as", "Save As...", _save_as, "File", "Ctrl+Shift+S"),
+    Action("file.revert", "Revert", _revert, "File", enabled=lambda e: e.session.path is not None and e.session.dirty),
+    Action("file.quit", "Quit", _quit, "File", "Ctrl+Q", separated=True),
+)

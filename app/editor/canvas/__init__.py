@@ -1,0 +1,1 @@
+"""The canvas: where nodes are placed and linked."""

@@ -1,0 +1,170 @@
+"""What painting needs in one frame: where, how large, in which colors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+
+from imgui_bundle import imgui
+
+from ....nodes import Kind
+from ..theme.fonts import Fonts
+from ..theme.palette import PALETTES, RGB, Palette
+from ..theme.style import mix, u32
+from .geometry import Point, Rect, Transform
+
+TEXT, SMALL, TITLE = 13.5, 12.0, 14.0
+"""Sizes of letters in canvas units."""
+
+_MEASURED = 48.0
+
+WIDGETS_FROM, NAMES_FROM = 0.45, 0.25
+"""The zoom below which values, and then names of sockets, are left out."""
+
+
+@dataclass(frozen=True)
+class Ink:
+    """The colors of a theme, ready to draw with."""
+
+    palette: Palette
+    node: int
+    node_muted: int
+    outline: int
+    field: int
+    fill: int
+    switch: int
+    switch_on: int
+    on_accent: int
+    text: int
+    dim: int
+    faint: int
+    accent: int
+    accent_soft: int
+    error: int
+    warning: int
+    canvas: int
+    grid: int
+    grid_strong: int
+    picture: int
+    shadow: tuple[tuple[float, int], ...]
+    kinds: dict[Kind | None, int]
+    kinds_dim: dict[Kind | None, int]
+
+    def category(self, name: str, muted: bool = False) -> int:
+        """The header of a node of that menu."""
+        color = self.palette.category(name)
+        return u32(mix(color, self.palette.node, 0.6) if muted else color)
+
+
+@lru_cache(maxsize=4)
+def ink(theme: str) -> Ink:
+    """The colors of a theme by its name."""
+    p = on_nodes(theme)
+    dark = theme == "dark"
+    kinds: dict[Kind | None, RGB] = {**p.kinds, None: p.dim}
+    strength = 0.10 if dark else 0.055
+    return Ink(
+        p, u32(p.node), u32(mix(p.node, p.canvas, 0.6)), u32(p.border if dark else mix(p.border, p.shadow, 0.25)),
+        u32(p.field), u32(mix(p.field, p.accent, 0.35)), u32(p.raised), u32(p.accent), u32(p.on_accent), u32(p.text),
+        u32(p.dim), u32(p.dim, 0.6), u32(p.accent), u32(p.accent, 0.18), u32(p.error), u32(p.warning), u32(p.canvas),
+        u32(p.grid), u32(mix(p.grid, p.dim, 0.16)), u32(mix(p.node, p.shadow, 0.35 if dark else 0.12)),
+        tuple((grow, u32(p.shadow, strength)) for grow in (1.0, 3.0, 6.0)),
+        {kind: u32(color) for kind, color in kinds.items()},
+        {kind: u32(mix(color, p.canvas, 0.7)) for kind, color in kinds.items()},
+    )
+
+
+@lru_cache(maxsize=4)
+def on_nodes(theme: str) -> Palette:
+    """A theme where fields stand out from nodes as they do from panels elsewhere."""
+    p = PALETTES[theme]
+    return replace(p, field=mix(p.node, p.canvas, 0.62), hover=mix(p.node, p.dim, 0.28))
+
+
+@dataclass
+class Texts:
+    """Widths of words, measured once."""
+
+    _widths: dict[tuple[bool, str], float] = field(default_factory=dict[tuple[bool, str], float])
+    _short: dict[tuple[bool, str, float, float], str] = field(default_factory=dict[tuple[bool, str, float, float], str])
+
+    def width(self, fonts: Fonts, text: str, size: float, bold: bool = False) -> float:
+        """The width of a line in the units of `size`."""
+        known = self._widths.get((bold, text))
+        if known is None:
+            imgui.push_font(fonts.bold if bold else fonts.text, _MEASURED)
+            known = self._widths[bold, text] = imgui.calc_text_size(text).x / imgui.get_font_size()
+            imgui.pop_font()
+        return known * size
+
+    def short(self, fonts: Fonts, text: str, size: float, room: float, bold: bool = False) -> str:
+        """A line that fits in `room`, cut with an ellipsis where it must be."""
+        if self.width(fonts, text, size, bold) <= room:
+            return text
+        key = (bold, text, size, round(room, 1))
+        known = self._short.get(key)
+        if known is None:
+            if len(self._short) > 4000:
+                self._short.clear()
+            length = len(text) - 1
+            while length > 1 and self.width(fonts, text[:length].rstrip() + "…", size, bold) > room:
+                length -= 1
+            known = self._short[key] = text[:length].rstrip() + "…"
+        return known
+
+
+@dataclass
+class Brush:
+    """Draws in canvas units onto the panel."""
+
+    draw: imgui.ImDrawList
+    to: Transform
+    zoom: float
+    ink: Ink
+    fonts: Fonts
+    texts: Texts
+    seen: Rect
+    """The part of the canvas that is visible."""
+
+    def text(self, x: float, y: float, color: int, text: str, size: float = TEXT, bold: bool = False) -> None:
+        """A line whose left end is at `x` and whose middle is at `y` (canvas units)."""
+        to, s = self.to, self.to.scale
+        font = self.fonts.bold if bold else self.fonts.text
+        self.draw.add_text(font, size * s, (to.x + x * s, to.y + (y - size * 0.5) * s), color, text)
+
+    def right(self, x: float, y: float, color: int, text: str, size: float = TEXT) -> None:
+        """A line whose right end is at `x`."""
+        self.text(x - self.texts.width(self.fonts, text, size), y, color, text, size)
+
+    def short(self, text: str, room: float, size: float = TEXT, bold: bool = False) -> str:
+        """Text that fits in `room` canvas units."""
+        return self.texts.short(self.fonts, text, size, room, bold)
+
+    def width(self, text: str, size: float = TEXT, bold: bool = False) -> float:
+        """The width of a line in canvas units."""
+        return self.texts.width(self.fonts, text, size, bold)
+
+    def corners(self, rect: Rect, grow: float = 0.0) -> tuple[Point, Point]:
+        """A rectangle on the screen, `grow` units larger on each side."""
+        to, s = self.to, self.to.scale
+        return (
+            (to.x + (rect[0] - grow) * s, to.y + (rect[1] - grow) * s),
+            (to.x + (rect[2] + grow) * s, to.y + (rect[3] + grow) * s),
+        )
+
+    def fill(self, rect: Rect, color: int, rounding: float = 0.0, grow: float = 0.0, flags: int = 0) -> None:
+        """A filled rectangle."""
+        low, high = self.corners(rect, grow)
+        self.draw.add_rect_filled(low, high, color, (rounding + grow) * self.to.scale, flags)
+
+    def frame(
+        self, rect: Rect, color: int, rounding: float = 0.0, thickness: float = 1.0, grow: float = 0.0
+    ) -> None:
+        """The outline of a rectangle; `thickness` is in pixels at UI scale 1."""
+        low, high = self.corners(rect, grow)
+        self.draw.add_rect(low, high, color, (rounding + grow) * self.to.scale, thickness * self.line)
+
+    @property
+    def line(self) -> float:
+        """Pixels of a line of thickness 1: thinner when far, never lost."""
+        return max(self.to.scale, self.to.scale / self.zoom * 0.75)

@@ -1,0 +1,302 @@
+"""The panel in which the graph is drawn and edited."""
+
+from __future__ import annotations
+
+from imgui_bundle import imgui
+
+from ...graph import Port
+from ..editor import Editor
+from ..edits.elements import entry
+from ..theme.style import ui_scale
+from .brush import Brush, Texts, ink
+from .crumbs import draw_crumbs
+from .geometry import Point, Rect, bounds, curve, fitted, holds, overlap, transform
+from .gestures import Band, Draw, Idle, Link, Move, band_rect
+from .legend import Legend
+from .live import Live
+from .looks import Moment, moment
+from .menus import Menus
+from .minimap import Minimap
+from .mouse import Frame, Mouse
+from .naming import Naming
+from .paint_decor import (
+    paint_band,
+    paint_comment,
+    paint_curve,
+    paint_cut,
+    paint_dot,
+    paint_frame,
+    paint_grid,
+    paint_hint,
+    paint_note,
+    paint_wire,
+)
+from .paint_node import paint_node, paint_pin
+from .places import record_places
+from .scene import Box, Scene
+from .search import Search
+from .staging import Stage
+
+_HINTS = ("An empty graph", "Tab adds a node", "Drop an image or a graph file here")
+_BUTTONS = int(imgui.ButtonFlags_.mouse_button_left) | int(imgui.ButtonFlags_.mouse_button_right) | int(
+    imgui.ButtonFlags_.mouse_button_middle
+)
+
+
+class Canvas:
+    """Nodes, links and what is around them; everything the mouse does to them."""
+
+    title = "Graph"
+
+    def __init__(self) -> None:
+        self._stage = Stage()
+        self._scene: Scene | None = None
+        self._staged: tuple[object, ...] = ()
+        self._texts = Texts()
+        self._live = Live()
+        self._mouse = Mouse()
+        self._search = Search()
+        self._menus = Menus()
+        self._naming = Naming()
+        self._minimap = Minimap()
+        self._legend = Legend()
+
+    def draw(self, editor: Editor) -> None:
+        """Draw the graph at the session's place into the current window."""
+        fonts, view, scale = editor.fonts, editor.canvas, ui_scale()
+        low, area = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail()
+        panel = (low.x, low.y, low.x + area.x, low.y + area.y)
+        if fonts is None or area.x < 16 or area.y < 16:
+            return
+        scene = self._build(editor)
+        self._fit(editor, scene, (area.x / scale, area.y / scale))
+        to = transform(panel, view.center, view.zoom * scale)
+        low_seen, high_seen = to.to_canvas(*panel[:2]), to.to_canvas(*panel[2:])
+        brush = Brush(
+            imgui.get_window_draw_list(), to, view.zoom, ink(editor.palette.name), fonts, self._texts,
+            (*low_seen, *high_seen),
+        )
+        imgui.set_next_item_allow_overlap()
+        imgui.invisible_button("##canvas", area, _BUTTONS)
+        over = imgui.is_item_hovered() and not self._blocked(editor, panel)
+        at = imgui.get_mouse_pos()
+        frame = Frame(editor, scene, to, panel, scale, over, to.to_canvas(at.x, at.y), (at.x, at.y))
+        view.hovered = imgui.is_window_hovered(int(imgui.HoveredFlags_.allow_when_blocked_by_active_item))
+        if view.hovered and not self._search.is_open:
+            view.pointer = frame.at
+        self._mouse.update(frame)
+
+        brush.draw.push_clip_rect(panel[:2], panel[2:], True)
+        paint_grid(brush, panel)
+        self._paint(editor, brush, frame)
+        brush.draw.pop_clip_rect()
+        self._around(editor, brush, frame)
+        view.sizes = scene.sizes
+        record_places(editor, self._mouse.dragged.scene, brush)
+
+    # --- before painting ---------------------------------------------------------------------------------------------
+
+    def _build(self, editor: Editor) -> Scene:
+        session, pictures = editor.session, editor.store.now.thumbnails
+        gesture = self._mouse.gesture
+        opened = self._opened if isinstance(gesture, Link) else ""
+        staged = (session.revision, pictures, opened, len(self._stage.expanded), id(session.graph))
+        if self._scene is None or staged != self._staged:
+            positions = session.positions
+            top = [key for key in session.elements if key in session.selection and key != session.active]
+            self._scene = self._stage.build(
+                session.graph, positions.__getitem__, [*top, session.active], pictures, opened
+            )
+            self._staged = staged
+        return self._scene
+
+    @property
+    def _opened(self) -> str:
+        """The node that shows all it has because a link is dragged over it."""
+        scene = self._mouse.dragged.scene
+        key = scene.node_at(*self._over) if scene.boxes else ""
+        return key if key and isinstance(self._mouse.gesture, Link) and self._mouse.gesture.output else ""
+
+    _over: Point = (0.0, 0.0)
+
+    def _fit(self, editor: Editor, scene: Scene, size: tuple[float, float]) -> None:
+        view = editor.canvas
+        if view.wanted is None:
+            return
+        keys, view.wanted = view.wanted, None
+        around = bounds(box.rect for key, box in scene.boxes.items() if not keys or key in keys)
+        if around:
+            view.center, view.zoom = fitted(around, size)
+        else:
+            view.center, view.zoom = (0.0, 0.0), 1.0
+
+    def _blocked(self, editor: Editor, panel: Rect) -> bool:
+        mouse = imgui.get_mouse_pos()
+        likes = editor.store.now
+        return any(
+            holds(rect, mouse.x, mouse.y) for rect in (
+                self._minimap.rect(panel) if likes.minimap else None, self._legend.rect(panel),
+            ) if rect
+        )
+
+    # --- painting ----------------------------------------------------------------------------------------------------
+
+    def _paint(self, editor: Editor, brush: Brush, frame: Frame) -> None:
+        scene, session, mouse = self._mouse.dragged.scene, editor.session, self._mouse
+        self._over = frame.at
+        hot = self._hot(frame, scene)
+        now = moment(editor, brush.ink, mouse.gesture, hot)
+        if not scene.boxes:
+            paint_hint(brush, frame.panel, _HINTS)
+        visible = [box for box in scene.boxes.values() if overlap(box.rect, _grown(brush.seen, 32.0))]
+        for box in visible:
+            if box.sort == "frame":
+                lit = mouse.hit.key == box.key or mouse.gesture == box.key
+                paint_frame(brush, box, entry(session.graph, box.key), box.key in session.selection, lit)
+        self._paint_wires(editor, brush, scene)
+        self._live.begin(editor)
+        for box in visible:
+            if box.layout:
+                self._paint_node(brush, box, now, hot)
+            elif box.sort == "comment" and self._naming.key != box.key:
+                text = str(entry(session.graph, box.key).get("text", ""))
+                paint_comment(brush, box, text, box.key in session.selection)
+            elif box.sort == "dot":
+                kind = next((wire.kind for wire in scene.wires if box.key in wire.stops), None)
+                paint_dot(brush, box, brush.ink.kinds[kind], box.key in session.selection)
+        self._live.end(editor)
+        self._paint_gesture(editor, brush, frame)
+        self._tooltip(now, scene)
+
+    def _hot(self, frame: Frame, scene: Scene) -> str:
+        """The node whose fields are widgets: the one that holds the mouse, else the one below it."""
+        if self._live.holder:
+            return self._live.holder
+        if self._live.open:
+            return self._live.open[0].node
+        inside = imgui.is_window_hovered(int(imgui.HoveredFlags_.allow_when_blocked_by_active_item))
+        return scene.node_at(*frame.at) if inside and isinstance(self._mouse.gesture, Idle) else ""
+
+    def _paint_node(self, brush: Brush, box: Box, now: Moment, hot: str) -> None:
+        layout = box.layout
+        if layout is None:
+            return
+        live = box.key == hot and brush.zoom >= 0.45 and box.sort == "node" and not layout.collapsed
+        names = frozenset(row.value.name for row in layout.rows if live and row.value and row.field)
+        paint_node(brush, box, layout, now.look(box.key, names))
+        if live:
+            self._live.draw(brush, box, layout.rows)
+
+    def _paint_wires(self, editor: Editor, brush: Brush, scene: Scene) -> None:
+        mouse, selection = self._mouse, editor.session.selection
+        linking = isinstance(mouse.gesture, Link)
+        taken = mouse.gesture.detached if isinstance(mouse.gesture, Link) else None
+        chosen = {mouse.hit.port} if mouse.hit.part == "link" else {mouse.dragged.insert, *mouse.dragged.crossed}
+        for wire in scene.wires:
+            if wire.target != taken:
+                lit = wire.target in chosen or wire.stops[0] in selection or wire.stops[-1] in selection
+                paint_wire(brush, wire, lit=lit, faded=linking)
+        for port in (mouse.dragged.insert, *mouse.dragged.crossed):
+            if port and port in scene.by_target:
+                color = brush.ink.accent if port == mouse.dragged.insert else brush.ink.error
+                for shape in scene.by_target[port].curves:
+                    paint_curve(brush, shape, color, 3.0, halo=False)
+
+    def _paint_gesture(self, editor: Editor, brush: Brush, frame: Frame) -> None:
+        mouse = self._mouse
+        match mouse.gesture:
+            case Band() as band:
+                paint_band(brush, band_rect(band, frame.at))
+            case Draw() as line:
+                color = brush.ink.accent if line.dots else brush.ink.error
+                paint_cut(brush, line.start, frame.at, color)
+                imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
+            case Link() as link:
+                self._paint_link(brush, frame, link)
+            case Move() as move if move.going:
+                imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
+            case _:
+                if mouse.hit.part == "edge":
+                    across = set(mouse.hit.name) <= set("lr")
+                    both = len(mouse.hit.name) > 1
+                    cursor = imgui.MouseCursor_.resize_nwse if both else (
+                        imgui.MouseCursor_.resize_ew if across else imgui.MouseCursor_.resize_ns
+                    )
+                    imgui.set_mouse_cursor(cursor)
+        if mouse.refusal:
+            paint_note(brush, *frame.screen, mouse.refusal, brush.ink.error)
+        elif editor.canvas.tool and frame.over:
+            what = "cut them" if editor.canvas.tool == "cut" else "put dots on them"
+            paint_note(brush, *frame.screen, f"Drag across links to {what}; Escape ends", brush.ink.text)
+            if imgui.is_key_pressed(imgui.Key.escape):
+                editor.canvas.tool = ""
+
+    def _paint_link(self, brush: Brush, frame: Frame, link: Link) -> None:
+        scene = self._mouse.dragged.scene
+        found = next(((box, pin) for port, box, pin in scene.pins(link.output) if port == link.port), None)
+        if found is None:
+            return
+        box, pin = found
+        start = box.x + pin.x, box.y + pin.y
+        snap = self._mouse.dragged.snap
+        end = snap[1] if snap else frame.at
+        shape = curve(*start, *end) if link.output else curve(*end, *start)
+        color = brush.ink.error if self._mouse.refusal else brush.ink.kinds[pin.kind]
+        paint_curve(brush, shape, color, 3.0)
+        paint_pin(brush, *start, pin.kind, color, 1.5)
+        if snap:
+            paint_pin(brush, *end, pin.kind, color, 2.5)
+
+    def _tooltip(self, now: Moment, scene: Scene) -> None:
+        hit = self._mouse.hit
+        if not isinstance(self._mouse.gesture, Idle) or self._menus.is_open:
+            return
+        words = ""
+        if hit.part == "link" and hit.port and (wire := scene.by_target.get(hit.port)):
+            words = f"{wire.source}  to  {wire.target}" + (f"\n{wire.fault}" if wire.fault else "")
+        elif hit.part == "pin" and hit.port:
+            words = _pin_words(now.editor, hit.port, hit.output)
+        elif hit.part == "title":
+            box = scene.boxes[hit.key]
+            words = "\n".join(now.sentences(hit.key)) or (box.layout.doc if box.layout else "")
+        flags = int(imgui.HoveredFlags_.for_tooltip)
+        if words and imgui.is_window_hovered(flags):
+            imgui.set_tooltip(words)
+
+    # --- around it ---------------------------------------------------------------------------------------------------
+
+    def _around(self, editor: Editor, brush: Brush, frame: Frame) -> None:
+        asked, view = self._mouse.asked, editor.canvas
+        if asked.toggle:
+            self._stage.expanded ^= {asked.toggle}
+        if view.renaming or asked.rename:
+            self._naming.begin(editor, view.renaming or asked.rename)
+            view.renaming = ""
+        self._naming.draw(editor, brush, self._mouse.dragged.scene)
+        if editor.store.now.minimap and self._mouse.dragged.scene.boxes:
+            self._minimap.draw(editor, brush, frame.panel, self._mouse.dragged.scene)
+        self._legend.draw(editor, brush, frame.panel)
+        draw_crumbs(editor, brush, frame.panel)
+        if asked.menu:
+            self._menus.begin(asked.menu, frame.at)
+        self._menus.draw(editor)
+        if asked.search:
+            self._search.begin(editor, frame.at, *asked.search)
+        elif view.searching:
+            view.searching = False
+            self._search.begin(editor, view.pointer)
+        self._search.draw(editor)
+
+
+def _grown(rect: Rect, by: float) -> Rect:
+    return rect[0] - by, rect[1] - by, rect[2] + by, rect[3] + by
+
+
+def _pin_words(editor: Editor, port: Port, output: bool) -> str:
+    """What a socket takes or gives."""
+    graph = editor.session.graph
+    found = editor.attempt(lambda: graph.source(port) if output else graph.target(port))
+    if found is None:
+        return str(port)
+    kind = getattr(found, "kind", None)
+    return f"{port}  ({kind or 'value'})" + (f"\n{found.doc}" if found.doc else "")

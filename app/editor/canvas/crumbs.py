@@ -1,0 +1,47 @@
+"""The way to the group that is shown; every step leads back."""
+
+from __future__ import annotations
+
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import imgui
+
+from ..editor import Editor
+from ..theme.style import u32, ui_scale, vec4
+from .brush import Brush
+from .geometry import Rect
+
+
+def draw_crumbs(editor: Editor, brush: Brush, panel: Rect) -> None:
+    """Draw the bar at the top, inside groups only."""
+    session = editor.session
+    if not session.place:
+        return
+    scale, palette = ui_scale(), editor.palette
+    pad, height = 8.0 * scale, imgui.get_frame_height() + 8.0 * scale
+    brush.draw.add_rect_filled(panel[:2], (panel[2], panel[1] + height), u32(palette.panel, 0.94))
+    brush.draw.add_line((panel[0], panel[1] + height), (panel[2], panel[1] + height), u32(palette.border))
+    imgui.set_cursor_screen_pos((panel[0] + pad, panel[1] + 4.0 * scale))
+    imgui.push_style_color(imgui.Col_.button, vec4(palette.panel, 0.0))
+    imgui.push_style_var(imgui.StyleVar_.item_spacing, (2.0 * scale, 0.0))
+    for index, (title, place) in enumerate(session.crumbs):
+        if index:
+            imgui.same_line()
+            imgui.align_text_to_frame_padding()
+            imgui.text_disabled(icons.ICON_FA_CHEVRON_RIGHT)
+            imgui.same_line()
+        here = place == session.place
+        imgui.push_style_color(imgui.Col_.text, vec4(palette.text if here else palette.dim))
+        if imgui.button(f"{title}##crumb {index}") and not here:
+            editor.attempt(lambda place=place: session.go(place))
+            editor.canvas.fit()
+        imgui.pop_style_color()
+        low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+        editor.places[f"crumb {title}"] = low.x, low.y, high.x, high.y
+    if session.borrowed:
+        imgui.same_line(0.0, 16.0 * scale)
+        imgui.align_text_to_frame_padding()
+        imgui.text_colored(
+            vec4(palette.warning), f"{icons.ICON_FA_LOCK}  from {session.borrowed}: make it local to change it here"
+        )
+    imgui.pop_style_var()
+    imgui.pop_style_color()

@@ -1,0 +1,79 @@
+"""What the shapes and colors of sockets mean, and what the mouse does: behind a question mark in the corner."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from imgui_bundle import imgui
+
+from ....nodes import Kind
+from ..editor import Editor
+from ..theme.style import u32, ui_scale, vec4
+from .brush import Brush
+from .geometry import Rect, Transform
+from .paint_node import paint_pin
+
+_POPUP = "sockets"
+_SIDE, _GAP = 24.0, 12.0
+
+_MEANING = {
+    Kind.IMAGE: "a picture: red, green, blue, alpha", Kind.FIELD: "one channel: depth, mask, occlusion",
+    Kind.VECTOR: "data of 2 to 4 channels: normal, velocity", Kind.NUMBER: "one number for the whole picture",
+    Kind.COLOR: "one color for the whole picture",
+}
+
+_MOUSE = (
+    ("Wheel", "zoom"), ("Middle drag, Space + drag", "pan"), ("Drag from a socket", "link"),
+    ("Drop a link on nothing", "add what fits"), ("Drop a node on a link", "insert it"),
+    ("Ctrl + right drag", "cut links"), ("Shift + right drag", "put dots on links"),
+    ("Double click", "view a node, enter a group"), ("Ctrl while dragging", "snap to the grid"),
+)
+
+
+@dataclass
+class Legend:
+    """The question mark and its popup."""
+
+    def rect(self, panel: Rect) -> Rect:
+        """Where the question mark is."""
+        scale = ui_scale()
+        left, bottom = panel[0] + _GAP * scale, panel[3] - _GAP * scale
+        return left, bottom - _SIDE * scale, left + _SIDE * scale, bottom
+
+    def draw(self, editor: Editor, brush: Brush, panel: Rect) -> None:
+        """Draw it."""
+        rect, palette, scale = self.rect(panel), editor.palette, ui_scale()
+        imgui.set_cursor_screen_pos(rect[:2])
+        imgui.set_next_item_allow_overlap()
+        pressed = imgui.invisible_button("##legend", (rect[2] - rect[0], rect[3] - rect[1]))
+        hovered = imgui.is_item_hovered()
+        center = (rect[0] + rect[2]) / 2, (rect[1] + rect[3]) / 2
+        brush.draw.add_circle_filled(center, _SIDE / 2 * scale, u32(palette.hover if hovered else palette.panel, 0.9))
+        size = imgui.calc_text_size("?")
+        brush.draw.add_text((center[0] - size.x / 2, center[1] - size.y / 2), u32(palette.dim), "?")
+        editor.places["legend"] = rect
+        if pressed:
+            imgui.open_popup(_POPUP)
+        imgui.set_next_window_pos((rect[0], rect[1] - 6 * scale), imgui.Cond_.appearing, (0.0, 1.0))
+        if imgui.begin_popup(_POPUP):
+            self._contents(editor, brush)
+            imgui.end_popup()
+
+    def _contents(self, editor: Editor, brush: Brush) -> None:
+        scale, line = ui_scale(), imgui.get_text_line_height()
+        draw = imgui.get_window_draw_list()
+        for kind, meaning in _MEANING.items():
+            corner = imgui.get_cursor_screen_pos()
+            at = corner.x + 8 * scale, corner.y + line / 2
+            popup = Brush(draw, Transform(0, 0, scale), 1.0, brush.ink, brush.fonts, brush.texts, brush.seen)
+            paint_pin(popup, at[0] / scale, at[1] / scale, kind, brush.ink.kinds[kind])
+            imgui.dummy((18 * scale, line))
+            imgui.same_line()
+            imgui.text(kind)
+            imgui.same_line(90 * scale)
+            imgui.text_colored(vec4(editor.palette.dim), meaning)
+        imgui.separator()
+        for key, act in _MOUSE:
+            imgui.text(key)
+            imgui.same_line(200 * scale)
+            imgui.text_colored(vec4(editor.palette.dim), act)

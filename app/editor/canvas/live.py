@@ -1,0 +1,147 @@
+"""Fields of the node under the mouse: real widgets, at the place and in the size in which the node shows them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from imgui_bundle import imgui
+
+from ....nodes import Plain, Value
+from ...graph import Port
+from ..dialogs import Browse
+from ..editor import Editor
+from ..inspector.choice_field import toggle_field
+from ..inspector.color_field import color_picker
+from ..inspector.colors import intensity
+from ..inspector.fields import Edit, Fields
+from ..inspector.number_field import number_field, row_of_numbers
+from ..inspector.text_field import text_field
+from .brush import TEXT, Brush, on_nodes
+from .geometry import Rect
+from .layout import FIELD_HEIGHT, Row
+from .paint_field import MOST_PARTS, paint_label, split
+from .scene import Box
+
+_CHOICES, _PICKER = "choices of a node", "color of a node"
+
+
+@dataclass
+class Live:
+    """The widgets on nodes. `open` is the value whose list or picker is open."""
+
+    fields: Fields | None = None
+    open: tuple[Port, Value] | None = None
+    _opening: str = ""
+    _at: tuple[float, float] = (0.0, 0.0)
+    _edits: list[tuple[Port, Edit]] = field(default_factory=list[tuple[Port, Edit]])
+
+    @property
+    def holder(self) -> str:
+        """The node whose field is dragged or typed in, "" if none."""
+        if self.fields is None:
+            return ""
+        id = self.fields.typing.id if self.fields.typing else self.fields.drag_id or self.fields.pressed
+        return id.removeprefix("canvas ").partition(".")[0]
+
+    def begin(self, editor: Editor) -> None:
+        """Call before any node is drawn."""
+        palette = on_nodes(editor.palette.name)
+        if self.fields is None or self.fields.palette is not palette:
+            self.fields = Fields(palette)
+        self.fields.begin()
+
+    def draw(self, brush: Brush, box: Box, rows: tuple[Row, ...]) -> None:
+        """The fields of a node, which must have been painted up to them."""
+        fields = self.fields
+        if fields is None:
+            return
+        s = brush.to.scale
+        imgui.push_font(brush.fonts.text, TEXT * brush.zoom)
+        imgui.push_style_var(imgui.StyleVar_.frame_padding, (6.0 * s, max((FIELD_HEIGHT - TEXT) / 2 * s, 0.0)))
+        imgui.push_style_var(imgui.StyleVar_.frame_rounding, 4.0 * s)
+        imgui.push_style_var(imgui.StyleVar_.item_inner_spacing, (6.0 * s, 4.0 * s))
+        for row in rows:
+            if row.value and row.field and row.plain is not None:
+                place = row.field
+                rect = box.x + place[0], box.y + place[1], box.x + place[2], box.y + place[3]
+                self._draw(fields, brush, rect, Port(box.key, row.value.name), row, row.value, row.plain)
+        imgui.pop_style_var(3)
+        imgui.pop_font()
+
+    def _draw(
+        self, fields: Fields, brush: Brush, rect: Rect, port: Port, row: Row, value: Value, plain: Plain
+    ) -> None:
+        low, high = brush.corners(rect)
+        width, id = high[0] - low[0], f"canvas {port}"
+        imgui.set_cursor_screen_pos(low)
+        edit: Edit | None = None
+        if value.type in ("float", "int"):
+            edit = number_field(fields, id, plain, value, width, label=row.label)
+        elif value.type == "bool":
+            edit = toggle_field(fields, id, plain, value, width, label=row.label)
+        elif value.type == "text":
+            edit = text_field(fields, id, plain, value, width, label=row.label, hint=row.label, lines=1)
+        elif value.type == "vector" and isinstance(plain, tuple) and len(plain) <= MOST_PARTS:
+            paint_label(brush, rect, row.label, len(plain))
+            left, parts = split(rect, len(plain))
+            imgui.set_cursor_screen_pos(brush.corners((left, *parts[0][1:]))[0])
+            edit = row_of_numbers(fields, id, plain, value, (rect[2] - left) * brush.to.scale, ("",) * len(plain))
+        elif value.type in ("choice", "color", "path") and imgui.invisible_button(f"##{id}", (width, high[1] - low[1])):
+            self.open, self._opening, self._at = (port, value), value.type, (low[0], high[1])
+        if value.doc and imgui.is_item_hovered(int(imgui.HoveredFlags_.for_tooltip)) and not fields.dragging:
+            imgui.set_tooltip(value.doc)
+        if edit:
+            self._edits.append((port, edit))
+
+    def end(self, editor: Editor) -> None:
+        """Call after all nodes: draws what is open, and sets what was changed."""
+        fields = self.fields
+        if fields is None:
+            return
+        if left := fields.end():
+            self._edits.append((Port.parse(left[0].removeprefix("canvas ").partition("#")[0]), left[1]))
+        self._popups(editor, fields)
+        editor.dragging = editor.dragging or fields.dragging
+        for port, edit in self._edits:
+            editor.attempt(lambda port=port, edit=edit: editor.session.set(port, edit.value, edit.merge))
+        self._edits.clear()
+
+    def _popups(self, editor: Editor, fields: Fields) -> None:
+        if self.open is None:
+            return
+        (port, value), opening, self._opening = self.open, self._opening, ""
+        if port.node not in editor.session.graph.nodes:
+            self.open = None
+            return
+        plain = editor.session.value(port)
+        if opening == "path":
+            self.open = None
+            editor.dialogs.browse = Browse(
+                f"Choose a file for {port}", "image",
+                lambda path: editor.attempt(lambda: editor.session.set(port, editor.session.relative(path))),
+            )
+            return
+        if opening:
+            fields.stops = intensity(plain) if opening == "color" else 0.0  # pyright: ignore
+            imgui.open_popup(_PICKER if opening == "color" else _CHOICES)
+        imgui.set_next_window_pos(self._at, imgui.Cond_.appearing)
+        if value.type == "color" and imgui.begin_popup(_PICKER):
+            if edit := color_picker(fields, f"canvas {port} picker", plain):  # pyright: ignore
+                self._edits.append((port, edit))
+            imgui.end_popup()
+        elif value.type == "choice" and imgui.begin_popup(_CHOICES):
+            self._choices(port, value, plain)
+            imgui.end_popup()
+        elif not opening:
+            self.open = None
+
+    def _choices(self, port: Port, value: Value, plain: Plain) -> None:
+        appearing = imgui.is_window_appearing()
+        for choice in value.choices:
+            if imgui.selectable(choice or " ", choice == plain)[0]:
+                self._edits.append((port, Edit(choice)))
+            if choice == plain and appearing:
+                imgui.set_scroll_here_y()
+                imgui.set_item_default_focus()
+        if imgui.is_key_pressed(imgui.Key.escape):
+            imgui.close_current_popup()

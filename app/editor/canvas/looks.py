@@ -1,0 +1,122 @@
+"""How every node stands in the moment: selected, shown, faulty, slow."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from imgui_bundle import imgui
+
+from ..editor import Editor
+from ..edits.elements import owner
+from .brush import Ink
+from .gestures import Gesture, Link
+from .paint_node import Look
+
+SLOW, COSTLY = 0.35, 0.12
+"""Shares of the whole time from which a node counts as slow, or worth a look."""
+
+
+@dataclass(frozen=True)
+class Moment:
+    """What decides the looks of all nodes in one frame; what is costly to find out is found out once."""
+
+    editor: Editor
+    ink: Ink
+    shown: Mapping[str, str]
+    badges: Mapping[str, str]
+    lit: Mapping[str, frozenset[tuple[bool, str]]] | None
+    costs: Mapping[str, tuple[float, int]]
+    total: float
+    warnings: frozenset[str]
+    hot: str
+
+    def sentences(self, key: str) -> tuple[str, ...]:
+        """What is wrong with an element."""
+        session, preview = self.editor.session, self.editor.preview
+        found = session.problems.get(key, ())
+        fault = preview.faults.get(path_of(session.place, key), "")
+        return (*found, fault) if fault and fault not in found else found
+
+    def look(self, key: str, live: frozenset[str]) -> Look:
+        """The look of one node or end."""
+        session, preview = self.editor.session, self.editor.preview
+        sentences = self.sentences(key)
+        serious = next((one for one in sentences if one not in self.warnings), "")
+        picture, fresh, size = None, True, (1, 1)
+        if preview.thumbnailing and (found := preview.thumbnail(path_of(session.place, key))):
+            picture, fresh = imgui.ImTextureRef(found[0].glo), found[1]
+            size = found[0].size
+        overlay, color = self._cost(key)
+        return Look(
+            selected=key in session.selection, active=key == session.active, muted=key in session.graph.muted,
+            fault=serious, warning="" if serious or not sentences else sentences[0],
+            badges=self.badges.get(key, ""), viewed=self.shown.get(key, ""), hot=key == self.hot,
+            lit=None if self.lit is None else self.lit.get(key, frozenset()), picture=picture, picture_size=size,
+            fresh=fresh, live=live, overlay=overlay, overlay_color=color,
+        )
+
+    def _cost(self, key: str) -> tuple[str, int]:
+        if key not in self.costs:
+            return "", 0
+        seconds, size = self.costs[key]
+        share = seconds / self.total if self.total else 0.0
+        color = self.ink.error if share > SLOW else self.ink.warning if share > COSTLY else self.ink.dim
+        return f"{seconds * 1e3:.1f} ms   {_size(size)}", color
+
+
+def moment(editor: Editor, ink: Ink, gesture: Gesture, hot: str) -> Moment:
+    """What holds for all nodes in this frame."""
+    session = editor.session
+    shown: dict[str, str] = {}
+    for side in ("A", "B"):
+        if port := session.viewed(side):
+            shown[owner(port)] = shown.get(owner(port), "") + side
+    badges: dict[str, str] = {}
+    for number, port in session.viewers.items():
+        badges[owner(port)] = f"{badges.get(owner(port), '')} {number}".strip()
+    lit: dict[str, frozenset[tuple[bool, str]]] | None = None
+    if isinstance(gesture, Link):
+        lit = {}
+        for port in gesture.targets:
+            lit[owner(port)] = lit.get(owner(port), frozenset()) | {(not gesture.output, port.socket)}
+        lit[owner(gesture.port)] = frozenset({(gesture.output, gesture.port.socket)})
+    costs, total = _costs(editor) if editor.preview.timed else ({}, 0.0)
+    sentences = frozenset(
+        problem.sentence.removeprefix(_inside(session.place))
+        for problem in session.all_problems if problem.severity == "warning"
+    )
+    return Moment(editor, ink, shown, badges, lit, costs, total, sentences, hot)
+
+
+def path_of(place: tuple[str, ...], key: str) -> str:
+    """What pictures and times of an element are filed under."""
+    return "/".join((*place, key))
+
+
+def _inside(place: tuple[str, ...]) -> str:
+    return "".join(f"in group '{id}': " for id in place)
+
+
+def _costs(editor: Editor) -> tuple[dict[str, tuple[float, int]], float]:
+    """Seconds and bytes of every element here, groups with all that is in them, and the seconds of everything."""
+    timings = editor.preview.timings
+    prefix = path_of(editor.session.place, "")
+    found: dict[str, dict[frozenset[str], tuple[float, int]]] = {}
+    everything: dict[frozenset[str], float] = {}
+    for path, timing in timings.items():
+        passes = frozenset({path, *timing.shared})
+        everything[passes] = timing.seconds
+        if path.startswith(prefix):
+            key = path.removeprefix(prefix).partition("/")[0]
+            found.setdefault(key, {})[passes] = timing.seconds, timing.bytes
+    costs = {
+        key: (sum(seconds for seconds, _ in parts.values()), sum(size for _, size in parts.values()))
+        for key, parts in found.items()
+    }
+    return costs, sum(everything.values())
+
+
+def _size(size: int) -> str:
+    return f"{size / 2**20:.1f} MB" if size >= 2**20 else f"{size / 2**10:.0f} KB"
+

@@ -1,0 +1,134 @@
+"""Context menus, made from the table of actions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import imgui
+
+from ...graph import Port
+from ..actions import Action
+from ..editor import Editor
+from ..keys import shown
+from .geometry import Point
+from .scene import EMPTY, Hit
+
+_POPUP = "on the canvas"
+
+
+@dataclass
+class Menus:
+    """The menu for what was clicked."""
+
+    is_open: bool = False
+    _hit: Hit = EMPTY
+    _at: Point = (0.0, 0.0)
+    _opening: bool = False
+
+    def begin(self, hit: Hit, at: Point) -> None:
+        """Open the menu for what is under the mouse, at a canvas position."""
+        self._hit, self._at, self._opening = hit, at, True
+
+    def draw(self, editor: Editor) -> None:
+        """Draw the menu, if it is open."""
+        if self._opening:
+            imgui.open_popup(_POPUP)
+            self._opening = False
+            editor.canvas.pointer = self._at
+        self.is_open = imgui.begin_popup(_POPUP)
+        if not self.is_open:
+            return
+        session, hit = editor.session, self._hit
+        if hit.part == "link" and hit.port:
+            target = hit.port
+            _item(editor, "Add a dot", lambda: session.add_dot(target, self._at))
+            _item(editor, "Cut this link", lambda: session.cut((target,)))
+        elif hit.part == "pin" and hit.port:
+            self._pin(editor, hit.port, hit.output)
+        elif hit.part == "field" and hit.port:
+            self._field(editor, hit.port)
+            imgui.separator()
+        if hit.part == "empty":
+            label = f"{icons.ICON_FA_MAGNIFYING_GLASS}  Search to add ..."
+            if imgui.menu_item(label, _key(editor, "node.add"), False)[0]:
+                editor.canvas.searching = True
+            _record(editor, "menu search")
+            imgui.separator()
+        if hit.key.startswith(("frames.", "comments.")):
+            if imgui.menu_item("Rename ..." if hit.key.startswith("frames") else "Edit text ...", "", False)[0]:
+                editor.canvas.renaming = hit.key
+            if hit.key.startswith("frames."):
+                _colors(editor, hit.key)
+        for action in editor.actions.context(_context(hit)):
+            if action.id != "node.add":
+                _action(editor, action)
+        imgui.end_popup()
+
+    def _pin(self, editor: Editor, port: Port, output: bool) -> None:
+        session = editor.session
+        if output:
+            _item(editor, "View", lambda: session.view(port))
+            _item(editor, "View as B", lambda: session.view(port, "B"))
+            fed = [target for target, source in session.graph.links.items() if source == port]
+            _item(editor, "Cut its links", lambda: session.cut(fed), bool(fed))
+        else:
+            _item(editor, "Cut its link", lambda: session.disconnect(port), port in session.graph.links)
+            if port.node in session.graph.nodes and port in session.graph.links:
+                _item(editor, "Add a dot", lambda: session.add_dot(port, self._at))
+
+    def _field(self, editor: Editor, port: Port) -> None:
+        session = editor.session
+        _item(editor, f"Reset {port.socket}", lambda: session.reset(port), not session.is_default(port))
+        control = session.control_of(port)
+        if control:
+            _item(editor, f"Hide the control '{control}'", lambda: session.hide(control))
+        else:
+            _item(editor, "Show as a control of the graph", lambda: session.expose(port))
+
+
+def _context(hit: Hit) -> str:
+    if hit.part in ("link", "pin"):
+        return hit.part
+    if hit.part == "empty":
+        return "canvas"
+    return hit.key.partition(".")[0][:-1] if hit.key.startswith(("frames.", "comments.", "dots.")) else "node"
+
+
+def _colors(editor: Editor, key: str) -> None:
+    """Colors for a frame: those of headers, so that frames and nodes look alike."""
+    id = key.removeprefix("frames.")
+    for index, color in enumerate(dict.fromkeys(editor.palette.categories.values())):
+        if index % 7:
+            imgui.same_line()
+        if imgui.color_button(f"##frame color {index}", (*color, 1.0), int(imgui.ColorEditFlags_.no_tooltip)):
+            editor.attempt(lambda color=color: editor.session.set_frame(id, color=color))
+    imgui.separator()
+
+
+def _action(editor: Editor, action: Action) -> None:
+    if action.separated:
+        imgui.separator()
+    checked = action.checked is not None and action.checked(editor)
+    if imgui.menu_item(action.label, _key(editor, action.id), checked, action.enabled(editor))[0]:
+        editor.actions.run(action.id, editor)
+    _record(editor, f"menu {action.id}")
+    if action.doc:
+        imgui.set_item_tooltip(action.doc)
+
+
+def _key(editor: Editor, id: str) -> str:
+    text = editor.actions.shortcut(id)
+    return shown(text) if text else ""
+
+
+def _item(editor: Editor, label: str, act: Callable[[], object], enabled: bool = True) -> None:
+    if imgui.menu_item(label, "", False, enabled)[0]:
+        editor.attempt(act)
+    _record(editor, f"menu {label}")
+
+
+def _record(editor: Editor, name: str) -> None:
+    low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+    editor.places[name] = (low.x, low.y, high.x, high.y)

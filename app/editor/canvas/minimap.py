@@ -1,0 +1,72 @@
+"""The whole graph, small, in a corner: click or drag in it to go there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from imgui_bundle import imgui
+
+from ..editor import Editor
+from ..theme.style import mix, u32, ui_scale
+from .brush import Brush
+from .geometry import Rect, bounds
+from .scene import Scene
+
+_SIZE, _GAP, _PAD = (168.0, 112.0), 12.0, 6.0
+
+
+@dataclass
+class Minimap:
+    """The overview; `dragging` while the mouse holds it."""
+
+    dragging: bool = False
+
+    def rect(self, panel: Rect) -> Rect | None:
+        """Where it is, unless the panel is too small for it."""
+        scale = ui_scale()
+        width, height, gap = _SIZE[0] * scale, _SIZE[1] * scale, _GAP * scale
+        if panel[2] - panel[0] < width * 2.2 or panel[3] - panel[1] < height * 2.2:
+            return None
+        return panel[2] - gap - width, panel[3] - gap - height, panel[2] - gap, panel[3] - gap
+
+    def draw(self, editor: Editor, brush: Brush, panel: Rect, scene: Scene) -> None:
+        """Draw it, and pan where the mouse points in it."""
+        rect = self.rect(panel)
+        around = bounds([*(box.rect for box in scene.boxes.values()), brush.seen])
+        if rect is None or around is None:
+            return
+        pad = _PAD * ui_scale()
+        across, down = rect[2] - rect[0] - 2 * pad, rect[3] - rect[1] - 2 * pad
+        scale = min(across / (around[2] - around[0]), down / (around[3] - around[1]))
+        left = (rect[0] + rect[2]) / 2 - (around[0] + around[2]) / 2 * scale
+        top = (rect[1] + rect[3]) / 2 - (around[1] + around[3]) / 2 * scale
+        draw, palette, selection = brush.draw, editor.palette, editor.session.selection
+        rounding = 6.0 * ui_scale()
+        draw.add_rect_filled(rect[:2], rect[2:], u32(palette.panel, 0.88), rounding)
+        for key, box in scene.boxes.items():
+            if box.sort == "dot":
+                continue
+            low = left + box.x * scale, top + box.y * scale
+            high = max(low[0] + box.w * scale, low[0] + 2.0), max(low[1] + box.h * scale, low[1] + 1.5)
+            header = palette.category(box.layout.category) if box.layout else palette.dim
+            if box.sort == "frame":
+                draw.add_rect_filled(low, high, u32(palette.dim, 0.18), 1.0)
+                continue
+            color = palette.accent if key in selection else mix(header, palette.text, 0.3)
+            draw.add_rect_filled(low, high, u32(color), 1.0)
+        seen = brush.seen
+        low, high = (left + seen[0] * scale, top + seen[1] * scale), (left + seen[2] * scale, top + seen[3] * scale)
+        draw.push_clip_rect(rect[:2], rect[2:], True)
+        draw.add_rect_filled(low, high, u32(palette.text, 0.06), 2.0)
+        draw.add_rect(low, high, u32(palette.text, 0.55), 2.0)
+        draw.pop_clip_rect()
+        draw.add_rect(rect[:2], rect[2:], u32(palette.border), rounding)
+        editor.places["minimap"] = rect
+
+        imgui.set_cursor_screen_pos(rect[:2])
+        imgui.set_next_item_allow_overlap()
+        imgui.invisible_button("##minimap", (rect[2] - rect[0], rect[3] - rect[1]))
+        self.dragging = imgui.is_item_active()
+        if self.dragging:
+            mouse = imgui.get_mouse_pos()
+            editor.canvas.center = (mouse.x - left) / scale, (mouse.y - top) / scale

@@ -1,0 +1,377 @@
+"""From the mouse to gestures, and from finished gestures to what they do to the document."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+from imgui_bundle import imgui
+
+from ...errors import GraphError
+from ...graph import Group, Port
+from ..editor import Editor
+from .geometry import Point, Rect, Transform, drift, holds, zoomed
+from .gestures import (
+    IDLE,
+    Band,
+    Dragged,
+    Draw,
+    Gesture,
+    Idle,
+    Link,
+    Move,
+    Pan,
+    Resize,
+    band_rect,
+    dotted,
+    fitting,
+    insertable,
+    moved,
+    nearest,
+    refused,
+    resized,
+    shown,
+    touched,
+    with_members,
+)
+from .layout import ROW
+from .scene import EMPTY, Hit, Scene
+
+LEFT, RIGHT, MIDDLE = imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.MouseButton_.middle
+
+CLICK = 4.0
+"""Pixels (at UI scale 1) that the mouse may move within a click."""
+
+_BORDER, _SPEED = 28.0, 900.0
+_SNAP = 30.0
+
+
+@dataclass
+class Frame:
+    """What is known of the mouse and the canvas in one frame. `scene` has no gesture in it yet."""
+
+    editor: Editor
+    scene: Scene
+    to: Transform
+    panel: Rect
+    scale: float
+    """Pixels per unit of the interface."""
+    over: bool
+    """True if nothing lies between the mouse and the canvas."""
+    at: Point = (0.0, 0.0)
+    screen: Point = (0.0, 0.0)
+
+    @property
+    def reach(self) -> float:
+        """How far off pins and links can be hit, in canvas units: always as many pixels."""
+        return min(9.0 * self.scale / self.to.scale, ROW)
+
+
+@dataclass
+class Asked:
+    """What a gesture wants from others: a menu, the search, a text field."""
+
+    menu: Hit | None = None
+    search: tuple[Port, bool] | None = None
+    rename: str = ""
+    toggle: str = ""
+
+
+@dataclass
+class Mouse:
+    """Which gesture is going on, and what is under the pointer."""
+
+    gesture: Gesture = IDLE
+    hit: Hit = EMPTY
+    asked: Asked = field(default_factory=Asked)
+    dragged: Dragged = field(default_factory=lambda: Dragged(Scene({}, ())))
+    refusal: str = ""
+    """Why the link in the hand does not fit the pin under the pointer."""
+    _pressed: tuple[Hit, Point] | None = None
+    """Where the right button went down."""
+
+    def update(self, frame: Frame) -> None:
+        """Go on with the gesture, or begin one."""
+        self.asked = Asked()
+        io = imgui.get_io()
+        self.hit = frame.scene.hit(*frame.at, frame.reach) if frame.over and isinstance(self.gesture, Idle) else EMPTY
+        if frame.over or not isinstance(self.gesture, Idle):
+            self._wheel(frame, io)
+        if isinstance(self.gesture, Idle):
+            if frame.over:
+                self._begin(frame, io)
+        else:
+            if not isinstance(self.gesture, Pan):
+                _auto_pan(frame, io)
+            self._go_on(frame, io)
+        self._show(frame)
+
+    # --- beginning ---------------------------------------------------------------------------------------------------
+
+    def _begin(self, frame: Frame, io: imgui.IO) -> None:
+        editor, view, hit = frame.editor, frame.editor.canvas, self.hit
+        if imgui.is_mouse_clicked(MIDDLE) or (imgui.is_mouse_clicked(LEFT) and imgui.is_key_down(imgui.Key.space)):
+            self.gesture = Pan(view.center, frame.screen)
+        elif imgui.is_mouse_clicked(RIGHT):
+            if io.key_ctrl or io.key_shift:
+                self.gesture = Draw(frame.at, dots=io.key_shift)
+            else:
+                self._pressed = hit, frame.screen
+        elif imgui.is_mouse_double_clicked(LEFT):
+            self._double(frame, hit)
+        elif imgui.is_mouse_clicked(LEFT):
+            if view.tool:
+                self.gesture = Draw(frame.at, dots=view.tool == "dot")
+                view.tool = ""
+            else:
+                self._press(frame, io, hit)
+        if self._pressed and imgui.is_mouse_released(RIGHT):
+            (hit, start), self._pressed = self._pressed, None
+            if not _far(start, frame):
+                self._menu(editor, hit)
+
+    def _press(self, frame: Frame, io: imgui.IO, hit: Hit) -> None:
+        editor, session = frame.editor, frame.editor.session
+        match hit.part:
+            case "pin" if hit.port:
+                self._take(frame, hit.port, hit.output, io.key_ctrl)
+            case "field":
+                self._select(editor, hit.key, "replace")
+            case "more":
+                self.asked.toggle = hit.key
+            case "edge":
+                self._select(editor, hit.key, "replace")
+                rect = frame.scene.boxes[hit.key].rect
+                self.gesture = Resize(hit.key, hit.name, frame.at, rect, rect)
+            case "title" | "body":
+                if io.key_ctrl and io.key_shift and frame.scene.boxes[hit.key].sort in ("node", "end"):
+                    editor.attempt(lambda: session.view_node(hit.key))
+                elif io.key_ctrl or io.key_shift:
+                    self._select(editor, hit.key, "toggle")
+                else:
+                    alone = hit.key in session.selection
+                    if not alone:
+                        self._select(editor, hit.key, "replace")
+                    self.gesture = Move(hit.key, frame.at, alone=alone)
+            case _:
+                mode = "add" if io.key_shift else "remove" if io.key_ctrl else "replace"
+                self.gesture = Band(frame.at, mode)
+
+    def _take(self, frame: Frame, port: Port, output: bool, keep: bool) -> None:
+        """Begin a link from a pin; the link into an input comes along, unless it shall stay."""
+        graph = frame.editor.session.graph
+        detached = None if output or keep else port if port in graph.links else None
+        start, is_output = (graph.links[port], True) if detached else (port, output)
+        scene = frame.scene
+        if detached:
+            graph = graph.disconnect(detached)
+        targets = frame.editor.attempt(lambda: fitting(graph, scene, start, is_output), frozenset[Port]())
+        self.gesture = Link(start, is_output, detached, targets or frozenset())
+
+    def _double(self, frame: Frame, hit: Hit) -> None:
+        editor, session = frame.editor, frame.editor.session
+        if hit.part == "link" and hit.port:
+            target = hit.port
+            editor.attempt(lambda: session.add_dot(target, frame.at))
+        elif hit.key.startswith(("frames.", "comments.")):
+            self.asked.rename = hit.key
+        elif hit.part in ("title", "body") and not hit.key.startswith("dots."):
+            item = session.graph.nodes.get(hit.key)
+            editor.attempt(lambda: session.enter(hit.key) if isinstance(item, Group) else session.view_node(hit.key))
+        elif hit.part == "empty":
+            editor.canvas.searching = True
+
+    def _menu(self, editor: Editor, hit: Hit) -> None:
+        """A context menu acts on what is selected, so what was clicked is."""
+        if hit.key and hit.part != "pin" and hit.key not in editor.session.selection:
+            self._select(editor, hit.key, "replace")
+        self.asked.menu = hit
+
+    def _select(self, editor: Editor, key: str, mode: str) -> None:
+        editor.attempt(lambda: editor.session.select((key,), mode))  # pyright: ignore[reportArgumentType]
+
+    # --- going on ----------------------------------------------------------------------------------------------------
+
+    def _go_on(self, frame: Frame, io: imgui.IO) -> None:
+        gesture, view = self.gesture, frame.editor.canvas
+        cancelled = imgui.is_key_pressed(imgui.Key.escape) or (
+            not isinstance(gesture, Draw | Pan) and imgui.is_mouse_clicked(RIGHT)
+        )
+        if cancelled:
+            self.gesture = IDLE
+            return
+        match gesture:
+            case Pan():
+                scale = frame.to.scale
+                dx, dy = frame.screen[0] - gesture.mouse[0], frame.screen[1] - gesture.mouse[1]
+                view.center = gesture.center[0] - dx / scale, gesture.center[1] - dy / scale
+                self._until(not (imgui.is_mouse_down(MIDDLE) or imgui.is_mouse_down(LEFT)), lambda: None)
+            case Band():
+                self._until(not imgui.is_mouse_down(LEFT), lambda: self._banded(frame, gesture))
+            case Move():
+                self.gesture = self._moving(frame, gesture, snap=io.key_ctrl)
+                self._until(not imgui.is_mouse_down(LEFT), lambda: self._moved(frame))
+            case Resize():
+                self.gesture = changed = resized(gesture, frame.at, snap=io.key_ctrl)
+                self._until(not imgui.is_mouse_down(LEFT), lambda: _resize(frame.editor, changed))
+            case Draw():
+                released = not (imgui.is_mouse_down(LEFT) or imgui.is_mouse_down(RIGHT))
+                self._until(released, lambda: _drawn(frame, gesture))
+            case Link():
+                self._until(not imgui.is_mouse_down(LEFT), lambda: self._linked(frame, gesture))
+            case Idle():
+                pass
+
+    def _until(self, over: bool, act: Callable[[], object]) -> None:
+        if over:
+            act()
+            self.gesture = IDLE
+
+    def _moving(self, frame: Frame, move: Move, snap: bool) -> Move:
+        session = frame.editor.session
+        if not move.going:
+            if not _far(frame.to.to_screen(*move.start), frame):
+                return move
+            members = [
+                session.frame_members(key.removeprefix("frames."), frame.scene.sizes)
+                for key in session.selection if key.startswith("frames.")
+            ]
+            move = replace(move, keys=with_members(session.selection, frame.scene, members))
+        return moved(move, frame.scene, frame.at, snap)
+
+    def _moved(self, frame: Frame) -> None:
+        move, session = self.gesture, frame.editor.session
+        if not isinstance(move, Move):
+            return
+        if not move.going:
+            if move.alone:
+                self._select(frame.editor, move.key, "replace")
+            return
+        target = insertable(session.graph, shown(frame.scene, move), move.keys, frame.at, frame.reach)
+        if target:
+            box = frame.scene.boxes[move.key]
+            at = box.x + move.by[0], box.y + move.by[1]
+            frame.editor.attempt(lambda: session.insert(move.key, target, at))
+        elif move.by != (0.0, 0.0):
+            frame.editor.attempt(lambda: session.move(sorted(move.keys), *move.by))
+
+    def _banded(self, frame: Frame, band: Band) -> None:
+        editor = frame.editor
+        if not _far(frame.to.to_screen(*band.start), frame):
+            hit = frame.scene.hit(*band.start, frame.reach)
+            wire = frame.scene.by_target.get(hit.port) if hit.part == "link" and hit.port else None
+            keys = {wire.stops[0], wire.stops[-1]} if wire else ()
+            if keys or band.mode == "replace":
+                editor.attempt(lambda: editor.session.select(keys, band.mode))  # pyright: ignore[reportArgumentType]
+            return
+        keys = touched(frame.scene, band_rect(band, frame.at))
+        editor.attempt(lambda: editor.session.select(keys, band.mode))  # pyright: ignore[reportArgumentType]
+
+    def _linked(self, frame: Frame, link: Link) -> None:
+        editor, session = frame.editor, frame.editor.session
+        snap = nearest(frame.scene, link, frame.at, _SNAP * frame.scale / frame.to.scale)
+        if snap:
+            other = snap[0]
+            source, target = (link.port, other) if link.output else (other, link.port)
+            detached = link.detached
+            if detached == target:
+                return
+            if detached:
+                editor.attempt(lambda: session.move_link(detached, target))
+            else:
+                editor.attempt(lambda: session.connect(source, target))
+        elif not _far(frame.to.to_screen(*self._start(frame, link)), frame):
+            if link.output and link.detached is None:
+                editor.attempt(lambda: session.select((_owner(link.port),)))
+        elif refused(frame.scene, link, frame.at, frame.reach) is None and not frame.scene.node_at(*frame.at):
+            if link.detached:
+                target = link.detached
+                editor.attempt(lambda: session.disconnect(target))
+            elif holds(frame.panel, *frame.screen):
+                self.asked.search = link.port, link.output
+
+    def _start(self, frame: Frame, link: Link) -> Point:
+        end = link.detached or link.port
+        for port, box, pin in frame.scene.pins(link.output and link.detached is None):
+            if port == end:
+                return box.x + pin.x, box.y + pin.y
+        return frame.at
+
+    # --- what is seen of it ------------------------------------------------------------------------------------------
+
+    def _show(self, frame: Frame) -> None:
+        gesture, graph = self.gesture, frame.editor.session.graph
+        self.dragged = Dragged(shown(frame.scene, gesture))
+        self.refusal = ""
+        match gesture:
+            case Move() if gesture.going:
+                self.dragged.insert = insertable(graph, self.dragged.scene, gesture.keys, frame.at, frame.reach)
+            case Draw():
+                self.dragged.crossed = frame.scene.crossed(gesture.start, frame.at)
+            case Link():
+                self.dragged.snap = nearest(frame.scene, gesture, frame.at, _SNAP * frame.scale / frame.to.scale)
+                if other := refused(frame.scene, gesture, frame.at, frame.reach):
+                    source, target = (gesture.port, other) if gesture.output else (other, gesture.port)
+                    if other != gesture.port and source.node != target.node:
+                        self.refusal = frame.editor.session.refusal(source, target) or ""
+                    self.dragged.snap = None
+            case _:
+                pass
+
+    def _wheel(self, frame: Frame, io: imgui.IO) -> None:
+        view = frame.editor.canvas
+        across, down = io.mouse_wheel_h, io.mouse_wheel
+        if not (across or down) or (io.key_ctrl and self.hit.part == "field"):
+            return
+        if io.key_shift or across:
+            if io.key_shift and not across:
+                across, down = down, 0.0
+            step = 60.0 * frame.scale / frame.to.scale
+            view.center = view.center[0] - across * step, view.center[1] - down * step
+        else:
+            view.center, view.zoom = zoomed(view.center, view.zoom, frame.at, 1.15**down)
+
+
+def _far(start: Point, frame: Frame) -> bool:
+    """True once the mouse has left the place of a click."""
+    gap = max(abs(start[0] - frame.screen[0]), abs(start[1] - frame.screen[1]))
+    return gap > CLICK * frame.scale
+
+
+def _auto_pan(frame: Frame, io: imgui.IO) -> None:
+    x, y = drift(frame.panel, *frame.screen, _BORDER * frame.scale)
+    if x or y:
+        view = frame.editor.canvas
+        step = _SPEED * frame.scale * min(io.delta_time, 0.05) / frame.to.scale
+        view.center = view.center[0] + x * step, view.center[1] + y * step
+
+
+def _resize(editor: Editor, resize: Resize) -> None:
+    left, top, right, bottom = resize.rect
+    section, _, id = resize.key.partition(".")
+    if resize.rect == resize.before:
+        return
+    if section == "frames":
+        editor.attempt(lambda: editor.session.resize_frame(id, left, top, right - left, bottom - top))
+    else:
+        editor.attempt(lambda: editor.session.resize_comment(id, left, top, right - left))
+
+
+def _drawn(frame: Frame, draw: Draw) -> None:
+    editor, session = frame.editor, frame.editor.session
+    crossings = frame.scene.crossed(draw.start, frame.at)
+    if not crossings:
+        return
+
+    def dots() -> None:
+        graph, keys = dotted(session.graph, crossings)
+        session.edit("Add dots", graph, keys)
+
+    editor.attempt(dots if draw.dots else lambda: session.cut(tuple(crossings)))
+
+
+def _owner(port: Port) -> str:
+    return str(port) if port.node in ("inputs", "outputs") else port.node
+
+
+__all__ = ["Asked", "Frame", "GraphError", "Mouse"]

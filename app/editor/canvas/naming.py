@@ -1,0 +1,82 @@
+"""Typing on the canvas: titles of frames, texts of comments, names of nodes and ends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from imgui_bundle import imgui
+
+from ..editor import Editor
+from ..edits.elements import end_port, entry
+from .brush import TEXT, Brush
+from .scene import FRAME_TITLE, Scene
+
+
+@dataclass
+class Naming:
+    """The element that is being named or written in."""
+
+    key: str = ""
+    _text: str = ""
+    _starting: bool = False
+
+    def begin(self, editor: Editor, key: str) -> None:
+        """Open a field on an element."""
+        facts = entry(editor.session.graph, key)
+        if key.startswith("frames."):
+            self._text = str(facts.get("title", ""))
+        elif key.startswith("comments."):
+            self._text = str(facts.get("text", ""))
+        else:
+            end = end_port(key)
+            self._text = end.socket if end else key
+        self.key, self._starting = key, True
+
+    def draw(self, editor: Editor, brush: Brush, scene: Scene) -> None:
+        """Draw the field, and keep what was typed once that is over."""
+        if not self.key:
+            return
+        box = scene.boxes.get(self.key)
+        if box is None:
+            self.key = ""
+            return
+        s, many = brush.to.scale, box.sort == "comment"
+        low, _ = brush.corners(box.rect)
+        imgui.set_cursor_screen_pos(low)
+        imgui.push_font(brush.fonts.text, TEXT * max(brush.zoom, 0.6))
+        imgui.push_style_var(imgui.StyleVar_.frame_padding, (11.0 * s, (8.0 if many else 7.0) * s))
+        if self._starting:
+            imgui.set_keyboard_focus_here()
+        if many:
+            flags = int(imgui.InputTextFlags_.word_wrap) | int(imgui.InputTextFlags_.ctrl_enter_for_new_line)
+            size = (max(box.w, 80.0) * s, max(box.h, 40.0) * s)
+            _, self._text = imgui.input_text_multiline("##naming", self._text, size, flags)
+        else:
+            imgui.set_next_item_width(max(min(box.w, 400.0) * s, 120.0))
+            flags = int(imgui.InputTextFlags_.auto_select_all)
+            _, self._text = imgui.input_text("##naming", self._text, flags)
+        imgui.pop_style_var()
+        imgui.pop_font()
+        active = imgui.is_item_active()
+        if self._starting:
+            self._starting = not active
+        elif imgui.is_item_deactivated() or not active:
+            escaped = imgui.is_key_pressed(imgui.Key.escape)
+            key, self.key = self.key, ""
+            if not escaped:
+                editor.attempt(lambda: _keep(editor, key, self._text))
+
+
+def _keep(editor: Editor, key: str, text: str) -> None:
+    session, id = editor.session, key.partition(".")[2]
+    if key.startswith("frames."):
+        session.set_frame(id, title=text.strip())
+    elif key.startswith("comments."):
+        session.set_comment(id, text.rstrip())
+    elif end_port(key):
+        session.rename_end(key, text.strip())
+    else:
+        session.rename(key, text.strip())
+
+
+__all__ = ["FRAME_TITLE", "Naming"]

@@ -1,0 +1,179 @@
+"""Everything but nodes: the grid, frames, comments, dots, links, and what is drawn while the mouse does something."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from imgui_bundle import imgui
+
+from ..theme.style import mix, u32
+from .brush import SMALL, TEXT, Brush, Ink
+from .geometry import Curve, Point, Rect
+from .scene import FRAME_TITLE, Box, Wire
+
+ROUND = 8.0
+LINK = 2.25
+DASH, HOLE = 9.0, 6.0
+
+
+def paint_grid(brush: Brush, panel: Rect) -> None:
+    """Lines every 32 units, stronger every 128; the finer ones go when they would be too near."""
+    to, draw = brush.to, brush.draw
+    draw.add_rect_filled(panel[:2], panel[2:], brush.ink.canvas)
+    step = 32.0 * to.scale
+    while step < 22.0:
+        step *= 4.0
+    for axis, start, low, high in ((0, to.x, panel[0], panel[2]), (1, to.y, panel[1], panel[3])):
+        first = math.ceil((low - start) / step)
+        for index in range(first, int((high - start) // step) + 1):
+            at = round(start + index * step) + 0.5
+            color = brush.ink.grid if index % 4 else brush.ink.grid_strong
+            if axis:
+                draw.add_line((panel[0], at), (panel[2], at), color)
+            else:
+                draw.add_line((at, panel[1]), (at, panel[3]), color)
+
+
+def frame_color(ink: Ink, facts: Mapping[str, Any]) -> tuple[float, float, float]:
+    """The color of a frame: its own, or that of headers."""
+    given = facts.get("color")
+    if isinstance(given, list | tuple) and len(given) == 3:
+        return given[0], given[1], given[2]
+    return ink.palette.category("")
+
+
+def paint_frame(brush: Brush, box: Box, facts: Mapping[str, Any], selected: bool, lit: bool) -> None:
+    """A frame with its title; `lit` while the mouse is on its edge or title."""
+    ink = brush.ink
+    color = frame_color(ink, facts)
+    rect = box.rect
+    brush.fill(rect, u32(mix(color, ink.palette.canvas, 0.55), 0.42), ROUND)
+    title = (rect[0], rect[1], rect[2], rect[1] + min(FRAME_TITLE, box.h))
+    brush.fill(title, u32(color, 0.55), ROUND, flags=int(imgui.ImDrawFlags_.round_top))
+    edge = ink.accent if selected else u32(mix(color, ink.palette.text, 0.25 if lit else 0.1), 0.9)
+    brush.frame(rect, edge, ROUND, 2.0 if selected else 1.0 + lit)
+    text = str(facts.get("title") or "frame")
+    size = min(max(15.0, 11.0 / brush.zoom), 40.0)
+    y = rect[1] + (FRAME_TITLE / 2 if brush.zoom >= 0.6 else max(FRAME_TITLE / 2, size * 0.8))
+    brush.text(rect[0] + 12.0, y, ink.text, brush.short(text, box.w - 24.0, size, True), size, True)
+
+
+def paint_comment(brush: Brush, box: Box, text: str, selected: bool) -> None:
+    """A note."""
+    ink, rect = brush.ink, box.rect
+    brush.fill(rect, u32(mix(ink.palette.canvas, ink.palette.warning, 0.12)), 4.0)
+    bar = (rect[0], rect[1], rect[0] + 3.0, rect[3])
+    brush.fill(bar, u32(ink.palette.warning, 0.75), 1.5)
+    if selected:
+        brush.frame(rect, ink.accent, 4.0, 2.0, 1.0)
+    low, high = brush.corners(rect)
+    s = brush.to.scale
+    words, color = (text, ink.text) if text else ("double-click to write", ink.faint)
+    brush.draw.push_clip_rect(low, high, True)
+    brush.draw.add_text(
+        brush.fonts.text, TEXT * s, (low[0] + 12 * s, low[1] + 8 * s), color, words, (box.w - 20.0) * s
+    )
+    brush.draw.pop_clip_rect()
+
+
+def paint_dot(brush: Brush, box: Box, color: int, selected: bool) -> None:
+    """A reroute."""
+    x, y = brush.to.to_screen(box.x + box.w / 2, box.y + box.h / 2)
+    r = box.w / 2 * brush.to.scale
+    if selected:
+        brush.draw.add_circle_filled((x, y), r + 2.5 * brush.line, brush.ink.accent)
+    brush.draw.add_circle_filled((x, y), r, brush.ink.canvas)
+    brush.draw.add_circle_filled((x, y), r * 0.75, color)
+
+
+def paint_wire(brush: Brush, wire: Wire, *, lit: bool, faded: bool) -> None:
+    """A link: in the color of what travels, brighter if `lit`, dashed where nothing passes or it cannot work."""
+    ink = brush.ink
+    color = ink.error if wire.fault else (ink.kinds_dim if faded or wire.muted else ink.kinds)[wire.kind]
+    thickness = LINK + (1.0 if lit else 0.0)
+    for shape in wire.curves:
+        if not _visible(brush, shape):
+            continue
+        if wire.fault or wire.muted:
+            paint_dashes(brush, shape, color, thickness)
+        else:
+            paint_curve(brush, shape, color, thickness, halo=brush.zoom > 0.35)
+
+
+def paint_curve(brush: Brush, shape: Curve, color: int, thickness: float, halo: bool = True) -> None:
+    """One curve, with a rim that lifts it off what it crosses."""
+    to = brush.to
+    x, y, s = to.x, to.y, to.scale
+    a, b, c, d = ((x + shape[at] * s, y + shape[at + 1] * s) for at in (0, 2, 4, 6))
+    if halo:
+        brush.draw.add_bezier_cubic(a, b, c, d, brush.ink.canvas, (thickness + 2.5) * brush.line)
+    brush.draw.add_bezier_cubic(a, b, c, d, color, thickness * brush.line)
+
+
+def paint_dashes(brush: Brush, shape: Curve, color: int, thickness: float) -> None:
+    """One curve, dashed."""
+    x0, y0, x1, y1, x2, y2, x3, y3 = shape
+    length = math.dist((x0, y0), (x1, y1)) + math.dist((x1, y1), (x2, y2)) + math.dist((x2, y2), (x3, y3))
+    count = min(max(int(length / ((DASH + HOLE) * max(1.0, 0.5 / brush.zoom))), 2), 64)
+    for index in range(count):
+        ends: list[Point] = []
+        for t in (index / count, (index + DASH / (DASH + HOLE)) / count):
+            u = 1.0 - t
+            a, b, c, d = u * u * u, 3 * u * u * t, 3 * u * t * t, t * t * t
+            ends.append(brush.to.to_screen(a * x0 + b * x1 + c * x2 + d * x3, a * y0 + b * y1 + c * y2 + d * y3))
+        brush.draw.add_line(ends[0], ends[1], color, thickness * brush.line)
+
+
+def paint_band(brush: Brush, rect: Rect) -> None:
+    """The rectangle that selects."""
+    brush.fill(rect, brush.ink.accent_soft, 2.0)
+    brush.frame(rect, brush.ink.accent, 2.0)
+
+
+def paint_cut(brush: Brush, start: Point, end: Point, color: int) -> None:
+    """The line that cuts links or puts dots on them."""
+    brush.draw.add_line(brush.to.to_screen(*start), brush.to.to_screen(*end), color, 2.0 * brush.line)
+    brush.draw.add_circle_filled(brush.to.to_screen(*start), 3.0 * brush.line, color)
+
+
+def paint_note(brush: Brush, x: float, y: float, text: str, color: int) -> None:
+    """A sentence beside the pointer, on top of everything; `x`, `y` and sizes are pixels of the screen."""
+    scale = brush.to.scale / brush.zoom
+    draw = imgui.get_foreground_draw_list()
+    size, wrap = TEXT * scale, 340.0 * scale
+    font = brush.fonts.text
+    imgui.push_font(font, TEXT)
+    area = imgui.calc_text_size(text, wrap_width=wrap)
+    imgui.pop_font()
+    low = x + 16.0 * scale, y + 14.0 * scale
+    pad = 7.0 * scale
+    high = low[0] + area.x + pad * 2, low[1] + area.y + pad * 1.6
+    draw.add_rect_filled(low, high, u32(brush.ink.palette.window, 0.96), 5.0 * scale)
+    draw.add_rect(low, high, color, 5.0 * scale)
+    draw.add_text(font, size, (low[0] + pad, low[1] + pad * 0.8), color, text, wrap)
+
+
+def paint_hint(brush: Brush, panel: Rect, lines: tuple[str, ...]) -> None:
+    """Words in the middle of an empty canvas."""
+    scale = brush.to.scale / brush.zoom
+    x, y = (panel[0] + panel[2]) / 2, (panel[1] + panel[3]) / 2 - len(lines) * 12.0 * scale
+    for index, line in enumerate(lines):
+        size = (18.0 if index == 0 else TEXT) * scale
+        font = brush.fonts.bold if index == 0 else brush.fonts.text
+        width = brush.texts.width(brush.fonts, line, size, index == 0)
+        brush.draw.add_text(font, size, (x - width / 2, y), brush.ink.dim, line)
+        y += size * 1.7
+
+
+def _visible(brush: Brush, shape: Curve) -> bool:
+    left, top, right, bottom = brush.seen
+    xs, ys = shape[0::2], shape[1::2]
+    return max(xs) >= left and min(xs) <= right and max(ys) >= top and min(ys) <= bottom
+
+
+__all__ = [
+    "SMALL", "frame_color", "paint_band", "paint_comment", "paint_curve", "paint_cut", "paint_dashes", "paint_dot",
+    "paint_frame", "paint_grid", "paint_hint", "paint_note", "paint_wire",
+]

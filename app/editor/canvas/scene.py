@@ -1,0 +1,245 @@
+"""Everything on the canvas with its place: what is drawn, and what is under a point. Canvas units."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import pairwise
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....nodes import Kind
+from ...graph import Port
+from .geometry import SAMPLES, Curve, Point, Rect, crossed, crossing, curve, distances, holds, midpoint, sampled
+from .layout import HEADER, ROW, Layout, Pin
+
+DOT = 7.0
+"""Radius of a dot."""
+
+FRAME_TITLE = 32.0
+
+Sort = Literal["node", "end", "frame", "comment", "dot"]
+Part = Literal["pin", "field", "more", "title", "body", "edge", "link", "empty"]
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """An element: its rectangle, and the layout within for nodes and ends. Dots are boxes around their center."""
+
+    key: str
+    sort: Sort
+    x: float
+    y: float
+    w: float
+    h: float
+    layout: Layout | None = None
+
+    @property
+    def rect(self) -> Rect:
+        """Left, top, right, bottom."""
+        return self.x, self.y, self.x + self.w, self.y + self.h
+
+    def port(self, pin: Pin, output: bool) -> Port:
+        """The port that a pin stands for."""
+        if self.sort == "end":
+            return Port("inputs" if output else "outputs", pin.name)
+        return Port(self.key, pin.name)
+
+
+@dataclass(frozen=True, slots=True)
+class Wire:
+    """A link as drawn: one curve from pin to dot to pin. `fault` says why it cannot work."""
+
+    target: Port
+    source: Port
+    stops: tuple[str, ...]
+    """Keys of the elements that it joins, from the source on."""
+    kind: Kind | None
+    curves: tuple[Curve, ...]
+    fault: str = ""
+    muted: bool = False
+
+    @property
+    def middle(self) -> Point:
+        """A point on it, about half way."""
+        return midpoint(self.curves[len(self.curves) // 2])
+
+
+@dataclass(frozen=True, slots=True)
+class Hit:
+    """What is under a point. `name` is the row of a field, or the edges (of `lrtb`) of a frame or comment."""
+
+    part: Part = "empty"
+    key: str = ""
+    port: Port | None = None
+    output: bool = False
+    name: str = ""
+
+
+EMPTY = Hit()
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Elements in the order in which they are drawn, and links."""
+
+    boxes: dict[str, Box]
+    wires: tuple[Wire, ...]
+
+    @cached_property
+    def lines(self) -> NDArray[np.float64]:
+        """All curves of all links as polylines."""
+        shapes = [shape for wire in self.wires for shape in wire.curves]
+        return sampled(np.array(shapes, float)) if shapes else np.zeros((0, SAMPLES + 1, 2))
+
+    @cached_property
+    def _owners(self) -> list[tuple[int, int]]:
+        """The link and the curve of it that each of `lines` is."""
+        return [(at, index) for at, wire in enumerate(self.wires) for index in range(len(wire.curves))]
+
+    @cached_property
+    def by_target(self) -> Mapping[Port, Wire]:
+        """Links by what they feed."""
+        return {wire.target: wire for wire in self.wires}
+
+    @property
+    def sizes(self) -> dict[str, tuple[float, float]]:
+        """Width and height of every element."""
+        return {key: (box.w, box.h) for key, box in self.boxes.items()}
+
+    def moved(self, keys: Collection[str], dx: float, dy: float) -> Scene:
+        """The same with some elements elsewhere; links follow."""
+        if not keys or not (dx or dy):
+            return self
+        boxes = {
+            key: replace(box, x=box.x + dx, y=box.y + dy) if key in keys else box for key, box in self.boxes.items()
+        }
+        wires = tuple(
+            replace(wire, curves=tuple(routed(boxes, wire.source, wire.target, wire.stops)))
+            if any(stop in keys for stop in wire.stops) else wire
+            for wire in self.wires
+        )
+        return Scene(boxes, wires)
+
+    def resized(self, key: str, rect: Rect) -> Scene:
+        """The same with one element of another shape."""
+        left, top, right, bottom = rect
+        box = replace(self.boxes[key], x=left, y=top, w=right - left, h=bottom - top)
+        return Scene({**self.boxes, key: box}, self.wires)
+
+    def hit(self, x: float, y: float, reach: float) -> Hit:
+        """What is at a point; `reach` is how far off pins, links and edges may be."""
+        found = self._on_top(x, y, reach)
+        if found is None and (wire := self.wire_at(x, y, reach)):
+            return Hit("link", port=wire.target)
+        return found or self._frame(x, y, reach) or EMPTY
+
+    def node_at(self, x: float, y: float) -> str:
+        """The node or end under a point, "" if none."""
+        for key, box in reversed(self.boxes.items()):
+            if box.sort in ("node", "end") and holds(box.rect, x, y):
+                return key
+        return ""
+
+    def pins(self, output: bool) -> Iterator[tuple[Port, Box, Pin]]:
+        """Every pin of one side."""
+        for box in self.boxes.values():
+            if box.layout:
+                for pin in (box.layout.outs if output else box.layout.ins).values():
+                    yield box.port(pin, output), box, pin
+
+    def wire_at(self, x: float, y: float, reach: float, skip: Collection[str] = ()) -> Wire | None:
+        """The link nearest to a point within reach, leaving out those that join one of `skip`."""
+        if not len(self.lines):
+            return None
+        gaps = distances(self.lines, (x, y))
+        for index in np.argsort(gaps):
+            if gaps[index] > reach:
+                return None
+            wire = self.wires[self._owners[index][0]]
+            if not any(stop in skip for stop in wire.stops):
+                return wire
+        return None
+
+    def crossed(self, start: Point, end: Point) -> dict[Port, Point]:
+        """The links that a straight line crosses, and where."""
+        if not len(self.lines):
+            return {}
+        return {
+            self.wires[self._owners[index][0]].target: crossing(self.lines[index], start, end)
+            for index in np.flatnonzero(crossed(self.lines, start, end))
+        }
+
+    def _on_top(self, x: float, y: float, reach: float) -> Hit | None:
+        for key, box in reversed(self.boxes.items()):
+            if box.sort == "frame" or not holds(box.rect, x, y, reach):
+                continue
+            if box.layout:
+                if hit := _in_node(box, box.layout, x, y, reach):
+                    return hit
+            elif box.sort == "comment":
+                if edges := _edges(box.rect, x, y, reach * 0.7, "rb"):
+                    return Hit("edge", key, name=edges)
+                if holds(box.rect, x, y):
+                    return Hit("body", key)
+            elif (x - box.x - box.w / 2) ** 2 + (y - box.y - box.h / 2) ** 2 <= (box.w / 2 + reach * 0.5) ** 2:
+                return Hit("body", key)
+        return None
+
+    def _frame(self, x: float, y: float, reach: float) -> Hit | None:
+        for key, box in reversed(self.boxes.items()):
+            if box.sort != "frame" or not holds(box.rect, x, y, reach):
+                continue
+            if edges := _edges(box.rect, x, y, reach * 0.7, "lrtb"):
+                return Hit("edge", key, name=edges)
+            if y <= box.y + FRAME_TITLE:
+                return Hit("title", key)
+        return None
+
+
+def pin_place(box: Box, socket: str, output: bool) -> Point:
+    """Where a link meets an element."""
+    if box.layout is None:
+        return box.x + box.w / 2, box.y + box.h / 2
+    pin = (box.layout.outs if output else box.layout.ins).get(socket)
+    return (box.x + pin.x, box.y + pin.y) if pin else (box.x + (box.w if output else 0.0), box.y + HEADER / 2)
+
+
+def routed(boxes: Mapping[str, Box], source: Port, target: Port, stops: tuple[str, ...]) -> Iterator[Curve]:
+    """The curves of a link that joins elements."""
+    places = [
+        pin_place(boxes[stops[0]], source.socket, output=True),
+        *(pin_place(boxes[stop], "", output=True) for stop in stops[1:-1]),
+        pin_place(boxes[stops[-1]], target.socket, output=False),
+    ]
+    return (curve(*start, *end) for start, end in pairwise(places))
+
+
+def inside(boxes: Mapping[str, Box], frame: str, holds_all: Callable[[Rect, Rect], bool]) -> frozenset[str]:
+    """The elements that lie whole on a frame."""
+    outer = boxes[frame].rect
+    return frozenset(key for key, box in boxes.items() if key != frame and holds_all(box.rect, outer))
+
+
+def _in_node(box: Box, layout: Layout, x: float, y: float, reach: float) -> Hit | None:
+    here, there = x - box.x, y - box.y
+    for output, pins in ((True, layout.outs), (False, layout.ins)):
+        near = min(pins.values(), key=lambda pin: abs(pin.y - there), default=None)
+        if near and abs(near.x - here) <= reach and abs(near.y - there) <= min(reach, ROW / 2):
+            return Hit("pin", box.key, box.port(near, output), output)
+    if not (0 <= here <= box.w and 0 <= there <= box.h):
+        return None
+    if layout.more and holds(layout.more, here, there):
+        return Hit("more", box.key)
+    for row in layout.rows:
+        if row.field and row.value and holds(row.field, here, there):
+            return Hit("field", box.key, Port(box.key, row.value.name), name=row.value.name)
+    return Hit("title" if there <= HEADER else "body", box.key)
+
+
+def _edges(rect: Rect, x: float, y: float, reach: float, allowed: str) -> str:
+    gaps = {"l": abs(x - rect[0]), "t": abs(y - rect[1]), "r": abs(x - rect[2]), "b": abs(y - rect[3])}
+    return "".join(side for side in "lrtb" if side in allowed and gaps[side] <= reach)

@@ -1,0 +1,183 @@
+"""The search that adds nodes: a field and a list at the pointer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import imgui
+
+from .... import presets
+from ....nodes import Kind
+from ...graph import Port
+from ..editor import Editor
+from ..theme.style import mix, u32, ui_scale, vec4
+from .entries import GRAPH, PRESETS, Entry, Section, found, graph_entries, narrowed, node_entries, preset_entries
+from .geometry import Point
+
+_POPUP = "add to the graph"
+_RECENT = 5
+_WIDTH, _HEIGHT = 300.0, 360.0
+
+
+@dataclass
+class Search:
+    """What is typed, which line is marked, and where the new node goes."""
+
+    is_open: bool = False
+    _query: str = ""
+    _marked: int = 0
+    _at: Point = (0.0, 0.0)
+    _link: tuple[Port, bool] | None = None
+    _entries: tuple[Entry, ...] = ()
+    _recent: list[str] = field(default_factory=list[str])
+    _opening: bool = False
+
+    @cached_property
+    def _fixed(self) -> tuple[Entry, ...]:
+        return (*preset_entries(Path(presets.__file__).parent), *graph_entries())
+
+    def begin(self, editor: Editor, at: Point, port: Port | None = None, output: bool = True) -> None:
+        """Open it for something at a canvas position; with a port, for what can be linked with it."""
+        session = editor.session
+        nodes = node_entries(session.types)
+        if port is None:
+            self._link, self._entries = None, (*nodes, *self._fixed)
+        else:
+            self._link = port, output
+            fits = editor.attempt(lambda: session.fitting(port, output), ()) or ()
+            self._entries = narrowed(nodes, fits)
+        self._at, self._query, self._marked, self._opening = at, "", 0, True
+
+    def draw(self, editor: Editor) -> None:
+        """Draw the popup, if it is open, and add what is chosen."""
+        scale = ui_scale()
+        if self._opening:
+            imgui.open_popup(_POPUP)
+            mouse = imgui.get_mouse_pos()
+            imgui.set_next_window_pos((mouse.x - 12 * scale, mouse.y - 12 * scale))
+        imgui.set_next_window_size((_WIDTH * scale, _HEIGHT * scale))
+        self.is_open = imgui.begin_popup(_POPUP, int(imgui.WindowFlags_.no_move))
+        if not self.is_open:
+            self._opening = False
+            return
+        if self._opening:
+            imgui.set_keyboard_focus_here()
+            self._opening = False
+        chosen = self._contents(editor)
+        if chosen or imgui.is_key_pressed(imgui.Key.escape):
+            imgui.close_current_popup()
+        imgui.end_popup()
+        if chosen:
+            editor.attempt(lambda: self._add(editor, chosen))
+
+    def _contents(self, editor: Editor) -> Entry | None:
+        imgui.set_next_item_width(-1)
+        hint = f"Search what fits {self._link[0]}" if self._link else "Search nodes, presets, frames ..."
+        before = self._query
+        _, self._query = imgui.input_text_with_hint("##search", hint, self._query)
+        _record(editor, "search field")
+        if self._query != before:
+            self._marked = 0
+        sections = found(self._entries, self._query, self._recent)
+        lines = [entry for section in sections for entry in section.entries]
+        moved = _arrows()
+        self._marked = min(max(self._marked + moved, 0), max(len(lines) - 1, 0))
+        chosen = None
+        foot = imgui.get_text_line_height() * 2 + imgui.get_style().item_spacing.y * 2
+        if imgui.begin_child("##found", (0, -foot)):
+            chosen = self._list(editor, sections, bool(moved) or self._query != before)
+        imgui.end_child()
+        self._foot(editor, lines)
+        entered = imgui.is_key_pressed(imgui.Key.enter) or imgui.is_key_pressed(imgui.Key.keypad_enter)
+        return lines[self._marked] if entered and lines else chosen
+
+    def _list(self, editor: Editor, sections: tuple[Section, ...], follow: bool) -> Entry | None:
+        chosen, index = None, 0
+        palette, scale = editor.palette, ui_scale()
+        draw = imgui.get_window_draw_list()
+        for section in sections:
+            if section.title:
+                imgui.push_font(editor.fonts.bold if editor.fonts else None, 12.0)
+                imgui.text_colored(vec4(palette.dim), section.title.upper())
+                imgui.pop_font()
+            for entry in section.entries:
+                corner = imgui.get_cursor_screen_pos()
+                marked = index == self._marked
+                if imgui.selectable(f"      {entry.title}##{section.title} {entry.id}", marked)[0]:
+                    chosen = entry
+                _record(editor, f"search {entry.title}")
+                if imgui.is_item_hovered() and _mouse_moved():
+                    self._marked = index
+                if marked and follow:
+                    imgui.set_scroll_here_y()
+                middle = corner.y + imgui.get_text_line_height() / 2
+                color = mix(palette.category(entry.category), palette.text, 0.2)
+                draw.add_rect_filled(
+                    (corner.x + 2 * scale, middle - 5 * scale), (corner.x + 12 * scale, middle + 5 * scale), u32(color),
+                    3 * scale,
+                )
+                if not section.title or section.title == "recent":
+                    width = imgui.calc_text_size(entry.category).x
+                    right = corner.x + imgui.get_content_region_avail().x - width
+                    draw.add_text((right, corner.y), u32(palette.dim, 0.8), entry.category)
+                index += 1
+        if not index:
+            imgui.text_colored(vec4(palette.dim), "Nothing is called like that.")
+        return chosen
+
+    def _foot(self, editor: Editor, lines: list[Entry]) -> None:
+        imgui.separator()
+        doc = lines[self._marked].doc if lines else ""
+        imgui.push_style_color(imgui.Col_.text, vec4(editor.palette.dim))
+        keys = f"{icons.ICON_FA_ARROW_UP}{icons.ICON_FA_ARROW_DOWN} choose, Enter adds, Escape leaves"
+        imgui.text_wrapped(doc or keys)
+        imgui.pop_style_color()
+
+    def _add(self, editor: Editor, entry: Entry) -> None:
+        session, at = editor.session, self._at
+        port, output = self._link or (None, True)
+        self._recent = [entry.id, *(id for id in self._recent if id != entry.id)][:_RECENT]
+        if port is not None:
+            # The socket that takes the link lies near the pointer, not the node's corner.
+            at = (at[0] - (0.0 if output else 184.0), at[1] - 48.0)
+        if entry.category == PRESETS:
+            session.add_group(entry.id, at)
+        elif entry.category != GRAPH:
+            session.add_node(entry.id, at, port, output)
+        elif entry.id == "frame":
+            session.add_frame("", at)
+        elif entry.id == "comment":
+            session.add_comment(at, "")
+        else:
+            side, _, kind = entry.id.partition(":")
+            _add_end(editor, side, Kind(kind), at)
+
+
+def _add_end(editor: Editor, side: str, kind: Kind, at: Point) -> None:
+    session = editor.session
+    taken = session.graph.inputs if side == "input" else session.graph.outputs
+    stem, number = kind.lower(), 2
+    name = stem
+    while name in taken:
+        name, number = f"{stem}{number}", number + 1
+    if side == "input":
+        session.add_input(name, kind, at=at)
+    else:
+        session.add_output(name, kind, at=at)
+
+
+def _arrows() -> int:
+    return imgui.is_key_pressed(imgui.Key.down_arrow) - imgui.is_key_pressed(imgui.Key.up_arrow)
+
+
+def _mouse_moved() -> bool:
+    delta = imgui.get_io().mouse_delta
+    return bool(delta.x or delta.y)
+
+
+def _record(editor: Editor, name: str) -> None:
+    low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+    editor.places[name] = (low.x, low.y, high.x, high.y)

@@ -1,0 +1,133 @@
+"""From a graph to a scene, doing again only what changed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import Any
+
+from ....nodes import Kind, Node
+from ...graph import INPUTS, OUTPUTS, Graph, Group, Item, Port
+from ..edits.elements import entries, entry, owner
+from ..edits.routes import routes
+from .geometry import Point
+from .layout import Facts, Layout, end_layout, node_layout
+from .scene import DOT, Box, Scene, Wire, routed
+
+FRAME_SIZE, COMMENT_SIZE = (320.0, 200.0), (200.0, 64.0)
+
+
+@dataclass
+class Stage:
+    """Builds scenes; keeps layouts of nodes that stay the same. `expanded` are nodes that show all their values."""
+
+    expanded: set[str] = field(default_factory=set[str])
+    _layouts: dict[str, tuple[Item, Facts, Layout]] = field(default_factory=dict[str, tuple[Item, Facts, Layout]])
+    _links: object = None
+    _linked: tuple[dict[str, set[str]], dict[str, set[str]]] = field(default_factory=lambda: ({}, {}))
+    _faults: dict[tuple[Port, Port], tuple[Any, str]] = field(default_factory=dict[tuple[Port, Port], tuple[Any, str]])
+
+    def build(
+        self, graph: Graph, position: Callable[[str], Point], top: Collection[str], pictures: bool, open: str = ""
+    ) -> Scene:
+        """The scene of a graph. `top` are drawn last, in order; `open` shows all its values for now."""
+        if graph.links is not self._links:
+            self._links, self._linked = graph.links, _linked_names(graph)
+        boxes = {box.key: box for box in self._frames(graph, position)}
+        for id in entries(graph, "comments"):
+            boxes[f"comments.{id}"] = _sized(graph, f"comments.{id}", "comment", COMMENT_SIZE, position)
+        for key, layout in self._ends(graph, pictures):
+            boxes[key] = Box(key, "end", *position(key), layout.width, layout.height, layout)
+        for id, item in graph.nodes.items():
+            layout = self._layout(graph, id, item, pictures, open)
+            boxes[id] = Box(id, "node", *position(id), layout.width, layout.height, layout)
+        for id in entries(graph, "dots"):
+            x, y = position(f"dots.{id}")
+            boxes[f"dots.{id}"] = Box(f"dots.{id}", "dot", x - DOT, y - DOT, DOT * 2, DOT * 2)
+        for key in top:
+            if key in boxes and boxes[key].sort != "frame":
+                boxes[key] = boxes.pop(key)
+        return Scene(boxes, tuple(self._wires(graph, boxes)))
+
+    def _frames(self, graph: Graph, position: Callable[[str], Point]) -> list[Box]:
+        found = [_sized(graph, f"frames.{id}", "frame", FRAME_SIZE, position) for id in entries(graph, "frames")]
+        return sorted(found, key=lambda box: (-box.w * box.h, box.key))
+
+    def _ends(self, graph: Graph, pictures: bool):
+        for name, end in graph.inputs.items():
+            key = f"{INPUTS}.{name}"
+            yield key, _end(key, end.kind, end.socket(name), pictures, end.doc)
+        for name, end in graph.outputs.items():
+            key = f"{OUTPUTS}.{name}"
+            yield key, _end(key, end.kind, end.socket(name), False, "")
+
+    def _layout(self, graph: Graph, id: str, item: Item, pictures: bool, open: str) -> Layout:
+        ins, outs = self._linked
+        facts = Facts(
+            frozenset(ins.get(id, ())), frozenset(outs.get(id, ())), bool(entry(graph, id).get("collapsed")),
+            id in self.expanded or id == open, pictures,
+        )
+        known = self._layouts.get(id)
+        if known and known[0] is item and known[1] == facts:
+            return known[2]
+        layout = node_layout(id, item, graph, facts)
+        self._layouts[id] = item, facts, layout
+        return layout
+
+    def _wires(self, graph: Graph, boxes: dict[str, Box]):
+        passed = routes(graph)
+        for target, source in graph.links.items():
+            start, end = owner(source), owner(target)
+            if start not in boxes or end not in boxes:
+                continue
+            dots = (f"dots.{dot}" for dot in passed.get(str(target), ()))
+            stops = (start, *(dot for dot in dots if dot in boxes), end)
+            layout = boxes[start].layout
+            pin = layout.outs.get(source.socket) if layout else None
+            yield Wire(
+                target, source, stops, pin.kind if pin else None, tuple(routed(boxes, source, target, stops)),
+                self._fault(graph, source, target), start in graph.muted or end in graph.muted,
+            )
+
+    def _fault(self, graph: Graph, source: Port, target: Port) -> str:
+        types = _face(graph, source), _face(graph, target)
+        known = self._faults.get((source, target))
+        if known and known[0] == types:
+            return known[1]
+        fault = graph.link_fault(source, target) or ""
+        self._faults[source, target] = types, fault
+        return fault
+
+
+def _face(graph: Graph, port: Port) -> object:
+    """What decides which links an element takes; compared, not looked into."""
+    if port.node == INPUTS:
+        return graph.inputs.get(port.socket)
+    if port.node == OUTPUTS:
+        return graph.outputs.get(port.socket)
+    item = graph.nodes.get(port.node)
+    if isinstance(item, Group):
+        return item.graph.inputs, item.graph.outputs, item.graph.controls
+    return type(item) if isinstance(item, Node) else item
+
+
+def _linked_names(graph: Graph) -> tuple[dict[str, set[str]], dict[str, set[str]]]:
+    """The linked inputs and outputs of every node."""
+    ins, outs = dict[str, set[str]](), dict[str, set[str]]()
+    for target, source in graph.links.items():
+        ins.setdefault(target.node, set()).add(target.socket)
+        outs.setdefault(source.node, set()).add(source.socket)
+    return ins, outs
+
+
+def _sized(graph: Graph, key: str, sort: Any, size: Point, position: Callable[[str], Point]) -> Box:
+    facts = entry(graph, key)
+    w, h = (facts.get(name) for name in ("w", "h"))
+    width = float(w) if isinstance(w, int | float) else size[0]
+    return Box(key, sort, *position(key), width, float(h) if isinstance(h, int | float) else size[1])
+
+
+@lru_cache(maxsize=1024)
+def _end(key: str, kind: Kind, socket: Any, pictures: bool, doc: str) -> Layout:
+    return end_layout(key, socket, pictures and kind in (Kind.IMAGE, Kind.FIELD, Kind.VECTOR), doc)

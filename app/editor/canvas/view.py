@@ -1,0 +1,37 @@
+"""Which part of the canvas is seen, and what the canvas is asked to do."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from typing import Literal
+
+MIN_ZOOM, MAX_ZOOM = 0.08, 4.0
+
+Tool = Literal["", "cut", "dot"]
+
+
+@dataclass
+class CanvasView:
+    """Pan and zoom of the canvas. `center` is the canvas position in the middle of the panel."""
+
+    center: tuple[float, float] = (0.0, 0.0)
+    zoom: float = 1.0
+    wanted: Collection[str] | None = ()
+    """Elements to bring into view when next drawn: empty means all, None nothing."""
+    pointer: tuple[float, float] = (0.0, 0.0)
+    """The canvas position under the mouse when it was last over the panel: where new things go."""
+    sizes: dict[str, tuple[float, float]] | None = None
+    """Width and height of elements as drawn last, in canvas units, by element key."""
+    hovered: bool = False
+    """True while the mouse is over the canvas."""
+    searching: bool = False
+    """True asks the canvas to open the search at the pointer."""
+    tool: Tool = ""
+    """What the next drag with the left button does instead of selecting: cut links, or put dots on them."""
+    renaming: str = ""
+    """An element whose name is to be typed: the canvas opens a field on it."""
+
+    def fit(self, keys: Collection[str] = ()) -> None:
+        """Bring elements into view; none means all."""
+        self.wanted = keys

@@ -1,0 +1,95 @@
+"""Everything that one editor window has. Panels draw it, actions change it; nothing here knows how it looks."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Protocol, TypeVar
+
+from ..errors import HalationError
+from .canvas.view import CanvasView
+from .dialogs import Dialogs
+from .log import Log
+from .theme.palette import PALETTES, Palette
+from .viewer.state import ViewerState
+
+if TYPE_CHECKING:
+    from ..renderer.display import Display
+    from ..renderer.probe import Probe
+    from .action import Actions, Scope
+    from .exporting import Exports
+    from .preferences import Store
+    from .preview import Preview
+    from .recovery import Recovery
+    from .session import Session
+    from .theme.fonts import Fonts
+    from .watching import Watcher
+
+T = TypeVar("T")
+
+Rectangle = tuple[float, float, float, float]
+"""Left, top, right, bottom in pixels of the screen."""
+
+
+class Clipboard(Protocol):
+    """The clipboard of the system."""
+
+    def get(self) -> str: ...
+
+    def put(self, text: str) -> None: ...
+
+
+@dataclass
+class Editor:
+    """One window: the document, its pictures, what the person likes, and what is going on."""
+
+    session: Session
+    preview: Preview
+    store: Store
+    actions: Actions
+    exports: Exports
+    recovery: Recovery
+    watcher: Watcher
+    clipboard: Clipboard
+    display: Display
+    probe: Probe
+    fonts: Fonts | None = None
+    canvas: CanvasView = field(default_factory=CanvasView)
+    viewer: ViewerState = field(default_factory=ViewerState)
+    dialogs: Dialogs = field(default_factory=Dialogs)
+    log: Log = field(default_factory=Log)
+    faults: dict[str, str] = field(default_factory=dict[str, str])
+    """Panels that failed, with the traceback: shown in Problems."""
+    dragging: bool = False
+    """True while a value is being dragged: pictures may be coarse until it is let go."""
+    places: dict[str, Rectangle] = field(default_factory=dict[str, Rectangle])
+    """Where things were drawn last, by name: for tests and hints."""
+    requests: set[str] = field(default_factory=set[str])
+    """What the window shall do next: "reset layout", "screenshot"."""
+    scope: Scope = "graph"
+    """The panel that keys go to: the one that the mouse was over last."""
+    closing: bool = False
+    """True lets the window close."""
+
+    def attempt(self, act: Callable[[], T], default: T | None = None) -> T | None:
+        """Do something for a person: a mistake becomes a sentence in the log, a bug is reported, nothing is lost."""
+        try:
+            return act()
+        except HalationError as error:
+            self.log.add(str(error), "error")
+        except Exception as error:
+            self.log.add(
+                f"this did not work because of a fault in Halation ({type(error).__name__}: {error}); "
+                "the document is as it was before", "error", traceback.format_exc(),
+            )
+        return default
+
+    def say(self, sentence: str) -> None:
+        """Tell the person something."""
+        self.log.add(sentence)
+
+    @property
+    def palette(self) -> Palette:
+        """The colors of the present theme."""
+        return PALETTES[self.store.now.theme]

@@ -1,0 +1,123 @@
+"""Graphs inside graphs: the body of a group, and a changed body put back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from ...document import limits
+from ...errors import GraphError
+from ...graph import INPUTS, OUTPUTS, Graph, Group, Port, signature
+from ...graph.notes import moved_layout
+from .routes import tidied
+
+CONTROLS = "controls"
+
+Route = tuple[str, ...]
+"""Ids of groups, each inside the one before."""
+
+Moves = Mapping[Port, Port]
+"""Ends and controls of a body that got another name: `inputs.a`, `outputs.a` or `controls.a` by what it was before."""
+
+
+def group(graph: Graph, id: str) -> Group:
+    """The group of that id. Raises GraphError."""
+    item = graph.node(id)
+    if not isinstance(item, Group):
+        raise GraphError(f"node '{id}' is no group")
+    return item
+
+
+def inside(graph: Graph, path: Route) -> Graph:
+    """The body at `path`, with the values that its groups set. Raises GraphError."""
+    for id in path:
+        graph = group(graph, id).body()
+    return graph
+
+
+def leads(graph: Graph, path: Route) -> bool:
+    """True if there is a group at `path`."""
+    try:
+        inside(graph, path)
+    except GraphError:
+        return False
+    return True
+
+
+def borrowed(graph: Graph, path: Route) -> tuple[Route, str] | None:
+    """The outermost group on the way whose body is a file of its own, with the file's path; None if there is none."""
+    for depth, id in enumerate(path, 1):
+        item = group(graph, id)
+        if item.path:
+            return path[:depth], item.path
+        graph = item.body()
+    return None
+
+
+def folded(graph: Graph, path: Route, body: Graph, moves: Moves | None = None) -> Graph:
+    """The outermost graph, where `body` is what is inside at `path`.
+
+    The values that groups on the way set become part of their bodies. Links to and from ends that were renamed
+    follow them; those of ends that are gone go too. Raises GraphError for a body that belongs to another file.
+    """
+    if not path:
+        return body
+    if found := borrowed(graph, path):
+        file = f"'{found[1]}'"
+        raise GraphError(f"group '{found[0][-1]}' comes from the file {file}: make it local first, or open that file")
+    for depth in range(len(path) - 1, -1, -1):
+        body = _put(inside(graph, path[:depth]), path[depth], body, moves or {})
+        moves = None
+    return body
+
+
+def reread(graph: Graph, body: Callable[[Path], Graph]) -> Graph:
+    """The graph with the bodies of groups that come from files as `body` reads them; the same one if none differs."""
+    changed: dict[str, Group] = {}
+    for id, item in graph.nodes.items():
+        if isinstance(item, Group):
+            now = body(Path(graph.folder, item.path)) if item.path else reread(item.graph, body)
+            if now is not item.graph and now != item.graph:
+                changed[id] = replace(item, graph=now)
+    return replace(graph, nodes={**graph.nodes, **changed}) if changed else graph
+
+
+def check_depth(graph: Graph) -> None:
+    """Raise GraphError for groups nested deeper than a file may hold."""
+    todo = [(graph, 0)]
+    while todo:
+        body, depth = todo.pop()
+        for id, item in body.nodes.items():
+            if isinstance(item, Group):
+                if depth >= limits.MAX_GROUPS:
+                    most = limits.MAX_GROUPS
+                    raise GraphError(f"group '{id}' would be nested deeper than {most}: ungroup some groups")
+                todo.append((item.graph, depth + 1))
+
+
+def _put(outer: Graph, id: str, body: Graph, moves: Moves) -> Graph:
+    """`outer` with another body in group `id`."""
+    item = Group(replace(body, folder=outer.folder))
+    old, new = signature(outer.nodes[id]), signature(item)
+    gone = {name for name in (*old.inputs, *old.values) if name not in new.inputs and name not in new.values}
+    lost = old.outputs.keys() - new.outputs.keys()
+
+    def moved(port: Port, side: str) -> Port:
+        there = moves.get(Port(side, port.socket)) if port.node == id else None
+        return Port(id, there.socket) if there else port
+
+    ends = {end: moved(end, INPUTS if end.socket in old.inputs else CONTROLS) for end in outer.links}
+    links = {ends[end]: moved(start, OUTPUTS) for end, start in outer.links.items()}
+    links = {
+        end: start for end, start in links.items()
+        if not (end.node == id and end.socket in gone) and not (start.node == id and start.socket in lost)
+    }
+    controls = {name: replace(item, target=moved(item.target, CONTROLS)) for name, item in outer.controls.items()}
+    controls = {
+        name: item for name, item in controls.items() if item.target.node != id or item.target.socket not in gone
+    }
+    ui = outer.ui
+    for before, after in moves.items():
+        ui = moved_layout(ui, f"{id}.{before.socket}", f"{id}.{after.socket}")
+    return tidied(replace(outer, nodes={**outer.nodes, id: item}, links=links, controls=controls, ui=ui))

@@ -1,0 +1,21 @@
+"""Ids and names from what there is."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from pathlib import Path
+
+from ...graph.names import name_fault
+
+
+def stem(path: str | Path) -> str:
+    """A node id from the name of a file."""
+    name = "".join(letter if letter.isalnum() else "_" for letter in Path(path).stem).strip("_") or "file"
+    return name if name_fault(name, "node") is None else f"{name}_file"
+
+
+def spoken(keys: Collection[str]) -> str:
+    """Some elements for the label of a step: `blur`, `3 nodes`, `4 elements`."""
+    if len(keys) == 1:
+        return next(iter(keys))
+    return f"{len(keys)} {'elements' if any('.' in key for key in keys) else 'nodes'}"

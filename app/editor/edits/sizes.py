@@ -1,0 +1,30 @@
+"""How large elements are where nobody has measured them yet."""
+
+from __future__ import annotations
+
+from ...graph import Graph, signature
+from .elements import Sizes, entry
+
+WIDTH, HEADER, ROW = 180.0, 34.0, 22.0
+COMMENT = (200.0, 60.0)
+
+
+def size(graph: Graph, key: str, known: Sizes | None = None) -> tuple[float, float]:
+    """Width and height of an element: as measured, as saved, or a guess from its sockets."""
+    if known and key in known:
+        return known[key]
+    section = key.partition(".")[0]
+    facts = entry(graph, key)
+    if section == "dots" and key not in graph.nodes:
+        return 0.0, 0.0
+    if section in ("frames", "comments") and key not in graph.nodes:
+        width, height = facts.get("w"), facts.get("h")
+        return _number(width, COMMENT[0]), _number(height, COMMENT[1])
+    if key not in graph.nodes or facts.get("collapsed") is True:
+        return WIDTH, HEADER
+    face = signature(graph.nodes[key])
+    return WIDTH, HEADER + ROW * max(len(face.inputs) + len(face.outputs), 1)
+
+
+def _number(item: object, default: float) -> float:
+    return float(item) if isinstance(item, int | float) and not isinstance(item, bool) else default

@@ -1,0 +1,136 @@
+"""A group becomes what is in it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from ...errors import GraphError
+from ...graph import INPUTS, OUTPUTS, Graph, Port
+from ...graph.names import fresh_name
+from ...graph.notes import moved_keys
+from .elements import keys, with_sections, without_entries
+from .folding import group
+from .grouping import corner
+from .layout import positions
+from .merging import Merged, merged, moved_dots
+from .paths import rebased
+from .routes import routes, tidied
+
+
+def ungrouped(graph: Graph, id: str) -> tuple[Graph, tuple[str, ...]]:
+    """A graph where the content of a group stands in its place, and the keys of that content.
+
+    The picture stays the same: an input of the group that nothing feeds, but that has a file or default of its own,
+    becomes an input of the graph. Raises GraphError for a muted group, which shows something else than its content.
+    """
+    item = group(graph, id)
+    if id in graph.muted:
+        raise GraphError(f"group '{id}' is muted, so its content is not what it shows: unmute it first")
+    body = rebased(item.body(), graph.folder)
+    outer = _without(graph, id)
+    found = merged(outer, body, _places(graph, id, body))
+    opened = _Opened(graph, id, body, found)
+    links, hoisted = opened.links()
+    after = replace(
+        found.graph,
+        inputs={**graph.inputs, **{opened.hoisted[name]: body.inputs[name] for name in hoisted}},
+        links={**links, **found.graph.links},
+        controls=opened.controls(),
+    )
+    after = opened.with_layout(after)
+    return tidied(after), tuple(found.keys[key] for key in found.keys if found.keys[key] in set(keys(after)))
+
+
+class _Opened:
+    """A group `id` of `graph` whose `body` was merged into it."""
+
+    def __init__(self, graph: Graph, id: str, body: Graph, found: Merged) -> None:
+        self.graph, self.id, self.body, self.found = graph, id, body, found
+        taken, self.hoisted = set(graph.inputs), dict[str, str]()
+        for name in body.inputs:
+            self.hoisted[name] = fresh_name(name, taken)
+            taken.add(self.hoisted[name])
+
+    def links(self) -> tuple[dict[Port, Port], set[str]]:
+        """Links across the border of the group, joined, and inputs of it that the graph needs now."""
+        links: dict[Port, Port | None] = {}
+        for target, source in self.body.links.items():
+            if source.node == INPUTS and (end := self.found.port(target)):
+                links[end] = self._source(source)
+        for target, source in self.graph.links.items():
+            if target.node == self.id:
+                if (end := self._control(target.socket)) and end not in self.found.graph.links:
+                    links.setdefault(end, None if source.node == self.id else source)
+            elif source.node == self.id:
+                links[target] = self._source(self.body.links.get(Port(OUTPUTS, source.socket)))
+        known = {end: start for end, start in links.items() if start is not None}
+        outside = {Port(INPUTS, fresh): name for name, fresh in self.hoisted.items()}
+        return known, {outside[start] for start in known.values() if start in outside}
+
+    def controls(self) -> dict[str, object]:
+        """Controls of the graph, which turn what controls of the group turned."""
+        found = {}
+        for name, item in self.graph.controls.items():
+            target = self._control(item.target.socket) if item.target.node == self.id else item.target
+            if target is not None:
+                found[name] = replace(item, target=target)
+        return found
+
+    def with_layout(self, after: Graph) -> Graph:
+        """`after` with routes joined, and viewers on what the group showed."""
+        outer, inner, passed = routes(self.graph), routes(self.body), routes(after)
+        for target, source in self.body.links.items():
+            if source.node == INPUTS and (end := self.found.port(target)):
+                dots = outer.get(f"{self.id}.{source.socket}", ())
+                passed[str(end)] = (*dots, *moved_dots(self.found, inner.get(str(target), ())))
+        for target, source in self.graph.links.items():
+            if source.node == self.id != target.node:
+                dots = moved_dots(self.found, inner.get(f"{OUTPUTS}.{source.socket}", ()))
+                passed[str(target)] = (*dots, *outer.get(str(target), ()))
+        ends = {str(end) for end in after.links}
+        passed = {target: dots for target, dots in passed.items() if dots and target in ends}
+        return with_sections(after, {"routes": passed, "viewers": self._viewers()})
+
+    def _viewers(self) -> dict[str, object]:
+        known, found = self.graph.ui.get("viewers"), dict[str, object]()
+        for number, text in known.items() if isinstance(known, Mapping) else ():
+            node, _, socket = str(text).partition(".")
+            port = self._source(self.body.links.get(Port(OUTPUTS, socket))) if node == self.id else None
+            if node != self.id:
+                found[number] = text
+            elif port is not None:
+                found[number] = str(port)
+        return found
+
+    def _source(self, port: Port | None) -> Port | None:
+        """What a source inside the group is, seen from the graph; None if there is nothing."""
+        if port is None or port.node != INPUTS:
+            return port and self.found.port(port)
+        outside = self.graph.links.get(Port(self.id, port.socket))
+        if outside is not None:
+            return outside if outside.node != self.id else None
+        own = self.body.inputs.get(port.socket)
+        return Port(INPUTS, self.hoisted[port.socket]) if own and (own.file or own.default is not None) else None
+
+    def _control(self, name: str) -> Port | None:
+        """What a control of the group turns, seen from the graph."""
+        known = name in self.body.controls and name not in self.body.inputs
+        return self.found.port(self.body.controls[name].target) if known else None
+
+
+def _without(graph: Graph, id: str) -> Graph:
+    """The graph without a group, and without the links to it."""
+    return replace(
+        without_entries(graph, [id]), nodes={name: item for name, item in graph.nodes.items() if name != id},
+        links={end: start for end, start in graph.links.items() if id not in (end.node, start.node)},
+        extra=moved_keys(graph.extra, f"nodes.{id}"),
+    )
+
+
+def _places(graph: Graph, id: str, body: Graph) -> dict[str, tuple[float, float]]:
+    """Where the content goes: around the place of the group, as it lay inside."""
+    spots = positions(body)
+    inner = corner(body, list(body.nodes), spots)
+    here = positions(graph)[id]
+    return {key: (round(x - inner[0] + here[0], 2), round(y - inner[1] + here[1], 2)) for key, (x, y) in spots.items()}

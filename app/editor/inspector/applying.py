@@ -1,0 +1,99 @@
+"""What an edit of a field does to the values of one or several nodes. Nothing here draws."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from ....nodes import Plain, Value
+from ...errors import GraphError, UsageError
+from ...graph import Graph, Port, Unknown, signature
+from .fields import Edit
+from .numbers import typed
+
+if TYPE_CHECKING:
+    from ..session import Session
+
+Ports = tuple[Port, ...]
+
+
+def apply(session: Session, ports: Ports, declaration: Value, edit: Edit) -> None:
+    """Put an edit into the value of every port, as one step; a number typed relative to the old one counts for each."""
+    if len(ports) == 1:
+        session.set(ports[0], edit.value, merge=edit.merge)
+        return
+    graph = session.graph
+    for port in ports:
+        graph = graph.set(port, _for_one(graph, port, declaration, edit))
+    session.edit(f"Set {declaration.name} of {len(ports)} nodes", graph, merge=edit.merge)
+
+
+def reset(session: Session, ports: Ports) -> None:
+    """Set the values of all ports back to their defaults, as one step."""
+    if len(ports) == 1:
+        session.reset(ports[0])
+        return
+    graph = session.graph
+    for port in ports:
+        graph = graph.set(port, default_of(graph, port))
+    session.edit(f"Reset {ports[0].socket} of {len(ports)} nodes", graph)
+
+
+def default_of(graph: Graph, port: Port) -> Plain:
+    """What a value is in a new node."""
+    return signature(graph.node(port.node)).values[port.socket].default
+
+
+def finished(id: str, edit: Edit, value: Plain) -> tuple[str, Edit] | None:
+    """The field and the whole value after something was typed in one of its parts (`node.value#2`)."""
+    base, hash, part = id.partition("#")
+    if not hash:
+        return base, edit
+    if not isinstance(value, tuple) or not part.isdigit() or not isinstance(edit.value, int | float):
+        return None
+    at = int(part)
+    return base, replace(edit, value=(*value[:at], edit.value, *value[at + 1 :]))
+
+
+def common(graph: Graph, ids: tuple[str, ...]) -> tuple[Value, ...]:
+    """The values that all nodes have under one name and of one type, as the first declares them."""
+    faces = [signature(item) for id in ids if not isinstance(item := graph.nodes[id], Unknown)]
+    if len(faces) < len(ids) or not faces:
+        return ()
+    return tuple(
+        value for name, value in faces[0].values.items()
+        if all(name in face.values and _alike(face.values[name], value) for face in faces[1:])
+    )
+
+
+def as_text(value: Plain) -> str:
+    """A value for the clipboard."""
+    return json.dumps(value)
+
+
+def from_text(text: str) -> Plain:
+    """A value from the clipboard. Raises UsageError."""
+    try:
+        found = json.loads(text)
+    except ValueError:
+        return text.strip()
+    if isinstance(found, list):
+        found = tuple(found)
+    if not isinstance(found, int | float | bool | str | tuple):
+        raise UsageError("the clipboard holds no value: copy one first")
+    return found
+
+
+def _for_one(graph: Graph, port: Port, declaration: Value, edit: Edit) -> Plain:
+    old = graph.value(port)
+    if not edit.text or declaration.type not in ("float", "int") or not isinstance(old, int | float):
+        return edit.value
+    try:
+        return typed(edit.text, old, declaration)
+    except UsageError as error:
+        raise GraphError(f"{port}: {error}") from None
+
+
+def _alike(first: Value, second: Value) -> bool:
+    return (first.type, first.length, first.choices) == (second.type, second.length, second.choices)

@@ -1,0 +1,137 @@
+"""Reading what was typed into a number field: arithmetic, units, and changes relative to the old number."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+
+from ....nodes import Unit
+from ...errors import UsageError
+
+LONGEST = 200
+"""Characters that an expression may have."""
+
+_TOKEN = re.compile(r"\s*(?:(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?)\s*([a-zA-Z°%]*)|(\*\*|[-+*/^()])|(\S))")
+_RELATIVE = re.compile(r"\s*(?:([-+*/])=|(\+|\*\*|\*|/))")
+_UNITS: Mapping[str, tuple[Unit, float]] = MappingProxyType({
+    "px": ("px", 1.0), "deg": ("deg", 1.0), "°": ("deg", 1.0), "rad": ("deg", 180.0 / math.pi), "turn": ("deg", 360.0),
+    "ev": ("EV", 1.0), "stops": ("EV", 1.0), "stop": ("EV", 1.0), "s": ("s", 1.0), "ms": ("s", 1e-3),
+    "h": ("height", 1.0), "height": ("height", 1.0), "x": ("ratio", 1.0),
+})
+_WORDS: Mapping[str, str] = MappingProxyType({
+    "px": "pixels (px)", "height": "parts of the height (h)", "deg": "degrees (deg)", "EV": "stops (EV)",
+    "ratio": "a plain factor", "count": "whole things", "s": "seconds (s)", "scene": "scene units",
+})
+_FAULTS = (ZeroDivisionError, OverflowError)
+
+
+def evaluate(text: str, old: float = 0.0, unit: Unit | None = None) -> float:
+    """The number that `text` means: `0.5+1`, `(2-3)*4**2`, `30deg`, `50%`; `+1`, `*2`, `/3` and `-=1` change `old`.
+
+    A minus sign at the beginning makes a negative number. Nothing but arithmetic is understood.
+
+    Raises:
+        UsageError: what is wrong with it.
+    """
+    if len(text) > LONGEST:
+        raise UsageError(f"this is too long for a number: use at most {LONGEST} characters")
+    if not text.strip():
+        raise UsageError("type a number")
+    start: list[float | str] = []
+    if relative := _RELATIVE.match(text):
+        start, text = [old, relative[1] or relative[2]], text[relative.end() :]
+    reader = _Reader([*start, *_tokens(text, unit)])
+    try:
+        number = reader.sum()
+    except _FAULTS as error:
+        what = "divides by zero" if isinstance(error, ZeroDivisionError) else "is too large"
+        raise UsageError(f"this {what}") from None
+    if reader.next is not None:
+        raise UsageError(f"'{reader.next}' is not expected here" if reader.next != ")" else "a '(' is missing")
+    if not math.isfinite(number):
+        raise UsageError("this is too large")
+    return number
+
+
+def _tokens(text: str, unit: Unit | None) -> list[float | str]:
+    found: list[float | str] = []
+    for match in _TOKEN.finditer(text.rstrip()):
+        number, word, operator, other = match.groups()
+        if other is not None:
+            raise UsageError(f"'{other}' is no part of a number: use digits, + - * / ** and ( )")
+        found.append(operator if operator else float(number) * _factor(word or "", unit))
+    return found
+
+
+def _factor(word: str, unit: Unit | None) -> float:
+    """What a number followed by that word is multiplied with."""
+    if not word:
+        return 1.0
+    if word == "%":
+        if unit in (None, "ratio", "height"):
+            return 0.01
+        raise UsageError(f"percent do not fit: this counts {_WORDS[unit]}")
+    if word.casefold() not in _UNITS:
+        raise UsageError(f"'{word}' is no unit known here")
+    wanted, factor = _UNITS[word.casefold()]
+    if wanted != unit:
+        raise UsageError(f"'{word}' does not fit: this counts {_WORDS[unit] if unit else 'plain numbers'}")
+    return factor
+
+
+class _Reader:
+    """Recursive descent over tokens; powers bind tighter than signs, and to the right, as in Python."""
+
+    def __init__(self, tokens: list[float | str]) -> None:
+        self._tokens = tokens
+        self._at = 0
+
+    @property
+    def next(self) -> float | str | None:
+        return self._tokens[self._at] if self._at < len(self._tokens) else None
+
+    def sum(self) -> float:
+        return self._chain(self._product, {"+": lambda a, b: a + b, "-": lambda a, b: a - b})
+
+    def _product(self) -> float:
+        return self._chain(self._signed, {"*": lambda a, b: a * b, "/": lambda a, b: a / b})
+
+    def _chain(self, part: Callable[[], float], operators: Mapping[str, Callable[[float, float], float]]) -> float:
+        number = part()
+        while isinstance(operator := self.next, str) and operator in operators:
+            self._at += 1
+            number = operators[operator](number, part())
+        return number
+
+    def _signed(self) -> float:
+        if self.next in ("+", "-"):
+            sign = -1.0 if self.next == "-" else 1.0
+            self._at += 1
+            return sign * self._signed()
+        return self._power()
+
+    def _power(self) -> float:
+        base = self._atom()
+        if self.next not in ("**", "^"):
+            return base
+        self._at += 1
+        exponent = self._signed()
+        try:
+            return math.pow(base, exponent)
+        except ValueError:
+            raise UsageError(f"{base:g} ** {exponent:g} is no number") from None
+
+    def _atom(self) -> float:
+        token = self.next
+        self._at += 1
+        if isinstance(token, float | int):
+            return float(token)
+        if token != "(":
+            raise UsageError(f"a number is missing {'at the end' if token is None else f'before {token!r}'}")
+        number = self.sum()
+        if self.next != ")":
+            raise UsageError("a ')' is missing")
+        self._at += 1
+        return number

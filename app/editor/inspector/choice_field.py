@@ -1,0 +1,136 @@
+"""Choices and switches."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from imgui_bundle import imgui
+
+from ....nodes import Plain, Value
+from ..theme.style import mix, u32
+from .drawing import background, place, write
+from .fields import Edit, Fields
+from .number_field import NO_VALUE
+
+FILTERED = 8
+"""From this many choices on there is a field to find one in."""
+
+
+def choice_field(
+    fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False
+) -> Edit | None:
+    """One of the declared choices: a list to pick from, typing finds, Ctrl and the wheel go through them."""
+    assert isinstance(value, str)
+    found = choose(fields, id, value, declaration.choices, width, label=label, mixed=mixed)
+    return None if found is None else Edit(declaration.choices[found])
+
+
+def choose(
+    fields: Fields, id: str, now: str, choices: Sequence[str], width: float, *, label: str = "", mixed: bool = False
+) -> int | None:
+    """A list of texts; the index of what was chosen."""
+    rect, palette = place(width), fields.palette
+    pressed = imgui.invisible_button(f"##{id}", (rect[2] - rect[0], rect[3] - rect[1]))
+    hovered = imgui.is_item_hovered()
+    wheel = _wheeled(now, choices) if hovered else None
+    background(palette, rect, hovered=hovered, active=imgui.is_item_active())
+    pad, arrow = imgui.get_style().frame_padding.x, imgui.get_font_size() * 0.8
+    inner = (rect[0] + pad, rect[1], rect[2] - pad - arrow, rect[3])
+    text = NO_VALUE if mixed else now
+    if label:
+        used = write((inner[0], inner[1], inner[0] + (inner[2] - inner[0]) * 0.45, inner[3]), label, palette.dim)
+        write((inner[0] + used + pad, inner[1], inner[2], inner[3]), text, palette.text, align=1.0)
+    else:
+        write(inner, text, palette.text if mixed or now in choices else palette.error)
+    _arrow(rect, palette.dim)
+    if pressed:
+        fields.filter = ""
+        imgui.open_popup(f"choices {id}")
+    return _popup(fields, id, now, choices, rect) if wheel is None else wheel
+
+
+def _wheeled(now: str, choices: Sequence[str]) -> int | None:
+    io = imgui.get_io()
+    if not io.key_ctrl or not io.mouse_wheel or now not in choices:
+        return None
+    index = choices.index(now) - (1 if io.mouse_wheel > 0 else -1)
+    return index if 0 <= index < len(choices) else None
+
+
+def _popup(
+    fields: Fields, id: str, now: str, choices: Sequence[str], rect: tuple[float, float, float, float]
+) -> int | None:
+    line = imgui.get_text_line_height_with_spacing()
+    imgui.set_next_window_pos((rect[0], rect[3]), imgui.Cond_.appearing)
+    imgui.set_next_window_size_constraints((rect[2] - rect[0], 0.0), (line * 40, line * 18))
+    if not imgui.begin_popup(f"choices {id}"):
+        return None
+    found, word = None, ""
+    appearing = imgui.is_window_appearing()
+    if len(choices) >= FILTERED:
+        if appearing:
+            imgui.set_keyboard_focus_here()
+        imgui.set_next_item_width(max(rect[2] - rect[0] - 2 * imgui.get_style().window_padding.x, line * 6))
+        _, fields.filter = imgui.input_text_with_hint("##find", "Type to find", fields.filter)
+        word = fields.filter.strip().casefold()
+    else:
+        fields.filter = _typed_ahead(fields.filter)
+        word = fields.filter.casefold()
+    matches = [index for index, choice in enumerate(choices) if word in choice.casefold()] or list(range(len(choices)))
+    entered = imgui.is_key_pressed(imgui.Key.enter) or imgui.is_key_pressed(imgui.Key.keypad_enter)
+    for index in matches:
+        chosen = choices[index] == now
+        if imgui.selectable(f"{choices[index] or ' '}##{index}", chosen or (bool(word) and index == matches[0]))[0]:
+            found = index
+        if chosen and appearing:
+            imgui.set_scroll_here_y()
+            if len(choices) < FILTERED:
+                imgui.set_item_default_focus()
+    if entered and word and found is None:
+        found = matches[0]
+    if found is not None or imgui.is_key_pressed(imgui.Key.escape):
+        imgui.close_current_popup()
+    imgui.end_popup()
+    return found
+
+
+def _typed_ahead(word: str) -> str:
+    """What was typed over a short list so far."""
+    if imgui.is_key_pressed(imgui.Key.backspace):
+        return word[:-1]
+    letters = "abcdefghijklmnopqrstuvwxyz"
+    pressed = [letter for letter in letters if imgui.is_key_pressed(getattr(imgui.Key, letter), False)]
+    return word + "".join(pressed) if not imgui.get_io().key_ctrl else word
+
+
+def _arrow(rect: tuple[float, float, float, float], color: tuple[float, float, float]) -> None:
+    size = (rect[3] - rect[1]) * 0.14
+    x, y = rect[2] - imgui.get_style().frame_padding.x - size * 1.5, (rect[1] + rect[3]) * 0.5
+    imgui.get_window_draw_list().add_triangle_filled(
+        (x - size * 1.4, y - size * 0.7), (x + size * 1.4, y - size * 0.7), (x, y + size), u32(color)
+    )
+
+
+def toggle_field(
+    fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False
+) -> Edit | None:
+    """A switch."""
+    rect, palette = place(width), fields.palette
+    pressed = imgui.invisible_button(f"##{id}", (rect[2] - rect[0], rect[3] - rect[1]))
+    hovered, on = imgui.is_item_hovered(), bool(value) and not mixed
+    height = (rect[3] - rect[1]) * 0.62
+    long, middle = height * 1.8, (rect[1] + rect[3]) * 0.5
+    lines = imgui.get_window_draw_list()
+    left = rect[2] - long if label else rect[0]
+    track = mix(palette.accent, palette.text, 0.15) if on and hovered else palette.accent if on else (
+        palette.hover if hovered else palette.raised
+    )
+    lines.add_rect_filled((left, middle - height / 2), (left + long, middle + height / 2), u32(track), height / 2)
+    knob = left + (0.5 if mixed else 1.0 - height / 2 / long if on else height / 2 / long) * long
+    lines.add_circle_filled((knob, middle), height * 0.36, u32(palette.on_accent if on else palette.text))
+    if label:
+        write((rect[0], rect[1], left, rect[3]), label, palette.dim)
+    else:
+        text = NO_VALUE if mixed else "On" if value else "Off"
+        write((left + long + imgui.get_style().item_inner_spacing.x, rect[1], rect[2], rect[3]), text, palette.dim)
+    return Edit(not value) if pressed else None

@@ -1,0 +1,177 @@
+"""Scene-linear colors: a swatch, its numbers, and a picker that works on what the display shows."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import imgui
+
+from ....nodes import Plain, Value
+from ...errors import UsageError
+from ..theme.palette import RGB
+from ..theme.style import u32
+from .colors import RGBA, brightened, dimmed, from_hexadecimal, hexadecimal, intensity, picked, swatch
+from .drawing import Rect, place, write
+from .fields import Edit, Fields
+from .number_field import number_field, row_of_numbers
+from .text_field import text_field
+
+_LIGHT = Value("light", "color", (0.0,) * 4, 4, low=0.0, high=1.0)
+_STOPS = Value("stops", "float", 0.0, low=0.0, high=8.0, minimum=0.0, maximum=16.0, unit="EV")
+_TEXT = Value("hex", "text", "")
+_NAMES = ("R", "G", "B", "A")
+
+
+def color_field(
+    fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False
+) -> Edit | None:
+    """A swatch that opens the picker; the numbers beside it where there is room. All numbers are scene-linear."""
+    color = _rgba(value)
+    numbers = not label and width > imgui.get_font_size() * 10.5
+    side = imgui.get_frame_height() * 1.2 if numbers else width
+    rect = place(side)
+    pressed = imgui.invisible_button(f"##{id}", (rect[2] - rect[0], rect[3] - rect[1]))
+    draw_swatch(fields, rect, color, imgui.is_item_hovered())
+    if label:
+        _name_on(fields, rect, color, label)
+    if pressed:
+        fields.stops = intensity(color)
+        imgui.open_popup(f"picker {id}")
+    found = None
+    if numbers:
+        gap = imgui.get_style().item_inner_spacing.x
+        imgui.same_line(0.0, gap)
+        found = row_of_numbers(fields, id, color, _LIGHT, width - side - gap, _NAMES, mixed)
+    imgui.set_next_window_pos((rect[0], rect[3]), imgui.Cond_.appearing)
+    if imgui.begin_popup(f"picker {id}"):
+        found = color_picker(fields, f"{id} picker", color) or found
+        imgui.end_popup()
+    return found
+
+
+def color_picker(fields: Fields, id: str, color: RGBA) -> Edit | None:
+    """Wheel and triangle of display colors, intensity, linear numbers, hexadecimal digits, copy, paste, eyedropper."""
+    width = imgui.get_font_size() * 15
+    found = _wheel(fields, id, color, width)
+    _label("Intensity")
+    edit = number_field(fields, f"{id} stops", fields.stops, _STOPS, imgui.get_content_region_avail().x)
+    if edit and isinstance(edit.value, int | float):
+        found = replace(edit, value=brightened(color, edit.value - fields.stops))
+        fields.stops = float(edit.value)
+    _label("Linear")
+    numbers = row_of_numbers(fields, f"{id} light", color, _LIGHT, imgui.get_content_region_avail().x, _NAMES)
+    if numbers:
+        fields.stops = intensity(_rgba(numbers.value))
+        found = numbers
+    _label("sRGB hex")
+    text = text_field(fields, f"{id} hex", hexadecimal(color), _TEXT, imgui.get_content_region_avail().x * 0.5)
+    if text:
+        found = _from_text(fields, str(text.value), color) or found
+    return _buttons(fields, id, color) or found
+
+
+def draw_swatch(fields: Fields, rect: Rect, color: RGBA, hovered: bool = False) -> None:
+    """The color as a display shows it: opaque at the left, over a checkerboard at the right."""
+    lines, palette = imgui.get_window_draw_list(), fields.palette
+    rounding = imgui.get_style().frame_rounding
+    opaque, alpha = u32(swatch(color)), min(max(color[3], 0.0), 1.0)
+    lines.add_rect_filled(rect[:2], rect[2:], opaque, rounding)
+    if alpha < 1.0:
+        middle = (rect[0] + rect[2]) * 0.5
+        cell = (rect[3] - rect[1]) / 3.0
+        lines.push_clip_rect((middle, rect[1]), rect[2:], True)
+        lines.add_rect_filled(rect[:2], rect[2:], u32(palette.raised), rounding)
+        for row in range(3):
+            for column in range(int((rect[2] - middle) / cell) + 1):
+                if (row + column) % 2:
+                    x, y = middle + column * cell, rect[1] + row * cell
+                    lines.add_rect_filled((x, y), (x + cell, y + cell), u32(palette.dim))
+        lines.add_rect_filled(rect[:2], rect[2:], u32(swatch(color), alpha), rounding)
+        lines.pop_clip_rect()
+    if max(color[:3]) > 1.0:
+        _sun(fields, rect, color)
+    lines.add_rect(rect[:2], rect[2:], u32(palette.accent if hovered else palette.border), rounding)
+
+
+def _wheel(fields: Fields, id: str, color: RGBA, width: float) -> Edit | None:
+    flag = imgui.ColorEditFlags_
+    flags = sum(int(part) for part in (
+        flag.picker_hue_wheel, flag.no_inputs, flag.no_side_preview, flag.no_label, flag.alpha_bar, flag.no_options,
+        flag.float, flag.no_tooltip,
+    ))
+    shown = dimmed(color, fields.stops)
+    imgui.set_next_item_width(width)
+    changed, made = imgui.color_picker4(f"##{id} wheel", [*shown, min(max(color[3], 0.0), 1.0)], flags)
+    if imgui.is_item_activated():
+        fields.start_gesture()
+    if not changed:
+        return None
+    return Edit(picked((made[0], made[1], made[2]), fields.stops, made[3]), fields.merge)
+
+
+def _buttons(fields: Fields, id: str, color: RGBA) -> Edit | None:
+    found = None
+    imgui.same_line()
+    if imgui.button(f"{icons.ICON_FA_COPY}##{id}"):
+        imgui.set_clipboard_text(" ".join(f"{part:g}" for part in color))
+    imgui.set_item_tooltip("Copy the four linear numbers")
+    imgui.same_line()
+    if imgui.button(f"{icons.ICON_FA_PASTE}##{id}"):
+        found = _from_text(fields, imgui.get_clipboard_text(), color)
+    imgui.set_item_tooltip("Paste linear numbers, or hexadecimal digits")
+    imgui.same_line()
+    if imgui.button(f"{icons.ICON_FA_EYE_DROPPER}##{id}"):
+        fields.eyedropper = id.removesuffix(" picker")
+        imgui.close_current_popup()
+    imgui.set_item_tooltip("Pick the color from the viewer")
+    return found
+
+
+def _from_text(fields: Fields, text: str, color: RGBA) -> Edit | None:
+    """A color that was pasted or typed; anything else changes nothing."""
+    parts = text.replace(",", " ").split()
+    try:
+        numbers = [float(part) for part in parts]
+    except ValueError:
+        numbers = []
+    if len(numbers) in (3, 4):
+        made = (numbers[0], numbers[1], numbers[2], numbers[3] if len(numbers) == 4 else color[3])
+    else:
+        try:
+            made = from_hexadecimal(text, color[3])
+        except UsageError:
+            return None
+    fields.stops = intensity(made)
+    return Edit(made)
+
+
+def _label(text: str) -> None:
+    imgui.align_text_to_frame_padding()
+    imgui.text_disabled(text)
+    imgui.same_line(imgui.get_font_size() * 5.5)
+
+
+def _name_on(fields: Fields, rect: Rect, color: RGBA, label: str) -> None:
+    pad = imgui.get_style().frame_padding.x
+    below, palette = _luma(swatch(color)), fields.palette
+    ink = max((palette.text, palette.panel), key=lambda ink: abs(_luma(ink) - below))
+    write((rect[0] + pad, rect[1], rect[2] - pad, rect[3]), label, ink)
+
+
+def _luma(color: RGB) -> float:
+    return 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2]
+
+
+def _sun(fields: Fields, rect: Rect, color: RGBA) -> None:
+    """A corner that says: brighter than can be shown."""
+    size = (rect[3] - rect[1]) * 0.35
+    imgui.get_window_draw_list().add_triangle_filled(
+        (rect[0], rect[1]), (rect[0] + size, rect[1]), (rect[0], rect[1] + size), u32(fields.palette.accent)
+    )
+
+
+def _rgba(value: Plain) -> RGBA:
+    assert isinstance(value, tuple)
+    red, green, blue, alpha = value
+    return red, green, blue, alpha

@@ -1,0 +1,143 @@
+"""Inputs and outputs of the graph."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import imgui
+
+from ....nodes import Kind, Plain, Value
+from ...graph import INPUTS, Input, Output, Port
+from ...media import views
+from .choice_field import choose
+from .color_field import color_field
+from .fields import Edit, Fields
+from .file_field import FileField
+from .heading import faults, heading, name_field
+from .number_field import number_field, row_of_numbers
+from .text_field import text_field
+from .value_rows import link_chip
+
+if TYPE_CHECKING:
+    from .rows import Rows
+
+Then = Callable[[str], object]
+
+_TEXT = Value("text", "text", "")
+_NUMBER = Value("default", "float", 0.0, low=0.0, high=1.0)
+_AXES = ("x", "y", "z", "w")
+DEFAULT_VIEW = "viewer's choice"
+
+
+class EndView:
+    """The face of an input or output."""
+
+    def __init__(self, fields: Fields, files: FileField) -> None:
+        self._fields, self._files = fields, files
+
+    def draw(self, rows: Rows, port: Port) -> None:
+        """The end that `port` names."""
+        graph = rows.editor.session.graph
+        end = graph.inputs[port.socket] if port.node == INPUTS else graph.outputs[port.socket]
+        width = str(end.width) if end.kind is Kind.VECTOR else ""
+        word = "Input" if isinstance(end, Input) else "Output"
+        heading(rows, f"{end.kind}{width} {word}", rows.palette.kinds[end.kind])
+        session, key = rows.editor.session, str(port)
+        name_field(rows, self._fields, key, port.socket, lambda new: session.rename_end(key, new))
+        faults(rows, key)
+        if isinstance(end, Input):
+            self._input(rows, port, end)
+        else:
+            self._output(rows, port, end)
+
+    # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _input(self, rows: Rows, port: Port, end: Input) -> None:
+        editor, name, key = rows.editor, port.socket, str(port)
+        session = editor.session
+        bound = session.bindings.get(name, "") if not session.place else ""
+        if bound:
+            rows.name(f"{key} bound", "bound to", tip="A file that was given for this window only; it is not saved")
+            tip = f"{bound}\nClick to use the file below"
+            if rows.chip(bound, f"{key} bound", rows.field(), rows.palette.good, tip):
+                editor.attempt(lambda: session.bind(name, None))
+        rows.name(f"{key} file", "file", tip="What comes in unless something else is linked or bound")
+        edit = self._files.path(
+            rows, f"{key} file", end.file, rows.field(), lambda path: session.set_input(name, file=path)
+        )
+        if edit:
+            editor.attempt(lambda: session.set_input(name, file=str(edit.value)))
+        if not bound:
+            self._files.about(rows, end.file, end.layer)
+        rows.name(f"{key} layer", "layer", tip="The layer of that file")
+        layer = self._files.layer(rows, f"{key} layer", end.file, end.layer, rows.field())
+        if layer:
+            editor.attempt(lambda: session.set_input(name, layer=str(layer.value)))
+        rows.name(f"{key} default", "default", tip="What comes in where nothing else does")
+        found = self._default(rows, f"{key} default", end, rows.field())
+        if found:
+            editor.attempt(lambda: session.set_input(name, default=found.value, merge=found.merge))
+        self._text(rows, f"{key} doc", "doc", end.doc, lambda doc: session.set_input(name, doc=doc), "What it is for")
+
+    def _default(self, rows: Rows, key: str, end: Input, width: float) -> Edit | None:
+        """The default, with a button that takes it away; or a button that makes one."""
+        session, name = rows.editor.session, key.removeprefix(f"{INPUTS}.").removesuffix(" default")
+        channels = end.socket().channels
+        if end.default is None:
+            if imgui.button(f"None: set one##{key}", (width, 0.0)):
+                start: Plain = 0.0 if channels == 1 else (0.0,) * channels
+                rows.editor.attempt(lambda: session.set_input(name, default=start))
+            return None
+        side = imgui.get_frame_height()
+        color = end.kind in (Kind.IMAGE, Kind.COLOR)
+        if isinstance(end.default, tuple):
+            edit = color_field(self._fields, key, end.default, _NUMBER, width - side) if color else row_of_numbers(
+                self._fields, key, end.default, _NUMBER, width - side, _AXES[:channels]
+            )
+        else:
+            edit = number_field(self._fields, key, float(end.default), _NUMBER, width - side)
+        imgui.same_line(0.0, 0.0)
+        if rows.icon(icons.ICON_FA_XMARK, f"remove {key}", "No default"):
+            rows.editor.attempt(lambda: session.set_input(name, default=None))
+        return edit
+
+    def _output(self, rows: Rows, port: Port, end: Output) -> None:
+        editor, name, key = rows.editor, port.socket, str(port)
+        session = editor.session
+        rows.name(key, "from", tip="What leaves the graph here", color=rows.palette.kinds[end.kind])
+        source, width = session.linked(port), rows.field()
+        if source is not None:
+            link_chip(rows, port, source, width)
+        else:
+            imgui.align_text_to_frame_padding()
+            imgui.text_disabled("not linked")
+        self._text(
+            rows, f"{key} layer", "layer", end.layer, lambda layer: session.set_output(name, layer=layer),
+            "What it is called in a file of several layers", hint=name,
+        )
+        if end.kind is Kind.IMAGE:
+            rows.name(f"{key} view", "view", tip="How to show it unless someone chooses")
+            known = ("", *views())
+            index = choose(
+                self._fields, f"{key} view", end.view or DEFAULT_VIEW, (DEFAULT_VIEW, *known[1:]), rows.field()
+            )
+            rows.record(f"{key} view")
+            if index is not None:
+                editor.attempt(lambda: session.set_output(name, view=known[index]))
+
+    def _text(self, rows: Rows, key: str, label: str, text: str, then: Then, tip: str, hint: str = "") -> None:
+        draw_text(rows, self._fields, key, label, text, then, tip, hint)
+
+
+def draw_text(
+    rows: Rows, fields: Fields, key: str, label: str, text: str, then: Then, tip: str = "", hint: str = "",
+    lines: int = 0,
+) -> None:
+    """A row with a text."""
+    rows.name(key, label, tip=tip)
+    edit = text_field(fields, key, text, _TEXT, rows.field(), hint=hint, lines=lines)
+    rows.record(key)
+    if edit:
+        rows.editor.attempt(lambda: then(str(edit.value)))

@@ -1,0 +1,116 @@
+"""Files and their layers: path with a button to browse, what is in the file, layers with small pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import imgui
+
+from ....nodes import Value
+from ...media import ImageInfo
+from ..dialogs import Browse
+from ..panels.textures import Textures
+from .drawing import item_rect, place, write
+from .fields import Edit, Fields
+from .layers import HEIGHT, WIDTH, Layers, described
+from .rows import union
+from .text_field import text_field
+
+if TYPE_CHECKING:
+    from .rows import Rows
+
+_TEXT = Value("path", "text", "")
+FIRST = "first color layer"
+
+
+class FileField:
+    """The fields of files, and what is known of the files."""
+
+    def __init__(self, fields: Fields) -> None:
+        self.fields = fields
+        self.known = Layers()
+        self._textures = Textures()
+
+    def close(self) -> None:
+        """End what runs, give textures back."""
+        self.known.close()
+        self._textures.clear()
+
+    def path(self, rows: Rows, key: str, value: str, width: float, then: Callable[[str], object]) -> Edit | None:
+        """The path, red if nothing is there, and a button that asks for one."""
+        side = imgui.get_frame_height()
+        missing = bool(value) and isinstance(self.known.header(self._full(rows, value)), str)
+        edit = text_field(
+            self.fields, key, value, _TEXT, width - side - rows.gap * 0.5, hint="no file", fault=missing,
+            elide_left=True,
+        )
+        first = item_rect()
+        rows.tooltip(str(self._full(rows, value)) if value else "")
+        imgui.same_line(0.0, rows.gap * 0.5)
+        if rows.icon(icons.ICON_FA_FOLDER_OPEN, f"browse {key}", "Choose a file"):
+            editor = rows.editor
+            editor.dialogs.browse = Browse(
+                "Choose an Image", "image", lambda path: editor.attempt(lambda: then(editor.session.relative(path)))
+            )
+        rows.editor.places[f"field {key}"] = union(first, item_rect())
+        return edit
+
+    def about(self, rows: Rows, value: str, layer: str) -> None:
+        """One line on what is in the file, or a sentence on why nothing is."""
+        if not value:
+            return
+        header = self.known.header(self._full(rows, value))
+        if isinstance(header, ImageInfo):
+            rows.field_note(described(header, layer))
+        elif header is None:
+            rows.field_note("reading…")
+        else:
+            rows.field_note(header.removeprefix(f"{self._full(rows, value)}: "), rows.palette.error)
+
+    def layer(self, rows: Rows, key: str, file: str, value: str, width: float) -> Edit | None:
+        """The layer: a list of those in the file, or plain text while the file cannot be read."""
+        path = self._full(rows, file)
+        header = self.known.header(path) if file else "no file"
+        if not isinstance(header, ImageInfo):
+            return text_field(self.fields, key, value, _TEXT, width, hint=FIRST)
+        imgui.set_next_item_width(width)
+        found = None
+        names = [layer.name for layer in header.layers]
+        imgui.push_style_color(
+            imgui.Col_.text, imgui.get_color_u32((*(rows.palette.text if value else rows.palette.dim), 1.0))
+        )
+        opened = imgui.begin_combo(f"##{key}", value or FIRST, int(imgui.ComboFlags_.height_large))
+        imgui.pop_style_color()
+        first = item_rect()
+        if opened:
+            if imgui.selectable(FIRST, not value)[0]:
+                found = Edit("")
+            for name in names:
+                if self._choice(rows, path, name, name == value):
+                    found = Edit(name)
+            imgui.end_combo()
+        rows.editor.places[f"field {key}"] = first
+        return found
+
+    def _choice(self, rows: Rows, path: Path, name: str, chosen: bool) -> bool:
+        """A layer in the list, with its picture as soon as that is ready."""
+        unit = imgui.get_font_size() / 16.0 * 0.66
+        size = (WIDTH * unit, HEIGHT * unit)
+        rect = place(max(imgui.get_content_region_avail().x, size[0] + imgui.get_font_size() * 7), size[1])
+        pressed = imgui.selectable(f"##layer {name}", chosen, 0, (0.0, size[1]))[0]
+        lines = imgui.get_window_draw_list()
+        pixels = self.known.picture(path, name)
+        if pixels is not None:
+            texture = self._textures.get((str(path), self.known.version(path), name), pixels)
+            scale = min(size[0] / pixels.shape[1], size[1] / pixels.shape[0])
+            wide, high = pixels.shape[1] * scale, pixels.shape[0] * scale
+            left, top = rect[0] + (size[0] - wide) / 2, rect[1] + (size[1] - high) / 2
+            lines.add_image(texture, (left, top), (left + wide, top + high))
+        write((rect[0] + size[0] + rows.gap * 1.5, rect[1], rect[2], rect[3]), name, rows.palette.text)
+        return pressed
+
+    def _full(self, rows: Rows, value: str) -> Path:
+        return Path(rows.editor.session.graph.folder, value)

@@ -1,0 +1,198 @@
+"""The graph itself: size, ends and controls. Also frames and comments."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import imgui
+
+from ....nodes import Kind, Value
+from ...graph import Port, Unknown, signature
+from ...graph.names import fresh_name
+from ..edits.elements import entry
+from ..theme.style import ui_scale
+from .color_field import color_field
+from .colors import decode, encode
+from .end_view import draw_text
+from .fields import Fields
+from .heading import faults, heading
+from .number_field import row_of_numbers
+from .text_field import text_field
+from .value_rows import ValueRows, go_to
+
+if TYPE_CHECKING:
+    from .rows import Rows
+
+_SIDE = Value("size", "int", 1920, low=1.0, high=4096.0, minimum=1.0, maximum=16384.0, unit="px")
+_TEXT = Value("name", "text", "")
+_COLOR = Value("color", "color", (0.0,) * 4, 4, low=0.0, high=1.0)
+_KINDS = (
+    ("Image", Kind.IMAGE, 4), ("Field", Kind.FIELD, 1), ("Vector2", Kind.VECTOR, 2), ("Vector3", Kind.VECTOR, 3),
+    ("Vector4", Kind.VECTOR, 4), ("Number", Kind.NUMBER, 1), ("Color", Kind.COLOR, 4),
+)
+FULL_HD = (1920, 1080)
+
+
+class GraphView:
+    """What is shown while nothing is selected, and the decor of the canvas."""
+
+    def __init__(self, fields: Fields, values: ValueRows) -> None:
+        self._fields, self._values = fields, values
+
+    def draw(self, rows: Rows) -> None:
+        """The graph that the canvas shows."""
+        session = rows.editor.session
+        inside = session.place[-1] if session.place else ""
+        heading(rows, f"Group {inside}" if inside else session.name, rows.palette.category("group" if inside else ""))
+        faults(rows, "")
+        if not inside:
+            self._size(rows)
+        self._ends(rows, "inputs")
+        self._ends(rows, "outputs")
+        self._controls(rows)
+
+    def frame(self, rows: Rows, id: str) -> None:
+        """A frame: its title and color."""
+        session = rows.editor.session
+        facts = entry(session.graph, f"frames.{id}")
+        heading(rows, "Frame", rows.palette.accent)
+        draw_text(
+            rows, self._fields, f"frames.{id} title", "title", str(facts.get("title", "")),
+            lambda title: session.set_frame(id, title=title),
+        )
+        given = facts.get("color")
+        shown = tuple(float(part) for part in given) if isinstance(given, tuple) and len(given) == 3 else None
+        red, green, blue = shown or rows.palette.raised
+        rows.name(f"frames.{id} color", "color")
+        light = decode(red), decode(green), decode(blue), 1.0
+        edit = color_field(self._fields, f"frames.{id} color", light, _COLOR, rows.field())
+        if edit and isinstance(edit.value, tuple):
+            made = tuple(min(max(encode(part), 0.0), 1.0) for part in edit.value[:3])
+            rows.editor.attempt(lambda: session.set_frame(id, color=(made[0], made[1], made[2]), merge=edit.merge))
+
+    def comment(self, rows: Rows, id: str) -> None:
+        """A comment: its text."""
+        session = rows.editor.session
+        heading(rows, "Comment", rows.palette.accent)
+        text = str(entry(session.graph, f"comments.{id}").get("text", ""))
+        edit = text_field(self._fields, f"comments.{id} text", text, _TEXT, rows.width, hint="Type a comment", lines=6)
+        rows.record(f"comments.{id} text")
+        if edit:
+            rows.editor.attempt(lambda: session.set_comment(id, str(edit.value)))
+        rows.note("Ctrl+Enter starts a new line.")
+
+    # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _size(self, rows: Rows) -> None:
+        session = rows.editor.session
+        size = session.graph.settings.size
+        rows.name("size", "canvas", tip="The size of what is made from nothing; automatic is that of the first picture")
+        width, side = rows.field(), imgui.get_frame_height()
+        if size is None:
+            if imgui.button("Automatic: set a size##size", (width, 0.0)):
+                rows.editor.attempt(lambda: session.set_size(FULL_HD))
+            rows.record("size")
+            return
+        edit = row_of_numbers(
+            self._fields, "size", size, _SIDE, width - side, ("w", "h") if width > 170 * ui_scale() else ("", ""),
+            keep_type=True,
+        )
+        imgui.same_line(0.0, 0.0)
+        if rows.icon(icons.ICON_FA_XMARK, "automatic size", "Automatic: the size of the first picture"):
+            rows.editor.attempt(lambda: session.set_size(None))
+        if edit and isinstance(edit.value, tuple):
+            wide, high = edit.value
+            rows.editor.attempt(lambda: session.set_size((int(wide), int(high)), merge=edit.merge))
+
+    def _ends(self, rows: Rows, side: str) -> None:
+        session = rows.editor.session
+        known = session.graph.inputs if side == "inputs" else session.graph.outputs
+        rows.heading(side.title())
+        for name, end in known.items():
+            key = f"{side}.{name}"
+            width = str(end.width) if end.kind is Kind.VECTOR else ""
+            rows.name(f"{key} row", f"{end.kind}{width}", color=rows.palette.kinds[end.kind])
+            room = rows.field() - imgui.get_frame_height() * 2
+            edit = text_field(self._fields, f"{key} row", name, _TEXT, room)
+            rows.record(f"{key} row")
+            if edit:
+                rows.editor.attempt(lambda key=key, edit=edit: session.rename_end(key, str(edit.value)))
+            imgui.same_line(0.0, 0.0)
+            if rows.icon(icons.ICON_FA_ARROW_RIGHT, f"go {key}", "Select it"):
+                go_to(rows.editor, Port(side, name))
+            imgui.same_line(0.0, 0.0)
+            if rows.icon(icons.ICON_FA_XMARK, f"remove {key}", "Remove it and its links"):
+                rows.editor.attempt(lambda key=key: session.remove_end(key))
+        word = side[:-1]
+        if rows.wide_button(f"{icons.ICON_FA_PLUS}  Add {word.title()}", f"add {word}"):
+            imgui.open_popup(f"kinds {side}")
+        if imgui.begin_popup(f"kinds {side}"):
+            for label, kind, width in _KINDS:
+                if imgui.menu_item(label, "", False)[0]:
+                    name = fresh_name(kind.lower(), known)
+                    add = session.add_input if side == "inputs" else session.add_output
+                    rows.editor.attempt(lambda add=add, name=name, kind=kind, width=width: add(name, kind, width))
+            imgui.end_popup()
+
+    def _controls(self, rows: Rows) -> None:
+        session = rows.editor.session
+        rows.heading("Controls")
+        if not session.graph.controls:
+            rows.note("Values that this graph shows under names of its own, to the command line and as a group.")
+        for name, control in session.graph.controls.items():
+            key, target = f"controls.{name}", control.target
+            item = session.graph.nodes.get(target.node)
+            known = {} if item is None or isinstance(item, Unknown) else signature(item).values
+            declaration = known.get(target.socket)
+            if declaration:
+                self._values.draw(rows, (target,), declaration, name)
+            else:
+                rows.name(key, name)
+                rows.field()
+                rows.note("its value is gone", rows.palette.error)
+            if imgui.tree_node(f"{target}##{key}"):
+                inner = replace_width(rows)
+                draw_text(inner, self._fields, f"{key} name", "name", name,
+                          lambda new, name=name: session.rename_control(name, new))
+                draw_text(inner, self._fields, f"{key} label", "label", control.label,
+                          lambda label, name=name: session.set_control_doc(name, label=label), hint=name)
+                draw_text(inner, self._fields, f"{key} doc", "doc", control.doc,
+                          lambda doc, name=name: session.set_control_doc(name, doc=doc),
+                          hint=declaration.doc if declaration else "")
+                if imgui.small_button(f"{icons.ICON_FA_ARROW_RIGHT}  Go to Node##{key}"):
+                    go_to(rows.editor, target)
+                imgui.same_line()
+                if imgui.small_button(f"{icons.ICON_FA_XMARK}  Remove##{key}"):
+                    rows.editor.attempt(lambda name=name: session.hide(name))
+                imgui.tree_pop()
+        if rows.wide_button(f"{icons.ICON_FA_PLUS}  Add Control", "add control"):
+            imgui.open_popup("add control")
+        if imgui.begin_popup("add control"):
+            self._candidates(rows)
+            imgui.end_popup()
+
+    def _candidates(self, rows: Rows) -> None:
+        """Every value that is no control yet, by node."""
+        session = rows.editor.session
+        taken = {control.target for control in session.graph.controls.values()}
+        found = False
+        for id, item in session.graph.nodes.items():
+            ports = [] if isinstance(item, Unknown) else [
+                port for name in signature(item).values if (port := Port(id, name)) not in taken
+            ]
+            if not ports or not imgui.begin_menu(id):
+                found |= bool(ports)
+                continue
+            found = True
+            for port in ports:
+                if imgui.menu_item(port.socket, "", False)[0]:
+                    rows.editor.attempt(lambda port=port: session.expose(port))
+            imgui.end_menu()
+        if not found:
+            imgui.text_disabled("No value is left to expose")
+
+
+def replace_width(rows: Rows) -> Rows:
+    """Rows for what is left of the width after an indent."""
+    return type(rows)(rows.editor, rows.fields)

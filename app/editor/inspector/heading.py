@@ -1,0 +1,97 @@
+"""The top of the panel: what it is, its name, what it does, what is wrong with it."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import imgui
+
+from ....nodes import Node, Value
+from ...graph import Group, Item
+from ..theme.palette import RGB
+from ..theme.style import EM, u32, ui_scale
+from .drawing import item_rect, place, write
+from .fields import Fields
+from .rows import font
+from .text_field import text_field
+
+if TYPE_CHECKING:
+    from .rows import Rows
+
+_NAME = Value("name", "text", "")
+
+
+def heading(rows: Rows, kind: str, color: RGB, buttons: Callable[[], object] | None = None, count: int = 0) -> None:
+    """A line with the kind of thing, in the color that it has on the canvas, and room for `count` buttons."""
+    room = rows.width - count * (imgui.get_frame_height() + 2.0 * ui_scale())
+    rect = place(room)
+    imgui.dummy((max(room, 1.0), rect[3] - rect[1]))
+    bar, scale = 4.0 * ui_scale(), ui_scale()
+    imgui.get_window_draw_list().add_rect_filled(
+        (rect[0], rect[1] + 3 * scale), (rect[0] + bar, rect[3] - 3 * scale), u32(color), bar / 2
+    )
+    with font(rows.editor, "bold", EM * 1.06):
+        write((rect[0] + bar + 7 * scale, rect[1], rect[2], rect[3]), kind, rows.palette.text)
+    if buttons:
+        imgui.same_line(0.0, 0.0)
+        imgui.push_style_var(imgui.StyleVar_.item_spacing, (2.0 * scale, imgui.get_style().item_spacing.y))
+        buttons()
+        imgui.pop_style_var()
+
+
+def name_field(rows: Rows, fields: Fields, key: str, name: str, then: Callable[[str], object], tip: str = "") -> None:
+    """The editable name of an element."""
+    rows.name(f"{key} name", "name", tip=tip)
+    edit = text_field(fields, f"{key} name", name, _NAME, rows.field())
+    rows.record(f"{key} name")
+    if edit:
+        rows.editor.attempt(lambda: then(str(edit.value)))
+
+
+def explanation(rows: Rows, doc: str, open: bool) -> bool:
+    """The first line of a docstring; a click shows the rest. True while all of it is shown."""
+    if not doc:
+        return False
+    first, _, rest = doc.partition("\n")
+    text = doc if open else f"{first} {icons.ICON_FA_ELLIPSIS}" if rest.strip() else first
+    rows.note(_flowing(text))
+    if rest.strip():
+        rows.tooltip("" if open else _flowing(doc))
+        if imgui.is_item_hovered():
+            imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
+        if imgui.is_item_clicked():
+            open = not open
+        rows.editor.places["doc"] = item_rect()
+    return open
+
+
+def faults(rows: Rows, key: str) -> None:
+    """What is wrong with an element: what the graph says, and what happened while rendering."""
+    editor = rows.editor
+    path = "/".join((*editor.session.place, key))
+    sentences = [*editor.session.problems.get(key, ())]
+    rendered = editor.preview.faults.get(path, "")
+    if rendered and rendered not in sentences:
+        sentences.append(rendered)
+    for sentence in sentences:
+        rows.note(sentence, rows.palette.error, icon=icons.ICON_FA_TRIANGLE_EXCLAMATION)
+
+
+def title_of(item: Item) -> str:
+    """What kind of node it is, in words."""
+    if isinstance(item, Node):
+        return item.id.replace("_", " ").title()
+    return "Group" if isinstance(item, Group) else item.type
+
+
+def doc_of(item: Item) -> str:
+    """The docstring of a node type."""
+    return inspect.getdoc(type(item)) or "" if isinstance(item, Node) else ""
+
+
+def _flowing(doc: str) -> str:
+    """Paragraphs without the line breaks inside them."""
+    return "\n\n".join(" ".join(part.split()) for part in doc.split("\n\n"))

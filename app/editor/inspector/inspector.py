@@ -1,0 +1,77 @@
+"""The panel that shows what is selected."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from imgui_bundle import imgui
+
+from ..edits.elements import end_port
+from ..theme.palette import DARK
+from .end_view import EndView
+from .fields import Fields
+from .file_field import FileField
+from .graph_view import GraphView
+from .heading import heading
+from .node_view import NodeView
+from .rows import Rows
+from .value_rows import ValueRows
+
+if TYPE_CHECKING:
+    from ..editor import Editor
+
+
+class Inspector:
+    """Values, links and descriptions of the active element; of the graph if there is none."""
+
+    title = "Inspector"
+
+    def __init__(self) -> None:
+        self._fields = Fields(DARK)
+        self._files = FileField(self._fields)
+        self._values = ValueRows(self._fields, self._files)
+        self._node = NodeView(self._fields, self._values)
+        self._end = EndView(self._fields, self._files)
+        self._graph = GraphView(self._fields, self._values)
+
+    def draw(self, editor: Editor) -> None:
+        """Draw into the current window."""
+        fields = self._fields
+        fields.palette = editor.palette
+        self._values.begin()
+        fields.begin()
+        self._draw(Rows(editor, fields))
+        left = fields.end()
+        if left:
+            self._values.left(editor, left)
+        editor.dragging |= fields.dragging
+
+    def close(self) -> None:
+        """End what runs, give back what is on the graphics card."""
+        self._files.close()
+
+    def _draw(self, rows: Rows) -> None:
+        session = rows.editor.session
+        graph, active = session.graph, session.active
+        if session.borrowed:
+            sentence = f"This group comes from {session.borrowed}: make it local to change it here."
+            rows.note(sentence, rows.palette.warning)
+        nodes = tuple(sorted(session.selection & graph.nodes.keys(), key=lambda id: (id != active, id)))
+        end = end_port(active)
+        section, _, id = active.partition(".")
+        if len(nodes) > 1:
+            self._node.several(rows, nodes)
+        elif active in graph.nodes:
+            self._node.draw(rows, active)
+        elif end:
+            self._end.draw(rows, end)
+        elif section == "frames":
+            self._graph.frame(rows, id)
+        elif section == "comments":
+            self._graph.comment(rows, id)
+        elif section == "dots":
+            heading(rows, "Dot", rows.palette.dim)
+            rows.note("Links pass it on their way; pixels do not notice.")
+        else:
+            self._graph.draw(rows)
+        imgui.dummy((1.0, imgui.get_font_size()))

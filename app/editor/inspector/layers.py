@@ -1,0 +1,141 @@
+"""Headers and small pictures of the layers of files, read in a thread. Nothing here draws."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from pathlib import Path
+from threading import Condition, Thread
+from time import monotonic
+
+import numpy as np
+
+from ....nodes import Kind
+from ...errors import HalationError
+from ...media import ImageInfo, find_layer, fingerprint, info, read, to_display
+from ...media.color import NO_VIEW, Array
+
+WIDTH, HEIGHT = 96, 54
+_KEPT, _LOOK_AGAIN = 300, 1.0
+
+Key = tuple[str, str, str | None]
+"""Path, version of the file, layer; a layer of None stands for the header."""
+
+
+class Layers:
+    """What is in files: never waits for one. What was asked for last is read first."""
+
+    def __init__(self) -> None:
+        self._known: OrderedDict[Key, ImageInfo | Array | str] = OrderedDict()
+        self._wanted: OrderedDict[Key, None] = OrderedDict()
+        self._versions: dict[str, tuple[float, str, str]] = {}
+        self._changed = Condition()
+        self._thread: Thread | None = None
+        self._closed = False
+
+    def header(self, path: Path) -> ImageInfo | str | None:
+        """The header, a sentence if there is none, None while it is being read."""
+        version, fault = self._version(path)
+        found = fault or self._get((str(path), version, None))
+        return found if isinstance(found, ImageInfo | str) else None
+
+    def picture(self, path: Path, layer: str) -> Array | None:
+        """A layer as [h, w, 3] of uint8, at most 96 x 54; None while it is being read, or if it cannot be."""
+        version, fault = self._version(path)
+        found = None if fault else self._get((str(path), version, layer))
+        return found if isinstance(found, np.ndarray) else None
+
+    def version(self, path: Path) -> str:
+        """Changes when the file does."""
+        return self._version(path)[0]
+
+    @property
+    def busy(self) -> bool:
+        """True while something is being read."""
+        return bool(self._wanted)
+
+    def close(self) -> None:
+        """End the thread."""
+        with self._changed:
+            self._closed = True
+            self._wanted.clear()
+            self._changed.notify()
+        if self._thread is not None:
+            self._thread.join()
+
+    def _version(self, path: Path) -> tuple[str, str]:
+        """The version of a file and what is wrong with it, looked up about once a second."""
+        now = monotonic()
+        at, version, fault = self._versions.get(str(path), (-_LOOK_AGAIN, "", ""))
+        if now - at >= _LOOK_AGAIN:
+            try:
+                version, fault = fingerprint(path), ""
+            except HalationError as error:
+                version, fault = "", str(error)
+            self._versions[str(path)] = (now, version, fault)
+        return version, fault
+
+    def _get(self, key: Key) -> ImageInfo | Array | str | None:
+        with self._changed:
+            if key in self._known:
+                self._known.move_to_end(key)
+                return self._known[key]
+            self._wanted[key] = None
+            self._wanted.move_to_end(key)
+            self._changed.notify()
+        if self._thread is None:
+            self._thread = Thread(target=self._work, name="layers", daemon=True)
+            self._thread.start()
+        return None
+
+    def _work(self) -> None:
+        while True:
+            with self._changed:
+                self._changed.wait_for(lambda: self._wanted or self._closed)
+                if self._closed:
+                    return
+                key = next(reversed(self._wanted))
+            made = _made(key)
+            with self._changed:
+                self._known[key] = made
+                self._wanted.pop(key, None)
+                while len(self._known) > _KEPT:
+                    self._known.popitem(last=False)
+
+
+def _made(key: Key) -> ImageInfo | Array | str:
+    path, _, layer = key
+    try:
+        header = info(path)
+        return header if layer is None else small_picture(path, layer, header)
+    except HalationError as fault:
+        return str(fault)
+    except Exception as fault:
+        return f"{path}: cannot be shown ({fault})"
+
+
+def small_picture(path: str, layer: str, header: ImageInfo) -> Array:
+    """A layer at most 96 x 54 pixels large, [h, w, 3] of uint8: every n-th pixel, data from its lowest to its highest.
+
+    Raises InputError.
+    """
+    found = find_layer(header, layer)
+    array = read(path, layer, Kind.IMAGE).array
+    step = max(1, -(-array.shape[1] // WIDTH), -(-array.shape[0] // HEIGHT))
+    small = np.ascontiguousarray(array[::step, ::step, :3], dtype=np.float32)
+    if found.data:
+        finite = small[np.isfinite(small)]
+        low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+        small = np.nan_to_num((small - low) / max(high - low, 1e-12), nan=0.0, posinf=1.0, neginf=0.0)
+        return (np.clip(small, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
+    return to_display(small, NO_VIEW)
+
+
+def described(header: ImageInfo, layer: str) -> str:
+    """One line about a file: size, the channels of a layer, how they are stored."""
+    try:
+        found = find_layer(header, layer)
+    except HalationError as fault:
+        return str(fault).removeprefix(f"{header.path}: ")
+    channels = "".join(found.channels) if all(len(name) == 1 for name in found.channels) else ", ".join(found.channels)
+    kind = "data" if found.data else "linear color" if found.format.startswith("float") else "sRGB color"
+    return f"{header.size[0]} x {header.size[1]}, {channels}, {found.format}, {kind}"

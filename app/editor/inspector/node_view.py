@@ -1,0 +1,133 @@
+"""A node, or what several nodes have in common."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import imgui
+
+from ....nodes import Socket
+from ...graph import Group, Item, Port, Unknown, signature
+from .applying import common
+from .fields import Fields
+from .heading import doc_of, explanation, faults, heading, name_field, title_of
+from .value_rows import ValueRows, link_chip
+
+if TYPE_CHECKING:
+    from .rows import Rows
+
+
+class NodeView:
+    """The face of the active node."""
+
+    def __init__(self, fields: Fields, values: ValueRows) -> None:
+        self._fields, self._values = fields, values
+        self._explained = False
+
+    def draw(self, rows: Rows, id: str) -> None:
+        """One node: header, values, inputs."""
+        session = rows.editor.session
+        item = session.graph.nodes[id]
+        heading(rows, title_of(item), rows.palette.category(_category(item)), lambda: self._buttons(rows, id, item), 3)
+        name_field(rows, self._fields, id, id, lambda new: session.rename(id, new), "What links and files call it")
+        self._explained = explanation(rows, doc_of(item), self._explained)
+        faults(rows, id)
+        if isinstance(item, Group):
+            self._group(rows, id, item)
+        if isinstance(item, Unknown):
+            rows.note("This type of node is not installed. It does nothing, and is saved back as it was.")
+            return
+        face = signature(item)
+        if face.values:
+            rows.heading("Controls" if isinstance(item, Group) else "Values")
+        for name, declaration in face.values.items():
+            label = item.graph.controls[name].label if isinstance(item, Group) else ""
+            self._values.draw(rows, (Port(id, name),), declaration, label)
+        if face.inputs:
+            rows.heading("Inputs")
+        for name, socket in face.inputs.items():
+            _input(rows, Port(id, name), socket)
+
+    def several(self, rows: Rows, ids: tuple[str, ...]) -> None:
+        """The values that several nodes share; the first one is the active one."""
+        session = rows.editor.session
+        items = [session.graph.nodes[id] for id in ids]
+        kinds = {title_of(item) for item in items}
+        kind = f"{len(ids)} × {kinds.pop()}" if len(kinds) == 1 else f"{len(ids)} Nodes"  # noqa: RUF001
+        heading(rows, kind, rows.palette.category(_category(items[0])), lambda: self._shared_buttons(rows, ids), 1)
+        rows.note(", ".join(ids))
+        found = common(session.graph, ids)
+        if not found:
+            rows.note("These nodes have no value in common.")
+            return
+        rows.heading("Values in Common")
+        for declaration in found:
+            self._values.draw(rows, tuple(Port(id, declaration.name) for id in ids), declaration)
+
+    # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _buttons(self, rows: Rows, id: str, item: Item) -> None:
+        editor = rows.editor
+        session = editor.session
+        if rows.icon(icons.ICON_FA_EYE, f"view {id}", "Show in the viewer"):
+            editor.attempt(lambda: session.view_node(id))
+        imgui.same_line()
+        self._mute(rows, (id,))
+        imgui.same_line()
+        known = not isinstance(item, Unknown) and bool(signature(item).values)
+        if rows.icon(icons.ICON_FA_ROTATE_LEFT, f"reset {id}", "Reset all values", enabled=known):
+            editor.attempt(lambda: session.reset_all(id))
+
+    def _shared_buttons(self, rows: Rows, ids: tuple[str, ...]) -> None:
+        self._mute(rows, ids)
+
+    def _mute(self, rows: Rows, ids: tuple[str, ...]) -> None:
+        session = rows.editor.session
+        muted = session.graph.muted.issuperset(ids)
+        tip = "Muted: it passes its first input through. Click to let it work again" if muted else "Mute"
+        glyph = icons.ICON_FA_EYE_SLASH if muted else icons.ICON_FA_POWER_OFF
+        if rows.icon(glyph, f"mute {ids[0]}", tip, lit=muted):
+            rows.editor.attempt(session.mute)
+
+    def _group(self, rows: Rows, id: str, item: Group) -> None:
+        editor, half = rows.editor, (rows.width - rows.gap) / 2
+        if item.path:
+            rows.name(f"{id} path", "file", tip="The graph file that this group comes from")
+            rows.chip(item.path, f"{id} path", rows.field(), rows.palette.good, item.path)
+        if imgui.button(f"{icons.ICON_FA_RIGHT_TO_BRACKET}  Enter##{id}", (half if item.path else rows.width, 0.0)):
+            editor.attempt(lambda: editor.session.enter(id))
+        rows.tooltip("Show what is in the group")
+        if item.path:
+            imgui.same_line(0.0, rows.gap)
+            if imgui.button(f"{icons.ICON_FA_HOUSE}  Make Local##{id}", (half, 0.0)):
+                editor.attempt(lambda: editor.session.make_local(id))
+            rows.tooltip("Make it part of this document, so that it can be changed here")
+
+
+def _input(rows: Rows, port: Port, socket: Socket) -> None:
+    """A socket: what is linked to it, or what it does without a link."""
+    tip = "\n".join(part for part in (socket.doc, f"{socket.kind}, {socket.channels} channels") if part)
+    rows.name(str(port), port.socket, tip=tip, color=rows.palette.kinds[socket.kind])
+    source = rows.editor.session.linked(port)
+    width = rows.field()
+    if source is not None:
+        link_chip(rows, port, source, width)
+        return
+    imgui.align_text_to_frame_padding()
+    if socket.optional:
+        imgui.text_disabled(f"not linked: {_default(socket)}")
+    else:
+        imgui.push_style_color(imgui.Col_.text, imgui.get_color_u32((*rows.palette.warning, 1.0)))
+        imgui.text("not linked")
+        imgui.pop_style_color()
+    rows.record(str(port))
+
+
+def _default(socket: Socket) -> str:
+    default = socket.default
+    return " ".join(f"{part:g}" for part in default) if isinstance(default, tuple) else f"{default:g}"
+
+
+def _category(item: Item) -> str:
+    return "group" if isinstance(item, Group) else getattr(item, "category", "")

@@ -1,0 +1,154 @@
+"""Numbers: drag sideways, click to type, Ctrl and wheel to step. Also rows and grids of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from imgui_bundle import imgui
+
+from ....nodes import Plain, Value
+from ..theme.style import mix, u32, ui_scale
+from .drawing import Rect, background, place, write
+from .fields import Edit, Fields
+from .numbers import SUFFIX, Drag, bar, editable, limited, shown, step
+from .text_entry import text_entry
+
+THRESHOLD = 3.0
+"""Pixels that make a click a drag."""
+
+AXES = ("x", "y", "z", "w")
+NO_VALUE = "—"
+
+
+def number_field(
+    fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False
+) -> Edit | None:
+    """One number. Shift drags finely, Ctrl in round steps; Escape brings back what was there before."""
+    assert isinstance(value, int | float)
+    fields.order.append(id)
+    if fields.wanted == id:
+        fields.type_in(id, editable(value), value, declaration)
+    if fields.typing and fields.typing.id == id:
+        return text_entry(fields, width)
+    rect = place(width)
+    clicked = imgui.invisible_button(f"##{id}", (rect[2] - rect[0], rect[3] - rect[1]))
+    hovered, active = imgui.is_item_hovered(), imgui.is_item_active()
+    if hovered or active:
+        imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
+    edit = _dragged(fields, id, value, declaration, rect[2] - rect[0], active)
+    if edit is None and clicked and fields.pressed == id:
+        fields.type_in(id, editable(value), value, declaration)
+    if edit is None and hovered:
+        edit = _wheeled(fields, id, value, declaration)
+    if not active and fields.pressed == id:
+        fields.pressed = ""
+    now = edit.value if edit else value
+    assert isinstance(now, int | float)
+    _draw(fields, rect, now, declaration, label, mixed and edit is None, hovered, active)
+    return edit
+
+
+def _dragged(fields: Fields, id: str, value: float, declaration: Value, width: float, active: bool) -> Edit | None:
+    """The number under a drag that goes on, or what it was at first if Escape cancels it."""
+    if imgui.is_item_activated():
+        fields.pressed = id
+    if fields.drag_id == id and fields.drag and not active:
+        fields.drag, fields.drag_id = None, ""
+        return None
+    if not active or (fields.pressed != id and fields.drag_id != id):
+        return None
+    io = imgui.get_io()
+    if fields.drag_id != id:
+        if not imgui.is_mouse_dragging(imgui.MouseButton_.left, THRESHOLD * ui_scale()):
+            return None
+        fields.drag, fields.drag_id, fields.pressed = Drag(value), id, ""
+        fields.start_gesture()
+    if fields.drag is None:
+        return None
+    if imgui.is_key_pressed(imgui.Key.escape):
+        start, fields.drag = fields.drag.start, None
+        return Edit(limited(start, declaration), fields.merge)
+    fields.drag = fields.drag.moved(io.mouse_delta.x, width, declaration, fine=io.key_shift)
+    number = fields.drag.number(declaration, fine=io.key_shift, snap=io.key_ctrl)
+    return Edit(number, fields.merge) if number != value else None
+
+
+def _wheeled(fields: Fields, id: str, value: float, declaration: Value) -> Edit | None:
+    io = imgui.get_io()
+    if not io.key_ctrl or not io.mouse_wheel:
+        return None
+    size = step(declaration) * (0.1 if io.key_shift and declaration.type != "int" else 1.0)
+    number = round((value + io.mouse_wheel * size) / size) * size
+    low, high = min(declaration.low, value), max(declaration.high, value)
+    return Edit(limited(min(max(round(number, 9), low), high), declaration), f"wheel {id}")
+
+
+def _draw(
+    fields: Fields, rect: Rect, value: float, declaration: Value, label: str, mixed: bool, hovered: bool, active: bool
+) -> None:
+    palette, pad = fields.palette, imgui.get_style().frame_padding.x * 0.75
+    background(palette, rect, hovered=hovered, active=active)
+    lines, rounding = imgui.get_window_draw_list(), imgui.get_style().frame_rounding
+    filled = None if mixed else bar(value, declaration)
+    if filled and filled[1] > filled[0]:
+        left, right = (rect[0] + (rect[2] - rect[0]) * part for part in filled)
+        color = mix(palette.field, palette.accent, 0.6 if active else 0.45 if hovered else 0.35)
+        lines.push_clip_rect((left, rect[1]), (max(right, left + 1.0), rect[3]), True)
+        lines.add_rect_filled(rect[:2], rect[2:], u32(color), rounding)
+        lines.pop_clip_rect()
+    inner = (rect[0] + pad, rect[1], rect[2] - pad, rect[3])
+    text, suffix = NO_VALUE if mixed else shown(value, declaration), "" if mixed else SUFFIX[declaration.unit]
+    room = inner[2] - inner[0]
+    unit_width = imgui.calc_text_size(" " + suffix).x if suffix else 0.0
+    text_width = imgui.calc_text_size(text).x
+    if text_width + unit_width > room:
+        suffix, unit_width = "", 0.0
+    if label:
+        write((inner[0], rect[1], max(inner[2] - text_width - unit_width - pad, inner[0]), rect[3]), label, palette.dim)
+        left = inner[2] - text_width - unit_width
+    else:
+        left = (inner[0] + inner[2] - text_width - unit_width) * 0.5
+    left = max(left, inner[0])
+    write((left, rect[1], inner[2], rect[3]), text, palette.text)
+    if suffix:
+        write((left + text_width, rect[1], inner[2] + pad, rect[3]), " " + suffix, palette.dim)
+
+
+def vector_field(
+    fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False
+) -> Edit | None:
+    """Two to four numbers in a row."""
+    assert isinstance(value, tuple)
+    return row_of_numbers(fields, id, value, declaration, width, AXES[: len(value)] if not label else ("",) * 4, mixed)
+
+
+def row_of_numbers(
+    fields: Fields, id: str, value: tuple[float, ...], declaration: Value, width: float, names: tuple[str, ...],
+    mixed: bool = False, first: int = 0, keep_type: bool = False,
+) -> Edit | None:
+    """Numbers side by side; a name stands in each where there is room for it. Floats unless `keep_type`."""
+    gap = imgui.get_style().item_inner_spacing.x * 0.5
+    each = (width - gap * (len(names) - 1)) / len(names)
+    part, found = declaration if keep_type else replace(declaration, type="float"), None
+    for index, name in enumerate(names, first):
+        if index > first:
+            imgui.same_line(0.0, gap)
+        named = name if each > imgui.get_font_size() * 4.2 else ""
+        edit = number_field(fields, f"{id}#{index}", value[index], part, each, label=named, mixed=mixed)
+        if edit:
+            found = replace(edit, value=(*value[:index], edit.value, *value[index + 1 :]))
+    return found
+
+
+def matrix_field(
+    fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False
+) -> Edit | None:
+    """Nine numbers in three rows."""
+    assert isinstance(value, tuple)
+    found = None
+    imgui.push_style_var(imgui.StyleVar_.item_spacing, (0.0, imgui.get_style().item_inner_spacing.x * 0.5))
+    for row in range(3):
+        found = row_of_numbers(fields, id, value, declaration, width, ("",) * 3, mixed, row * 3) or found
+    imgui.pop_style_var()
+    return found
+

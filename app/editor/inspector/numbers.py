@@ -1,0 +1,154 @@
+"""What a number field does with its number: how it is written, dragged, stepped and typed. Nothing here draws."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from decimal import Decimal
+from types import MappingProxyType
+
+from ....nodes import Unit, Value
+from ...errors import UsageError
+from .arithmetic import evaluate
+
+SUFFIX: Mapping[Unit | None, str] = MappingProxyType({
+    "px": "px", "height": "h", "deg": "°", "EV": "EV", "s": "s", None: "", "ratio": "", "count": "", "scene": "",
+})
+"""The unit as it is shown behind a number."""
+
+MEANING: Mapping[Unit | None, str] = MappingProxyType({
+    "px": "pixels at full size", "height": "fraction of the picture's height", "deg": "degrees",
+    "EV": "photographic stops", "s": "seconds", "ratio": "a plain factor", "count": "a whole number", None: "",
+    "scene": "scene units",
+})
+
+FINE, UNBOUNDED_SPAN = 0.1, 2.0
+_PLAIN = re.compile(r"\s*[-+]?\d*\.?\d*\s*")
+
+
+def span(declaration: Value) -> float:
+    """The width of the soft range; that of a number without one is guessed."""
+    width = declaration.high - declaration.low
+    return width if math.isfinite(width) and width > 0.0 else UNBOUNDED_SPAN
+
+
+def decimals(declaration: Value) -> int:
+    """Digits behind the point that matter, by the soft range."""
+    return 0 if declaration.type == "int" else min(max(3 - round(math.log10(span(declaration))), 1), 6)
+
+
+def shown(number: float, declaration: Value) -> str:
+    """The number as a field shows it, without its unit; one too small for the usual digits keeps three of its own."""
+    if isinstance(number, int) and declaration.type == "int":
+        return str(number)
+    digits = decimals(declaration)
+    if number and (abs(number) < 10.0 ** (1 - digits) or abs(number) >= 1e7) and round(number, digits) != number:
+        return f"{number:.3g}"
+    text = f"{number:.{digits}f}"
+    return text.removeprefix("-") if float(text) == 0.0 else text
+
+
+def editable(number: float) -> str:
+    """The number as text to edit: all of its digits, no needless ones."""
+    return str(number) if isinstance(number, int) else repr(float(number)).removesuffix(".0")
+
+
+def step(declaration: Value) -> float:
+    """A round step: about a twentieth of the soft range."""
+    raw = span(declaration) / 20.0
+    power = 10.0 ** math.floor(math.log10(raw))
+    size = next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= raw * 0.999)
+    return max(1.0, round(size)) if declaration.type == "int" else size
+
+
+def limited(number: float, declaration: Value) -> float | int:
+    """The nearest number within the hard range; a whole one for an int."""
+    inside = min(max(number, declaration.minimum), declaration.maximum)
+    return round(inside) if declaration.type == "int" else inside
+
+
+def bar(number: float, declaration: Value) -> tuple[float, float] | None:
+    """Where the field is filled, as fractions of its width: from zero, or from the low end. None without a range."""
+    low, high = declaration.low, declaration.high
+    if not (math.isfinite(low) and math.isfinite(high) and low < high):
+        return None
+    zero, place = (min(max((part - low) / (high - low), 0.0), 1.0) for part in (0.0, number))
+    return min(zero, place), max(zero, place)
+
+
+@dataclass(frozen=True)
+class Drag:
+    """A number being dragged: where it started and how far, in its own units, it was pulled since."""
+
+    start: float
+    travel: float = 0.0
+
+    def moved(self, pixels: float, width: float, declaration: Value, *, fine: bool = False) -> Drag:
+        """Pulled on: the width of the field is the whole soft range, ten times as much if `fine`."""
+        speed = span(declaration) / max(width, 1.0)
+        return Drag(self.start, self.travel + pixels * speed * (FINE if fine else 1.0))
+
+    def number(self, declaration: Value, *, fine: bool = False, snap: bool = False) -> float | int:
+        """Where it is now: within the soft range (or as far out as it started), rounded to the digits shown."""
+        low, high = min(declaration.low, self.start), max(declaration.high, self.start)
+        number = min(max(self.start + self.travel, low), high)
+        if snap:
+            size = step(declaration)
+            number = round(number / size) * size
+        if self.travel:
+            number = round(number, decimals(declaration) + (1 if fine and declaration.type != "int" else 0))
+        return limited(number, declaration)
+
+
+def typed(text: str, old: float, declaration: Value) -> float | int:
+    """The number that was typed. Raises UsageError: no number, or outside the hard range."""
+    number = evaluate(text, old, declaration.unit)
+    if declaration.type == "int":
+        if abs(number - round(number)) > 1e-9:
+            raise UsageError(f"a whole number is wanted, not {number:g}")
+        number = round(number)
+    if not declaration.minimum <= number <= declaration.maximum:
+        size = "small" if number < declaration.minimum else "large"
+        raise UsageError(f"{number:g} is too {size}: {_limits(declaration)}")
+    return number
+
+
+def stepped(text: str, caret: int, direction: int) -> tuple[str, int]:
+    """Text and caret after one more or less of the digit left of the caret (the first one at the very left)."""
+    if not _PLAIN.fullmatch(text) or not any(letter.isdigit() for letter in text):
+        return text, caret
+    point = text.index(".") if "." in text else len(text.rstrip())
+    at = max(caret - 1, 0)
+    while at < len(text) and not text[at].isdigit():
+        at = at - 1 if text[at] == "." and at > 0 and text[at - 1].isdigit() else at + 1
+    if at >= len(text):
+        at = max(index for index, letter in enumerate(text) if letter.isdigit())
+    power = point - at - 1 if at < point else point - at
+    number = Decimal(text.strip()) + direction * Decimal(10) ** power
+    made = f"{number:f}"
+    if number == 0:
+        made = made.removeprefix("-")
+    return made, min(max(len(made) - (len(text.rstrip()) - at - 1), 1), len(made))
+
+
+def described(declaration: Value, default: str) -> str:
+    """The lines of a tooltip: what it is, what it counts, which numbers it takes."""
+    lines = [declaration.doc] if declaration.doc else []
+    if declaration.type in ("float", "int", "vector", "curve"):
+        meaning, limits = MEANING[declaration.unit], _limits(declaration)
+        low, high = declaration.low, declaration.high
+        soft = f"usually {low:g} to {high:g}" if math.isfinite(low) and math.isfinite(high) else ""
+        facts = "; ".join(part for part in (meaning, soft, limits if "takes" in limits else "") if part)
+        lines += [facts[0].upper() + facts[1:]] if facts else []
+    return "\n".join([*lines, f"Default: {default}"] if default else lines)
+
+
+def _limits(declaration: Value) -> str:
+    low, high = declaration.minimum, declaration.maximum
+    if math.isinf(low) and math.isinf(high):
+        return "any number will do"
+    if math.isinf(high):
+        return f"it takes {low:g} and more"
+    return f"it takes {high:g} and less" if math.isinf(low) else f"it takes {low:g} to {high:g}"

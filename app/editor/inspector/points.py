@@ -1,0 +1,103 @@
+"""Curves and color ramps as their editors change them. Nothing here draws."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from ....nodes import curve_at, ramp_at
+
+Numbers = tuple[float, ...]
+
+NEAREST = 1e-3
+"""Points of a curve keep this distance."""
+
+CURVES: Mapping[str, Numbers] = MappingProxyType({
+    "Linear": (0.0, 0.0, 1.0, 1.0),
+    "S curve": (0.0, 0.0, 0.25, 0.15, 0.75, 0.85, 1.0, 1.0),
+    "Ease in": (0.0, 0.0, 0.5, 0.2, 1.0, 1.0),
+    "Ease out": (0.0, 0.0, 0.5, 0.8, 1.0, 1.0),
+    "Inverted": (0.0, 1.0, 1.0, 0.0),
+})
+
+RAMPS: Mapping[str, Numbers] = MappingProxyType({
+    "Black to white": (0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0),
+    "Fire": (0.0, 0.0, 0.0, 0.0, 1.0, 0.4, 0.8, 0.05, 0.0, 1.0, 0.75, 1.0, 0.5, 0.05, 1.0, 1.0, 1.0, 1.0, 0.8, 1.0),
+    "Cold to warm": (0.0, 0.02, 0.1, 0.6, 1.0, 0.5, 0.8, 0.8, 0.8, 1.0, 1.0, 0.7, 0.1, 0.02, 1.0),
+    "Spectrum": (
+        0.0, 1.0, 0.0, 0.0, 1.0, 0.17, 1.0, 1.0, 0.0, 1.0, 0.33, 0.0, 1.0, 0.0, 1.0, 0.5, 0.0, 1.0, 1.0, 1.0,
+        0.67, 0.0, 0.0, 1.0, 1.0, 0.83, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 1.0,
+    ),
+})
+
+
+def split(numbers: Numbers, width: int) -> list[Numbers]:
+    """The points, `width` numbers each."""
+    return [numbers[at : at + width] for at in range(0, len(numbers), width)]
+
+
+def joined(points: list[Numbers]) -> Numbers:
+    """The flat list of points."""
+    return tuple(part for point in points for part in point)
+
+
+def changed(numbers: Numbers, width: int, index: int, point: Numbers) -> Numbers:
+    """One point moved: it stays between its neighbors and within 0..1."""
+    points = split(numbers, width)
+    gap = NEAREST if width == 2 else 0.0
+    low = points[index - 1][0] + gap if index > 0 else 0.0
+    high = points[index + 1][0] - gap if index + 1 < len(points) else 1.0
+    place = min(max(point[0], low), max(high, low))
+    points[index] = (place, *point[1:])
+    return joined(points)
+
+
+def added(numbers: Numbers, width: int, point: Numbers) -> tuple[Numbers, int]:
+    """One more point at its place from left to right, and its index; the index alone where one is already there."""
+    points = split(numbers, width)
+    for index, other in enumerate(points):
+        if width == 2 and abs(other[0] - point[0]) < NEAREST:
+            return numbers, index
+    at = sum(other[0] <= point[0] for other in points)
+    points.insert(at, (min(max(point[0], 0.0), 1.0), *point[1:]))
+    return joined(points), at
+
+
+def removed(numbers: Numbers, width: int, index: int) -> Numbers:
+    """One point less; the last two stay."""
+    points = split(numbers, width)
+    if len(points) > 2:
+        del points[index]
+    return joined(points)
+
+
+def inverted(numbers: Numbers, width: int, low: float = 0.0, high: float = 1.0) -> Numbers:
+    """A curve turned upside down in its soft range; a ramp from right to left."""
+    if width == 2:
+        return joined([(x, low + high - y) for x, y in split(numbers, 2)])
+    return joined([(1.0 - stop[0], *stop[1:]) for stop in reversed(split(numbers, width))])
+
+
+def scaled(preset: Numbers, low: float, high: float) -> Numbers:
+    """A preset curve in another soft range."""
+    return joined([(x, low + y * (high - low)) for x, y in split(preset, 2)])
+
+
+def curve_line(numbers: Numbers, count: int) -> list[tuple[float, float]]:
+    """Points of the curve from x = 0 to 1, to draw it."""
+    return [(index / (count - 1), curve_at(numbers, index / (count - 1))) for index in range(count)]
+
+
+def ramp_color(numbers: Numbers, t: float) -> tuple[float, float, float, float]:
+    """The color of a ramp, to draw it."""
+    return ramp_at(numbers, t)
+
+
+def nearest(numbers: Numbers, width: int, x: float, y: float | None, reach: tuple[float, float]) -> int:
+    """The point within `reach` of a place (its x alone for a ramp), -1 if none is."""
+    best, found = 1.0, -1
+    for index, point in enumerate(split(numbers, width)):
+        away = ((point[0] - x) / reach[0]) ** 2 + (0.0 if y is None else ((point[1] - y) / reach[1]) ** 2)
+        if away <= best:
+            best, found = away, index
+    return found

@@ -1,0 +1,63 @@
+"""Words: one line, or several where the text is long."""
+
+from __future__ import annotations
+
+from imgui_bundle import imgui
+
+from ....nodes import Plain, Value
+from .drawing import background, place, write
+from .fields import Edit, Fields
+from .number_field import NO_VALUE
+from .text_entry import text_entry
+
+MOST_LINES = 6
+
+
+def lines_of(text: str) -> int:
+    """How many lines the field of a text shows."""
+    return min(max(text.count("\n") + 1, -(-len(text) // 48)), MOST_LINES)
+
+
+def text_field(
+    fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False,
+    hint: str = "", fault: bool = False, lines: int = 0, elide_left: bool = False,
+) -> Edit | None:
+    """A text that a click lets type in. `hint` is shown while it is empty; `elide_left` keeps its end in view."""
+    assert isinstance(value, str)
+    count = lines or lines_of(value)
+    fields.order.append(id)
+    if fields.wanted == id:
+        fields.type_in(id, value, value)
+    if fields.typing and fields.typing.id == id:
+        return text_entry(fields, width, lines=count, hint=hint)
+    pad = imgui.get_style().frame_padding
+    rect = place(width, imgui.get_text_line_height() * count + 2 * pad.y if count > 1 else 0.0)
+    if imgui.invisible_button(f"##{id}", (rect[2] - rect[0], rect[3] - rect[1])):
+        fields.type_in(id, value, value)
+    if imgui.is_item_hovered():
+        imgui.set_mouse_cursor(imgui.MouseCursor_.text_input)
+    background(fields.palette, rect, hovered=imgui.is_item_hovered(), fault=fault)
+    color = fields.palette.error if fault else fields.palette.text if value and not mixed else fields.palette.dim
+    text = NO_VALUE if mixed else value or hint or label
+    if count > 1:
+        lines_drawn = imgui.get_window_draw_list()
+        lines_drawn.push_clip_rect(rect[:2], rect[2:], True)
+        lines_drawn.add_text(
+            imgui.get_font(), imgui.get_font_size(), (rect[0] + pad.x, rect[1] + pad.y),
+            imgui.get_color_u32((*color, 1.0)), text, wrap_width=rect[2] - rect[0] - 2 * pad.x,
+        )
+        lines_drawn.pop_clip_rect()
+        return None
+    room = rect[2] - rect[0] - 2 * pad.x
+    if elide_left and value:
+        text = _end_of(text, room)
+    write((rect[0] + pad.x, rect[1], rect[2] - pad.x, rect[3]), text, color)
+    return None
+
+
+def _end_of(text: str, room: float) -> str:
+    if imgui.calc_text_size(text).x <= room:
+        return text
+    while text and imgui.calc_text_size("…" + text).x > room:
+        text = text[1:]
+    return "…" + text

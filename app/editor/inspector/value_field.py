@@ -1,0 +1,60 @@
+"""The field that fits a value."""
+
+from __future__ import annotations
+
+from imgui_bundle import imgui
+
+from ....nodes import Plain, Value
+from .choice_field import choice_field, toggle_field
+from .color_field import color_field
+from .curve_field import HEIGHT, curve_field
+from .fields import Edit, Fields
+from .number_field import matrix_field, number_field, vector_field
+from .ramp_field import BAND, HANDLES, ramp_field
+from .text_field import text_field
+
+
+def value_field(
+    fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False
+) -> Edit | None:
+    """Draw the field for a value at the cursor; what was changed, if anything.
+
+    `id` is unique in the window. `label` stands inside the field, `mixed` shows that several values differ.
+    """
+    match declaration.type:
+        case "float" | "int":
+            draw = number_field
+        case "bool":
+            draw = toggle_field
+        case "choice":
+            draw = choice_field
+        case "color":
+            draw = color_field
+        case "vector":
+            draw = vector_field
+        case "matrix":
+            draw = matrix_field
+        case "curve":
+            draw = curve_field
+        case "ramp":
+            draw = ramp_field
+        case "path" | "text":
+            draw = text_field
+    imgui.begin_group()
+    edit = draw(fields, id, value, declaration, width, label=label, mixed=mixed)
+    imgui.end_group()
+    return edit
+
+
+def height_of(declaration: Value) -> float:
+    """How high the field of a value is in pixels, while nothing in it is selected."""
+    frame, line, gap = imgui.get_frame_height(), imgui.get_font_size(), imgui.get_style().item_spacing.y
+    match declaration.type:
+        case "matrix":
+            return 3 * frame + imgui.get_style().item_inner_spacing.x
+        case "curve":
+            return line * HEIGHT + gap + frame
+        case "ramp":
+            return line * (BAND + HANDLES) + gap + frame
+        case _:
+            return frame

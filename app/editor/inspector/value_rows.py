@@ -1,0 +1,209 @@
+"""A row for every value: name, field or link, what belongs to a file, and the menu of it all."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import imgui
+
+from ....nodes import Plain, Value
+from ...graph import INPUTS, Port
+from .applying import Ports, apply, as_text, default_of, finished, from_text, reset
+from .drawing import item_rect
+from .fields import Edit, Fields
+from .file_field import FileField
+from .numbers import described, shown
+from .value_field import value_field
+
+if TYPE_CHECKING:
+    from ..editor import Editor
+    from .rows import Rows
+
+_MENU = "value menu"
+
+
+@dataclass
+class ValueRows:
+    """The values of one node, or those that several have in common."""
+
+    fields: Fields
+    files: FileField
+    _targets: dict[str, tuple[Ports, Value]] = field(default_factory=dict[str, "tuple[Ports, Value]"])
+    _renaming: str = ""
+
+    def draw(self, rows: Rows, ports: Ports, declaration: Value, label: str = "") -> None:
+        """One row; `ports` are the same value of several nodes, the active one first."""
+        editor, port = rows.editor, ports[0]
+        session, key = editor.session, str(port)
+        graph = session.graph
+        value, source = graph.value(port), session.linked(port)
+        changed = any(graph.value(one) != default_of(graph, one) for one in ports)
+        control = session.control_of(port) if len(ports) == 1 else None
+        rows.name(key, label or port.socket, tip=self._tip(graph.value, port, declaration, control), changed=changed)
+        if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left):
+            editor.attempt(lambda: reset(session, ports))
+        menu = imgui.is_item_hovered() and imgui.is_mouse_released(imgui.MouseButton_.right)
+        width = rows.field()
+        if source is not None:
+            link_chip(rows, port, source, width)
+        else:
+            mark = imgui.get_frame_height() if control else 0.0
+            mixed = any(graph.value(one) != value for one in ports[1:])
+            edit = self._field(rows, ports, declaration, value, width - mark, mixed)
+            rows.record(key)
+            menu |= declaration.type not in ("curve", "ramp") and imgui.is_item_hovered() and imgui.is_mouse_released(
+                imgui.MouseButton_.right
+            )
+            if edit:
+                editor.attempt(lambda: apply(session, ports, declaration, edit))
+            if control:
+                self._mark(rows, port, control)
+            if declaration.type == "path" and isinstance(value, str):
+                self.files.about(rows, value, self._layer_of(graph.value, port, declaration))
+        if self.fields.eyedropper == key:
+            editor.viewer.picking = key
+        self._targets[key] = ports, declaration
+        if menu:
+            imgui.open_popup(f"{_MENU} {key}")
+        if imgui.begin_popup(f"{_MENU} {key}"):
+            self._menu(editor, ports, declaration, value, source, control)
+            imgui.end_popup()
+
+    def left(self, editor: Editor, left: tuple[str, Edit]) -> None:
+        """What was typed in a field before something else was selected goes where it belongs."""
+        base = left[0].partition("#")[0]
+        if base not in self._targets:
+            return
+        ports, declaration = self._targets[base]
+        if any(port.node not in editor.session.graph.nodes for port in ports):
+            return
+        found = finished(*left, editor.session.graph.value(ports[0]))
+        if found:
+            editor.attempt(lambda: apply(editor.session, ports, declaration, found[1]))
+
+    def begin(self) -> None:
+        """Call once a frame, before the rows."""
+        if self.fields.typing is None:
+            self._targets.clear()
+
+    # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _field(
+        self, rows: Rows, ports: Ports, declaration: Value, value: Plain, width: float, mixed: bool
+    ) -> Edit | None:
+        port = ports[0]
+        graph = rows.editor.session.graph
+        if declaration.type == "path" and isinstance(value, str):
+            return self.files.path(rows, str(port), value, width, lambda path: apply(
+                rows.editor.session, ports, declaration, Edit(path)
+            ))
+        file = self._file_of(port, graph)
+        if file is not None and isinstance(value, str):
+            return self.files.layer(rows, str(port), file, value, width)
+        return value_field(self.fields, str(port), value, declaration, width, mixed=mixed)
+
+    def _file_of(self, port: Port, graph: object) -> str | None:
+        """The path whose layer this value picks, if it does."""
+        from ...graph import Graph, signature
+
+        assert isinstance(graph, Graph)
+        for name, other in signature(graph.node(port.node)).values.items():
+            if other.layer_by == port.socket:
+                path = graph.value(Port(port.node, name))
+                return path if isinstance(path, str) else None
+        return None
+
+    def _layer_of(self, value_of: Callable[[Port], Plain], port: Port, declaration: Value) -> str:
+        layer = value_of(Port(port.node, declaration.layer_by)) if declaration.layer_by else ""
+        return layer if isinstance(layer, str) else ""
+
+    def _tip(self, value_of: Callable[[Port], Plain], port: Port, declaration: Value, control: str | None) -> str:
+        lines = described(declaration, _worded(declaration))
+        hints = "Double click: reset. Right click: more."
+        return "\n".join(part for part in (lines, f"Control: {control}" if control else "", hints) if part)
+
+    def _mark(self, rows: Rows, port: Port, control: str) -> None:
+        """A sign that a value is a control; a click renames that."""
+        imgui.same_line(0.0, 0.0)
+        if rows.icon(icons.ICON_FA_SLIDERS, f"control {port}", f"Shown as the control '{control}'; click to rename"):
+            self._renaming = control
+            imgui.open_popup(f"rename {port}")
+        if imgui.begin_popup(f"rename {port}"):
+            if imgui.is_window_appearing():
+                imgui.set_keyboard_focus_here()
+            imgui.set_next_item_width(imgui.get_font_size() * 12)
+            entered, self._renaming = imgui.input_text(
+                "##control name", self._renaming, int(imgui.InputTextFlags_.enter_returns_true)
+            )
+            if entered:
+                session, new = rows.editor.session, self._renaming
+                rows.editor.attempt(lambda: session.rename_control(control, new))
+                imgui.close_current_popup()
+            imgui.end_popup()
+
+    def _menu(
+        self, editor: Editor, ports: Ports, declaration: Value, value: Plain, source: Port | None, control: str | None
+    ) -> None:
+        session, port = editor.session, ports[0]
+        if imgui.menu_item(f"{icons.ICON_FA_ROTATE_LEFT}  Reset", "", False)[0]:
+            editor.attempt(lambda: reset(session, ports))
+        if imgui.menu_item(f"{icons.ICON_FA_COPY}  Copy Value", "", False)[0]:
+            editor.clipboard.put(as_text(value))
+        if imgui.menu_item(f"{icons.ICON_FA_PASTE}  Paste Value", "", False, source is None)[0]:
+            editor.attempt(lambda: apply(session, ports, declaration, Edit(from_text(editor.clipboard.get()))))
+        imgui.separator()
+        if control is None:
+            if imgui.menu_item(f"{icons.ICON_FA_SLIDERS}  Expose as Control", "", False, len(ports) == 1)[0]:
+                editor.attempt(lambda: session.expose(port))
+        elif imgui.menu_item(f"{icons.ICON_FA_EYE_SLASH}  Hide Control", "", False)[0]:
+            editor.attempt(lambda: session.hide(control))
+        if source is not None:
+            imgui.separator()
+            if imgui.menu_item(f"{icons.ICON_FA_ARROW_LEFT}  Go to Source", "", False)[0]:
+                go_to(editor, source)
+            if imgui.menu_item(f"{icons.ICON_FA_LINK_SLASH}  Unlink", "", False)[0]:
+                editor.attempt(lambda: session.disconnect(port))
+
+
+def link_chip(rows: Rows, target: Port, source: Port, width: float) -> None:
+    """Where a value or input comes from; a click goes there, the cross unlinks."""
+    editor, side = rows.editor, imgui.get_frame_height()
+    start = editor.session.graph.source(source)
+    color = rows.palette.kinds[start.kind] if start else rows.palette.dim
+    text = f"{icons.ICON_FA_ARROW_LEFT}  {source.socket if source.node == INPUTS else source}"
+    if rows.chip(text, str(target), max(width - side, 1.0), color, f"Linked from {source}: click to go there"):
+        go_to(editor, source)
+    first = item_rect()
+    imgui.same_line(0.0, 0.0)
+    if rows.icon(icons.ICON_FA_XMARK, f"unlink {target}", "Unlink"):
+        editor.attempt(lambda: editor.session.disconnect(target))
+    last = item_rect()
+    editor.places[f"field {target}"] = (first[0], first[1], last[2], last[3])
+
+
+def go_to(editor: Editor, port: Port) -> None:
+    """Select the element of a port and bring it into view."""
+    key = str(port) if port.node in ("inputs", "outputs") else port.node
+    editor.session.select(key)
+    editor.canvas.fit((key,))
+
+
+def _worded(declaration: Value) -> str:
+    """The default, as a tooltip says it; "" where that is too much."""
+    default = declaration.default
+    match declaration.type:
+        case "float" | "int":
+            assert isinstance(default, int | float)
+            return shown(default, declaration)
+        case "bool":
+            return "on" if default else "off"
+        case "choice" | "text" | "path":
+            return str(default)
+        case "curve" | "ramp":
+            return ""
+        case _:
+            assert isinstance(default, tuple)
+            return ", ".join(f"{part:g}" for part in default)

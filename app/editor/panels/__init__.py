@@ -1,0 +1,1 @@
+"""Panels around the canvas, dialogs, and what is drawn over everything."""

@@ -1,0 +1,68 @@
+"""All shortcuts on one sheet."""
+
+from __future__ import annotations
+
+from imgui_bundle import ImVec2, imgui
+
+from ..action import Action
+from ..editor import Editor
+from ..keys import shown
+from ..theme.style import u32, ui_scale, vec4
+from .drawing import backdrop, dialog, dim, escaped, font, main_button
+from .shortcut_groups import MOUSE, columns, groups
+
+_WIDTH = 1080.0
+
+
+class CheatSheet:
+    """Columns by subject; Preferences is where they are changed."""
+
+    def draw(self, editor: Editor) -> None:
+        """Draw over everything, if it is open."""
+        if "shortcuts" not in editor.dialogs.open:
+            return
+        close = backdrop(editor, "shortcuts")
+        with dialog(editor, "Shortcuts", (_WIDTH, 0), bare=True):
+            with font(editor, "bold", 20.0):
+                imgui.text_unformatted("Shortcuts")
+            blocks = [*((title, _lines(editor, actions)) for title, actions in groups(editor)), ("Mouse", MOUSE)]
+            room = imgui.get_content_region_avail().x
+            count = max(int(room / (310 * ui_scale())), 1)
+            made = columns(tuple(len(lines) + 2 for _, lines in blocks), count)
+            if imgui.begin_table("sheet", len(made), int(imgui.TableFlags_.sizing_stretch_same)):
+                for indices in made:
+                    imgui.table_next_column()
+                    for index in indices:
+                        _block(editor, *blocks[index])
+                imgui.end_table()
+            imgui.dummy(ImVec2(0, 2 * ui_scale()))
+            if imgui.button("Change shortcuts"):
+                editor.dialogs.open.add("preferences")
+                close = True
+            imgui.same_line()
+            width = 96 * ui_scale()
+            imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x - width)
+            close = main_button(editor, "Close", "close shortcuts", width=width) or close or escaped()
+            close = close or (imgui.is_key_pressed(imgui.Key.f1, False) and not imgui.is_window_appearing())
+        if close:
+            editor.dialogs.open.discard("shortcuts")
+
+
+def _lines(editor: Editor, actions: tuple[Action, ...]) -> tuple[tuple[str, str], ...]:
+    return tuple((shown(editor.actions.shortcut(action.id)), action.label.removesuffix("...")) for action in actions)
+
+
+def _block(editor: Editor, title: str, lines: tuple[tuple[str, str], ...]) -> None:
+    scale = ui_scale()
+    imgui.dummy(ImVec2(0, 4 * scale))
+    imgui.text_colored(vec4(editor.palette.accent), title)
+    start = imgui.get_cursor_screen_pos()
+    right = start.x + imgui.get_content_region_avail().x - 12 * scale
+    imgui.get_window_draw_list().add_line(start, ImVec2(right, start.y), u32(editor.palette.raised), scale)
+    imgui.dummy(ImVec2(0, scale))
+    left = imgui.get_cursor_pos_x()
+    for keys, label in lines:
+        imgui.text_unformatted(label)
+        imgui.same_line()
+        imgui.set_cursor_pos_x(left + (right - start.x) - imgui.calc_text_size(keys).x)
+        dim(editor, keys)

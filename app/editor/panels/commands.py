@@ -1,0 +1,91 @@
+"""What the command palette offers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from ....presets import paths
+from ...graph import Group
+from ..action import Action
+from ..actions.documents import open_preset
+from ..canvas.layout import words
+from ..editor import Editor
+from .fuzzy import Match, match
+
+
+@dataclass(frozen=True)
+class Command:
+    """One line of the palette. `reason` says why it cannot be done now, "" if it can."""
+
+    id: str
+    label: str
+    kind: str
+    run: Callable[[], object]
+    shortcut: str = ""
+    doc: str = ""
+    reason: str = ""
+
+
+def commands(editor: Editor) -> tuple[Command, ...]:
+    """Every action, node type, preset, and node of the graph; `run` does it within `editor.attempt`."""
+    return tuple(_all(editor))
+
+
+def ranked(query: str, offered: tuple[Command, ...], recent: Collection[str]) -> tuple[tuple[Command, Match], ...]:
+    """The commands that match, best first; without a query those used last, then those that can be done now."""
+    labels = tuple(command.label for command in offered)
+    found = [(offered[one.index], one) for one in match(query, labels)]
+    if query.strip():
+        return tuple(sorted(found, key=lambda pair: (bool(pair[0].reason), -pair[1].score, pair[1].index)))
+    order = {id: place for place, id in enumerate(reversed(tuple(recent)))}
+    last = len(order)
+    return tuple(sorted(found, key=lambda pair: (order.get(pair[0].id, last), bool(pair[0].reason), pair[1].index)))
+
+
+def reason(editor: Editor, action: Action) -> str:
+    """Why an action cannot be done now, "" if it can."""
+    if action.enabled(editor):
+        return ""
+    if action.id == "edit.undo":
+        return "nothing was done yet"
+    if action.id == "edit.redo":
+        return "nothing was undone"
+    return "select something first" if action.scope == "graph" and not editor.session.selection else "not possible now"
+
+
+def _all(editor: Editor) -> Iterator[Command]:
+    for action in editor.actions.all:
+        label = action.label.removesuffix("...")
+        menu = action.menu.split("/")
+        full = f"{menu[1]} {label}" if len(menu) > 1 else label
+        yield Command(
+            action.id, full, menu[0] or "Action", partial(editor.actions.run, action.id, editor),
+            editor.actions.shortcut(action.id), action.doc, reason(editor, action),
+        )
+    for id, type in editor.session.types.items():
+        doc = (type.__doc__ or "").strip().splitlines()
+        yield Command(f"add {id}", f"Add {words(id).title()}", words(type.category).capitalize(),
+                      partial(_add, editor, id), doc=doc[0] if doc else "")
+    for path in paths():
+        name = words(path.stem).title()
+        yield Command(f"preset {path.stem}", f"Open Preset {name}", "Preset", partial(open_preset, editor, path))
+        yield Command(f"group {path.stem}", f"Add Preset {name}", "Preset", partial(_add_preset, editor, path))
+    for key, item in editor.session.graph.nodes.items():
+        kind = "Group" if isinstance(item, Group) else "Node"
+        yield Command(f"go {key}", f"Go to {key}", kind, partial(_go, editor, key))
+
+
+def _add(editor: Editor, type_id: str) -> None:
+    editor.session.select((editor.session.add_node(type_id, editor.canvas.pointer),))
+
+
+def _add_preset(editor: Editor, path: Path) -> None:
+    editor.session.select((editor.session.add_group(path, editor.canvas.pointer),))
+
+
+def _go(editor: Editor, key: str) -> None:
+    editor.session.select((key,))
+    editor.canvas.fit((key,))

@@ -1,0 +1,89 @@
+"""Finding by a few letters: every search of the editor ranks with the same function."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+_LETTER, _WORD_START, _FIRST, _NEXT, _GAP, _SHORT = 1.0, 8.0, 2.0, 8.0, 0.3, 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class Match:
+    """A candidate that holds the query: where it is in the list, how good it is, which letters matched."""
+
+    index: int
+    score: float
+    positions: tuple[int, ...]
+
+
+def match(query: str, candidates: Sequence[str]) -> tuple[Match, ...]:
+    """The candidates that hold the letters of each word of `query` in order, best first; an empty query keeps all.
+
+    Starts of words, runs of letters and short candidates are worth more; equally good ones stay in order. Letter case
+    does not matter. Asking the same again costs nothing, so a panel may ask in every frame.
+    """
+    return _ranked(" ".join(query.lower().split()), tuple(candidates))
+
+
+def runs(text: str, positions: Sequence[int]) -> Iterator[tuple[str, bool]]:
+    """Pieces of `text` in order, and whether they matched: what a list draws in bold."""
+    wanted = frozenset(positions)
+    start = 0
+    for at in range(1, len(text) + 1):
+        if at == len(text) or (at in wanted) != (start in wanted):
+            yield text[start:at], start in wanted
+            start = at
+
+
+@lru_cache(maxsize=64)
+def _ranked(query: str, candidates: tuple[str, ...]) -> tuple[Match, ...]:
+    words = query.split()
+    found = (_matched(index, words, text) for index, text in enumerate(candidates))
+    return tuple(sorted((one for one in found if one), key=lambda one: (-one.score, one.index)))
+
+
+def _matched(index: int, words: list[str], text: str) -> Match | None:
+    score, positions = 0.0, set[int]()
+    for word in words:
+        best = _aligned(word, text)
+        if best is None:
+            return None
+        score += best[0]
+        positions.update(best[1])
+    return Match(index, score - _SHORT * len(text) if words else 0.0, tuple(sorted(positions)))
+
+
+def _aligned(word: str, text: str) -> tuple[float, tuple[int, ...]] | None:
+    """The best way to find the letters of a word in order: its score and their positions."""
+    lower = text.lower()
+    if len(lower) != len(text):
+        text = lower
+    ends: dict[int, tuple[float, tuple[int, ...]]] = {-1: (0.0, ())}
+    for letter in word:
+        reached: dict[int, tuple[float, tuple[int, ...]]] = {}
+        at = lower.find(letter)
+        while at >= 0:
+            before = [(_step(last, at, score), places) for last, (score, places) in ends.items() if last < at]
+            if before:
+                score, places = max(before, key=lambda way: way[0])
+                reached[at] = score + _worth(text, at), (*places, at)
+            at = lower.find(letter, at + 1)
+        if not reached:
+            return None
+        ends = reached
+    return max(ends.values(), key=lambda way: way[0])
+
+
+def _step(last: int, at: int, score: float) -> float:
+    """The score of going on at a letter: better right after the last one."""
+    if last < 0:
+        return score - _GAP * min(at, 8)
+    return score + _NEXT if at == last + 1 else score - _GAP * min(at - last, 8)
+
+
+def _worth(text: str, at: int) -> float:
+    here, before = text[at], text[at - 1] if at else " "
+    starts = (here.isalnum() and not before.isalnum()) or (here.isupper() and before.islower())
+    return _LETTER + (_WORD_START if starts else 0.0) + (_FIRST if at == 0 else 0.0)

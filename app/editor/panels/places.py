@@ -1,0 +1,70 @@
+"""Where files tend to be."""
+
+from __future__ import annotations
+
+import os
+import string
+import sys
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+PlaceKind = Literal["home", "document", "folder", "recent", "drive"]
+
+_MOUNTS = ("/media/", "/mnt/", "/run/media/", "/Volumes/")
+
+
+@dataclass(frozen=True)
+class Place:
+    """A folder worth one click."""
+
+    title: str
+    path: Path
+    kind: PlaceKind
+
+
+def places(document: Path | None, recent: Iterable[Path], used: Iterable[Path]) -> tuple[Place, ...]:
+    """The document's folder, home, folders of recent files and of last use, drives; each once, only what is there."""
+    found: dict[Path, Place] = {}
+    for place in _candidates(document, recent, used):
+        if place.path not in found and os.path.isdir(place.path):  # noqa: PTH112 - False for what no system allows
+            found[place.path] = place
+    return tuple(sorted(found.values(), key=lambda place: place.kind == "drive"))
+
+
+def _candidates(document: Path | None, recent: Iterable[Path], used: Iterable[Path]) -> Iterator[Place]:
+    if document is not None:
+        yield Place("This document", document, "document")
+    home = Path.home()
+    yield Place("Home", home, "home")
+    for name in ("Desktop", "Documents", "Pictures"):
+        yield Place(name, home / name, "folder")
+    for drive in drives():
+        yield Place(drive.name or str(drive), drive, "drive")
+    for folder in (*used, *recent):
+        yield Place(folder.name or str(folder), folder, "recent")
+
+
+def drives(mounts: Path = Path("/proc/mounts")) -> tuple[Path, ...]:
+    """Roots of what is mounted: letters on Windows, volumes on macOS, media and network drives elsewhere."""
+    if sys.platform == "win32":
+        return tuple(Path(f"{letter}:\\") for letter in string.ascii_uppercase if os.path.exists(f"{letter}:\\"))  # noqa: PTH110
+    if sys.platform == "darwin":
+        return (Path("/"), *sorted(Path("/Volumes").iterdir()))
+    try:
+        lines = mounts.read_text(errors="replace").splitlines()
+    except OSError:
+        lines = []
+    points = [line.split()[1].encode().decode("unicode_escape") for line in lines if len(line.split()) > 1]
+    return (Path("/"), *(Path(point) for point in sorted(set(points)) if point.startswith(_MOUNTS)))
+
+
+def completed(text: str, folder: Path) -> Path:
+    """The path that was typed: `~` is home, what is relative starts in `folder`."""
+    path = Path(text.strip().strip('"') or ".")
+    try:
+        path = path.expanduser()
+    except RuntimeError:
+        return folder / path
+    return Path(os.path.normpath(folder / path))

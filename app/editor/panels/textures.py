@@ -1,0 +1,42 @@
+"""Small pictures on the graphics card."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Hashable
+
+import numpy as np
+from imgui_bundle import hello_imgui, imgui
+
+from ...media.color import Array
+
+_MOST = 300
+
+
+class Textures:
+    """Uploads each picture once and keeps those that were shown last. Must be cleared before the window ends."""
+
+    def __init__(self) -> None:
+        self._kept: OrderedDict[Hashable, hello_imgui.TextureGpu] = OrderedDict()
+
+    def get(self, key: Hashable, pixels: Array) -> imgui.ImTextureRef:
+        """The texture of [h, w, 3] of uint8; the same key is the same picture."""
+        if key not in self._kept:
+            opaque = np.full((*pixels.shape[:2], 4), 255, np.uint8)
+            opaque[..., :3] = pixels
+            self._kept[key] = hello_imgui.create_texture_gpu_from_rgba_data(opaque)
+            while len(self._kept) > _MOST:
+                self._kept.popitem(last=False)
+        self._kept.move_to_end(key)
+        return imgui.ImTextureRef(self._kept[key].texture_id())
+
+    def clear(self) -> None:
+        """Give everything back."""
+        self._kept.clear()
+
+
+def fitted(pixels: Array, width: float, height: float) -> tuple[float, float]:
+    """The size of a picture that fills a box as far as its shape allows, never enlarged more than twice."""
+    across, down = pixels.shape[1], pixels.shape[0]
+    scale = min(width / across, height / down, 2.0)
+    return across * scale, down * scale

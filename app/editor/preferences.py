@@ -1,0 +1,230 @@
+"""What one person likes: kept beside the documents, never in them."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import Annotated, Any, Literal, cast, get_type_hints
+
+import msgspec
+import platformdirs
+
+from ..document.disk import write_text
+from ..errors import OutputError, UsageError
+from .locks import locked
+
+MAX_RECENT = 20
+MAX_SCALE = 3.0
+MIN_SCALE = 0.75
+
+Purpose = Literal["graph", "image", "export"]
+
+
+def state_folder() -> Path:
+    """Where the editor keeps what is no document: HALATION_STATE, else where the system wants it."""
+    given = os.environ.get("HALATION_STATE")
+    return Path(given).absolute() if given else platformdirs.user_state_path("halation", appauthor=False)
+
+
+def _scale(number: float) -> float:
+    if number and not MIN_SCALE <= number <= MAX_SCALE:
+        raise ValueError(f"Expected 0 or a number in {MIN_SCALE:g}..{MAX_SCALE:g}")
+    return number
+
+
+@dataclass(frozen=True)
+class Recent:
+    """A graph file that was open; `time` is in seconds since 1970."""
+
+    path: str
+    time: float = 0.0
+
+    @property
+    def exists(self) -> bool:
+        """True if the file is still there."""
+        return os.path.isfile(self.path)  # noqa: PTH113 - False, not an error, for a path that no system allows
+
+
+@dataclass(frozen=True)
+class Preferences:
+    """`ui_scale` is 0 for what the system says; `shortcuts` are those that differ, by action; "" stands for none.
+
+    `recent` has the newest first. `folders` are those used last, by purpose. `autosave` is in seconds,
+    `memory_budget` in MiB. `extra` keeps what another version of Halation wrote.
+    """
+
+    theme: Literal["dark", "light"] = "dark"
+    ui_scale: float = 0.0
+    shortcuts: Mapping[str, str] = field(default_factory=lambda: MappingProxyType[str, str]({}))
+    recent: tuple[Recent, ...] = ()
+    folders: Mapping[Purpose, str] = field(default_factory=lambda: MappingProxyType[Purpose, str]({}))
+    thumbnails: bool = True
+    timings: bool = False
+    minimap: bool = True
+    autosave: Annotated[float, msgspec.Meta(ge=0.5, le=10.0)] = 5.0
+    memory_budget: Annotated[int, msgspec.Meta(ge=64, le=2**20)] = 512
+    hint_seen: bool = False
+    proxy_while_dragging: bool = True
+    extra: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType[str, Any]({}))
+
+
+TYPES = get_type_hints(Preferences, include_extras=True)
+FAULTS = (msgspec.ValidationError, ValueError, TypeError)
+CHECKS = {"ui_scale": _scale}
+NAMES = tuple(one.name for one in fields(Preferences) if one.name != "extra")
+
+
+class Store:
+    """Preferences in a folder. `now` is what holds; `faults` are sentences about what could not be read or written.
+
+    Several editors share the file: each writes only what changed in it, over what the others wrote.
+    """
+
+    def __init__(self, folder: Path | None = None) -> None:
+        self.file = (folder or state_folder()) / "preferences.json"
+        self.faults: list[str] = []
+        self.now = self._read(Preferences())
+        self._written = self.now
+        self._gone: set[str] = set()
+
+    def change(self, **values: Any) -> None:
+        """Set fields of `now`. Raises UsageError for a value that makes no sense."""
+        checked: dict[str, Any] = {}
+        for name, value in values.items():
+            if name not in NAMES:
+                raise UsageError(f"there is no preference '{name}'")
+            try:
+                checked[name] = _checked(name, value)
+            except FAULTS as fault:
+                raise UsageError(f"the preference '{name}' cannot be {value!r}: {_lower(fault)}") from None
+        self.now = replace(self.now, **checked)
+
+    def opened(self, path: str | Path) -> None:
+        """Note that a graph file was opened or saved."""
+        here = os.path.abspath(path)  # noqa: PTH100 - links stay as they were named
+        self._gone.discard(here)
+        self.now = replace(self.now, recent=_merged((Recent(here, time.time()),), self.now.recent))
+
+    def forget(self, path: str | Path) -> None:
+        """Take a file off the list of recent files."""
+        self._gone.add(str(path))
+        self.now = replace(self.now, recent=tuple(one for one in self.now.recent if one.path != str(path)))
+
+    def folder(self, purpose: Purpose) -> str:
+        """The folder that was used last for this, "" if there is none any more."""
+        found = self.now.folders.get(purpose, "")
+        return found if os.path.isdir(found) else ""  # noqa: PTH112 - as above
+
+    def used(self, purpose: Purpose, path: str | Path) -> None:
+        """Note the folder of a file that was chosen."""
+        self.change(folders={**self.now.folders, purpose: str(Path(path).absolute().parent)})
+
+    def flush(self) -> bool:
+        """Write what changed, if anything did; True if so. What cannot be written is tried again the next time."""
+        if self.now == self._written and not self._gone:
+            return False
+        try:
+            self.file.parent.mkdir(parents=True, exist_ok=True)
+            with locked(self.file.with_suffix(".lock")):
+                self.now = self._together()
+                write_text(self.file, json.dumps(_tree(self.now), indent=2, sort_keys=True) + "\n")
+        except (OSError, OutputError) as fault:
+            self._report(f"preferences cannot be kept: {fault}")
+            return False
+        self._written = self.now
+        self._gone.clear()
+        return True
+
+    def _together(self) -> Preferences:
+        """What is in the file, with what changed here put over it."""
+        there = self._read(self._written)
+        changed = _differing(self.now, self._written)
+        recent = tuple(one for one in there.recent if one.path not in self._gone)
+        return replace(there, **changed | {"recent": _merged(self.now.recent, recent)})
+
+    def _read(self, fallback: Preferences) -> Preferences:
+        """The file's preferences; what is broken in it is reported, and `fallback` stands for it."""
+        try:
+            tree = json.loads(self.file.read_bytes())
+            if not isinstance(tree, dict):
+                raise ValueError("it holds no object")
+        except FileNotFoundError:
+            return fallback
+        except OSError as fault:
+            self._report(f"{self.file}: the preferences cannot be read ({fault.strerror})")
+            return fallback
+        except (ValueError, RecursionError) as fault:
+            self._set_aside(fault)
+            return fallback
+        found: dict[str, Any] = {}
+        for name in NAMES:
+            try:
+                if name in tree:
+                    found[name] = _checked(name, self._sound_entries(name, tree[name]))
+            except FAULTS as fault:
+                self._report(f"{self.file}: '{name}' is left out ({_lower(fault)})")
+                found[name] = getattr(fallback, name)
+        others = {name: item for name, item in tree.items() if name not in NAMES}
+        return Preferences(**found, extra=MappingProxyType(others))
+
+    def _sound_entries(self, name: str, raw: Any) -> Any:
+        """A list or object without the entries that are broken: one of them is no reason to lose the others."""
+        if isinstance(raw, list):
+            return [one for one in raw if self._is_sound(name, [one])]
+        if isinstance(raw, dict):
+            return {key: one for key, one in raw.items() if self._is_sound(name, {key: one})}
+        return raw
+
+    def _is_sound(self, name: str, raw: Any) -> bool:
+        try:
+            _checked(name, raw)
+        except FAULTS as fault:
+            self._report(f"{self.file}: an entry of '{name}' is left out ({_lower(fault)})")
+            return False
+        return True
+
+    def _set_aside(self, fault: Exception) -> None:
+        aside = self.file.with_name("preferences.broken.json")
+        with contextlib.suppress(OSError):
+            self.file.replace(aside)
+        self._report(f"{self.file}: the preferences are damaged ({fault}); they are set aside as {aside.name}")
+
+    def _report(self, sentence: str) -> None:
+        if sentence not in self.faults:
+            self.faults.append(sentence)
+
+
+def _checked(name: str, value: Any) -> Any:
+    """A value as its field declares it. Raises ValidationError or ValueError."""
+    found = msgspec.convert(msgspec.to_builtins(value, enc_hook=dict), TYPES[name])
+    return CHECKS[name](found) if name in CHECKS else found
+
+
+def _merged(first: tuple[Recent, ...], second: tuple[Recent, ...]) -> tuple[Recent, ...]:
+    """Both lists as one, newest first, every path once."""
+    newest: dict[str, Recent] = {}
+    for one in sorted((*first, *second), key=lambda one: one.time, reverse=True):
+        newest.setdefault(one.path, one)
+    return tuple(newest.values())[:MAX_RECENT]
+
+
+def _differing(preferences: Preferences, other: Preferences) -> dict[str, Any]:
+    """The fields in which they differ, as `preferences` has them."""
+    return {name: getattr(preferences, name) for name in NAMES if getattr(preferences, name) != getattr(other, name)}
+
+
+def _tree(preferences: Preferences) -> dict[str, Any]:
+    """What is written: fields that differ from their default, and what was there that means nothing here."""
+    changed = msgspec.to_builtins(_differing(preferences, Preferences()), enc_hook=dict)
+    return {**preferences.extra, **cast("dict[str, Any]", changed)}
+
+
+def _lower(fault: Exception) -> str:
+    said = str(fault)
+    return said[:1].lower() + said[1:]

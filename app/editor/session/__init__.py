@@ -1,0 +1,8 @@
+"""A document that a person works on: every thing that can be done to it is a method of `Session`."""
+
+from __future__ import annotations
+
+from .history import History
+from .session import Session
+
+__all__ = ["History", "Session"]

@@ -1,0 +1,102 @@
+"""What can be undone: a list of steps, each with the document before and after."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+from ...graph import Graph
+
+MOST = 1000
+"""Steps that are kept; older ones are forgotten."""
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """A document as it was seen: its graph, the groups entered, and what was selected."""
+
+    root: Graph
+    place: tuple[str, ...] = ()
+    selection: frozenset[str] = frozenset()
+    active: str = ""
+
+
+@dataclass(frozen=True)
+class Step:
+    """One thing that was done. Further ones with the same `merge` become part of it."""
+
+    label: str
+    before: Snapshot
+    after: Snapshot
+    merge: str = ""
+
+
+@dataclass
+class History:
+    """Steps, oldest first; `position` of them are in force, the others can be done again."""
+
+    _steps: list[Step] = field(default_factory=list[Step])
+    position: int = 0
+
+    @property
+    def steps(self) -> tuple[str, ...]:
+        """The labels of all steps, oldest first."""
+        return tuple(step.label for step in self._steps)
+
+    @property
+    def can_undo(self) -> bool:
+        """True if something was done."""
+        return self.position > 0
+
+    @property
+    def can_redo(self) -> bool:
+        """True if something was undone."""
+        return self.position < len(self._steps)
+
+    @property
+    def undo_label(self) -> str:
+        """What undo would take back, or nothing."""
+        return self._steps[self.position - 1].label if self.can_undo else ""
+
+    @property
+    def redo_label(self) -> str:
+        """What redo would do again, or nothing."""
+        return self._steps[self.position].label if self.can_redo else ""
+
+    def add(self, step: Step) -> None:
+        """One more step; what was undone is forgotten. It joins the last one if both have the same `merge`."""
+        last = self._steps[self.position - 1] if self.can_undo and not self.can_redo else None
+        del self._steps[self.position :]
+        if last and step.merge and last.merge == step.merge:
+            self._steps[-1] = replace(last, after=step.after)
+        else:
+            self._steps = [*self._steps, step][-MOST:]
+        self.position = len(self._steps)
+
+    def seal(self) -> None:
+        """End merging; a step that came back to where it began is forgotten."""
+        if not self.can_undo or self.can_redo or not self._steps[-1].merge:
+            return
+        last = self._steps.pop()
+        if last.before.root != last.after.root:
+            self._steps.append(replace(last, merge=""))
+        self.position = len(self._steps)
+
+    def go_to(self, position: int) -> Snapshot | None:
+        """The document with that many steps in force, at least none and at most all; None if nothing changes."""
+        wanted = min(max(position, 0), len(self._steps))
+        if wanted == self.position:
+            return None
+        back = wanted < self.position
+        self.position = wanted
+        return self._steps[wanted].before if back else self._steps[wanted - 1].after
+
+    def change(self, edit: Callable[[Graph], Graph]) -> None:
+        """Apply what is no step, such as another folder, to every document of the past and future."""
+        self._steps = [
+            replace(
+                step, before=replace(step.before, root=edit(step.before.root)),
+                after=replace(step.after, root=edit(step.after.root)),
+            )
+            for step in self._steps
+        ]

@@ -1,0 +1,1 @@
+"""How the editor looks: colors, fonts and sizes, in one place."""

@@ -1,0 +1,95 @@
+"""Colors by their use. All are display-referred sRGB."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from ....nodes import Kind
+
+RGB = tuple[float, float, float]
+
+
+def _hex(text: str) -> RGB:
+    red, green, blue = (int(text[at : at + 2], 16) / 255 for at in (0, 2, 4))
+    return red, green, blue
+
+
+@dataclass(frozen=True)
+class Palette:
+    """One theme."""
+
+    name: str
+    window: RGB
+    """Behind panels."""
+    panel: RGB
+    field: RGB
+    """Where something can be typed or dragged."""
+    raised: RGB
+    """Buttons, tabs, headers."""
+    hover: RGB
+    border: RGB
+    text: RGB
+    dim: RGB
+    """Text of less weight: hints, units, disabled."""
+    accent: RGB
+    """What is selected or active."""
+    on_accent: RGB
+    good: RGB
+    warning: RGB
+    error: RGB
+    canvas: RGB
+    grid: RGB
+    node: RGB
+    shadow: RGB
+    surround: RGB
+    """Around the picture in the viewer: neutral, so that it does not tint what is judged."""
+    kinds: Mapping[Kind, RGB]
+    categories: Mapping[str, RGB]
+    """The header of a node by its menu; "" for menus that have none of their own."""
+
+    def category(self, name: str) -> RGB:
+        """The header color of a node of that menu."""
+        return self.categories.get(name, self.categories[""])
+
+
+_KINDS = MappingProxyType({
+    Kind.IMAGE: _hex("e2b93b"), Kind.FIELD: _hex("b6bcc6"), Kind.VECTOR: _hex("8f83f0"),
+    Kind.NUMBER: _hex("4fb3a5"), Kind.COLOR: _hex("e0709a"),
+})
+
+_KINDS_LIGHT = MappingProxyType({
+    Kind.IMAGE: _hex("b98500"), Kind.FIELD: _hex("5f6772"), Kind.VECTOR: _hex("6152d9"),
+    Kind.NUMBER: _hex("0f8273"), Kind.COLOR: _hex("c23d70"),
+})
+
+DARK = Palette(
+    "dark", window=_hex("141416"), panel=_hex("1d1d20"), field=_hex("2a2a2e"), raised=_hex("333338"),
+    hover=_hex("404047"), border=_hex("0d0d0f"), text=_hex("e4e4e7"), dim=_hex("9a9aa3"), accent=_hex("e8833a"),
+    on_accent=_hex("1a1108"), good=_hex("5fb878"), warning=_hex("e6b450"), error=_hex("ef6b6b"),
+    canvas=_hex("18181b"), grid=_hex("232327"), node=_hex("2b2b30"), shadow=_hex("000000"), surround=_hex("161616"),
+    kinds=_KINDS,
+    categories=MappingProxyType({
+        "": _hex("4a4a52"), "input": _hex("7a4a3a"), "output": _hex("7a4a3a"), "color": _hex("7a6a2e"),
+        "tone": _hex("7a5a2e"), "blur": _hex("3f5f7f"), "filter": _hex("3f5f7f"), "glow": _hex("8a4f2a"),
+        "distort": _hex("4a6b4a"), "edge": _hex("2f6b6b"), "merge": _hex("5a4a7a"), "channel": _hex("4f5560"),
+        "measure": _hex("2f6258"), "noise": _hex("6b3f5f"), "stylize": _hex("6b3f5f"), "group": _hex("3a6a48"),
+    }),
+)
+
+LIGHT = Palette(
+    "light", window=_hex("c9c9ce"), panel=_hex("ececef"), field=_hex("ffffff"), raised=_hex("d8d8de"),
+    hover=_hex("c6c6ce"), border=_hex("b3b3ba"), text=_hex("1b1b1f"), dim=_hex("5c5c66"), accent=_hex("c75f12"),
+    on_accent=_hex("ffffff"), good=_hex("1f7a3d"), warning=_hex("8f6200"), error=_hex("c02626"),
+    canvas=_hex("dcdce1"), grid=_hex("cfcfd5"), node=_hex("f6f6f8"), shadow=_hex("6a6a70"), surround=_hex("b8b8b8"),
+    kinds=_KINDS_LIGHT,
+    categories=MappingProxyType({
+        "": _hex("c3c3cb"), "input": _hex("e3bfae"), "output": _hex("e3bfae"), "color": _hex("e6d79a"),
+        "tone": _hex("e6c99a"), "blur": _hex("aecbe6"), "filter": _hex("aecbe6"), "glow": _hex("f0c09a"),
+        "distort": _hex("b9d9b9"), "edge": _hex("a3d6d6"), "merge": _hex("c9bce6"), "channel": _hex("c6ccd6"),
+        "measure": _hex("a8d6cb"), "noise": _hex("e0b9d3"), "stylize": _hex("e0b9d3"), "group": _hex("aed9ba"),
+    }),
+)
+
+PALETTES: Mapping[str, Palette] = MappingProxyType({palette.name: palette for palette in (DARK, LIGHT)})

@@ -1,0 +1,115 @@
+"""Small pictures of nodes, drawn from results that are on the device anyway."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...nodes import Kind
+from ..renderer import Display, Look, Probe, Renderer
+
+if TYPE_CHECKING:
+    import moderngl
+
+LARGEST = (160, 90)
+RANGE_WIDTH = 64
+"""The range of a field is measured on so many columns."""
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A result that a node shows. `mark` changes when anything upstream of the node does."""
+
+    path: str
+    key: str
+    kind: Kind
+    channels: int
+    mark: object
+
+
+@dataclass(frozen=True)
+class _Source:
+    """What the display is handed."""
+
+    texture: moderngl.Texture
+    full_size: tuple[int, int]
+    channels: int
+    key: str
+
+
+@dataclass(frozen=True)
+class _Drawn:
+    texture: moderngl.Texture
+    key: str
+    mark: object
+
+
+class Thumbnails:
+    """The last small picture of every node. Nothing is ever computed for them but themselves."""
+
+    def __init__(self, renderer: Renderer, display: Display) -> None:
+        self._renderer, self._display = renderer, display
+        self._probe = Probe(renderer.device)
+        self._drawn: dict[str, _Drawn] = {}
+        self._waiting: dict[str, Subject] = {}
+
+    @property
+    def waiting(self) -> bool:
+        """True while there are some to be drawn."""
+        return bool(self._waiting)
+
+    def offer(self, subjects: Mapping[str, Subject]) -> None:
+        """These results are there now, by path."""
+        for path, subject in subjects.items():
+            drawn = self._drawn.get(path)
+            self._waiting.pop(path, None)
+            if drawn is not None and drawn.key == subject.key:
+                self._drawn[path] = _Drawn(drawn.texture, drawn.key, subject.mark)
+            else:
+                self._waiting[path] = subject
+
+    def draw_next(self) -> None:
+        """Draw one, unless its result had to make room for others."""
+        subject = self._waiting.pop(next(iter(self._waiting)))
+        texture = self._renderer.runner.texture(subject.key)
+        if texture is None:
+            return
+        source = _Source(texture.handle, texture.handle.size, subject.channels, subject.key)
+        width, height = source.full_size
+        zoom = min(LARGEST[0] / width, LARGEST[1] / height, 1.0)
+        size = (max(1, round(width * zoom)), max(1, round(height * zoom)))
+        look = self._look(subject, source.texture, max(size[0] / width, size[1] / height))
+        drawn = self._display.draw(f"thumbnail {subject.path}", size, source, None, look)
+        self._drawn[subject.path] = _Drawn(drawn, subject.key, subject.mark)
+
+    def find(self, path: str, mark: object) -> tuple[moderngl.Texture, bool] | None:
+        """The last picture of a node, and whether it is what the node shows now."""
+        drawn = self._drawn.get(path)
+        return drawn and (drawn.texture, drawn.mark == mark)
+
+    def clear(self) -> None:
+        """Forget all of them."""
+        for path in self._drawn:
+            self._display.drop(f"thumbnail {path}")
+        self._drawn.clear()
+        self._waiting.clear()
+
+    def close(self) -> None:
+        """Give everything back."""
+        self.clear()
+        self._probe.close()
+
+    def _look(self, subject: Subject, texture: moderngl.Texture, zoom: float) -> Look:
+        if subject.kind is Kind.IMAGE:
+            return Look(zoom=zoom, view="none")
+        if subject.kind is Kind.VECTOR and subject.channels == 3:
+            return Look(zoom=zoom, meaning="normal")
+        pixels = self._probe.small(texture, RANGE_WIDTH)[..., : subject.channels]
+        known = pixels[np.isfinite(pixels)]
+        low, high = np.percentile(known, (1.0, 99.0)) if known.size else (0.0, 1.0)
+        if low >= 0.0 and high <= 1.0:  # a mask, say: black and white mean something
+            low, high = 0.0, 1.0
+        return Look(zoom=zoom, meaning="field" if subject.channels == 1 else "vector", low=float(low), high=float(high))

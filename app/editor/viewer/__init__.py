@@ -1,0 +1,1 @@
+"""The viewer: pictures, how they are shown, and what they measure."""

@@ -1,0 +1,35 @@
+"""Positions that the active node lets one drag on the picture."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, cast
+
+from ...graph import Port, Unknown, signature
+
+if TYPE_CHECKING:
+    from ..session import Session
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Handle:
+    """A value that is a position, as a fraction of the picture."""
+
+    port: Port
+    at: Point
+
+
+def handles(session: Session) -> tuple[Handle, ...]:
+    """Those of the active node that nothing else drives."""
+    item = session.graph.nodes.get(session.active)
+    if item is None or isinstance(item, Unknown):
+        return ()
+    found: list[Handle] = []
+    for name, value in signature(item).values.items():
+        port = Port(session.active, name)
+        if value.handle and session.linked(port) is None:
+            x, y = cast("Point", session.value(port))
+            found.append(Handle(port, (x, y)))
+    return tuple(found)

@@ -1,0 +1,114 @@
+"""The line below the picture: what it is, and what is under the pointer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from imgui_bundle import imgui
+
+from ....nodes import Kind
+from ...renderer.look import Look
+from ..theme.palette import RGB
+from ..theme.style import mix, u32, ui_scale
+from .geometry import Pixels, Sight
+from .looking import displayed
+from .measuring import hsv, written
+from .scopes import LUMINANCE
+
+if TYPE_CHECKING:
+    from ..editor import Editor
+    from ..preview import Shown
+
+_LETTERS = "RGBA"
+_CHANNEL_COLORS: tuple[RGB, ...] = ((0.93, 0.36, 0.36), (0.30, 0.72, 0.36), (0.36, 0.54, 0.98))
+
+
+@dataclass(frozen=True)
+class Word:
+    """A piece of text in the line, and its color."""
+
+    text: str
+    color: RGB
+    gap: float = 1.0
+    """Space before it, in parts of the font's height."""
+
+
+def row_height() -> float:
+    """How high one line is."""
+    return imgui.get_text_line_height() + 6 * ui_scale()
+
+
+def about(editor: Editor, shown: Shown | None, sight: Sight, seconds: float) -> list[Word]:
+    """What is shown, in a few words."""
+    palette, preview = editor.palette, editor.preview
+    words: list[Word] = []
+    if shown is not None:
+        width, height = shown.full_size
+        words += [Word(f"{width}×{height}", palette.text), Word(describe(shown.kind, shown.channels), palette.dim)]
+        if shown.scale != 1.0:
+            words.append(Word(f"1/{1 / shown.scale:.0f}", palette.warning))
+        words.append(Word(f"{sight.zoom * 100:.0f} %" if sight.zoom >= 0.1 else f"{sight.zoom * 100:.1f} %", palette.dim))
+    if preview.paused:
+        words.append(Word("paused", palette.warning))
+    elif preview.busy:
+        done, total = preview.progress
+        words.append(Word(f"{done}/{total}", palette.accent))
+    elif seconds > 0.0:
+        words.append(Word(f"{seconds * 1000:.0f} ms" if seconds < 1.0 else f"{seconds:.1f} s", palette.dim))
+    return words
+
+
+def describe(kind: Kind, channels: int) -> str:
+    """What kind of data it is."""
+    if kind in (Kind.IMAGE, Kind.COLOR):
+        return "RGBA" if kind is Kind.IMAGE else "color"
+    return f"vector {channels}" if kind is Kind.VECTOR else kind.value.lower()
+
+
+def of_pixel(editor: Editor, pixel: Pixels | None, values: tuple[float, ...], kind: Kind, look: Look) -> list[Word]:
+    """The numbers of a pixel: scene-linear, then as displayed."""
+    palette = editor.palette
+    if pixel is None or not values:
+        return []
+    words = [Word(f"{pixel[0]}, {pixel[1]}", palette.text, 1.5)]
+    color = kind in (Kind.IMAGE, Kind.COLOR)
+    for index, value in enumerate(values):
+        shade = mix(palette.text, _CHANNEL_COLORS[index], 0.6) if color and index < 3 else palette.text
+        shade = shade if np.isfinite(value) else palette.error
+        words.append(Word(f"{written(value):>8}", shade, 0.5 if index else 1.0))
+    if color:
+        shown = displayed(np.asarray([[values]], np.float32), look)[0, 0]
+        eight = " ".join(f"{int(part * 255 + 0.5):3d}" for part in shown)
+        hue, saturation, value = hsv(tuple(float(part) for part in shown))
+        light = float(np.dot(values[:3], LUMINANCE))
+        words += [
+            Word(eight, palette.dim, 1.5), Word(f"H{hue:4.0f} S{saturation:5.2f} V{value:5.2f}", palette.dim, 1.5),
+            Word(f"L {written(light)}", palette.dim, 1.5),
+        ]
+    return words
+
+
+def draw_line(editor: Editor, name: str, words: list[Word], swatch: RGB | None = None) -> None:
+    """One line of words, as many as fit."""
+    lines = imgui.get_window_draw_list()
+    start, room = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail().x
+    height, scale = row_height(), ui_scale()
+    lines.add_rect_filled(start, (start.x + room, start.y + height), u32(editor.palette.panel))
+    x, y, end = start.x + 8 * scale, round(start.y + 3 * scale), start.x + room - 4 * scale
+    if editor.fonts is not None:
+        imgui.push_font(editor.fonts.mono, 0.0)
+    for number, word in enumerate(words):
+        x += word.gap * imgui.get_font_size() if number else 0.0
+        width = imgui.calc_text_size(word.text).x
+        if x + width > end:
+            break
+        lines.add_text((round(x), y), u32(word.color), word.text)
+        x += width
+    if editor.fonts is not None:
+        imgui.pop_font()
+    if swatch is not None and x + height < end:
+        lines.add_rect_filled((x + 8 * scale, start.y + 4 * scale), (x + height, start.y + height - 4 * scale), u32(swatch))
+    imgui.dummy((room, height))
+    editor.places[name] = start.x, start.y, start.x + room, start.y + height

@@ -1,0 +1,101 @@
+"""How a result is shown: as a picture, or data made visible."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ....nodes import Kind
+from ...graph import OUTPUTS, Graph, Port
+from ...media import to_display
+from ...renderer.look import Look
+from .geometry import Sight, ordered
+from .measuring import Array, are_normals, balanced, data_range
+from .scopes import rgb_of
+from .state import Background, Meaning, ViewerState
+
+if TYPE_CHECKING:
+    from ..theme.palette import RGB
+
+Samples = Callable[[], Array]
+"""Gives the picture with most pixels left out; only called where it matters."""
+
+
+def meaning_of(state: ViewerState, kind: Kind, samples: Samples) -> Meaning:
+    """As what to show it."""
+    if state.meaning != "auto":
+        return state.meaning
+    if kind in (Kind.IMAGE, Kind.COLOR):
+        return "image"
+    if kind is Kind.VECTOR:
+        return "normal" if are_normals(samples()) else "vector"
+    return "field"
+
+
+def range_of(state: ViewerState, meaning: Meaning, samples: Samples) -> tuple[float, float]:
+    """The numbers that are shown as black and as white."""
+    if state.low != state.high:
+        return state.low, state.high
+    if meaning not in ("field", "vector"):
+        return 0.0, 1.0
+    low, high = data_range(samples())
+    return balanced(low, high) if meaning == "vector" else (low, high)
+
+
+def asked_view(graph: Graph, port: Port) -> str:
+    """The view that an output of the graph asks for: also of what is linked to it, for it is the same picture."""
+    for name, output in graph.outputs.items():
+        end = Port(OUTPUTS, name)
+        if port in (end, graph.links.get(end)) and output.view:
+            return output.view
+    return ""
+
+
+def look_of(
+    state: ViewerState, sight: Sight, meaning: Meaning, span: tuple[float, float], view: str, surround: RGB
+) -> Look:
+    """What the display needs to know. `span` is the range of data, `view` what the picture asks for."""
+    region = None
+    if state.region is not None:
+        left, top, right, bottom = ordered(state.region)
+        width, height = sight.picture
+        region = (left * width, top * height, (right - left) * width, (bottom - top) * height)
+    compare = ("b" if state.toggled else "off") if state.compare == "toggle" else state.compare
+    gray = _GRAYS[state.background]
+    return Look(
+        zoom=sight.zoom, pan=sight.pan, channels=state.channels, meaning="image" if meaning == "auto" else meaning,
+        low=span[0], high=span[1], exposure=state.exposure, gamma=state.gamma, view=state.view or view,
+        display=state.display, compare=compare, wipe=state.wipe, angle=state.wipe_angle,
+        checker=state.background == "checker", background=(gray, gray, gray), clipping=state.warn_clipping,
+        nonfinite=state.warn_nonfinite, region=region, surround=surround,
+    )
+
+
+def picture_only(look: Look) -> Look:
+    """The same at the picture's own size, without what only helps to judge it."""
+    return replace(look, zoom=1.0, pan=(0.0, 0.0), clipping=False, nonfinite=False, region=None)
+
+
+def displayed(pixels: Array, look: Look) -> Array:
+    """Pixels [h, w, channels] as the display shows them, [h, w, 3] of 0..1, transparency over black."""
+    if look.meaning == "normal":
+        return np.clip(rgb_of(pixels) * 0.5 + 0.5, 0.0, 1.0)
+    if look.meaning != "image":
+        return np.clip((rgb_of(pixels) - look.low) / max(look.high - look.low, 1e-6), 0.0, 1.0)
+    lit = np.concatenate([rgb_of(pixels) * np.float32(2.0**look.exposure), _alpha(pixels)], axis=2)
+    shown = to_display(lit, look.view, bits=32, display=look.display)[..., :3]
+    cover = np.where(lit[..., 3:] > 0.0, np.minimum(lit[..., 3:], 1.0), 1.0)  # color without alpha is light
+    return np.clip(shown, 0.0, 1.0) ** np.float32(1.0 / look.gamma) * cover
+
+
+def _alpha(pixels: Array) -> Array:
+    if pixels.shape[2] == 4:
+        return np.nan_to_num(pixels[..., 3:].astype(np.float32), nan=1.0, posinf=1.0, neginf=0.0)
+    return np.ones((*pixels.shape[:2], 1), np.float32)
+
+
+_GRAYS: Mapping[Background, float] = MappingProxyType({"checker": 0.0, "black": 0.0, "gray": 0.5, "white": 1.0})

@@ -1,0 +1,192 @@
+"""What is drawn over the picture: grid, region, wipe, handles, markers, messages."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from imgui_bundle import imgui
+
+from ..theme.palette import RGB
+from ..theme.style import u32, ui_scale
+from .geometry import GRID_FROM, Box, Point, Sight, wipe_direction
+from .handles import handles
+from .holding import ARM
+
+if TYPE_CHECKING:
+    from ..editor import Editor
+
+_WHITE: RGB = (1.0, 1.0, 1.0)
+_BLACK: RGB = (0.0, 0.0, 0.0)
+"""Lines over pictures of any color: white on black, whatever the theme."""
+
+
+def draw_overlays(editor: Editor, sight: Sight) -> None:
+    """Everything that belongs to a place on the picture."""
+    lines = imgui.get_window_draw_list()
+    if sight.zoom >= GRID_FROM:
+        _grid(lines, sight)
+    viewer = editor.viewer
+    if viewer.region is not None:
+        _region(editor, lines, sight.rectangle(viewer.region))
+    if viewer.measured is not None:
+        _dashed(lines, sight.rectangle(viewer.measured), editor.palette.accent)
+    for number, marker in enumerate(viewer.markers, 1):
+        _marker(lines, sight.place(marker), str(number))
+    if viewer.compare == "wipe" and editor.session.viewed("B") is not None:
+        _wipe(editor, lines, sight)
+    _handles(editor, lines, sight)
+
+
+def _grid(lines: imgui.ImDrawList, sight: Sight) -> None:
+    """Lines between pixels that are in sight."""
+    left, top, right, bottom = _visible(sight)
+    color = u32(_WHITE, min((sight.zoom - GRID_FROM) / 16.0, 1.0) * 0.16 + 0.04)
+    x0, y0 = sight.screen((left, top))
+    x1, y1 = sight.screen((right, bottom))
+    step = sight.zoom / sight.density
+    for index in range(right - left + 1):
+        lines.add_line((x0 + index * step, y0), (x0 + index * step, y1), color)
+    for index in range(bottom - top + 1):
+        lines.add_line((x0, y0 + index * step), (x1, y0 + index * step), color)
+
+
+def _visible(sight: Sight) -> tuple[int, int, int, int]:
+    """The pixels in sight: left, top, right, bottom."""
+    (left, top), (right, bottom) = (sight.pixel(corner) for corner in _corners(sight))
+    width, height = sight.picture
+    return (
+        max(math.floor(left), 0), max(math.floor(top), 0), min(math.ceil(right), width), min(math.ceil(bottom), height)
+    )
+
+
+def _corners(sight: Sight) -> tuple[Point, Point]:
+    width, height = (length / sight.density for length in sight.panel)
+    return sight.origin, (sight.origin[0] + width, sight.origin[1] + height)
+
+
+def _region(editor: Editor, lines: imgui.ImDrawList, box: Box) -> None:
+    left, top, right, bottom = box
+    _outlined(lines, box)
+    size = 3.5 * ui_scale()
+    middle = (left + right) / 2, (top + bottom) / 2
+    for x in (left, middle[0], right):
+        for y in (top, middle[1], bottom):
+            if (x, y) != middle:
+                lines.add_rect_filled((x - size, y - size), (x + size, y + size), u32(_BLACK, 0.7))
+                lines.add_rect_filled((x - size + 1, y - size + 1), (x + size - 1, y + size - 1), u32(_WHITE))
+    _cross(lines, middle, 5.0 * ui_scale())
+    editor.places["viewer region"] = box
+
+
+def _wipe(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None:
+    """Grips on the line, which the display draws."""
+    viewer, scale = editor.viewer, ui_scale()
+    x, y = sight.place(viewer.wipe)
+    dx, dy = wipe_direction(viewer.wipe_angle)
+    end = x + dx * ARM * scale, y + dy * ARM * scale
+    for color, width in ((u32(_BLACK, 0.6), 4.0), (u32(_WHITE), 2.0)):
+        lines.add_line((x, y), end, color, width * scale)
+        lines.add_circle_filled((x, y), (width + 4.0) * scale, color)
+        lines.add_circle_filled(end, (width + 2.5) * scale, color)
+    for name, away in (("A", -1.0), ("B", 1.0)):
+        at = x + dy * away * 18 * scale, y - dx * away * 18 * scale
+        _label(lines, at, name)
+    editor.places["viewer wipe"] = _around((x, y), 6.0 * scale)
+    editor.places["viewer wipe angle"] = _around(end, 6.0 * scale)
+
+
+def _handles(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None:
+    mouse = imgui.get_mouse_pos()
+    scale = ui_scale()
+    for handle in handles(editor.session):
+        x, y = sight.place(handle.at)
+        near = math.dist((mouse.x, mouse.y), (x, y)) <= 10.0 * scale
+        color = editor.palette.accent if near else _WHITE
+        _cross(lines, (x, y), 9.0 * scale, color)
+        lines.add_circle((x, y), 5.0 * scale, u32(_BLACK, 0.6), 0, 3.0 * scale)
+        lines.add_circle((x, y), 5.0 * scale, u32(color), 0, 1.5 * scale)
+        if near:
+            _label(lines, (x, y + 20 * scale), str(handle.port))
+        editor.places[f"handle {handle.port}"] = _around((x, y), 6.0 * scale)
+
+
+def _marker(lines: imgui.ImDrawList, at: Point, text: str) -> None:
+    scale = ui_scale()
+    _cross(lines, at, 6.0 * scale)
+    _label(lines, (at[0] + 10 * scale, at[1] - 10 * scale), text)
+
+
+def _cross(lines: imgui.ImDrawList, at: Point, arm: float, color: RGB = _WHITE) -> None:
+    x, y = at
+    for shade, width in ((u32(_BLACK, 0.6), 3.0), (u32(color), 1.0)):
+        lines.add_line((x - arm, y), (x + arm, y), shade, width)
+        lines.add_line((x, y - arm), (x, y + arm), shade, width)
+
+
+def _outlined(lines: imgui.ImDrawList, box: Box) -> None:
+    lines.add_rect(box[:2], box[2:], u32(_BLACK, 0.6), 0.0, 3.0)
+    lines.add_rect(box[:2], box[2:], u32(_WHITE), 0.0, 1.0)
+
+
+def _dashed(lines: imgui.ImDrawList, box: Box, color: RGB) -> None:
+    """A thin frame that differs from that of the region."""
+    lines.add_rect(box[:2], box[2:], u32(_BLACK, 0.6), 0.0, 3.0)
+    lines.add_rect(box[:2], box[2:], u32(color), 0.0, 1.0)
+
+
+def _label(lines: imgui.ImDrawList, center: Point, text: str) -> None:
+    """Text that can be read over any picture."""
+    size = imgui.calc_text_size(text)
+    x, y = round(center[0] - size.x / 2), round(center[1] - size.y / 2)
+    pad = 3.0 * ui_scale()
+    lines.add_rect_filled((x - pad, y), (x + size.x + pad, y + size.y), u32(_BLACK, 0.6), pad)
+    lines.add_text((x, y), u32(_WHITE), text)
+
+
+def _around(at: Point, reach: float) -> Box:
+    return at[0] - reach, at[1] - reach, at[0] + reach, at[1] + reach
+
+
+# --- messages ------------------------------------------------------------------------------------------------------
+
+
+def draw_progress(editor: Editor, sight: Sight, fraction: float) -> None:
+    """A thin line at the top that grows."""
+    (left, top), (right, _) = _corners(sight)
+    lines, height = imgui.get_window_draw_list(), 2.0 * ui_scale()
+    lines.add_rect_filled((left, top), (right, top + height), u32(_BLACK, 0.4))
+    lines.add_rect_filled((left, top), (left + (right - left) * fraction, top + height), u32(editor.palette.accent))
+
+
+def draw_message(editor: Editor, sight: Sight, text: str, color: RGB, dim: bool = False) -> None:
+    """A sentence in the middle of the panel; `dim` darkens what is behind it."""
+    (left, top), (right, bottom) = _corners(sight)
+    palette, scale = editor.palette, ui_scale()
+    lines = imgui.get_window_draw_list()
+    if dim:
+        lines.add_rect_filled((left, top), (right, bottom), u32(palette.surround, 0.6))
+    width = min((right - left) - 48 * scale, 520 * scale)
+    if width < 40 * scale:
+        return
+    size = imgui.calc_text_size(text, wrap_width=width)
+    x, y = round((left + right - size.x) / 2), round((top + bottom - size.y) / 2)
+    pad = 12 * scale
+    box = (x - pad, y - pad), (x + size.x + pad, y + size.y + pad)
+    lines.add_rect_filled(*box, u32(palette.panel, 0.94), 6 * scale)
+    lines.add_rect(*box, u32(color, 0.8), 6 * scale)
+    lines.add_text(imgui.get_font(), imgui.get_font_size(), (x, y), u32(color), text, wrap_width=width)
+    editor.places["viewer message"] = (*box[0], *box[1])
+
+
+def draw_badge(editor: Editor, sight: Sight, text: str, color: RGB) -> Box:
+    """A few words in the upper right corner; returns where."""
+    (_, top), (right, _) = _corners(sight)
+    palette, scale = editor.palette, ui_scale()
+    size, pad = imgui.calc_text_size(text), 5 * scale
+    box = right - size.x - 3 * pad, top + 2 * pad, right - pad, top + 2 * pad + size.y + pad
+    lines = imgui.get_window_draw_list()
+    lines.add_rect_filled(box[:2], box[2:], u32(palette.panel, 0.9), 4 * scale)
+    lines.add_rect(box[:2], box[2:], u32(color, 0.7), 4 * scale)
+    lines.add_text((box[0] + pad, box[1] + pad / 2), u32(color), text)
+    return box

@@ -1,0 +1,83 @@
+"""How coarse pictures may be while a value is being dragged, so that they keep up with the hand."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+SLOW = 0.060
+"""Seconds: above, the next picture is made coarser."""
+
+EASY = 0.035
+"""Seconds: a finer scale must promise this before it is taken again."""
+
+COARSEST = 0.25
+"""The least part of the chosen proxy."""
+
+OVERDUE = 0.5
+"""Seconds after which a picture counts as slow even if it is not there yet."""
+
+
+def coarse(finest: float, scale: float, seconds: float) -> float:
+    """The scale for the next picture of a drag, when one at `scale` took `seconds`; `finest` is what was asked for."""
+    while seconds > SLOW and scale > finest * COARSEST:
+        scale, seconds = scale / 2.0, seconds / 4.0
+    return scale
+
+
+def starting(finest: float, scale: float, seconds: float) -> float:
+    """The scale for a new drag, when the last one ended at `scale` and pictures of the chosen proxy take `seconds`."""
+    part = scale / finest
+    while part < 1.0 and seconds * (2.0 * part) ** 2 <= EASY:
+        part *= 2.0
+    return coarse(finest, finest * part, seconds * part * part)
+
+
+@dataclass
+class Pace:
+    """The scale of pictures over time: coarser while dragging is slow, the chosen one as soon as it is over.
+
+    Within one drag it only falls, so that the picture does not flicker between scales.
+    """
+
+    scale: float = 1.0
+    """The scale of the drag, now or last."""
+    seconds: float = 0.0
+    """How long a picture of the chosen proxy takes, as measured or guessed last."""
+    _finest: float = 1.0
+    _dragging: bool = False
+
+    def at(self, finest: float, dragging: bool) -> float:
+        """The scale to render at now."""
+        if finest != self._finest:
+            self.seconds *= (finest / self._finest) ** 2
+            self.scale *= finest / self._finest
+            self._finest = finest
+        if dragging and not self._dragging:
+            self.scale = starting(finest, self.scale, self.seconds)
+        self._dragging = dragging
+        return self.scale if dragging else finest
+
+    def took(self, scale: float, seconds: float) -> None:
+        """A picture at `scale` was finished after `seconds`."""
+        self.seconds = seconds * (self._finest / scale) ** 2
+        if self._dragging and scale == self.scale:
+            self.scale = coarse(self._finest, scale, seconds)
+
+
+@dataclass
+class Stopwatch:
+    """Measures how long pictures take, from what is seen once per frame."""
+
+    _started: float | None = None
+    _key: str = ""
+
+    def lap(self, busy: bool, key: str, now: float) -> float | None:
+        """Seconds that a picture took, when another one is shown, nothing is left to do, or it is overdue."""
+        if self._started is None:
+            self._started, self._key = (now if busy else None), key
+            return None
+        seconds = now - self._started
+        if busy and key == self._key and seconds < OVERDUE:
+            return None
+        self._started, self._key = (now if busy else None), key
+        return seconds

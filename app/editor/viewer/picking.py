@@ -1,0 +1,74 @@
+"""Choosing what a side of the viewer shows."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, cast
+
+from imgui_bundle import imgui
+
+from ...errors import GraphError
+from ...graph import INPUTS, OUTPUTS, Port, signature
+from ..theme.style import u32, ui_scale
+from .controls import button, last_rectangle
+
+if TYPE_CHECKING:
+    from ...graph import Graph
+    from ..editor import Editor
+
+
+def ports_of(graph: Graph) -> tuple[tuple[str, tuple[Port, ...]], ...]:
+    """Everything that can be shown, under headings, as the graph flows."""
+    nodes = tuple(
+        Port(id, name) for id in _ordered(graph) for name in signature(graph.nodes[id]).outputs
+    )
+    groups = (
+        ("Outputs", tuple(Port(OUTPUTS, name) for name in graph.outputs)), ("Nodes", nodes),
+        ("Inputs", tuple(Port(INPUTS, name) for name in graph.inputs)),
+    )
+    return tuple(group for group in groups if group[1])
+
+
+def title(graph: Graph, port: Port) -> str:
+    """What a port is called in a list: a node with one output by its id alone."""
+    if port.node in (INPUTS, OUTPUTS):
+        return port.socket
+    return port.node if len(signature(graph.nodes[port.node]).outputs) == 1 else f"{port.node}.{port.socket}"
+
+
+def pick_port(editor: Editor, side: str, label: str, in_menu: bool) -> None:
+    """A button that says what is shown, and a list to choose from."""
+    palette = editor.palette
+    id = f"show {side}"
+    if button(editor, f"{label}##{id}"):
+        imgui.open_popup(id)
+    left, top, right, bottom = editor.places[f"button viewer {side}"] = last_rectangle()
+    color = palette.accent if side == "A" else palette.good
+    line = 2.0 * ui_scale()
+    if not in_menu:
+        imgui.get_window_draw_list().add_rect_filled((left, bottom - line), (right, bottom), u32(color), line / 2)
+    imgui.set_item_tooltip(f"What {side} shows. Keys 1 to 9 recall what Ctrl+1 to Ctrl+9 kept.")
+    imgui.set_next_window_size_constraints((0, 0), (1e6, imgui.get_font_size() * 26))
+    if imgui.begin_popup(id):
+        _list(editor, side)
+        imgui.end_popup()
+
+
+def _list(editor: Editor, side: str) -> None:
+    session = editor.session
+    chosen = session.viewed("A" if side == "A" else "B")
+    numbers = {port: number for number, port in session.viewers.items()}
+    if side == "B" and imgui.menu_item("Nothing", "", chosen is None)[0]:
+        session.view_nothing("B")
+    for heading, ports in ports_of(session.graph):
+        imgui.separator_text(heading)
+        for port in ports:
+            key = str(numbers[port]) if port in numbers else ""
+            if imgui.menu_item(f"{title(session.graph, port)}##{port}", key, port == chosen)[0]:
+                editor.attempt(lambda port=port: session.view(port, cast("Literal['A', 'B']", side)))
+
+
+def _ordered(graph: Graph) -> tuple[str, ...]:
+    try:
+        return tuple(reversed(graph.order()))
+    except GraphError:  # a loop: any order will do
+        return tuple(graph.nodes)

@@ -1,0 +1,40 @@
+"""Saves what the viewer shows, as it shows it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ....nodes import Kind
+from ...media import write
+from ...media.color import decode_srgb
+from ..dialogs import Browse
+from .looking import picture_only
+
+if TYPE_CHECKING:
+    from ...renderer.look import Look
+    from ..editor import Editor
+    from ..preview import Shown
+
+
+def ask_to_save(editor: Editor, a: Shown, b: Shown | None, look: Look) -> None:
+    """Draw the picture at its own size, and ask where to keep it."""
+    width, height = a.full_size
+    texture = editor.display.draw("saved", (width, height), a, b, picture_only(look))
+    try:
+        pixels = editor.probe.region(texture, (0, 0, width, height))[..., :3]
+    finally:
+        editor.display.drop("saved")
+    name = f"{editor.session.name}.{a.port.node.rpartition('/')[2]}.png"
+    editor.dialogs.browse = Browse(
+        "Save what is seen", "export", lambda path: editor.attempt(lambda: _save(editor, path, pixels)), saving=True,
+        name=name,
+    )
+
+
+def _save(editor: Editor, path: Path, pixels: np.ndarray) -> None:
+    """Display-referred pixels 0..1: decoded, so that the view of the file encodes them as they are."""
+    write(path, {"image": decode_srgb(pixels).astype(np.float32)}, kinds={"image": Kind.IMAGE}, view="none")
+    editor.say(f"saved {path}")

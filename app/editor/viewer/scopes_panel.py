@@ -1,0 +1,177 @@
+"""The scopes panel: what the picture on side A measures."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+import numpy as np
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import imgui
+
+from ....nodes import Kind
+from ...renderer.plates import Plate
+from ..theme.style import u32, ui_scale, vec4
+from . import graticules, scope_images
+from .controls import button, tool
+from .geometry import Box, Sight, texels
+from .looking import asked_view, displayed, look_of, meaning_of, range_of
+from .reading import Reader
+from .scopes import clipped, extent, rgb_of
+from .state import SCOPES
+from .wanted import A
+
+if TYPE_CHECKING:
+    from ..editor import Editor
+    from ..preview import Shown
+
+SECONDS = 0.2
+"""Between refreshes."""
+
+_ICONS = (icons.ICON_FA_CHART_AREA, icons.ICON_FA_WAVE_SQUARE, icons.ICON_FA_CHART_COLUMN, icons.ICON_FA_CIRCLE_DOT)
+
+
+class Scopes:
+    """Draws the scopes that are chosen, below each other or side by side, as fits."""
+
+    title = "Scopes"
+
+    def __init__(self) -> None:
+        self._reader = Reader()
+        self._plates: dict[str, Plate] = {}
+        self._textures: dict[str, int] = {}
+        self._mark: object = None
+        self._next = 0.0
+        self._range = (0.0, 1.0)
+        self._clipped = (0.0, 0.0)
+
+    def draw(self, editor: Editor) -> None:
+        """Tools, and every scope."""
+        shown = editor.preview.shown(A)
+        self._draw_tools(editor)
+        names = [name for name in SCOPES if name in editor.viewer.scopes]
+        if shown is None or not names:
+            imgui.text_colored(vec4(editor.palette.dim), "Nothing to measure yet." if names else "Choose a scope.")
+            return
+        if shown.kind in (Kind.NUMBER, Kind.COLOR):
+            imgui.text_colored(vec4(editor.palette.dim), "One value for the whole picture.")
+            return
+        self._refresh(editor, shown, names)
+        room, gap = imgui.get_content_region_avail(), 6.0 * ui_scale()
+        columns = _columns(room.x, room.y, len(names))
+        rows = -(-len(names) // columns)
+        width = (room.x - gap * (columns - 1)) / columns
+        height = max((room.y - gap * (rows - 1)) / rows, 56.0 * ui_scale())
+        start = imgui.get_cursor_screen_pos()
+        for index, name in enumerate(names):
+            x = start.x + index % columns * (width + gap)
+            y = start.y + index // columns * (height + gap)
+            self._draw_scope(editor, name, (round(x), round(y), round(x + width), round(y + height)))
+        imgui.dummy((room.x, rows * (height + gap) - gap))
+
+    # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _draw_tools(self, editor: Editor) -> None:
+        viewer = editor.viewer
+        imgui.push_style_var(imgui.StyleVar_.item_spacing, (2.0 * ui_scale(), imgui.get_style().item_spacing.y))
+        for icon, name in zip(_ICONS, SCOPES, strict=True):
+            tool(editor, icon, f"scopes.{name}")
+            imgui.same_line()
+        if button(editor, "log##logarithmic", viewer.scopes_logarithmic):
+            viewer.scopes_logarithmic = not viewer.scopes_logarithmic
+        imgui.set_item_tooltip("Logarithmic histogram")
+        imgui.same_line()
+        if button(editor, "scene" if viewer.scopes_of_scene else "display", viewer.scopes_of_scene):
+            viewer.scopes_of_scene = not viewer.scopes_of_scene
+        imgui.set_item_tooltip("What is measured: scene-linear numbers, or what the display shows")
+        imgui.pop_style_var()
+
+    def _refresh(self, editor: Editor, shown: Shown, names: list[str]) -> None:
+        """Measure again if the picture, or how it is shown, has changed, but not too often."""
+        viewer = editor.viewer
+        mark = (
+            shown.key, shown.revision, tuple(names), viewer.exposure, viewer.gamma, viewer.view, viewer.display,
+            viewer.region, viewer.scopes_of_scene, viewer.scopes_logarithmic, viewer.low, viewer.high, viewer.meaning,
+            editor.palette.name,
+        )
+        now = time.monotonic()
+        if mark == self._mark or (now < self._next and self._textures):
+            return
+        self._mark, self._next = mark, now + SECONDS
+        rgb = self._measured(editor, shown)
+        self._range = extent(rgb) if viewer.scopes_of_scene else (0.0, 1.0)
+        self._clipped = clipped(rgb)
+        dark = _is_dark(editor)
+        for name in names:
+            plate = self._plates.get(name) or self._plates.setdefault(name, Plate(editor.preview.renderer.device))
+            self._textures[name] = plate.show(self._image(name, rgb, viewer.scopes_logarithmic, dark)).glo
+
+    def _measured(self, editor: Editor, shown: Shown) -> np.ndarray:
+        """The picture, or its region, as [h, w, 3]."""
+        viewer = editor.viewer
+        whole = self._reader.small(editor.probe, shown)
+        part = whole
+        if viewer.region is not None:
+            x, y, width, height = texels(viewer.region, (whole.shape[1], whole.shape[0]))
+            part = whole[y : y + height, x : x + width]
+        if viewer.scopes_of_scene:
+            return rgb_of(part)
+        meaning = meaning_of(viewer, shown.kind, lambda: whole)
+        port = editor.session.viewed("A")
+        view = asked_view(editor.session.graph, port) if port else ""
+        sight = Sight((0.0, 0.0), (1, 1), shown.full_size)
+        span = range_of(viewer, meaning, lambda: whole)
+        return displayed(part, look_of(viewer, sight, meaning, span, view, editor.palette.surround))
+
+    def _image(self, name: str, rgb: np.ndarray, logarithmic: bool, dark: bool) -> np.ndarray:
+        low, high = self._range
+        if name == "histogram":
+            return scope_images.histogram_image(rgb, low, high, logarithmic, dark)
+        if name == "waveform":
+            return scope_images.waveform_image(rgb, low, high, dark)
+        if name == "parade":
+            return scope_images.parade_image(rgb, low, high, dark)
+        return scope_images.vectorscope_image(rgb, dark)
+
+    def _draw_scope(self, editor: Editor, name: str, box: Box) -> None:
+        palette, lines = editor.palette, imgui.get_window_draw_list()
+        back = palette.border if _is_dark(editor) else palette.field
+        lines.add_rect_filled(box[:2], box[2:], u32(back), 3.0 * ui_scale())
+        if name == "vectorscope":
+            box = _square(box)
+        editor.places[f"scope {name}"] = box
+        if name not in self._textures:
+            return
+        lines.add_image(imgui.ImTextureRef(self._textures[name]), box[:2], box[2:])
+        lines.push_clip_rect(box[:2], box[2:], True)
+        if name == "vectorscope":
+            graticules.chroma_lines(lines, palette, box)
+        elif name == "histogram":
+            graticules.range_lines(lines, palette, box, *self._range)
+            dark, bright = self._clipped
+            graticules.hint(lines, palette.dim, box, f"black {dark:.1%}  white {bright:.1%}")
+        else:
+            graticules.level_lines(lines, palette, box, *self._range)
+        lines.pop_clip_rect()
+
+
+def _columns(width: float, height: float, count: int) -> int:
+    """How many scopes side by side make them least narrow or flat."""
+
+    def badness(columns: int) -> float:
+        rows = -(-count // columns)
+        shape = (width / columns) / max(height / rows, 1.0)
+        return max(shape / 1.6, 1.6 / shape)
+
+    return min(range(1, count + 1), key=badness)
+
+
+def _square(box: Box) -> Box:
+    left, top, right, bottom = box
+    half = min(right - left, bottom - top) / 2
+    x, y = (left + right) / 2, (top + bottom) / 2
+    return x - half, y - half, x + half, y + half
+
+
+def _is_dark(editor: Editor) -> bool:
+    return sum(editor.palette.panel) < 1.5

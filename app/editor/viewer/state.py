@@ -1,0 +1,108 @@
+"""How the viewer shows pictures. Nothing here changes the document."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+from .pacing import Pace
+
+Channels = Literal["color", "red", "green", "blue", "alpha", "luminance", "false color"]
+Compare = Literal["off", "wipe", "difference", "toggle"]
+Background = Literal["checker", "black", "gray", "white"]
+Meaning = Literal["auto", "image", "field", "vector", "normal"]
+CHANNELS: tuple[Channels, ...] = ("color", "red", "green", "blue", "alpha", "luminance", "false color")
+COMPARES: tuple[Compare, ...] = ("off", "wipe", "difference", "toggle")
+BACKGROUNDS: tuple[Background, ...] = ("checker", "black", "gray", "white")
+MEANINGS: tuple[Meaning, ...] = ("auto", "image", "field", "vector", "normal")
+PROXIES = (1.0, 0.5, 0.25, 0.125)
+SCOPES = ("histogram", "waveform", "parade", "vectorscope")
+
+Box = tuple[float, float, float, float]
+"""Left, top, right, bottom as fractions of the picture."""
+
+
+@dataclass
+class ViewerState:
+    """One viewer. Lengths are panel pixels, `zoom` panel pixels per picture pixel at full size; 0 fits the panel."""
+
+    zoom: float = 0.0
+    pan: tuple[float, float] = (0.0, 0.0)
+    nearer: float = 1.0
+    """A zoom that was asked for and is still to be made, about the pointer."""
+    channels: Channels = "color"
+    exposure: float = 0.0
+    gamma: float = 1.0
+    display: str = ""
+    view: str = ""
+    """OpenColorIO display and view; empty takes what the shown output asks for, else the default."""
+    compare: Compare = "off"
+    wipe: tuple[float, float] = (0.5, 0.5)
+    """A point on the wipe line, as a fraction of the picture."""
+    wipe_angle: float = 0.0
+    """Degrees; 0 is a vertical line."""
+    toggled: bool = False
+    """True shows B while comparing by toggle."""
+    background: Background = "checker"
+    warn_clipping: bool = False
+    warn_nonfinite: bool = True
+    region: Box | None = None
+    """Region of interest: the rest is dimmed, and not measured."""
+    drawing_region: bool = False
+    """True while the next drag makes the region."""
+    measured: Box | None = None
+    """The rectangle that the pixel table measures."""
+    markers: tuple[tuple[float, float], ...] = ()
+    """Points whose values stay in the pixel table, as fractions of the picture."""
+    table: bool = False
+    """True shows the values of every layer under the pointer."""
+    finding: bool = False
+    """True starts, and goes on with, the search for the first node that makes NaN or infinity."""
+    saving: bool = False
+    """True asks where to save what is seen."""
+    copying: bool = False
+    """True copies the values under the pointer to the clipboard."""
+    proxy: float = 1.0
+    paused: bool = False
+    pace: Pace = field(default_factory=Pace)
+    meaning: Meaning = "auto"
+    low: float = 0.0
+    high: float = 0.0
+    """Range of data shown as gray; equal ones measure it."""
+    span: tuple[float, float] = (0.0, 1.0)
+    """The range as shown last, measured or not."""
+    pixel: tuple[int, int] | None = None
+    """The pixel under the pointer, at full size."""
+    panel: tuple[int, int] = (0, 0)
+    """Size of the panel in pixels as drawn last."""
+    picture: tuple[int, int] = (0, 0)
+    """Size of the shown picture at full size, as drawn last."""
+    hovered: bool = False
+    picking: str = ""
+    """Where a picked color goes: `node.value` while the eyedropper is in hand."""
+    scopes: set[str] = field(default_factory=lambda: {"histogram", "waveform"})
+    scopes_of_scene: bool = False
+    """True measures scene-linear numbers, False what the display shows."""
+    scopes_logarithmic: bool = False
+
+    @property
+    def neutral(self) -> bool:
+        """True if nothing is changed that a saved picture would not show too."""
+        return self.exposure == 0.0 and self.gamma == 1.0 and self.channels == "color"
+
+    @property
+    def compares(self) -> bool:
+        """True if B is needed."""
+        return self.compare != "off"
+
+    def show(self, channels: Channels) -> None:
+        """Show these channels; asked for again, all of them."""
+        self.channels = "color" if self.channels == channels else channels
+
+    def comparing(self, mode: Compare) -> None:
+        """Compare that way; asked for again, not at all."""
+        self.compare = "off" if self.compare == mode else mode
+
+    def fit(self) -> None:
+        """Let the picture fill the panel, whatever size either has."""
+        self.zoom, self.pan = 0.0, (0.0, 0.0)

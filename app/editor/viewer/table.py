@@ -1,0 +1,105 @@
+"""The pixel table: values of every layer under the pointer, at markers, and of a measured rectangle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from imgui_bundle import imgui
+
+from ...errors import HalationError
+from ..theme.style import vec4
+from .geometry import Pixels
+from .measuring import written
+from .reading import Reader
+from .wanted import layer
+
+if TYPE_CHECKING:
+    from ..editor import Editor
+    from ..preview import Shown
+
+_FLAGS = (
+    int(imgui.TableFlags_.row_bg) | int(imgui.TableFlags_.scroll_y) | int(imgui.TableFlags_.sizing_fixed_fit)
+    | int(imgui.TableFlags_.borders_inner_v)
+)
+_HEADINGS = ("", "x, y", "R  X", "G  Y", "B  Z", "A  W")
+
+
+def rows_of(editor: Editor, reader: Reader) -> list[tuple[str, str, tuple[float, ...]]]:
+    """Every row of the table: name, place, numbers."""
+    viewer = editor.viewer
+    rows: list[tuple[str, str, tuple[float, ...]]] = []
+    shown = _layers(editor)
+    points: list[tuple[str, Pixels]] = []
+    if viewer.pixel is not None:
+        points.append(("", viewer.pixel))
+    width, height = viewer.picture
+    points += (
+        (f"{number}", (int(x * width), int(y * height))) for number, (x, y) in enumerate(viewer.markers, 1)
+    )
+    for mark, pixel in points:
+        for name, one in shown:
+            if mark and name not in ("A", "B"):
+                continue
+            at = _same_place(pixel, viewer.picture, one.full_size)
+            values = reader.pixel(editor.probe, f"table {mark} {name}", one, at)
+            rows.append((f"{name} {mark}".strip(), f"{at[0]}, {at[1]}", values))
+    if viewer.measured is not None:
+        for name, one in shown:
+            if name not in ("A", "B"):
+                continue
+            found = reader.measured(editor.probe, name, one, viewer.measured)
+            rows += [
+                (f"{name} least", "", found.low), (f"{name} mean", f"{found.count} px", found.mean),
+                (f"{name} most", f"{found.wrong} NaN" if found.wrong else "", found.high),
+            ]
+    return rows
+
+
+def draw_table(editor: Editor, reader: Reader, height: float) -> None:
+    """Draw it, `height` high."""
+    try:
+        rows = rows_of(editor, reader)
+    except HalationError as error:
+        imgui.text_wrapped(str(error))
+        return
+    if editor.fonts is not None:
+        imgui.push_font(editor.fonts.mono, 0.0)
+    if imgui.begin_table("pixel values", len(_HEADINGS), _FLAGS, (0, height)):
+        imgui.table_setup_scroll_freeze(0, 1)
+        for number, heading in enumerate(_HEADINGS):
+            width = imgui.get_font_size() * (6.0, 5.5, 4.6, 4.6, 4.6, 4.6)[number]
+            imgui.table_setup_column(heading, int(imgui.TableColumnFlags_.width_fixed), width)
+        imgui.table_headers_row()
+        for name, place, values in rows:
+            _row(editor, name, place, values)
+        imgui.end_table()
+    if editor.fonts is not None:
+        imgui.pop_font()
+
+
+def _row(editor: Editor, name: str, place: str, values: tuple[float, ...]) -> None:
+    imgui.table_next_row()
+    imgui.table_next_column()
+    imgui.text(name)
+    imgui.table_next_column()
+    imgui.text_colored(vec4(editor.palette.dim), place)
+    for value in values:
+        imgui.table_next_column()
+        color = editor.palette.text if np.isfinite(value) else editor.palette.error
+        imgui.text_colored(vec4(color), f"{written(value):>9}")
+
+
+def _layers(editor: Editor) -> list[tuple[str, Shown]]:
+    """A, B and the inputs of the graph, as far as they are there."""
+    names = [("A", "A")]
+    if editor.viewer.compares:
+        names.append(("B", "B"))
+    names += ((name, layer(name)) for name in editor.session.graph.inputs)
+    return [(name, shown) for name, key in names if (shown := editor.preview.shown(key)) is not None]
+
+
+def _same_place(pixel: Pixels, of: Pixels, size: Pixels) -> Pixels:
+    """The pixel of a picture of another size that lies at the same part of it."""
+    x, y = (min(int((pixel[i] + 0.5) * size[i] / max(of[i], 1)), size[i] - 1) for i in (0, 1))
+    return x, y

@@ -1,0 +1,254 @@
+"""The viewer: the picture, tools above it, numbers below it."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from imgui_bundle import imgui
+
+from ....nodes import Kind
+from ...graph import OUTPUTS, Port
+from ...renderer.look import Look
+from ..theme.style import ui_scale
+from . import infobar
+from .finding import Finder
+from .geometry import Sight
+from .hand import Hand
+from .looking import asked_view, look_of, meaning_of, range_of
+from .measuring import copied, written
+from .overlays import draw_badge, draw_message, draw_overlays, draw_progress
+from .pacing import Stopwatch
+from .reading import Reader, Scan
+from .saving import ask_to_save
+from .table import draw_table
+from .toolbar import context_menu, draw_toolbar
+from .wanted import A, B
+
+if TYPE_CHECKING:
+    from ..editor import Editor
+    from ..preview import Shown
+
+TABLE_LINES = 9
+_CATCH = (
+    int(imgui.ButtonFlags_.mouse_button_left) | int(imgui.ButtonFlags_.mouse_button_middle)
+    | int(imgui.ButtonFlags_.mouse_button_right)
+)
+_EMPTY = "Nothing to show yet: add a node (Tab over the graph), or drop an image here."
+
+
+@dataclass(frozen=True)
+class _Now:
+    """What is shown in this frame."""
+
+    a: Shown | None
+    b: Shown | None
+    view: str
+    """The view that the picture asks for."""
+
+
+class Viewer:
+    """Draws what `editor.viewer` says of what the session views."""
+
+    title = "Viewer"
+
+    def __init__(self) -> None:
+        self._hand = Hand()
+        self._reader = Reader()
+        self._scan = Scan()
+        self._finder = Finder()
+        self._watch = Stopwatch()
+        self._seconds = 0.0
+        self._busy_since: float | None = None
+        self._search = 0
+
+    def draw(self, editor: Editor) -> None:
+        """Everything, into the current window."""
+        viewer, preview = editor.viewer, editor.preview
+        port = editor.session.viewed("A")
+        b = preview.shown(B) if viewer.compares else None
+        now = _Now(preview.shown(A), b, asked_view(editor.session.graph, port) if port else "")
+        self._time(editor, now)
+        scale = ui_scale()
+        imgui.set_cursor_pos((4 * scale, imgui.get_cursor_pos_y() + 3 * scale))
+        draw_toolbar(editor, now.view, now.a is not None and now.a.kind in (Kind.FIELD, Kind.NUMBER, Kind.VECTOR))
+        imgui.push_style_var(imgui.StyleVar_.item_spacing, (0.0, 0.0))
+        try:
+            self._draw_panel(editor, now)
+        finally:
+            imgui.pop_style_var()
+        self._finder.step(editor)
+
+    # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _draw_panel(self, editor: Editor, now: _Now) -> None:
+        viewer, scale = editor.viewer, ui_scale()
+        imgui.set_cursor_pos((0.0, imgui.get_cursor_pos_y() + 3 * scale))
+        lines = 2 if now.b is not None else 1
+        below = infobar.row_height() * lines
+        table = imgui.get_text_line_height_with_spacing() * TABLE_LINES if viewer.table else 0.0
+        room = imgui.get_content_region_avail()
+        height = max(room.y - below - min(table, room.y * 0.45), 32.0)
+        sight = self._catch(editor, now.a, (max(room.x, 32.0), height))
+        look = self._draw_picture(editor, now, sight)
+        self._draw_messages(editor, now, sight)
+        self._read(editor, now, sight, look)
+        if viewer.table:
+            draw_table(editor, self._reader, min(table, room.y * 0.45))
+
+    def _catch(self, editor: Editor, a: Shown | None, size: tuple[float, float]) -> Sight:
+        """The area of the picture, after mouse and wheel had their say."""
+        viewer = editor.viewer
+        start = imgui.get_cursor_screen_pos()
+        density = imgui.get_io().display_framebuffer_scale.x or 1.0
+        origin = round(start.x), round(start.y)
+        viewer.panel = round(size[0] * density), round(size[1] * density)
+        viewer.picture = a.full_size if a is not None else (1, 1)
+        imgui.set_next_item_allow_overlap()
+        imgui.invisible_button("##picture", size, _CATCH)
+        editor.places["viewer panel"] = (origin[0], origin[1], origin[0] + size[0], origin[1] + size[1])
+
+        def sight() -> Sight:
+            return Sight.of(origin, viewer.panel, viewer.picture, viewer.zoom, viewer.pan, density)
+
+        if a is not None:
+            self._hand.follow(editor, sight())
+            editor.places["viewer image"] = sight().rectangle((0.0, 0.0, 1.0, 1.0))
+        else:
+            viewer.hovered = imgui.is_item_hovered()
+        context_menu(editor)
+        return sight()
+
+    def _draw_picture(self, editor: Editor, now: _Now, sight: Sight) -> Look:
+        viewer, palette = editor.viewer, editor.palette
+        if now.a is None:
+            look = Look(surround=palette.surround)
+        else:
+            shown = now.b if now.b is not None and viewer.compare == "toggle" and viewer.toggled else now.a
+
+            def samples():
+                return self._reader.small(editor.probe, shown)
+
+            meaning = meaning_of(viewer, shown.kind, samples)
+            viewer.span = range_of(viewer, meaning, samples)
+            look = look_of(viewer, sight, meaning, viewer.span, now.view, palette.surround)
+        texture = editor.attempt(lambda: editor.display.draw("viewer", sight.panel, now.a, now.b, look))
+        if texture is None:  # a view that there is not
+            viewer.view = viewer.display = ""
+            return look
+        lines, (x, y) = imgui.get_window_draw_list(), sight.origin
+        corner = x + sight.panel[0] / sight.density, y + sight.panel[1] / sight.density
+        lines.add_image(imgui.ImTextureRef(texture.glo), (x, y), corner)
+        if now.a is not None:
+            lines.push_clip_rect((x, y), corner, True)
+            draw_overlays(editor, sight)
+            lines.pop_clip_rect()
+            if viewer.saving:
+                editor.attempt(lambda: ask_to_save(editor, now.a, now.b, look))  # type: ignore[arg-type]
+        viewer.saving = False
+        return look
+
+    def _draw_messages(self, editor: Editor, now: _Now, sight: Sight) -> None:
+        preview, palette, viewer = editor.preview, editor.palette, editor.viewer
+        fault = preview.fault(A) or (preview.fault(B) if viewer.compares else None)
+        if fault:
+            draw_message(editor, sight, fault, palette.error, dim=now.a is not None)
+        elif now.a is None and not preview.busy:
+            draw_message(editor, sight, self._hint(editor), palette.dim)
+        elif viewer.compares and editor.session.viewed("B") is None:
+            draw_badge(editor, sight, "B shows nothing: choose it above, or Shift+V on a node", palette.warning)
+        elif viewer.picking:
+            draw_badge(editor, sight, "Click to pick a color; right click ends", palette.accent)
+        elif viewer.drawing_region:
+            draw_badge(editor, sight, "Drag a rectangle", palette.accent)
+        elif viewer.finding:
+            self._search += 1
+            draw_badge(editor, sight, f"Searching{'.' * (self._search // 8 % 4)}", palette.accent)
+        elif self._scan.wrong and viewer.warn_nonfinite:
+            self._offer_search(editor, sight)
+        if now.a is not None and now.a.kind in (Kind.NUMBER, Kind.COLOR):
+            values = self._reader.pixel(editor.probe, "single", now.a, (0, 0))
+            draw_message(editor, sight, "  ".join(written(value) for value in values), palette.text)
+        waited = time.monotonic() - self._busy_since if self._busy_since is not None else 0.0
+        if waited > 0.12 and not preview.paused:
+            done, total = preview.progress
+            draw_progress(editor, sight, done / total if total else 0.0)
+
+    def _offer_search(self, editor: Editor, sight: Sight) -> None:
+        count = self._scan.wrong
+        text = f"{count} pixel{'s' if count != 1 else ''} NaN or infinite: find where from"
+        box = draw_badge(editor, sight, text, editor.palette.error)
+        back = imgui.get_cursor_screen_pos()
+        imgui.set_cursor_screen_pos(box[:2])
+        if imgui.invisible_button("##find", (box[2] - box[0], box[3] - box[1])):
+            editor.actions.run("viewer.find_nonfinite", editor)
+        if imgui.is_item_hovered():
+            imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
+        editor.places["viewer find"] = box
+        imgui.set_cursor_screen_pos(back)
+        imgui.dummy((0, 0))
+
+    def _read(self, editor: Editor, now: _Now, sight: Sight, look: Look) -> None:
+        """What is under the pointer, written below the picture."""
+        viewer = editor.viewer
+        mouse = imgui.get_mouse_pos()
+        viewer.pixel = sight.under((mouse.x, mouse.y)) if viewer.hovered and now.a is not None else None
+        first = infobar.about(editor, now.a, sight, self._seconds)
+        for name, shown in ((A, now.a), (B, now.b)):
+            if name == B and shown is None:
+                continue
+            values: tuple[float, ...] = ()
+            if shown is not None and viewer.pixel is not None:
+                values = self._reader.pixel(editor.probe, name, shown, viewer.pixel)
+            words = infobar.of_pixel(editor, viewer.pixel, values, shown.kind, look) if shown else []
+            if now.b is not None:
+                words = [infobar.Word(name, editor.palette.accent if name == A else editor.palette.good), *words]
+            infobar.draw_line(editor, f"viewer info {name}", [*first, *words] if name == A else words)
+            if name == A and values:
+                self._use(editor, values)
+        viewer.copying = False
+        if now.a is not None and not editor.preview.busy and viewer.warn_nonfinite and not editor.dragging:
+            self._scan.step(editor.probe, now.a)
+
+    def _use(self, editor: Editor, values: tuple[float, ...]) -> None:
+        """Copy or pick the values of A under the pointer."""
+        viewer = editor.viewer
+        assert viewer.pixel is not None
+        if viewer.copying:
+            port = editor.session.viewed("A")
+            editor.clipboard.put(copied(str(port), viewer.pixel, values))
+            editor.say(f"copied {viewer.pixel[0]}, {viewer.pixel[1]}")
+        if self._hand.picked is not None and viewer.picking:
+            color = picked_color(values)
+            port = Port.parse(viewer.picking)
+            editor.attempt(lambda: editor.session.set(port, color, merge=f"pick {port}"))
+            if not imgui.is_mouse_down(imgui.MouseButton_.left):
+                editor.session.seal()
+                viewer.picking = ""
+
+    def _hint(self, editor: Editor) -> str:
+        port = editor.session.viewed("A")
+        if port is not None and port.node == OUTPUTS:
+            return f"Nothing is linked to the output '{port.socket}' yet."
+        return _EMPTY
+
+    def _time(self, editor: Editor, now: _Now) -> None:
+        """How long pictures take, for the line below and for the proxy of drags."""
+        preview, moment = editor.preview, time.monotonic()
+        if preview.busy:
+            self._busy_since = moment if self._busy_since is None else self._busy_since
+        else:
+            self._busy_since = None
+        key = f"{now.a.key} {now.a.revision}" if now.a is not None else ""
+        seconds = self._watch.lap(preview.busy and not preview.paused, key, moment)
+        if seconds is not None and now.a is not None:
+            self._seconds = seconds
+            editor.viewer.pace.took(now.a.scale, seconds)
+
+
+def picked_color(values: tuple[float, ...]) -> tuple[float, float, float, float]:
+    """A pixel as an opaque, straight, scene-linear color."""
+    red, green, blue = values[:3] if len(values) >= 3 else (values[0],) * 3
+    alpha = values[3] if len(values) == 4 and values[3] > 0.0 else 1.0
+    return red / alpha, green / alpha, blue / alpha, 1.0

@@ -1,0 +1,68 @@
+"""Puts an editor together from its parts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from imgui_bundle import imgui
+
+from ...renderer import Device, Renderer
+from ...renderer.display import Display
+from ...renderer.probe import Probe
+from ..action import Actions
+from ..actions import table
+from ..editor import Editor
+from ..exporting import Exports
+from ..preferences import Store, state_folder
+from ..preview import Preview
+from ..recovery import Recovery
+from ..session import Session
+from ..watching import Watcher
+
+
+class SystemClipboard:
+    """The clipboard, through the window."""
+
+    def get(self) -> str:
+        return imgui.get_clipboard_text() or ""
+
+    def put(self, text: str) -> None:
+        imgui.set_clipboard_text(text)
+
+
+def assemble(device: Device, state: Path | None = None) -> Editor:
+    """An editor on a window's device, with an empty graph. `state` is the folder of everything it remembers."""
+    folder = state or state_folder()
+    store = Store(folder)
+    renderer = Renderer(device, budget=store.now.memory_budget * 2**20)
+    display = Display(device)
+    editor = Editor(
+        Session(), Preview(renderer, display), store, Actions(table(), lambda: store.now.shortcuts), Exports(),
+        Recovery(folder, store.now.autosave), Watcher(), SystemClipboard(), display, Probe(device),
+    )
+    for sentence in store.faults:
+        editor.log.add(sentence, "warning")
+    return editor
+
+
+def open_first(editor: Editor, path: Path | None, bindings: Mapping[str, str]) -> None:
+    """Show a graph with files bound to its inputs, or the start screen."""
+    if path is None:
+        editor.dialogs.open.add("start")
+        return
+    editor.session.open(path)
+    editor.store.opened(path)
+    for name, file in bindings.items():
+        editor.session.bind(name, file)
+
+
+def take_apart(editor: Editor) -> None:
+    """End what runs, keep what is to be remembered, give back what the device holds."""
+    editor.exports.close()
+    editor.watcher.close()
+    editor.recovery.close(keep=not editor.closing and editor.session.dirty)
+    editor.store.flush()
+    editor.probe.close()
+    editor.display.close()
+    editor.preview.close()

@@ -1,0 +1,36 @@
+"""A panel that fails must not take the program along."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable
+
+from imgui_bundle import imgui
+
+from ..editor import Editor
+
+
+def guarded(editor: Editor, name: str, draw: Callable[[], object]) -> bool:
+    """Draw a panel; False if it failed. Then the stacks of the window library are put right, and Problems says why."""
+    state = imgui.internal.ErrorRecoveryState()
+    imgui.internal.error_recovery_store_state(state)
+    try:
+        draw()
+    except Exception as error:
+        imgui.internal.error_recovery_try_to_recover_state(state)
+        if name not in editor.faults:
+            editor.log.add(
+                f"the panel {name} failed ({type(error).__name__}: {error}); the document is safe", "error",
+                traceback.format_exc(),
+            )
+        editor.faults[name] = traceback.format_exc()
+        return False
+    editor.faults.pop(name, None)
+    return True
+
+
+def failed(editor: Editor, name: str) -> None:
+    """What a panel shows in place of itself."""
+    imgui.text_wrapped(f"{name} could not be drawn. The document is safe; Problems has the details.")
+    if imgui.button("Try again"):
+        editor.faults.pop(name, None)

@@ -1,0 +1,96 @@
+"""What happens every frame before anything is drawn."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ...compiler import installed
+from ...graph import Port
+from ..dialogs import Question
+from ..editor import Editor
+from ..reloading import NodeFiles, migrated, shader_folder
+from ..viewer.wanted import wanted
+from ..watching import Change, groups_of, pictures_of
+
+FRAME_BUDGET = 0.012
+"""Seconds of rendering per frame: the rest of a sixtieth is for drawing panels."""
+
+
+@dataclass
+class Heartbeat:
+    """Lets pictures be computed, files be watched and work be kept."""
+
+    nodes: NodeFiles = field(default_factory=NodeFiles)
+    _watched: tuple[object, ...] = ()
+    _flushed: float = 0.0
+
+    def beat(self, editor: Editor) -> None:
+        """One frame."""
+        self._watch(editor)
+        for change in editor.watcher.poll():
+            editor.attempt(lambda change=change: self._changed(editor, change))
+        editor.recovery.note(editor.session.root, editor.session.path, editor.session.dirty)
+        if time.monotonic() - self._flushed > 1.0:
+            self._flushed = time.monotonic()
+            editor.store.flush()
+        self._compute(editor)
+
+    def _compute(self, editor: Editor) -> None:
+        preview, likes = editor.preview, editor.store.now
+        preview.thumbnailing, preview.timed = likes.thumbnails, likes.timings
+        preview.paused = editor.viewer.paused
+        ports, scale = wanted(editor)
+        place = editor.session.place
+        flat = {name: Port("/".join((*place, port.node)), port.socket) for name, port in ports.items()}
+        preview.want(editor.session.root, flat, bindings=editor.session.bindings, scale=scale)
+        preview.work(FRAME_BUDGET)
+
+    def _watch(self, editor: Editor) -> None:
+        """Watch the files that the graph reads."""
+        session = editor.session
+        now = (id(session.root), session.path, tuple(session.bindings.items()))
+        if now == self._watched:
+            return
+        self._watched = now
+        editor.watcher.watch(
+            session.path, groups_of(session.root), pictures_of(session.root, session.bindings), [shader_folder()],
+            [self.nodes.folder],
+        )
+
+    def _changed(self, editor: Editor, change: Change) -> None:
+        match change.kind:
+            case "graph":
+                _graph_changed(editor, change.path)
+            case "group":
+                editor.session.reload_groups()
+            case "picture":
+                editor.preview.refresh()
+                editor.say(f"{change.path.name} changed on disk and was read again")
+            case "shader":
+                installed.cache_clear()
+                editor.preview.reload(installed())
+                editor.say(f"shader {change.path.name} was loaded again")
+            case "node":
+                if fault := self.nodes.reload():
+                    editor.log.add(fault, "error")
+                else:
+                    editor.session.migrate(migrated)
+                    editor.say(f"node {change.path.name} was loaded again")
+
+
+def _graph_changed(editor: Editor, path: Path) -> None:
+    """Somebody else wrote the file that is open."""
+    session = editor.session
+    if not session.dirty:
+        session.reload()
+        editor.say(f"{path.name} changed on disk and was loaded again")
+        return
+    editor.dialogs.question = Question(
+        "Changed on disk", f"{path.name} was changed by another program, and here are changes that are not saved.",
+        (
+            ("Load theirs", lambda: editor.attempt(session.reload)),
+            ("Keep mine", lambda: editor.say("kept; saving will replace the other version")),
+        ),
+    )

@@ -1,0 +1,73 @@
+"""The menu bar, made from the table of actions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from imgui_bundle import imgui
+
+from ..action import Action
+from ..actions import MENUS
+from ..editor import Editor
+
+
+@dataclass
+class _Menu:
+    """Actions and submenus in the order in which they appear."""
+
+    entries: dict[str, Action | _Menu] = field(default_factory=dict)
+
+
+def draw_menus(editor: Editor, panels: dict[str, bool]) -> None:
+    """Draw all menus; `panels` says by title which are visible, and is changed by the View menu."""
+    for name, menu in _menus(editor.actions.all).items():
+        if imgui.begin_menu(name):
+            _draw(editor, menu)
+            if name == "View":
+                imgui.separator()
+                for title, visible in panels.items():
+                    clicked, _ = imgui.menu_item(title, "", visible)
+                    if clicked:
+                        panels[title] = not visible
+            imgui.end_menu()
+
+
+def action_item(editor: Editor, action: Action) -> None:
+    """A menu entry that does `action`."""
+    checked = action.checked is not None and action.checked(editor)
+    shortcut = editor.actions.shortcut(action.id)
+    clicked, _ = imgui.menu_item(action.label, shortcut, checked, action.enabled(editor))
+    if action.doc:
+        imgui.set_item_tooltip(action.doc)
+    if clicked:
+        editor.actions.run(action.id, editor)
+
+
+def _menus(actions: tuple[Action, ...]) -> dict[str, _Menu]:
+    found = {name: _Menu() for name in MENUS}
+    for action in actions:
+        top, *inner = action.menu.split("/") if action.menu else [""]
+        if not top:
+            continue
+        menu = found.setdefault(top, _Menu())
+        for name in inner:
+            deeper = menu.entries.setdefault(name, _Menu())
+            assert isinstance(deeper, _Menu)
+            menu = deeper
+        menu.entries[action.label] = action
+    return found
+
+
+def _draw(editor: Editor, menu: _Menu) -> None:
+    for name, entry in menu.entries.items():
+        if isinstance(entry, _Menu):
+            first = next(iter(entry.entries.values()), None)
+            if isinstance(first, Action) and first.separated:
+                imgui.separator()
+            if imgui.begin_menu(name):
+                _draw(editor, entry)
+                imgui.end_menu()
+            continue
+        if entry.separated and name != next(iter(menu.entries)):
+            imgui.separator()
+        action_item(editor, entry)

@@ -1,0 +1,53 @@
+"""Which OpenGL a window can have."""
+
+from __future__ import annotations
+
+import warnings
+
+from imgui_bundle import hello_imgui  # noqa: F401  (first: both must use the same window library)
+
+import glfw  # isort: skip
+
+from ...errors import DeviceError
+
+_VERSIONS = ((4, 5), (4, 3), (4, 1))
+_NO_WINDOW = (
+    "no window can be opened here: the editor needs a display (over ssh, connect with -X); "
+    "'halation render' works without one"
+)
+
+
+def best_version() -> tuple[int, int]:
+    """The newest OpenGL of ours that a window here can have. Raises DeviceError.
+
+    A refused version would spoil every later attempt of the window library in this process, so a hidden window is
+    asked first.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        if not glfw.init():
+            raise DeviceError(_NO_WINDOW)
+        try:
+            for version in _VERSIONS:
+                if _opens(version):
+                    return version
+        finally:
+            glfw.default_window_hints()
+            glfw.terminate()
+    raise DeviceError(
+        "no window with OpenGL 4.1 can be opened here: update the graphics driver; 'halation render' may still work"
+    )
+
+
+def _opens(version: tuple[int, int]) -> bool:
+    glfw.default_window_hints()
+    glfw.window_hint(glfw.VISIBLE, False)
+    glfw.window_hint(glfw.CONTEXT_VERSION_MAJOR, version[0])
+    glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, version[1])
+    glfw.window_hint(glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE)
+    glfw.window_hint(glfw.OPENGL_FORWARD_COMPAT, True)
+    window = glfw.create_window(16, 16, "", None, None)
+    if not window:
+        return False
+    glfw.destroy_window(window)
+    return True

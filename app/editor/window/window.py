@@ -1,0 +1,214 @@
+"""The window: how the library that hosts it is told what to show."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from imgui_bundle import glfw_utils, hello_imgui, imgui
+
+import glfw  # isort: skip
+
+from ...renderer.device import adopt
+from ..actions.documents import ask_to_close
+from ..dialogs import Browse
+from ..editor import Editor
+from ..theme import fonts, style
+from ..theme.palette import Palette
+from .arriving import arrived
+from .assembly import assemble, open_first, take_apart
+from .guard import failed, guarded
+from .heartbeat import Heartbeat
+from .menus import draw_menus
+from .panels import DOCKED, OVERLAYS, Docked, Panel
+from .screenshot import save_screenshot
+from .shortcuts import note_scope, run_shortcuts
+from .status import draw_status
+
+SIZE = (1600, 1000)
+
+
+class Window:
+    """One window with one editor, from opening to closing."""
+
+    def __init__(
+        self, path: Path | None, bindings: Mapping[str, str], *, version: tuple[int, int] = (4, 5),
+        state: Path | None = None, size: tuple[int, int] = SIZE,
+    ) -> None:
+        self._path, self._bindings, self._state = path, dict(bindings), state
+        self.editor: Editor
+        self._panels: dict[str, Panel] = {}
+        self._overlays: dict[str, Panel] = {}
+        self._heartbeat = Heartbeat()
+        self._dropped: list[str] = []
+        self._title = ""
+        self._styled: tuple[Palette, float] | None = None
+        self.params = self._make_params(version, size)
+        self.frames = 0
+        self.fault: Exception | None = None
+        """Why the window could not begin."""
+
+    # --- what the host asks for --------------------------------------------------------------------------------------
+
+    def _make_params(self, version: tuple[int, int], size: tuple[int, int]) -> hello_imgui.RunnerParams:
+        params = hello_imgui.RunnerParams()
+        params.app_window_params.window_title = "Halation"
+        params.app_window_params.window_geometry.size = size
+        params.app_window_params.restore_previous_geometry = True
+        options = params.renderer_backend_options.open_gl_options or hello_imgui.OpenGlOptions()
+        options.major_version, options.minor_version = version
+        options.use_core_profile = options.use_forward_compat = True
+        options.glsl_version = "410"
+        options.anti_aliasing_samples = 0
+        params.renderer_backend_options.open_gl_options = options
+        window = params.imgui_window_params
+        window.default_imgui_window_type = hello_imgui.DefaultImGuiWindowType.provide_full_screen_dock_space
+        window.show_menu_bar = window.show_status_bar = True
+        window.show_menu_app = window.show_menu_view = window.show_status_fps = False
+        window.remember_theme = window.remember_status_bar_settings = False
+        params.docking_params.docking_splits = [
+            hello_imgui.DockingSplit("MainDockSpace", "Right", imgui.Dir.right, 0.25),
+            hello_imgui.DockingSplit("Right", "RightLower", imgui.Dir.down, 0.38),
+            hello_imgui.DockingSplit("MainDockSpace", "Lower", imgui.Dir.down, 0.5),
+        ]
+        params.docking_params.dockable_windows = [self._dockable(docked) for docked in DOCKED]
+        params.fps_idling.fps_idle = 4.0
+        calls = params.callbacks
+        calls.load_additional_fonts = self._load_fonts
+        calls.post_init = self._begin
+        calls.post_new_frame = self._before_panels
+        calls.show_menus = self._draw_menus
+        calls.show_status = self._draw_status
+        calls.show_gui = self._draw_overlays
+        calls.before_imgui_render = self._after_panels
+        calls.confirm_exit = self._confirm_exit
+        calls.before_exit = self._end
+        return params
+
+    def _dockable(self, docked: Docked) -> hello_imgui.DockableWindow:
+        found = hello_imgui.DockableWindow(docked.title, docked.dock, partial(self._draw_panel, docked.title))
+        found.include_in_view_menu = False
+        if docked.bare:
+            found.imgui_window_flags = int(imgui.WindowFlags_.no_scrollbar) | int(
+                imgui.WindowFlags_.no_scroll_with_mouse
+            )
+        return found
+
+    # --- from opening to closing -------------------------------------------------------------------------------------
+
+    def _begin(self) -> None:
+        """The library crashes if anything is raised from here, and leaves nothing to close."""
+        try:
+            self._prepare()
+        except Exception as error:
+            self.fault = error
+            self.params.app_shall_exit = True
+
+    def _prepare(self) -> None:
+        self.device = adopt()
+        self.editor = assemble(self.device, self._state)
+        open_first(self.editor, self._path, self._bindings)
+        self._panels = {docked.title: docked.make() for docked in DOCKED}
+        self._overlays = {name: make() for name, make in OVERLAYS}
+        imgui.get_io().config_flags |= int(imgui.ConfigFlags_.nav_enable_keyboard)
+        imgui.get_io().config_drag_click_to_input_text = True
+        glfw.set_drop_callback(_host(), lambda _, paths: self._dropped.extend(paths))  # pyright: ignore
+
+    def _load_fonts(self) -> None:
+        """Comes after `_begin`."""
+        if self.fault is None:
+            self.editor.fonts = fonts.load()
+
+    def _end(self) -> None:
+        if self.fault is None:
+            take_apart(self.editor)
+
+    def _confirm_exit(self) -> bool:
+        return self.fault is not None or ask_to_close(self.editor)
+
+    # --- every frame -------------------------------------------------------------------------------------------------
+
+    def _before_panels(self) -> None:
+        if self.fault is not None:
+            return
+        editor = self.editor
+        self.frames += 1
+        self._restyle()
+        editor.places.clear()
+        if not imgui.is_mouse_down(imgui.MouseButton_.left):
+            editor.dragging = False
+        note_scope(editor)
+        editor.canvas.hovered = editor.viewer.hovered = False
+        try:
+            guarded(editor, "Rendering", lambda: self._heartbeat.beat(editor))
+        finally:
+            self.device.to_screen()
+        if self._dropped:
+            paths, self._dropped = [Path(path) for path in self._dropped], []
+            editor.attempt(lambda: arrived(editor, paths))
+        if editor.closing:
+            self.params.app_shall_exit = True
+        self._serve_requests()
+        self.params.fps_idling.enable_idling = not (editor.preview.busy and not editor.preview.paused)
+
+    def _draw_menus(self) -> None:
+        windows = {docked.title: self.params.docking_params.dockable_window_of_name(docked.title) for docked in DOCKED}
+        visible = {title: window.is_visible for title, window in windows.items()}
+        guarded(self.editor, "Menus", lambda: draw_menus(self.editor, visible))
+        for title, shown in visible.items():
+            windows[title].is_visible = shown
+
+    def _draw_status(self) -> None:
+        guarded(self.editor, "Status", lambda: draw_status(self.editor))
+
+    def _draw_panel(self, title: str) -> None:
+        if title in self.editor.faults:
+            failed(self.editor, title)
+        else:
+            guarded(self.editor, title, lambda: self._panels[title].draw(self.editor))
+
+    def _draw_overlays(self) -> None:
+        for name, overlay in self._overlays.items():
+            if name not in self.editor.faults:
+                guarded(self.editor, name, lambda overlay=overlay: overlay.draw(self.editor))
+        run_shortcuts(self.editor)
+
+    def _after_panels(self) -> None:
+        """Panels draw pictures of their own: the screen must be bound again before the window is drawn."""
+        self.device.to_screen()
+
+    # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _restyle(self) -> None:
+        likes = self.editor.store.now
+        scale = likes.ui_scale or hello_imgui.dpi_window_size_factor()
+        if self._styled != (self.editor.palette, scale):
+            self._styled = (self.editor.palette, scale)
+            style.apply(*self._styled)
+        session = self.editor.session
+        title = f"{'* ' if session.dirty else ''}{session.name} - Halation"
+        if title != self._title:
+            self._title = title
+            glfw.set_window_title(_host(), title)
+
+    def _serve_requests(self) -> None:
+        requests, self.editor.requests = self.editor.requests, set()
+        if "reset layout" in requests:
+            self.params.docking_params.layout_reset = True
+        if "screenshot" in requests:
+            self._screenshot()
+
+    def _screenshot(self) -> None:
+        """Save the window as it was shown last."""
+        pixels = self.device.read_screen()
+        self.editor.dialogs.browse = Browse(
+            "Save a screenshot", "export",
+            lambda path: self.editor.attempt(lambda: save_screenshot(path, pixels)), saving=True, name="halation.png",
+        )
+
+
+def _host() -> Any:
+    """The window itself; the types of its library are wrong about it."""
+    return glfw_utils.glfw_window_hello_imgui()

@@ -1,0 +1,88 @@
+"""What the editor wants to see, and what its ports mean."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Any
+
+from ...nodes import Kind, Size
+from ..compiler import upstream_hashes
+from ..errors import GraphError
+from ..graph import INPUTS, OUTPUTS, Graph, Group, Port
+
+if TYPE_CHECKING:
+    from ..media.pictures import Binding
+
+
+@dataclass(eq=False)
+class Wish:
+    """Ports of a graph that panels want to show, by the panels' names. `world` counts changes outside of the graph."""
+
+    graph: Graph
+    ports: Mapping[str, Port]
+    bindings: Mapping[str, Binding]
+    scale: float
+    frame: int
+    size: Size | None
+    world: int = 0
+
+    def equals(self, other: Wish) -> bool:
+        """True where the same pixels are wanted; layout does not matter."""
+        return self.ports == other.ports and self.scale == other.scale and self.same_world(other) and (
+            self.graph is other.graph or _logic(self.graph) == _logic(other.graph)
+        )
+
+    def same_world(self, other: Wish) -> bool:
+        """True where all that comes from outside of the graph is the same."""
+        return (
+            (self.frame, self.size) == (other.frame, other.size) and self.bindings.keys() == other.bindings.keys()
+            and all(_same(item, other.bindings[name]) for name, item in self.bindings.items())
+        )
+
+    def mark(self, path: str) -> object:
+        """Something that changes when anything upstream of a node does."""
+        return self._hashes.get(path), self.world
+
+    @cached_property
+    def _hashes(self) -> Mapping[str, str]:
+        return upstream_hashes(self.graph)
+
+
+def _logic(graph: Graph) -> tuple[Any, ...]:
+    """All of a graph that pixels depend on."""
+    return (
+        graph.nodes, graph.links, graph.inputs, graph.outputs, graph.controls, graph.settings, graph.muted,
+        graph.folder,
+    )
+
+
+def _same(one: Binding, other: Binding) -> bool:
+    """Arrays are the same where they are one object: comparing all pixels in every frame would be slow."""
+    plain = (str, PurePath, float, int, tuple)
+    return one is other or (isinstance(one, plain) and isinstance(other, plain) and one == other)
+
+
+def path_of(port: Port) -> str:
+    """Where a port is on the canvas: inputs are boxes of their own."""
+    return f"{port}" if port.node.rpartition("/")[2] == INPUTS else port.node
+
+
+def kind_of(graph: Graph, port: Port, channels: int) -> Kind:
+    """What the pixels of a port mean."""
+    *groups, last = port.node.split("/")
+    for name in groups:
+        item = graph.nodes.get(name)
+        if not isinstance(item, Group):
+            break
+        graph = item.graph
+    try:
+        socket = graph.target(Port(last, port.socket)) if last == OUTPUTS else graph.source(Port(last, port.socket))
+    except GraphError:
+        socket = None
+    kind = getattr(socket, "kind", None)
+    if isinstance(kind, Kind):
+        return kind
+    return Kind.FIELD if channels == 1 else Kind.IMAGE if channels == 4 else Kind.VECTOR

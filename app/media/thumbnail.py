@@ -1,0 +1,68 @@
+"""Small pictures of files, for people who look for one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+
+from ...nodes import Kind
+from ..errors import InputError
+from .color import NO_VIEW, Array, to_display
+from .info import find_layer, info
+from .read import read
+from .store import store
+
+_NO_PICTURES = ("null", "term", "ffmpeg", "openvdb", "ptex")
+
+
+def thumbnail(path: str | Path, width: int, height: int) -> Array:
+    """The first color layer within `width` x `height` pixels over black, as [h, w, 3] of uint8, sRGB.
+
+    Floating-point color is seen through the default view; data and what is encoded already are shown as they are.
+
+    Raises:
+        InputError: as `media.read`.
+    """
+    layer = find_layer(info(path), "")
+    pixels = read(path, "", Kind.IMAGE).array
+    step = max(1, min(pixels.shape[1] // (2 * width), pixels.shape[0] // (2 * height)))
+    small = np.ascontiguousarray(pixels[::step, ::step, :3], dtype=np.float32)
+    scale = min(width / small.shape[1], height / small.shape[0], 1.0)
+    if scale < 1.0:
+        across, down = (max(1, round(side * scale)) for side in (small.shape[1], small.shape[0]))
+        roi = oiio.ROI(0, across, 0, down)
+        made = oiio.ImageBufAlgo.resize(oiio.ImageBuf(small), filtername="box", roi=roi)
+        small = np.asarray(made.get_pixels(oiio.FLOAT), np.float32)
+    return to_display(small, "" if layer.format.startswith("float") and not layer.data else NO_VIEW)
+
+
+def readable() -> frozenset[str]:
+    """Endings of names of pictures that can be read, such as `.exr`."""
+    formats = oiio.get_string_attribute("extension_list").split(";")
+    entries = [entry.partition(":") for entry in formats if not entry.startswith(_NO_PICTURES)]
+    return frozenset(f".{ending.lower()}" for _, _, endings in entries for ending in endings.split(",") if ending)
+
+
+def load_thumbnail(path: str | Path) -> Array:
+    """The bytes of an 8-bit RGB file, [h, w, 3] of uint8. Raises InputError."""
+    picture = oiio.ImageBuf(str(path))
+    pixels = picture.get_pixels(oiio.UINT8) if Path(path).is_file() and picture.read() else None
+    if pixels is None or pixels.shape[2] != 3:
+        picture.geterror()
+        raise InputError(f"{path}: is no small picture")
+    return np.asarray(pixels)
+
+
+def save_thumbnail(path: str | Path, pixels: Array) -> None:
+    """Keep [h, w, 3] of uint8 as PNG. Raises OutputError."""
+    height, width = pixels.shape[:2]
+
+    def encode(name: str) -> None:
+        made = oiio.ImageOutput.create("png")
+        if made is not None and made.open(name, oiio.ImageSpec(width, height, 3, "uint8")):
+            made.write_image(np.ascontiguousarray(pixels))
+            made.close()
+
+    store(path, encode, pixels.nbytes)

@@ -1,0 +1,73 @@
+"""How a result is looked at: where it lies on a panel, and what of it is shown."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Channels = Literal["color", "red", "green", "blue", "alpha", "luminance", "false color"]
+Meaning = Literal["image", "field", "vector", "normal"]
+Compare = Literal["off", "wipe", "difference", "b"]
+Color = tuple[float, float, float]
+Point = tuple[float, float]
+Size = tuple[int, int]
+
+
+@dataclass(frozen=True)
+class Look:
+    """What a viewer is set to. Colors are display-referred, lengths on the picture in its full-size pixels."""
+
+    zoom: float = 1.0
+    """Panel pixels per full-size pixel of the picture."""
+    pan: Point = (0.0, 0.0)
+    """Panel pixels from the center of the panel to that of the picture."""
+    channels: Channels = "color"
+    meaning: Meaning = "image"
+    """Images go through exposure and view. Fields and vectors show a range, normals -1..1, as they are."""
+    low: float = 0.0
+    high: float = 1.0
+    """The range of fields and vectors that is shown as black to white."""
+    exposure: float = 0.0
+    """EV."""
+    gamma: float = 1.0
+    view: str = ""
+    """A view of OpenColorIO; "" is the default, "none" only encodes as sRGB."""
+    display: str = ""
+    compare: Compare = "off"
+    wipe: Point = (0.5, 0.5)
+    """A point of the line between a and b, as a fraction of picture a."""
+    angle: float = 0.0
+    """Of that line in degrees: 0 is vertical with a on the left, 90 horizontal with a on top."""
+    checker: bool = True
+    """A pattern behind what is transparent, instead of `background`."""
+    background: Color = (0.0, 0.0, 0.0)
+    clipping: bool = False
+    """Stripes over what is beyond 0..1: after exposure, or of the range."""
+    nonfinite: bool = True
+    """Magenta where a pixel is NaN or infinite."""
+    region: tuple[float, float, float, float] | None = None
+    """x, y, width, height; what lies outside is dimmed."""
+    surround: Color = (0.12, 0.12, 0.12)
+
+
+def origin(look: Look, panel: Size, picture: Size) -> Point:
+    """The panel point where the picture's upper left corner lies, on whole pixels."""
+    x, y = (panel[axis] / 2 + look.pan[axis] - picture[axis] * look.zoom / 2 for axis in (0, 1))
+    return float(round(x)), float(round(y))
+
+
+def to_picture(look: Look, panel: Size, picture: Size, point: Point) -> Point:
+    """The point of the picture, in full-size pixels, under a point of the panel."""
+    left, top = origin(look, panel, picture)
+    return (point[0] - left) / look.zoom, (point[1] - top) / look.zoom
+
+
+def to_panel(look: Look, panel: Size, picture: Size, point: Point) -> Point:
+    """Where a point of the picture, in full-size pixels, lies on the panel."""
+    left, top = origin(look, panel, picture)
+    return point[0] * look.zoom + left, point[1] * look.zoom + top
+
+
+def fitted(panel: Size, picture: Size) -> float:
+    """The zoom at which the whole picture fills the panel."""
+    return min(panel[0] / picture[0], panel[1] / picture[1])

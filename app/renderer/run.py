@@ -1,0 +1,169 @@
+"""One plan under way, pass by pass."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from types import TracebackType
+
+from ..compiler import Pass, Plan, Upload
+from ..errors import HalationError
+from .decoding import Decoding
+from .executor import Executor
+from .textures import Lease, Textures
+
+Timings = list[tuple[Pass, float]]
+"""Passes and the seconds that each took on the device."""
+
+Decode = Callable[[Iterable[tuple[Upload, str]]], Decoding]
+
+
+class Run:
+    """Executes a plan, one pass per `next`; when it ends, `kept` leases the textures of the plan's outputs.
+
+    What others have computed already is not computed again. Several runs may be under way at once, step by step. A
+    run that is dropped must be closed.
+    """
+
+    def __init__(
+        self, executor: Executor, plan: Plan, kept: Lease, decode: Decode, remember: Callable[[Plan], None],
+        timings: Timings | None,
+    ) -> None:
+        self.plan = plan
+        self._executor, self._kept, self._remember, self._timings = executor, kept, remember, timings
+        textures = executor.textures
+        self._wanted = tuple(dict.fromkeys(plan.outputs.values()))
+        self._needed = _needed(plan, textures)
+        executor.counters.skipped += len(plan.passes) - len(self._needed)
+        self._readers = _count_readers(plan, self._needed, self._wanted)
+        self._decoding = decode(_uploads(plan, self._needed, self._wanted, textures))
+        self._lease = Lease(textures)
+        for key in self._readers:
+            if key in textures:
+                self._lease.take(key)
+        self.done = 0
+        """Passes executed."""
+        self.ended = False
+
+    @property
+    def total(self) -> int:
+        """Passes that this run executes, of those of the plan."""
+        return len(self._needed)
+
+    @property
+    def ready(self) -> bool:
+        """False while the next step would wait for a file to be decoded."""
+        if self.ended:
+            return True
+        ends = self.done == self.total
+        numbers = self._wanted if ends else self.plan.passes[self._needed[self.done]].textures
+        return all(self._is_here(number) or self._decoding.ready(number) for number in numbers)
+
+    def __iter__(self) -> Run:
+        return self
+
+    def __next__(self) -> Pass:
+        """Execute the next pass. Raises the errors of `app.errors`, which end the run."""
+        if self.ended:
+            raise StopIteration
+        try:
+            with self._executor.device.current():
+                if self.done < self.total:
+                    return self._step()
+                self._finish()
+        except BaseException:
+            self.close()
+            raise
+        self.close()
+        raise StopIteration
+
+    def __enter__(self) -> Run:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Hand back what this run still holds."""
+        if self.ended:
+            return
+        self.ended = True
+        self._decoding.cancel()
+        if not self._executor.closed:
+            self._lease.close()
+            with self._executor.device.current():
+                self._executor.textures.next_round()
+
+    # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _step(self) -> Pass:
+        one = self.plan.passes[self._needed[self.done]]
+        self._upload(one.textures)
+        if self._timings is None:
+            self._executor.execute(self.plan, one, self._lease)
+        else:
+            self._timings.append((one, self._executor.timed(self.plan, one, self._lease)))
+        for number in one.textures:
+            key = self.plan.surfaces[number].key
+            self._readers[key] -= 1
+            if self._readers[key] == 0:
+                self._lease.give(key)
+        self.done += 1
+        return one
+
+    def _finish(self) -> None:
+        self._upload(self._wanted)
+        for number in self._wanted:
+            self._kept.take(self.plan.surfaces[number].key)
+        self._remember(self.plan)
+
+    def _is_here(self, number: int) -> bool:
+        return number not in self._decoding or self.plan.surfaces[number].key in self._executor.textures
+
+    def _upload(self, numbers: tuple[int, ...]) -> None:
+        for number in numbers:
+            if number not in self._decoding:
+                continue
+            if self._is_here(number):  # another run was quicker
+                self._decoding.skip(number)
+                self._lease.take(self.plan.surfaces[number].key)
+                continue
+            upload = self._decoding.upload(number)
+            try:
+                self._executor.upload(self.plan, upload, self._decoding.take(number), self._lease)
+            except HalationError as error:
+                error.node = error.node or upload.node
+                raise
+
+
+def _needed(plan: Plan, textures: Textures) -> list[int]:
+    """The passes that must run because nobody has their pixels, in order."""
+    makers = {number: index for index, one in enumerate(plan.passes) for number in one.targets}
+    remembered = {memory.key for memory in plan.memories.values()}
+    passes: set[int] = set()
+    todo = [*plan.outputs.values(), *(number for number, item in enumerate(plan.surfaces) if item.key in remembered)]
+    while todo:
+        number = todo.pop()
+        index = makers.get(number)
+        if index is None or index in passes or plan.surfaces[number].key in textures:
+            continue
+        passes.add(index)
+        todo.extend(plan.passes[index].textures)
+    return sorted(passes)
+
+
+def _count_readers(plan: Plan, needed: list[int], wanted: tuple[int, ...]) -> dict[str, int]:
+    """How often each surface will be read; outputs are read once more, at the end."""
+    found: dict[str, int] = {}
+    for number in (*(number for index in needed for number in plan.passes[index].textures), *wanted):
+        key = plan.surfaces[number].key
+        found[key] = found.get(key, 0) + 1
+    return found
+
+
+def _uploads(plan: Plan, needed: list[int], wanted: tuple[int, ...], textures: Textures) -> list[tuple[Upload, str]]:
+    """What must be decoded, in the order in which passes want it, with the keys of the pixels."""
+    reads = dict.fromkeys((*(number for index in needed for number in plan.passes[index].textures), *wanted))
+    uploads = {upload.surface: (upload, plan.surfaces[upload.surface].key) for upload in plan.uploads}
+    return [uploads[number] for number in reads if number in uploads and uploads[number][1] not in textures]

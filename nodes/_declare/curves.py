@@ -1,0 +1,80 @@
+"""What curves and color ramps are between their points."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from itertools import pairwise
+
+
+def curve_at(points: tuple[float, ...], x: float) -> float:
+    """The height at `x` of the curve through `x0, y0, x1, y1, ...`; level beyond its ends.
+
+    Between two points it neither rises above the higher nor falls below the lower one: a monotone piecewise cubic with
+    the slopes of Fritsch and Butland (1984), as scipy's PchipInterpolator.
+    """
+    xs, ys = points[0::2], points[1::2]
+    if x <= xs[0]:
+        return ys[0]
+    if x >= xs[-1]:
+        return ys[-1]
+    at = bisect_right(xs, x) - 1
+    width = xs[at + 1] - xs[at]
+    slopes = _slopes(xs, ys)
+    t = (x - xs[at]) / width
+    start, end, lift, fall = ys[at], ys[at + 1], width * slopes[at], width * slopes[at + 1]
+    return (
+        (2 * t**3 - 3 * t**2 + 1) * start + (t**3 - 2 * t**2 + t) * lift
+        + (3 * t**2 - 2 * t**3) * end + (t**3 - t**2) * fall
+    )
+
+
+def ramp_at(stops: tuple[float, ...], t: float, smooth: bool = False) -> tuple[float, float, float, float]:
+    """The color at `t` of the ramp `t, r, g, b, a, ...`; level beyond its ends, the later of two stops at one place.
+
+    Between stops it changes evenly, or eases in and out (3u^2 - 2u^3) if `smooth`.
+    """
+    ts = stops[0::5]
+    after = bisect_right(ts, t)
+    first, second = _stop(stops, max(after - 1, 0)), _stop(stops, min(after, len(ts) - 1))
+    if after in (0, len(ts)):
+        return first
+    u = (t - ts[after - 1]) / (ts[after] - ts[after - 1])
+    u = u * u * (3.0 - 2.0 * u) if smooth else u
+    red, green, blue, alpha = (a + (b - a) * u for a, b in zip(first, second, strict=True))
+    return red, green, blue, alpha
+
+
+def _stop(stops: tuple[float, ...], index: int) -> tuple[float, float, float, float]:
+    _, red, green, blue, alpha = stops[index * 5 : index * 5 + 5]
+    return red, green, blue, alpha
+
+
+def _slopes(xs: tuple[float, ...], ys: tuple[float, ...]) -> list[float]:
+    """The slope at every point: the weighted harmonic mean of those beside it, 0 at a peak."""
+    widths = [right - left for left, right in pairwise(xs)]
+    rises = [(right - left) / width for (left, right), width in zip(pairwise(ys), widths, strict=True)]
+    if len(rises) == 1:
+        return [rises[0], rises[0]]
+    inner = [
+        _between(before, after, wide, narrow)
+        for (before, after), (wide, narrow) in zip(pairwise(rises), pairwise(widths), strict=True)
+    ]
+    first = _at_end(rises[0], rises[1], widths[0], widths[1])
+    return [first, *inner, _at_end(rises[-1], rises[-2], widths[-1], widths[-2])]
+
+
+def _between(before: float, after: float, left: float, right: float) -> float:
+    if before * after <= 0.0:
+        return 0.0
+    first, second = 2 * right + left, right + 2 * left
+    return (first + second) / (first / before + second / after)
+
+
+def _at_end(near: float, far: float, width: float, next_width: float) -> float:
+    """The slope at an end, by three points, limited so that the curve stays monotone."""
+    slope = ((2 * width + next_width) * near - width * far) / (width + next_width)
+    if slope * near <= 0.0:
+        return 0.0
+    if near * far <= 0.0 and abs(slope) > 3 * abs(near):
+        return 3 * near
+    return slope

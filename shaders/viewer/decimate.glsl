@@ -1,0 +1,8 @@
+// Every so many pixels one, unchanged.
+
+uniform sampler2D picture;
+uniform vec2 texels;  // of the picture, per pixel of the result
+
+out vec4 result;
+
+void main() { result = texelFetch(picture, ivec2(gl_FragCoord.xy * texels), 0); }

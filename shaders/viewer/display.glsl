@@ -1,0 +1,91 @@
+#include "lib/color.glsl"
+#include "viewer/sample.glsl"
+#include "viewer/palette.glsl"
+
+// One panel: pictures a and b, placed on it, as a person sees them. Rows run downwards, as in pictures.
+// DATA, COMPARE and the names of modes come before this file, and view_transform() unless it is about data.
+
+uniform sampler2D a;
+uniform vec2 a_origin, a_step;
+uniform int a_channels;
+#if COMPARE != COMPARE_OFF
+uniform sampler2D b;
+uniform vec2 b_origin, b_step;
+uniform int b_channels;
+#endif
+
+uniform int meaning, channels;
+uniform float exposure, gamma;
+uniform vec2 range;
+uniform vec2 wipe_point, wipe_normal;
+uniform bool checker, clipping, nonfinite;
+uniform vec3 background, surround;
+uniform vec4 region;
+
+out vec4 result;
+
+vec3 behind(vec2 at) {
+    if (!checker) return background;
+    ivec2 square = ivec2(at) >> 3;
+    return vec3(((square.x ^ square.y) & 1) == 0 ? 0.30 : 0.42);
+}
+
+// One channel, or all of them.
+vec3 chosen(vec4 c) {
+    if (channels >= RED && channels <= ALPHA) return vec3(c[channels - RED]);
+    return channels == LUMINANCE ? vec3(luminance(c.rgb)) : c.rgb;
+}
+
+#if DATA
+// Data has no color: it is shown as it is.
+vec3 looked_at(vec4 c, vec2 at) {
+    if (meaning == IMAGE) return channels == ALPHA ? vec3(c.a) : false_color(luminance(c.rgb));
+    return chosen(meaning == NORMAL ? c * 0.5 + 0.5 : (c - range.x) / (range.y - range.x));
+}
+#else
+// What goes through the view: one place, for a view costs more than all the rest.
+vec3 encoded(vec3 linear) {
+    vec3 shown = view_transform(vec4(clamp(linear, -65504.0, 65504.0), 1.0)).rgb;
+    return gamma == 1.0 ? shown : pow(max(shown, 0.0), vec3(1.0 / gamma));
+}
+
+vec3 looked_at(vec4 c, vec2 at) {
+    bool opaque = channels != COLOR || c.a >= 1.0;
+    // Color without alpha, a glow over nothing, is added to what is behind it.
+    float straight = channels == COLOR && c.a > 0.0 ? c.a : 1.0;
+    vec3 shown = encoded(chosen(c) / straight);
+    return opaque ? shown : shown * min(straight, 1.0) + behind(at) * (1.0 - max(c.a, 0.0));
+}
+#endif
+
+vec3 warned(vec3 shown, Sampled found, vec2 at) {
+    if (nonfinite && found.broken) return vec3(1.0, 0.0, 1.0);
+    if (!clipping || fract((at.x + at.y) / 8.0) >= 0.5) return shown;
+    vec3 c = meaning == IMAGE ? chosen(found.value)
+        : meaning == NORMAL ? found.value.rgb * 0.5 + 0.5 : (found.value.rgb - range.x) / (range.y - range.x);
+    if (largest(c) > 1.0) return vec3(1.0, 0.15, 0.1);
+    return smallest(c) < 0.0 ? vec3(0.1, 0.35, 1.0) : shown;
+}
+
+void main() {
+    vec2 at = gl_FragCoord.xy;
+    Sampled found = sampled(a, a_origin, a_step, a_channels, at);
+#if COMPARE == COMPARE_WIPE
+    float across = dot(at - wipe_point, wipe_normal);
+    if (across > 0.0) found = sampled(b, b_origin, b_step, b_channels, at);
+#elif COMPARE == COMPARE_DIFFERENCE
+    Sampled other = sampled(b, b_origin, b_step, b_channels, at);
+    found.value = vec4(abs(found.value.rgb - other.value.rgb), channels == ALPHA ? abs(found.value.a - other.value.a) : 1.0);
+    found.broken = found.broken || other.broken;
+    found.inside = found.inside || other.inside;
+#endif
+    if (meaning == IMAGE) found.value.rgb *= exposure;
+    vec3 shown = looked_at(found.value, at);
+    shown = warned(shown, found, at);
+    if (any(lessThan(at, region.xy)) || any(greaterThan(at, region.zw))) shown *= 0.35;
+    if (!found.inside) shown = surround;
+#if COMPARE == COMPARE_WIPE
+    if (abs(across) < 0.5) shown = vec3(1.0);
+#endif
+    result = vec4(shown, 1.0);
+}

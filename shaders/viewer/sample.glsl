@@ -1,0 +1,45 @@
+#include "lib/finite.glsl"
+
+// A picture at one pixel of a panel: the nearest texel, or the mean of all that the pixel covers.
+
+struct Sampled {
+    vec4 value;
+    bool inside, broken;  // broken: some texel is NaN or infinite; the value is the mean of the others
+};
+
+// Texels along a side that are read for one pixel; more are read at even distances.
+const int MOST = 8;
+
+void sampled_texel(sampler2D picture, ivec2 at, float weight, inout vec4 sum, inout float total, inout bool broken) {
+    vec4 texel = texelFetch(picture, at, 0);
+    if (is_finite(texel)) {
+        sum += weight * texel;
+        total += weight;
+    } else {
+        broken = true;
+    }
+}
+
+Sampled sampled(sampler2D picture, vec2 origin, vec2 texels, int components, vec2 at) {
+    ivec2 size = textureSize(picture, 0);
+    vec2 center = (at - origin) * texels;
+    Sampled found = Sampled(vec4(0.0), all(greaterThanEqual(center, vec2(0.0))) && all(lessThan(center, vec2(size))), false);
+    float total = 0.0;
+    if (found.inside) {
+        vec2 low = max(center - 0.5 * texels, vec2(0.0)), high = min(center + 0.5 * texels, vec2(size));
+        bvec2 enlarged = lessThanEqual(texels, vec2(1.0));
+        ivec2 first = ivec2(mix(low, center, enlarged));
+        ivec2 last = ivec2(mix(ceil(high) - 1.0, center, enlarged));
+        ivec2 stride = max((last - first + MOST) / MOST, 1);
+        for (int y = first.y; y <= last.y; y += stride.y)
+            for (int x = first.x; x <= last.x; x += stride.x) {
+                vec2 covered = min(high, vec2(x, y) + 1.0) - max(low, vec2(x, y));
+                vec2 weight = mix(covered, vec2(1.0), enlarged);
+                sampled_texel(picture, ivec2(x, y), weight.x * weight.y, found.value, total, found.broken);
+            }
+    }
+    found.value = total > 0.0 ? found.value / total : vec4(0.0);
+    if (components == 1) found.value = found.value.rrrr;
+    if (components < 4) found.value.a = 1.0;
+    return found;
+}

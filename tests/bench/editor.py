@@ -1,0 +1,159 @@
+"""What the editor costs. Run it as `.venv/bin/python tests/bench/editor.py`; it prints JSON.
+
+- `frame`: seconds of Python per frame with 100 nodes on the canvas (at most 0.004 is wanted)
+- `drag`: pictures per second while an exposure at the end of ten nodes at 1920x1080 is dragged (10 or more)
+- `idle`: share of one core while nothing happens (below 0.1)
+- `start`: seconds from the start of the process to the first picture, with warm caches (below 1.5)
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+sys.path.append(str(Path(__file__).parents[1]))
+
+from gui_driver import Ui, drive
+from halation.app import document
+from halation.app.graph import Graph, Output, Port
+from halation.nodes import Kind, catalogue
+
+_TEN = ("exposure", "saturation", "grade", "gaussian_blur", "vignette", "exposure", "clip", "saturation", "bloom", "exposure")
+_CAST = ("exposure", "grade", "saturation", "vignette", "clip", "gaussian_blur", "tone_map", "bloom", "edge_detect", "mix_images")
+
+
+def chain(types: list[str], size: tuple[int, int]) -> Graph:
+    """A noise, then one node after the other, then the output."""
+    known = catalogue()
+    graph = Graph().add("noise", known["noise"]())
+    source = Port("noise", "out")
+    for number, name in enumerate(types):
+        id = f"n{number}"
+        graph = graph.add(id, known[name]())
+        first = next(iter(known[name].inputs))
+        graph = graph.connect(source, Port(id, first))
+        source = Port(id, next(iter(known[name].outputs)))
+    graph = graph.add_output("image", Output(Kind.IMAGE)).connect(source, Port("outputs", "image"))
+    from dataclasses import replace
+
+    from halation.app.graph import Settings
+
+    return replace(graph, settings=Settings(size))
+
+
+def frame(folder: Path) -> dict[str, float]:
+    """Python per frame, by panel, with 100 nodes in view."""
+    graph = chain([_CAST[number % len(_CAST)] for number in range(99)], (320, 180))
+    path = folder / "hundred.json"
+    document.save(graph, path)
+    found: dict[str, list[float]] = {}
+
+    def body(ui: Ui) -> None:
+        ui.session.arrange(ui.editor.canvas.sizes or {})
+        ui.editor.canvas.fit()
+        ui.settled()
+        panels = ui.window._panels
+        for title in list(panels):
+            _time(panels, title, found)
+        ui.wait(120)
+
+    drive(body, folder, path, size=(1920, 1200))
+    medians = {title: statistics.median(times[20:]) for title, times in found.items() if len(times) > 40}
+    return {**medians, "total": sum(medians.values())}
+
+
+def _time(panels: dict[str, Any], title: str, found: dict[str, list[float]]) -> None:
+    inner, times = panels[title].draw, found.setdefault(title, [])
+
+    def draw(editor: Any) -> None:
+        started = time.perf_counter()
+        inner(editor)
+        times.append(time.perf_counter() - started)
+
+    panels[title].draw = draw
+
+
+def drag(folder: Path) -> dict[str, float]:
+    """Pictures per second while the last exposure changes every frame."""
+    path = folder / "ten.json"
+    document.save(chain(list(_TEN), (1920, 1080)), path)
+    found: dict[str, float] = {}
+
+    def body(ui: Ui) -> None:
+        ui.settled()
+        port, seen, steps = Port("n9", "stops"), set[int](), 0
+        started = time.perf_counter()
+        while time.perf_counter() - started < 5.0:
+            steps += 1
+            ui.session.set(port, (steps % 40) / 20.0, merge="drag")
+            ui.wait(1)
+            shown = ui.editor.preview.shown("A")
+            if shown:
+                seen.add(shown.revision)
+        spent = time.perf_counter() - started
+        found.update(pictures=len(seen) / spent, frames=steps / spent)
+
+    drive(body, folder, path, size=(1920, 1200))
+    return found
+
+
+def idle(folder: Path) -> float:
+    """Processor time per second of doing nothing."""
+    path = folder / "ten.json"
+    found = [0.0]
+
+    def body(ui: Ui) -> None:
+        ui.settled()
+        before, started = os.times(), time.perf_counter()
+        while time.perf_counter() - started < 6.0:
+            ui.wait(1)
+        after = os.times()
+        found[0] = (after.user + after.system - before.user - before.system) / (time.perf_counter() - started)
+
+    drive(body, folder, path, size=(1600, 1000), idle=True)
+    return found[0]
+
+
+def start(folder: Path) -> float:
+    """Seconds until the window shows its first picture, best of three."""
+    code = (
+        "import sys,time,os;sys.path.append(sys.argv[1])\n"
+        "from gui_driver import drive\nfrom pathlib import Path\n"
+        "def body(ui):\n ui.until(lambda: ui.editor.preview.shown('A') is not None)\n print('shown')\n"
+        "drive(body, Path(sys.argv[2]), Path(sys.argv[3]))"
+    )
+    preset = next(iter(sorted((Path(__file__).parents[2] / "presets").glob("agx_look.json"))))
+    times: list[float] = []
+    for _ in range(3):
+        started = time.perf_counter()
+        process = subprocess.Popen(
+            [sys.executable, "-c", code, str(Path(__file__).parents[1]), str(folder), str(preset)],
+            stdout=subprocess.PIPE, text=True,
+        )
+        assert process.stdout
+        line = process.stdout.readline()
+        assert "shown" in line, line
+        times.append(time.perf_counter() - started)
+        process.wait()
+    return min(times)
+
+
+def main() -> None:
+    """Measure everything."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        os.environ["HALATION_STATE"] = str(folder / "state")
+        print(json.dumps(
+            {"frame": frame(folder), "drag": drag(folder), "idle": idle(folder), "start": start(folder)}, indent=2
+        ))
+
+
+if __name__ == "__main__":
+    main()

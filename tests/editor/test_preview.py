@@ -1,0 +1,447 @@
+"""What panels show while a graph is edited: never nothing where there was something, never work done twice."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from exr_files import write_exr
+from halation.app.compiler import Library, installed
+from halation.app.compiler.library import parse
+from halation.app.editor.preview import Preview
+from halation.app.graph import Graph, Group, Input, Output, Port, Settings
+from halation.app.renderer import Display, Renderer, Wanted, open_device
+from halation.nodes import Kind, catalogue
+from halation.nodes.blur.gaussian_blur import GaussianBlur
+from halation.nodes.color.exposure import Exposure
+from halation.nodes.color.saturation import Saturation
+
+PICTURE = np.random.default_rng(8).random((23, 37, 4), np.float32)
+OUT = {"A": Port("outputs", "image")}
+NODES = catalogue()
+
+
+@pytest.fixture
+def engine() -> Iterator[Renderer]:
+    made = Renderer(open_device())
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def preview(engine: Renderer) -> Iterator[Preview]:
+    display = Display(engine.device)
+    made = Preview(engine, display)
+    made.patience = 0.0
+    yield made
+    made.close()
+    display.close()
+
+
+def chain(stops: float = 1.0, sigma: float = 2.0, saturation: float = 0.5) -> Graph:
+    graph = Graph(inputs={"image": Input(Kind.IMAGE)}, outputs={"image": Output()})
+    last = Port("inputs", "image")
+    nodes = {"light": Exposure(stops=stops), "blur": GaussianBlur(sigma=sigma)}
+    for name, node in (nodes | {"color": Saturation(saturation=saturation)}).items():
+        graph = graph.add(name, node).connect(last, Port(name, "image"))
+        last = Port(name, "out")
+    return graph.connect(last, Port("outputs", "image"))
+
+
+def want(preview: Preview, graph: Graph, ports=OUT, **rest) -> None:
+    preview.want(graph, ports, **({"bindings": {"image": PICTURE}} | rest))
+
+
+def settle(preview: Preview) -> int:
+    """Work to the end; how many calls that took."""
+    for count in range(1, 10_000):
+        if not preview.work(0.0):
+            return count
+        time.sleep(0.0005)
+    raise AssertionError("it never ends")
+
+
+def pixels(preview: Preview, engine: Renderer, name: str = "A") -> np.ndarray:
+    shown = preview.shown(name)
+    assert shown is not None
+    with engine.device.current():
+        data = np.frombuffer(shown.texture.read(), np.float32)
+    return data.reshape(shown.size[1], shown.size[0], -1)[..., : shown.channels]
+
+
+def rendered(engine: Renderer, graph: Graph, port: Port = OUT["A"], **rest) -> np.ndarray:
+    return engine.render(graph, Wanted({"image": PICTURE}, {"x": port}, **rest))["x"]
+
+
+def passes(engine: Renderer) -> int:
+    return engine.runner.counters.passes
+
+
+# --- pictures --------------------------------------------------------------------------------------------------------
+
+
+def test_a_picture_comes_pass_by_pass(preview, engine):
+    want(preview, chain())
+    assert preview.busy and preview.shown("A") is None and passes(engine) == 0
+    calls, done = 0, []
+    while preview.work(0.0):
+        calls += 1
+        done.append(passes(engine))
+        time.sleep(0.0005)
+    total = len(engine.compile(chain(), Wanted({"image": PICTURE})).passes)
+    assert set(range(1, total + 1)) <= set(done), "one pass a call, when there is no time for more"
+    assert not preview.busy and preview.progress == (total, total)
+    shown = preview.shown("A")
+    assert (shown.port, shown.size, shown.full_size, shown.kind, shown.channels) == (
+        OUT["A"], (37, 23), (37, 23), Kind.IMAGE, 4,
+    )
+    np.testing.assert_array_equal(pixels(preview, engine), rendered(engine, chain()))
+
+
+def test_with_time_enough_one_call_does_it_all(preview, engine):
+    want(preview, chain())
+    while preview.work(60.0):
+        time.sleep(0.0005)  # the picture is decoded on another thread
+    np.testing.assert_array_equal(pixels(preview, engine), rendered(engine, chain()))
+
+
+def test_wanting_the_same_again_costs_nothing(preview, engine):
+    graph = chain()
+    want(preview, graph)
+    settle(preview)
+    before, shown, compiled = passes(engine), preview.shown("A"), engine.compile
+    engine.compile = None  # nobody asks
+    moved = replace(graph, ui={"nodes": {"blur": {"x": 1.0, "y": 2.0}}})
+    for same in (graph, chain(), moved, moved):
+        want(preview, same)
+        assert not preview.busy and not preview.work(0.0)
+    engine.compile = compiled
+    assert passes(engine) == before and preview.shown("A") == shown
+
+
+def test_only_what_depends_on_a_change_runs_again(preview, engine):
+    want(preview, chain())
+    settle(preview)
+    before = passes(engine)
+    want(preview, chain(saturation=0.7))
+    settle(preview)
+    assert passes(engine) == before + 1
+    np.testing.assert_array_equal(pixels(preview, engine), rendered(engine, chain(saturation=0.7)))
+    want(preview, chain())  # undo
+    settle(preview)
+    assert passes(engine) <= before + 2
+    np.testing.assert_array_equal(pixels(preview, engine), rendered(engine, chain()))
+
+
+def test_the_last_good_picture_stays_until_the_new_one_is_ready(preview, engine):
+    want(preview, chain())
+    settle(preview)
+    old, old_pixels = preview.shown("A"), pixels(preview, engine).copy()
+    engine.runner.textures.budget = 0
+    want(preview, chain(stops=3.0, sigma=4.0))
+    while preview.work(0.0) and preview.shown("A") is old:
+        np.testing.assert_array_equal(pixels(preview, engine), old_pixels)
+    settle(preview)
+    new = preview.shown("A")
+    assert new.revision > old.revision and new.key != old.key
+    np.testing.assert_array_equal(pixels(preview, engine), rendered(engine, chain(stops=3.0, sigma=4.0)))
+
+
+def test_a_change_in_the_middle_starts_again(preview, engine):
+    want(preview, chain())
+    while passes(engine) < 2:
+        preview.work(0.0)
+    want(preview, chain(stops=2.0))
+    settle(preview)
+    np.testing.assert_array_equal(pixels(preview, engine), rendered(engine, chain(stops=2.0)))
+
+
+def test_a_long_drag_still_shows_pictures(preview, engine):
+    preview.patience = 1e9
+    revisions = set()
+    for number in range(40):
+        want(preview, chain(stops=1.0 + 0.01 * number))
+        preview.work(0.0)
+        time.sleep(0.0005)
+        shown = preview.shown("A")
+        revisions.add(shown and shown.revision)
+    assert len(revisions) > 3
+    settle(preview)
+    np.testing.assert_array_equal(pixels(preview, engine), rendered(engine, chain(stops=1.0 + 0.01 * 39)))
+
+
+def test_another_port_does_not_wait_for_the_one_before(preview, engine):
+    preview.patience = 1e9
+    want(preview, chain())
+    preview.work(0.0)
+    want(preview, chain(), {"A": Port("inputs", "image")})
+    settle(preview)
+    assert passes(engine) <= 1
+    np.testing.assert_array_equal(pixels(preview, engine), PICTURE)
+
+
+def test_several_panels(preview, engine):
+    ports = {"A": Port("blur", "out"), "B": Port("inputs", "image"), "C": Port("outputs", "image")}
+    want(preview, chain(), ports)
+    settle(preview)
+    for name, port in ports.items():
+        np.testing.assert_array_equal(pixels(preview, engine, name), rendered(engine, chain(), port))
+    want(preview, chain(), OUT)
+    assert preview.shown("B") is None and preview.shown("A") is not None
+    settle(preview)
+    assert len(engine.runner.textures._leases) == 1
+
+
+def test_nothing_wanted_is_nothing_to_do(preview, engine):
+    assert not preview.work(0.0) and not preview.busy
+    want(preview, chain(), {})
+    assert not preview.work(0.0) and not preview.busy and passes(engine) == 0
+
+
+def test_inside_of_groups(preview, engine):
+    graph = Graph(inputs={"image": Input()}, outputs={"image": Output()}).add("g", Group(chain()))
+    graph = graph.connect(Port("inputs", "image"), Port("g", "image"))
+    graph = graph.connect(Port("g", "image"), Port("outputs", "image"))
+    ports = {"A": Port("g/blur", "out"), "B": Port("g/inputs", "image"), "C": Port("g", "image")}
+    want(preview, graph, ports)
+    settle(preview)
+    assert not preview.faults
+    np.testing.assert_array_equal(pixels(preview, engine), rendered(engine, chain(), Port("blur", "out")))
+    np.testing.assert_array_equal(pixels(preview, engine, "B"), PICTURE)
+    np.testing.assert_array_equal(pixels(preview, engine, "C"), rendered(engine, chain()))
+
+
+def test_kinds_of_data(preview, engine):
+    graph = Graph(settings=Settings((16, 9))).add("c", NODES["checker"](size=4.0))
+    want(preview, graph, {"A": Port("c", "value"), "B": Port("c", "out")}, bindings={})
+    settle(preview)
+    assert (preview.shown("A").kind, preview.shown("A").channels) == (Kind.FIELD, 1)
+    assert (preview.shown("B").kind, preview.shown("B").channels) == (Kind.IMAGE, 4)
+
+
+@pytest.mark.parametrize("scale", [0.5, 0.33, 0.1])
+def test_a_proxy_knows_its_full_size(preview, engine, scale):
+    want(preview, chain(), scale=scale)
+    settle(preview)
+    shown = preview.shown("A")
+    assert shown.full_size == (37, 23) and shown.scale == scale
+    assert shown.size == (round(37 * scale), round(23 * scale))
+    np.testing.assert_array_equal(pixels(preview, engine), rendered(engine, chain(), scale=scale))
+
+
+def test_files_that_change_are_read_again(preview, engine, tmp_path):
+    path = tmp_path / "a.exr"
+    write_exr(path, {"beauty": np.full((4, 6, 4), 0.5, np.float32)}, {"beauty": "float"})
+    want(preview, chain(), {"A": Port("inputs", "image")}, bindings={"image": path})
+    settle(preview)
+    write_exr(path, {"beauty": np.full((4, 8, 4), 0.75, np.float32)}, {"beauty": "float"})
+    preview.work(0.0)
+    assert preview.shown("A").size == (6, 4)
+    preview.refresh()
+    settle(preview)
+    np.testing.assert_array_equal(pixels(preview, engine), np.full((4, 8, 4), 0.75, np.float32))
+
+
+# --- waiting ---------------------------------------------------------------------------------------------------------
+
+
+def test_decoding_does_not_hold_up_the_window(preview, engine):
+    load, gate = engine.runner._load, threading.Event()
+
+    def slow(picture):
+        gate.wait(10.0)
+        return load(picture)
+
+    engine.runner._load = slow
+    want(preview, chain())
+    for _ in range(5):
+        assert preview.work(60.0)
+    assert passes(engine) == 0 and preview.busy
+    gate.set()
+    settle(preview)
+    assert preview.shown("A") is not None
+
+
+def test_while_paused_nothing_is_computed(preview, engine):
+    want(preview, chain())
+    settle(preview)
+    before, shown = passes(engine), preview.shown("A")
+    preview.paused = True
+    want(preview, chain(stops=3.0))
+    assert not preview.work(60.0) and passes(engine) == before and preview.shown("A") is shown
+    preview.paused = False
+    settle(preview)
+    np.testing.assert_array_equal(pixels(preview, engine), rendered(engine, chain(stops=3.0)))
+
+
+# --- what goes wrong -------------------------------------------------------------------------------------------------
+
+
+def test_a_fault_is_said_where_it_is_and_hides_nothing_else(preview, engine):
+    good = {"A": Port("outputs", "image")}
+    want(preview, chain(), good)
+    settle(preview)
+    broken = chain(stops=2.0).add("lonely", Exposure(stops=1.0))
+    want(preview, broken, {**good, "B": Port("lonely", "out"), "C": Port("blur", "out")})
+    settle(preview)
+    assert preview.faults == {"lonely": "node 'lonely': input 'image' is not linked: link a picture to it"}
+    assert "not linked" in preview.fault("B") and preview.fault("A") is None and preview.shown("B") is None
+    np.testing.assert_array_equal(pixels(preview, engine), rendered(engine, chain(stops=2.0)))
+    np.testing.assert_array_equal(
+        pixels(preview, engine, "C"), rendered(engine, chain(stops=2.0), Port("blur", "out"))
+    )
+    want(preview, broken, good)
+    settle(preview)
+    assert preview.faults == {}
+
+
+def test_a_fault_leaves_the_last_good_picture(preview, engine):
+    want(preview, chain())
+    settle(preview)
+    shown = preview.shown("A")
+    want(preview, chain().disconnect(Port("blur", "image")))
+    settle(preview)
+    assert preview.shown("A") is shown and set(preview.faults) == {"blur"}
+    assert not preview.busy
+
+
+def test_an_input_without_a_picture(preview):
+    want(preview, chain(), bindings={"image": Path("nowhere.exr")})
+    settle(preview)
+    assert set(preview.faults) == {"inputs.image"} and "nowhere.exr" in preview.faults["inputs.image"]
+
+
+def test_a_file_that_breaks_while_it_is_read(preview, engine):
+    from halation.app.errors import InputError
+
+    def broken(_):
+        raise InputError("a.exr: it ends too soon")
+
+    load, engine.runner._load = engine.runner._load, broken
+    want(preview, chain())
+    settle(preview)
+    assert preview.faults == {"inputs.image": "a.exr: it ends too soon"}
+    engine.runner._load = load
+    preview.refresh()
+    settle(preview)
+    assert preview.faults == {} and preview.shown("A") is not None
+
+
+def test_shaders_are_loaded_again_while_the_picture_stays(preview, engine):
+    def library(text: str) -> Library:
+        return Library({**installed().texts, "color/saturation": parse("color/saturation", text)})
+
+    want(preview, chain())
+    settle(preview)
+    shown, before = preview.shown("A"), passes(engine)
+    preview.reload(library("vec4 saturation(vec4 image, float saturation) { return image + oops; }\n"))
+    settle(preview)
+    assert preview.shown("A") is shown and passes(engine) == before
+    assert "shaders/color/saturation.glsl, line 1" in preview.faults["color"]
+    preview.reload(library("vec4 saturation(vec4 image, float saturation) { return image * 0.0; }\n"))
+    settle(preview)
+    assert preview.faults == {} and passes(engine) == before + 1
+    assert not pixels(preview, engine).any()
+
+
+# --- upkeep ----------------------------------------------------------------------------------------------------------
+
+
+def test_times_of_nodes(preview, engine):
+    graph = chain().add("more", Exposure(stops=1.0)).connect(Port("color", "out"), Port("more", "image"))
+    graph = graph.connect(Port("more", "out"), Port("outputs", "image"))
+    want(preview, graph)
+    settle(preview)
+    assert preview.timings == {}
+    preview.timed = True
+    preview.clear()
+    settle(preview)
+    timings = dict(preview.timings)
+    assert set(timings) == {"light", "blur", "color", "more"}
+    assert all(item.seconds > 0.0 for item in timings.values())
+    assert timings["color"].shared == ("more",) and timings["blur"].shared == ()
+    assert timings["color"].bytes == timings["light"].bytes == PICTURE.nbytes
+    assert timings["blur"].bytes == 2 * PICTURE.nbytes
+    want(preview, graph.set(Port("more", "stops"), 2.0))
+    settle(preview)
+    assert preview.timings["light"] == timings["light"] and preview.timings["more"] != timings["more"]
+
+
+def test_clearing_computes_all_anew(preview, engine):
+    want(preview, chain())
+    settle(preview)
+    before = passes(engine)
+    assert preview.memory[0] > PICTURE.nbytes
+    preview.clear()
+    assert preview.memory[0] == 0 and preview.shown("A") is None and preview.busy
+    settle(preview)
+    assert passes(engine) == 2 * before and preview.shown("A") is not None
+
+
+def test_closing_leaves_no_lease(preview, engine):
+    want(preview, chain())
+    preview.work(0.0)
+    preview.close()
+    assert not engine.runner.textures._leases and not preview.busy
+
+
+# --- thumbnails ------------------------------------------------------------------------------------------------------
+
+
+def test_thumbnails_of_what_is_there(preview, engine):
+    want(preview, chain())
+    settle(preview)
+    before = passes(engine)
+    for path in ("inputs.image", "light", "blur", "color"):
+        texture, fresh = preview.thumbnail(path)
+        assert texture.size == (37, 23) and fresh
+    assert preview.thumbnail("nobody") is None and passes(engine) == before
+    light = np.clip(rendered(engine, chain(), Port("light", "out")), 0.0, 1.0)
+    with engine.device.current():
+        drawn = np.frombuffer(preview.thumbnail("light")[0].read(), np.uint8).reshape(23, 37, 4)[..., :3]
+    opaque = PICTURE[..., 3] > 0.9
+    assert np.corrcoef(drawn[opaque].ravel(), light[opaque][..., :3].ravel())[0, 1] > 0.8
+
+
+def test_a_large_picture_has_a_small_thumbnail(preview):
+    want(preview, chain(), {"A": Port("inputs", "image")}, bindings={"image": np.ones((300, 640, 4), np.float32)})
+    settle(preview)
+    assert preview.thumbnail("inputs.image")[0].size == (160, 75)
+
+
+def test_a_thumbnail_grows_stale_and_fresh_again(preview):
+    want(preview, chain())
+    settle(preview)
+    want(preview, chain(saturation=0.9))
+    assert preview.thumbnail("blur")[1] and not preview.thumbnail("color")[1]
+    settle(preview)
+    assert preview.thumbnail("color")[1]
+    want(preview, chain(saturation=0.9), {"A": Port("light", "out")})
+    settle(preview)
+    want(preview, chain(sigma=5.0, saturation=0.9), {"A": Port("light", "out")})
+    settle(preview)
+    assert preview.thumbnail("light")[1] and not preview.thumbnail("color")[1]
+    want(preview, chain(saturation=0.9), {"A": Port("light", "out")})
+    assert preview.thumbnail("color")[1]
+
+
+def test_thumbnails_can_be_off(preview, engine):
+    preview.thumbnailing = False
+    want(preview, chain())
+    settle(preview)
+    assert preview.thumbnail("color") is None
+
+
+def test_a_thumbnail_of_depth_shows_its_range(preview, engine):
+    depth = np.linspace(100.0, 900.0, 37 * 23, dtype=np.float32).reshape(23, 37, 1)
+    graph = Graph(inputs={"depth": Input(Kind.FIELD)})
+    want(preview, graph, {"A": Port("inputs", "depth")}, bindings={"depth": depth})
+    settle(preview)
+    with engine.device.current():
+        drawn = np.frombuffer(preview.thumbnail("inputs.depth")[0].read(), np.uint8).reshape(23, 37, 4)
+    assert drawn[0, 0, 0] == 0 and drawn[-1, -1, 0] == 255 and 100 < drawn[11, 18, 0] < 155

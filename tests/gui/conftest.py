@@ -1,0 +1,23 @@
+"""`gui(body, path)` opens the real editor without a display, calls `body(ui)` beside it, and closes it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from gui_driver import Ui, drive
+from halation.app.editor.window.window import Window
+
+Gui = Callable[..., Window]
+
+
+@pytest.fixture
+def gui(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Gui:
+    """The arguments are those of `gui_driver.drive` without the folder; what an editor remembers is kept between calls."""
+    monkeypatch.setenv("HALATION_STATE", str(tmp_path / "state"))
+
+    def run(body: Callable[[Ui], object], path: Path | None = None, **options: object) -> Window:
+        return drive(body, tmp_path, path, **options)
+
+    return run

@@ -1,0 +1,148 @@
+"""Files: saved and read again, dropped, changed by others, and nothing lost when the program dies."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from halation import presets
+from halation.app import document
+from halation.app.graph import Port
+
+HERE = Path(__file__).parents[1]
+
+
+@pytest.fixture
+def look(tmp_path: Path) -> Path:
+    """A preset in a folder of its own, with the picture that it reads."""
+    source = next(path for path in presets.paths() if path.stem == "agx_look")
+    shutil.copytree(source.parent / "samples", tmp_path / "samples")
+    return Path(shutil.copy(source, tmp_path / "look.json"))
+
+
+def test_what_is_saved_is_what_was_made(gui, look: Path) -> None:
+    before = document.load(look)
+
+    def body(ui) -> None:
+        ui.session.select(["tone"])
+        ui.session.set(Port("tone", "exposure"), 1.5)
+        ui.wait()
+        assert ui.session.dirty
+        ui.keys("Ctrl+S")
+        assert not ui.session.dirty
+
+    gui(body, look)
+    after = document.load(look)
+    assert after.value(Port("tone", "exposure")) == 1.5
+    assert after.set(Port("tone", "exposure"), before.value(Port("tone", "exposure"))) == before
+
+
+def test_opening_and_saving_unchanged_writes_the_same_text(gui, look: Path) -> None:
+    text = look.read_text()
+
+    def body(ui) -> None:
+        ui.settled()
+        assert not ui.session.dirty
+        ui.keys("Ctrl+S")
+
+    gui(body, look)
+    assert json.loads(look.read_text()) == json.loads(text)
+
+
+def test_closing_with_unsaved_work_asks_first(gui, look: Path) -> None:
+    def body(ui) -> None:
+        ui.session.set(Port("tone", "exposure"), 1.0)
+        ui.keys("Ctrl+Q")
+        assert ui.editor.dialogs.question is not None and not ui.editor.closing
+        assert "look" in ui.editor.dialogs.question.sentence
+        ui.keys("Escape")
+        assert ui.editor.dialogs.question is None and not ui.editor.closing
+
+    gui(body, look)
+
+
+def test_a_picture_that_is_dropped_becomes_a_node(gui, look: Path) -> None:
+    picture = next((look.parent / "samples").glob("studio.exr"))
+
+    def body(ui) -> None:
+        before = set(ui.session.graph.nodes)
+        ui.move("Graph")
+        ui.window._dropped.append(str(picture))
+        ui.wait(5)
+        (new,) = set(ui.session.graph.nodes) - before
+        assert ui.session.graph.nodes[new].id == "read_image"
+        ui.session.view(Port(new, "out"))
+        ui.settled()
+        assert not ui.editor.preview.faults
+        ui.keys("Ctrl+Z")
+        assert set(ui.session.graph.nodes) == before
+
+    gui(body, look)
+
+
+def test_a_graph_that_is_dropped_on_the_viewer_is_opened(gui, look: Path) -> None:
+    other = next(path for path in presets.paths() if path.stem == "bleach_bypass")
+
+    def body(ui) -> None:
+        ui.move("Viewer")
+        ui.wait()
+        ui.window._dropped.append(str(other))
+        ui.wait(5)
+        assert ui.session.path == other
+
+    gui(body, look)
+
+
+def test_a_file_changed_by_another_program_is_loaded_again(gui, look: Path) -> None:
+    def body(ui) -> None:
+        document.save(document.load(look).set(Port("tone", "exposure"), -2.0), look)
+        ui.until(lambda: ui.session.graph.value(Port("tone", "exposure")) == -2.0)
+        assert not ui.session.dirty
+        ui.session.set(Port("tone", "exposure"), 3.0)
+        document.save(document.load(look).set(Port("tone", "exposure"), -1.0), look)
+        ui.until(lambda: ui.editor.dialogs.question is not None)
+        assert ui.session.graph.value(Port("tone", "exposure")) == 3.0
+
+    gui(body, look)
+
+
+def test_work_is_offered_again_after_the_process_was_killed(gui, look: Path, tmp_path: Path) -> None:
+    script = (
+        "import sys, time; sys.path.append(sys.argv[1])\n"
+        "from pathlib import Path\nfrom gui_driver import drive\nfrom halation.app.graph import Port\n"
+        "def body(ui):\n"
+        "    ui.session.set(Port('tone', 'exposure'), 2.5)\n"
+        "    ui.until(lambda: list((Path(sys.argv[2]) / 'state' / 'recovery').glob('*.json')))\n"
+        "    ui.wait(5); print('ready', flush=True); ui.until(lambda: False, 60)\n"
+        "drive(body, Path(sys.argv[2]), Path(sys.argv[3]))\n"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", script, str(HERE), str(tmp_path), str(look)], stdout=subprocess.PIPE, text=True,
+        env={**os.environ, "HALATION_STATE": str(tmp_path / "state")},
+    )
+    assert process.stdout
+    assert process.stdout.readline().strip() == "ready"
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    assert document.load(look).value(Port("tone", "exposure")) != 2.5
+    time.sleep(0.1)
+
+    def body(ui) -> None:
+        assert "start" in ui.editor.dialogs.open
+        (found,) = ui.editor.recovery.found()
+        assert found.path == look
+        ui.click("recover 0")
+        ui.wait(3)
+        assert ui.session.graph.value(Port("tone", "exposure")) == 2.5
+        assert ui.session.dirty and ui.session.path == look
+        ui.settled()
+        assert not ui.editor.preview.faults
+
+    gui(body)

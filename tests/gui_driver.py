@@ -1,0 +1,186 @@
+"""Runs the real editor in a real OpenGL window without a display, moved by a simulated mouse and keyboard.
+
+HALATION_SHOTS=folder keeps screenshots there.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from imgui_bundle import ImVec2, hello_imgui, immapp
+from imgui_bundle.immapp import testing
+
+import glfw  # isort: skip
+
+from halation.app.editor.editor import Editor
+from halation.app.editor.keys import chord
+from halation.app.editor.window.window import Window
+
+Point = tuple[float, float]
+
+
+@dataclass
+class Ui:
+    """A person at the editor. Places are names in `editor.places`, or points on the screen."""
+
+    window: Window
+    ctx: Any
+    folder: Path
+
+    @property
+    def editor(self) -> Editor:
+        return self.window.editor
+
+    @property
+    def session(self):
+        return self.editor.session
+
+    def wait(self, frames: int = 3) -> None:
+        """Let the window draw."""
+        self.ctx.yield_(frames)
+
+    def until(self, question: Callable[[], bool], seconds: float = 20.0) -> None:
+        """Wait for something to become true."""
+        end = time.monotonic() + seconds
+        while not question():
+            assert time.monotonic() < end, "this never became true"
+            self.ctx.yield_()
+
+    def settled(self) -> None:
+        """Wait until all pictures are ready."""
+        self.wait(3)
+        self.until(lambda: not self.editor.preview.busy)
+        self.wait(2)
+
+    def at(self, place: str | Point, fraction: Point = (0.5, 0.5)) -> Point:
+        """A point in a place; its middle if nothing else is said."""
+        if not isinstance(place, str):
+            return place
+        if place not in self.editor.places:
+            self.wait(2)
+        assert place in self.editor.places, f"no '{place}' is shown; there is {sorted(self.editor.places)}"
+        left, top, right, bottom = self.editor.places[place]
+        return left + (right - left) * fraction[0], top + (bottom - top) * fraction[1]
+
+    def move(self, place: str | Point, fraction: Point = (0.5, 0.5)) -> None:
+        """Move the mouse."""
+        self.ctx.mouse_move_to_pos(ImVec2(*self.at(place, fraction)))
+
+    def click(self, place: str | Point, button: int = 0, fraction: Point = (0.5, 0.5), keys: str = "") -> None:
+        """Click, holding modifier keys such as "Ctrl"."""
+        self.move(place, fraction)
+        with self.held(keys):
+            self.ctx.mouse_click(button)
+        self.wait(3)
+
+    def double_click(self, place: str | Point, fraction: Point = (0.5, 0.5)) -> None:
+        """Click twice."""
+        self.move(place, fraction)
+        self.ctx.mouse_double_click(0)
+        self.wait(3)
+
+    def drag(
+        self, start: str | Point, end: str | Point, button: int = 0, keys: str = "", release: bool = True,
+        fraction: Point = (0.5, 0.5),
+    ) -> None:
+        """Press at one place, let go at another."""
+        target = self.at(end)
+        self.move(start, fraction)
+        with self.held(keys):
+            self.ctx.mouse_down(button)
+            self.ctx.mouse_lift_drag_threshold(button)
+            self.wait(1)
+            self.ctx.mouse_move_to_pos(ImVec2(*target))
+            self.wait(2)
+            if release:
+                self.ctx.mouse_up(button)
+                self.wait(3)
+
+    def held(self, keys: str):
+        """Hold modifier keys inside a block."""
+        return _Held(self.ctx, keys)
+
+    def wheel(self, steps: float) -> None:
+        """Turn the wheel where the mouse is."""
+        self.ctx.mouse_wheel_y(steps)
+        self.wait(2)
+
+    def keys(self, text: str) -> None:
+        """Press a shortcut such as "Ctrl+Z"."""
+        self.ctx.key_press(chord(text))
+        self.wait(3)
+
+    def type(self, text: str, enter: bool = True) -> None:
+        """Replace the text of the field that is being edited."""
+        (self.ctx.key_chars_replace_enter if enter else self.ctx.key_chars_replace)(text)
+        self.wait(3)
+
+    def shot(self, name: str) -> Path:
+        """A screenshot; kept in HALATION_SHOTS if that is set."""
+        kept = os.environ.get("HALATION_SHOTS")
+        path = Path(kept or self.folder) / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        testing.capture(self.ctx, str(path))
+        return path
+
+    def pixels(self, name: str = "seen.png") -> np.ndarray:
+        """The window as [height, width, 3] of 8 bits."""
+        import OpenImageIO as oiio
+
+        return oiio.ImageBuf(str(self.shot(name))).get_pixels(oiio.UINT8)[..., :3]
+
+
+class _Held:
+    def __init__(self, ctx: Any, keys: str) -> None:
+        self._ctx, self._keys = ctx, chord(keys) if keys else 0
+
+    def __enter__(self) -> None:
+        if self._keys:
+            self._ctx.key_down(self._keys)
+
+    def __exit__(self, *_: object) -> None:
+        if self._keys:
+            self._ctx.key_up(self._keys)
+
+
+def drive(
+    body: Callable[[Ui], object], folder: Path, path: Path | None = None, bindings: Mapping[str, str] | None = None,
+    size: tuple[int, int] = (1400, 900), likes: Mapping[str, object] | None = None, idle: bool = False,
+) -> Window:
+    """Open the editor, run `body(ui)` beside it, and close it. Its state is in `folder / "state"`."""
+    _without_display()
+    state = folder / "state"
+    state.mkdir(exist_ok=True)
+    window = Window(path, bindings or {}, state=state, size=size)
+    window.params.ini_disable = True
+    window.params.fps_idling.enable_idling = idle
+
+    def whole(ctx: Any) -> None:
+        ui = Ui(window, ctx, folder)
+        if likes:
+            ui.editor.store.change(**likes)
+        ui.wait(8)
+        body(ui)
+
+    def leave() -> None:
+        window.editor.closing = True  # as if a person had said so
+        end()
+
+    end = window.params.callbacks.before_exit
+    window.params.callbacks.before_exit = leave
+    testing.run(test_function=whole, runner_params=window.params, add_ons_params=immapp.AddOnsParams())
+    return window
+
+
+def _without_display() -> None:
+    """The next window needs no display: what it shows is real all the same."""
+    assert hello_imgui  # loaded first: both must use the same window library
+    glfw.init_hint(glfw.PLATFORM, glfw.PLATFORM_NULL)
+    assert glfw.init()
+    glfw.window_hint(glfw.CONTEXT_CREATION_API, glfw.EGL_CONTEXT_API)
