@@ -8,3 +8,8 @@ from pathlib import Path
 def paths() -> tuple[Path, ...]:
     """Every preset, by name."""
     return tuple(sorted(Path(__file__).parent.glob("*.json")))
+
+
+def picture(preset: Path) -> Path:
+    """A small picture of what it makes of its sample."""
+    return preset.parent / "pictures" / f"{preset.stem}.jpg"

@@ -138,7 +138,7 @@ class Ui:
 
 class _Held:
     def __init__(self, ctx: Any, keys: str) -> None:
-        self._ctx, self._keys = ctx, chord(keys) if keys else 0
+        self._ctx, self._keys = ctx, chord(f"{keys}+A") - chord("A") if keys else 0
 
     def __enter__(self) -> None:
         if self._keys:

@@ -12,14 +12,12 @@ from ...nodes import Kind, Size
 from ..compiler import Library, Plan
 from ..errors import HalationError
 from ..graph import Graph, Port
-from ..renderer import Display, Lease, Renderer, Run, Wanted
+from ..renderer import Display, Handle, Lease, Renderer, Run, Wanted
 from .thumbnails import Subject, Thumbnails
 from .timing import Timing, key_of, timings_of
 from .wishes import Wish, kind_of, path_of
 
 if TYPE_CHECKING:
-    import moderngl
-
     from ..compiler import Pass
     from ..media.pictures import Binding
 
@@ -35,7 +33,7 @@ class Shown:
     """A finished picture: it stays as it is until another takes its place. `texture` is scene-linear."""
 
     port: Port
-    texture: moderngl.Texture
+    texture: Handle
     size: Size
     full_size: Size
     """Its size at scale 1."""
@@ -187,7 +185,7 @@ class Preview:
         """Why a panel cannot show what it wants."""
         return self._round.broken.get(name) if self._round else None
 
-    def thumbnail(self, path: str) -> tuple[moderngl.Texture, bool] | None:
+    def thumbnail(self, path: str) -> tuple[Handle, bool] | None:
         """The last small picture of a node, and whether it is what the node shows now."""
         return self._thumbnails.find(path, self._wish and self._wish.mark(path))
 

@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...nodes import Kind
-from ..renderer import Display, Look, Probe, Renderer
-
-if TYPE_CHECKING:
-    import moderngl
+from ..renderer import Display, Handle, Look, Probe, Renderer
 
 LARGEST = (160, 90)
 RANGE_WIDTH = 64
@@ -34,7 +30,7 @@ class Subject:
 class _Source:
     """What the display is handed."""
 
-    texture: moderngl.Texture
+    texture: Handle
     full_size: tuple[int, int]
     channels: int
     key: str
@@ -42,7 +38,7 @@ class _Source:
 
 @dataclass(frozen=True)
 class _Drawn:
-    texture: moderngl.Texture
+    texture: Handle
     key: str
     mark: object
 
@@ -85,7 +81,7 @@ class Thumbnails:
         drawn = self._display.draw(f"thumbnail {subject.path}", size, source, None, look)
         self._drawn[subject.path] = _Drawn(drawn, subject.key, subject.mark)
 
-    def find(self, path: str, mark: object) -> tuple[moderngl.Texture, bool] | None:
+    def find(self, path: str, mark: object) -> tuple[Handle, bool] | None:
         """The last picture of a node, and whether it is what the node shows now."""
         drawn = self._drawn.get(path)
         return drawn and (drawn.texture, drawn.mark == mark)
@@ -102,7 +98,7 @@ class Thumbnails:
         self.clear()
         self._probe.close()
 
-    def _look(self, subject: Subject, texture: moderngl.Texture, zoom: float) -> Look:
+    def _look(self, subject: Subject, texture: Handle, zoom: float) -> Look:
         if subject.kind is Kind.IMAGE:
             return Look(zoom=zoom, view="none")
         if subject.kind is Kind.VECTOR and subject.channels == 3:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .device import Device, describe, open_device
-from .display import Display, Drawable
+from .display import Display, Drawable, Handle
 from .engine import Renderer, Wanted
 from .executor import Counters
 from .look import Look, fitted, to_panel, to_picture
@@ -13,6 +13,6 @@ from .runner import Runner
 from .textures import Lease
 
 __all__ = [
-    "Counters", "Device", "Display", "Drawable", "Lease", "Look", "Nonfinite", "Probe", "Renderer", "Run", "Runner",
-    "Wanted", "describe", "first_nonfinite", "fitted", "open_device", "to_panel", "to_picture",
+    "Counters", "Device", "Display", "Drawable", "Handle", "Lease", "Look", "Nonfinite", "Probe", "Renderer", "Run",
+    "Runner", "Wanted", "describe", "first_nonfinite", "fitted", "open_device", "to_panel", "to_picture",
 ]

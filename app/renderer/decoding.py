@@ -62,7 +62,10 @@ class Decoding:
 
     def cancel(self) -> None:
         """Nothing more is wanted."""
-        left = {self._uploads[surface][1]: future for surface, future in self._started.items() if not future.cancel()}
+        left = {
+            self._uploads[surface][1]: future for surface, future in self._started.items()
+            if not future.cancel() and not (future.done() and future.exception())
+        }
         self._begun.clear()
         self._begun.update(left)
         self._waiting.clear()

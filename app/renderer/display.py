@@ -4,24 +4,28 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Protocol, cast, get_args
+from typing import Protocol, get_args
 
 import moderngl
-import numpy as np
 
-from ..compiler import installed
-from ..errors import DeviceError
-from ..media import GpuView, gpu_view
 from .device import Device
 from .look import Channels, Look, Meaning, Point, Size, origin
-from .programs import VERTEX, undisturbed
+from .view_programs import ViewProgram, ViewPrograms
+
+Rect = tuple[int, int, int, int]
+
+ENLARGED = 0.8
+"""Texels per pixel, along a side, below which a view is computed per texel."""
+
+Handle = moderngl.Texture
+"""A texture; `glo` is what window libraries call it."""
 
 
 class Drawable(Protocol):
     """A result that can be drawn. `key` changes whenever its pixels do; `full_size` is its size at scale 1."""
 
     @property
-    def texture(self) -> moderngl.Texture: ...
+    def texture(self) -> Handle: ...
     @property
     def full_size(self) -> Size: ...
     @property
@@ -43,19 +47,6 @@ class _Panel:
         self.texture.release()
 
 
-@dataclass(eq=False)
-class _Program:
-    """A compiled program, and the tables that its view reads."""
-
-    handle: moderngl.Program
-    vertices: moderngl.VertexArray
-    luts: tuple[moderngl.Texture | moderngl.Texture3D, ...]
-
-    def set(self, name: str, value: object) -> None:
-        if name in self.handle:
-            self.handle[name] = value
-
-
 class Display:
     """One texture for every slot, drawn only when something changed.
 
@@ -65,13 +56,15 @@ class Display:
     def __init__(self, device: Device, depth: str = "f1") -> None:
         self._device, self._depth = device, depth
         self._panels: dict[str, _Panel] = {}
-        self._programs: dict[tuple[tuple[str, str] | None, str], _Program] = {}
+        self._programs = ViewPrograms(device.context)
+        self._texels: _Panel | None = None
+        """A picture through a view, while it is drawn."""
         self.drawn = 0
         """How often something had to be drawn."""
 
     def draw(
         self, slot: str, size: Size, a: Drawable | None, b: Drawable | None = None, look: Look | None = None
-    ) -> moderngl.Texture:
+    ) -> Handle:
         """What a panel of `size` pixels shows, row 0 on top, opaque: the same texture while a slot keeps its size.
 
         Without anything to compare with, `a` is shown alone. Raises UsageError for an unknown view.
@@ -107,21 +100,24 @@ class Display:
     def _release(self) -> None:
         for panel in self._panels.values():
             panel.release()
-        for program in self._programs.values():
-            for item in (*program.luts, program.vertices, program.handle):
-                item.release()
+        if self._texels is not None:
+            self._texels.release()
         self._panels.clear()
-        self._programs.clear()
+        self._programs.release()
+        self._texels = None
 
     def _panel(self, slot: str, size: Size) -> _Panel:
         panel = self._panels.get(slot)
         if panel is None or panel.texture.size != size:
             if panel is not None:
                 panel.release()
-            texture = self._device.context.texture(size, 4, dtype=self._depth)
-            texture.repeat_x = texture.repeat_y = False
-            panel = self._panels[slot] = _Panel(texture, self._device.context.framebuffer([texture]))
+            panel = self._panels[slot] = self._made(size, self._depth)
         return panel
+
+    def _made(self, size: Size, depth: str) -> _Panel:
+        texture = self._device.context.texture(size, 4, dtype=depth)
+        texture.repeat_x = texture.repeat_y = False
+        return _Panel(texture, self._device.context.framebuffer([texture]))
 
     def _redraw(self, panel: _Panel, a: Drawable | None, b: Drawable | None, look: Look) -> None:
         size, framebuffer = panel.texture.size, panel.framebuffer
@@ -131,17 +127,44 @@ class Display:
         covered = _covered(size, [item for item in (a, b) if item is not None], look)
         if a is None or covered is None:
             return
+        plain = look.meaning != "image" or look.channels in ("alpha", "false color")
+        view = None if plain else (look.view, look.display)
+        texels = _enlarged(size, a, covered, look) if view is not None and b is None else None
+        if view is not None and texels is not None:
+            self._look_through(view, a, texels, look)
+            program = self._programs.get(None, viewed=True)
+            program.set("viewed_first", texels[:2])
+            program.set("viewed", 1)
+        else:
+            program = self._programs.get(view, "off" if b is None else look.compare)
         framebuffer.viewport = covered
-        program = self._program(look, "off" if b is None else look.compare)
+        framebuffer.use()
         self._place(program, "a", 0, a, size, look)
         if b is not None:
             self._place(program, "b", 1, b, size, look)
+        elif self._texels is not None:
+            self._texels.texture.use(1)
         _settings(program, size, a.full_size, look)
-        for unit, lut in enumerate(program.luts, 2):
-            lut.use(unit)
-        program.vertices.render(moderngl.TRIANGLES, vertices=3)
+        program.draw()
 
-    def _place(self, program: _Program, name: str, unit: int, item: Drawable, panel: Size, look: Look) -> None:
+    def _look_through(self, view: tuple[str, str], a: Drawable, texels: Rect, look: Look) -> None:
+        """Bring texels of a picture through a view."""
+        x, y, width, height = texels
+        if self._texels is None or self._texels.texture.width < width or self._texels.texture.height < height:
+            if self._texels is not None:
+                self._texels.release()
+            self._texels = self._made((width, height), "f4")
+        self._texels.framebuffer.viewport = (0, 0, width, height)
+        self._texels.framebuffer.use()
+        a.texture.use(0)
+        program = self._programs.get(view, texels=True)
+        program.set("a", 0)
+        program.set("a_channels", a.channels)
+        program.set("viewed_first", (x, y))
+        _settings(program, (1, 1), a.full_size, look)
+        program.draw()
+
+    def _place(self, program: ViewProgram, name: str, unit: int, item: Drawable, panel: Size, look: Look) -> None:
         item.texture.use(unit)
         size = item.texture.size
         program.set(name, unit)
@@ -149,44 +172,22 @@ class Display:
         program.set(f"{name}_step", tuple(size[axis] / (item.full_size[axis] * look.zoom) for axis in (0, 1)))
         program.set(f"{name}_channels", item.channels)
 
-    def _program(self, look: Look, compare: str) -> _Program:
-        """Views are programs of their own: a branch around one would cost as much as the view."""
-        plain = look.meaning != "image" or look.channels in ("alpha", "false color")
-        key = (None if plain else (look.view, look.display), compare)
-        if key not in self._programs:
-            view = None if plain else gpu_view(look.view, look.display)
-            with undisturbed():
-                self._programs[key] = self._compile(view, compare)
-        return self._programs[key]
 
-    def _compile(self, view: GpuView | None, compare: str) -> _Program:
-        context = self._device.context
-        try:
-            handle = context.program(vertex_shader=VERTEX, fragment_shader=_source(view, compare))
-        except moderngl.Error as fault:
-            raise DeviceError(f"the viewer's shader does not compile: {fault}") from None
-        luts: list[moderngl.Texture | moderngl.Texture3D] = []
-        for unit, lut in enumerate(view.luts if view else (), 2):
-            values = np.ascontiguousarray(lut.values)
-            shape = values.shape
-            if values.ndim == 3:
-                made = context.texture((shape[1], shape[0]), shape[2], values, dtype="f4")
-            else:
-                made = context.texture3d((shape[2], shape[1], shape[0]), shape[3], values, dtype="f4")
-                made.repeat_z = False
-            made.repeat_x = made.repeat_y = False
-            way = moderngl.LINEAR if lut.linear else moderngl.NEAREST
-            made.filter = (way, way)
-            luts.append(made)
-            if lut.sampler in handle:
-                handle[lut.sampler] = unit
-        return _Program(handle, context.vertex_array(handle, []), tuple(luts))
+def _enlarged(panel: Size, item: Drawable, covered: Rect, look: Look) -> Rect | None:
+    """The texels that cover these pixels of a panel, if they are clearly fewer."""
+    found: list[tuple[int, int]] = []
+    for axis, corner in enumerate(origin(look, panel, item.full_size)):
+        step = item.texture.size[axis] / (item.full_size[axis] * look.zoom)
+        first, last = ((covered[axis] - corner) * step, (covered[axis] + covered[axis + 2] - corner) * step)
+        low, high = max(0, math.floor(first) - 1), min(item.texture.size[axis], math.ceil(last) + 1)
+        if step > ENLARGED:
+            return None
+        found.append((low, max(1, high - low)))
+    (x, width), (y, height) = found
+    return x, y, width, height
 
 
-_MODES = ("off", "wipe", "difference")
-
-
-def _covered(panel: Size, items: list[Drawable], look: Look) -> tuple[int, int, int, int] | None:
+def _covered(panel: Size, items: list[Drawable], look: Look) -> Rect | None:
     """The pixels of the panel where there is any picture, as x, y, width, height."""
     corners = [(origin(look, panel, item.full_size), item.full_size) for item in items]
     low = [max(0, min((math.floor(corner[axis]) for corner, _ in corners), default=0)) for axis in (0, 1)]
@@ -202,20 +203,7 @@ def _mark(item: Drawable | None) -> object:
     return item and (item.key, item.texture.glo, item.texture.size, item.full_size, item.channels)
 
 
-def _source(view: GpuView | None, compare: str) -> str:
-    """The whole fragment shader; modes are numbers by name."""
-    names = {f"COMPARE_{mode}": number for number, mode in enumerate(_MODES)}
-    names |= {mode: number for number, mode in enumerate(cast("tuple[str, ...]", get_args(Channels)))}
-    names |= {mode: number for number, mode in enumerate(cast("tuple[str, ...]", get_args(Meaning)))}
-    defines = [f"#define {name.replace(' ', '_').upper()} {number}" for name, number in names.items()]
-    texts = installed().closure(("viewer/display",), "viewer")
-    defines += [f"#define COMPARE COMPARE_{compare.upper()}", f"#define DATA {int(view is None)}"]
-    return "\n".join([
-        "#version 410 core", *defines, view.text if view else "", *(text.body for text in texts),
-    ])
-
-
-def _settings(program: _Program, panel: Size, picture: Size, look: Look) -> None:
+def _settings(program: ViewProgram, panel: Size, picture: Size, look: Look) -> None:
     left, top = origin(look, panel, picture)
     angle = math.radians(look.angle)
     found: dict[str, object] = {

@@ -1,9 +1,9 @@
-#include "lib/color.glsl"
 #include "viewer/sample.glsl"
 #include "viewer/palette.glsl"
+#include "viewer/view.glsl"
 
 // One panel: pictures a and b, placed on it, as a person sees them. Rows run downwards, as in pictures.
-// DATA, COMPARE and the names of modes come before this file, and view_transform() unless it is about data.
+// DATA, VIEWED, COMPARE and the names of modes come before this file, and view_transform() where it is needed.
 
 uniform sampler2D a;
 uniform vec2 a_origin, a_step;
@@ -14,8 +14,12 @@ uniform vec2 b_origin, b_step;
 uniform int b_channels;
 #endif
 
-uniform int meaning, channels;
-uniform float exposure, gamma;
+#if VIEWED
+uniform sampler2D viewed;  // picture a by texels, through the view already
+uniform ivec2 viewed_first;
+#endif
+
+uniform int meaning;
 uniform vec2 range;
 uniform vec2 wipe_point, wipe_normal;
 uniform bool checker, clipping, nonfinite;
@@ -30,12 +34,6 @@ vec3 behind(vec2 at) {
     return vec3(((square.x ^ square.y) & 1) == 0 ? 0.30 : 0.42);
 }
 
-// One channel, or all of them.
-vec3 chosen(vec4 c) {
-    if (channels >= RED && channels <= ALPHA) return vec3(c[channels - RED]);
-    return channels == LUMINANCE ? vec3(luminance(c.rgb)) : c.rgb;
-}
-
 #if DATA
 // Data has no color: it is shown as it is.
 vec3 looked_at(vec4 c, vec2 at) {
@@ -43,18 +41,14 @@ vec3 looked_at(vec4 c, vec2 at) {
     return chosen(meaning == NORMAL ? c * 0.5 + 0.5 : (c - range.x) / (range.y - range.x));
 }
 #else
-// What goes through the view: one place, for a view costs more than all the rest.
-vec3 encoded(vec3 linear) {
-    vec3 shown = view_transform(vec4(clamp(linear, -65504.0, 65504.0), 1.0)).rgb;
-    return gamma == 1.0 ? shown : pow(max(shown, 0.0), vec3(1.0 / gamma));
-}
-
 vec3 looked_at(vec4 c, vec2 at) {
     bool opaque = channels != COLOR || c.a >= 1.0;
-    // Color without alpha, a glow over nothing, is added to what is behind it.
-    float straight = channels == COLOR && c.a > 0.0 ? c.a : 1.0;
-    vec3 shown = encoded(chosen(c) / straight);
-    return opaque ? shown : shown * min(straight, 1.0) + behind(at) * (1.0 - max(c.a, 0.0));
+#if VIEWED
+    vec3 shown = texelFetch(viewed, ivec2((at - a_origin) * a_step) - viewed_first, 0).rgb;
+#else
+    vec3 shown = seen(c);
+#endif
+    return opaque ? shown : shown * min(straightness(c), 1.0) + behind(at) * (1.0 - max(c.a, 0.0));
 }
 #endif
 

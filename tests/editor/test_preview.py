@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,73 +12,13 @@ import pytest
 from exr_files import write_exr
 from halation.app.compiler import Library, installed
 from halation.app.compiler.library import parse
-from halation.app.editor.preview import Preview
 from halation.app.graph import Graph, Group, Input, Output, Port, Settings
-from halation.app.renderer import Display, Renderer, Wanted, open_device
+from halation.app.renderer import Wanted
 from halation.nodes import Kind, catalogue
-from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
-from halation.nodes.color.saturation import Saturation
+from previews import OUT, PICTURE, chain, passes, pixels, rendered, settle, want
 
-PICTURE = np.random.default_rng(8).random((23, 37, 4), np.float32)
-OUT = {"A": Port("outputs", "image")}
 NODES = catalogue()
-
-
-@pytest.fixture
-def engine() -> Iterator[Renderer]:
-    made = Renderer(open_device())
-    yield made
-    made.close()
-
-
-@pytest.fixture
-def preview(engine: Renderer) -> Iterator[Preview]:
-    display = Display(engine.device)
-    made = Preview(engine, display)
-    made.patience = 0.0
-    yield made
-    made.close()
-    display.close()
-
-
-def chain(stops: float = 1.0, sigma: float = 2.0, saturation: float = 0.5) -> Graph:
-    graph = Graph(inputs={"image": Input(Kind.IMAGE)}, outputs={"image": Output()})
-    last = Port("inputs", "image")
-    nodes = {"light": Exposure(stops=stops), "blur": GaussianBlur(sigma=sigma)}
-    for name, node in (nodes | {"color": Saturation(saturation=saturation)}).items():
-        graph = graph.add(name, node).connect(last, Port(name, "image"))
-        last = Port(name, "out")
-    return graph.connect(last, Port("outputs", "image"))
-
-
-def want(preview: Preview, graph: Graph, ports=OUT, **rest) -> None:
-    preview.want(graph, ports, **({"bindings": {"image": PICTURE}} | rest))
-
-
-def settle(preview: Preview) -> int:
-    """Work to the end; how many calls that took."""
-    for count in range(1, 10_000):
-        if not preview.work(0.0):
-            return count
-        time.sleep(0.0005)
-    raise AssertionError("it never ends")
-
-
-def pixels(preview: Preview, engine: Renderer, name: str = "A") -> np.ndarray:
-    shown = preview.shown(name)
-    assert shown is not None
-    with engine.device.current():
-        data = np.frombuffer(shown.texture.read(), np.float32)
-    return data.reshape(shown.size[1], shown.size[0], -1)[..., : shown.channels]
-
-
-def rendered(engine: Renderer, graph: Graph, port: Port = OUT["A"], **rest) -> np.ndarray:
-    return engine.render(graph, Wanted({"image": PICTURE}, {"x": port}, **rest))["x"]
-
-
-def passes(engine: Renderer) -> int:
-    return engine.runner.counters.passes
 
 
 # --- pictures --------------------------------------------------------------------------------------------------------
@@ -347,101 +286,3 @@ def test_shaders_are_loaded_again_while_the_picture_stays(preview, engine):
     settle(preview)
     assert preview.faults == {} and passes(engine) == before + 1
     assert not pixels(preview, engine).any()
-
-
-# --- upkeep ----------------------------------------------------------------------------------------------------------
-
-
-def test_times_of_nodes(preview, engine):
-    graph = chain().add("more", Exposure(stops=1.0)).connect(Port("color", "out"), Port("more", "image"))
-    graph = graph.connect(Port("more", "out"), Port("outputs", "image"))
-    want(preview, graph)
-    settle(preview)
-    assert preview.timings == {}
-    preview.timed = True
-    preview.clear()
-    settle(preview)
-    timings = dict(preview.timings)
-    assert set(timings) == {"light", "blur", "color", "more"}
-    assert all(item.seconds > 0.0 for item in timings.values())
-    assert timings["color"].shared == ("more",) and timings["blur"].shared == ()
-    assert timings["color"].bytes == timings["light"].bytes == PICTURE.nbytes
-    assert timings["blur"].bytes == 2 * PICTURE.nbytes
-    want(preview, graph.set(Port("more", "stops"), 2.0))
-    settle(preview)
-    assert preview.timings["light"] == timings["light"] and preview.timings["more"] != timings["more"]
-
-
-def test_clearing_computes_all_anew(preview, engine):
-    want(preview, chain())
-    settle(preview)
-    before = passes(engine)
-    assert preview.memory[0] > PICTURE.nbytes
-    preview.clear()
-    assert preview.memory[0] == 0 and preview.shown("A") is None and preview.busy
-    settle(preview)
-    assert passes(engine) == 2 * before and preview.shown("A") is not None
-
-
-def test_closing_leaves_no_lease(preview, engine):
-    want(preview, chain())
-    preview.work(0.0)
-    preview.close()
-    assert not engine.runner.textures._leases and not preview.busy
-
-
-# --- thumbnails ------------------------------------------------------------------------------------------------------
-
-
-def test_thumbnails_of_what_is_there(preview, engine):
-    want(preview, chain())
-    settle(preview)
-    before = passes(engine)
-    for path in ("inputs.image", "light", "blur", "color"):
-        texture, fresh = preview.thumbnail(path)
-        assert texture.size == (37, 23) and fresh
-    assert preview.thumbnail("nobody") is None and passes(engine) == before
-    light = np.clip(rendered(engine, chain(), Port("light", "out")), 0.0, 1.0)
-    with engine.device.current():
-        drawn = np.frombuffer(preview.thumbnail("light")[0].read(), np.uint8).reshape(23, 37, 4)[..., :3]
-    opaque = PICTURE[..., 3] > 0.9
-    assert np.corrcoef(drawn[opaque].ravel(), light[opaque][..., :3].ravel())[0, 1] > 0.8
-
-
-def test_a_large_picture_has_a_small_thumbnail(preview):
-    want(preview, chain(), {"A": Port("inputs", "image")}, bindings={"image": np.ones((300, 640, 4), np.float32)})
-    settle(preview)
-    assert preview.thumbnail("inputs.image")[0].size == (160, 75)
-
-
-def test_a_thumbnail_grows_stale_and_fresh_again(preview):
-    want(preview, chain())
-    settle(preview)
-    want(preview, chain(saturation=0.9))
-    assert preview.thumbnail("blur")[1] and not preview.thumbnail("color")[1]
-    settle(preview)
-    assert preview.thumbnail("color")[1]
-    want(preview, chain(saturation=0.9), {"A": Port("light", "out")})
-    settle(preview)
-    want(preview, chain(sigma=5.0, saturation=0.9), {"A": Port("light", "out")})
-    settle(preview)
-    assert preview.thumbnail("light")[1] and not preview.thumbnail("color")[1]
-    want(preview, chain(saturation=0.9), {"A": Port("light", "out")})
-    assert preview.thumbnail("color")[1]
-
-
-def test_thumbnails_can_be_off(preview, engine):
-    preview.thumbnailing = False
-    want(preview, chain())
-    settle(preview)
-    assert preview.thumbnail("color") is None
-
-
-def test_a_thumbnail_of_depth_shows_its_range(preview, engine):
-    depth = np.linspace(100.0, 900.0, 37 * 23, dtype=np.float32).reshape(23, 37, 1)
-    graph = Graph(inputs={"depth": Input(Kind.FIELD)})
-    want(preview, graph, {"A": Port("inputs", "depth")}, bindings={"depth": depth})
-    settle(preview)
-    with engine.device.current():
-        drawn = np.frombuffer(preview.thumbnail("inputs.depth")[0].read(), np.uint8).reshape(23, 37, 4)
-    assert drawn[0, 0, 0] == 0 and drawn[-1, -1, 0] == 255 and 100 < drawn[11, 18, 0] < 155

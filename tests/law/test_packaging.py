@@ -21,7 +21,7 @@ SHIPPED = {
     "app": ("**/*.py", "py.typed"),
     "nodes": ("**/*.py", "py.typed"),
     "shaders": ("__init__.py", "**/*.glsl"),
-    "presets": ("__init__.py", "*.json", "samples/*"),
+    "presets": ("__init__.py", "*.json", "samples/*", "pictures/*"),
 }
 
 

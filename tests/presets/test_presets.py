@@ -21,11 +21,11 @@ from halation.app.renderer import Renderer, Wanted
 from halation.app.renderer.job import Writing, run_job
 from halation.nodes import Kind
 from halation.presets import paths
+from halation.presets import picture as thumbnail
 
 Array = np.ndarray
 
 RENEW = bool(os.environ.get("HALATION_RENEW"))
-GOLDEN = Path(__file__).parent / "golden"
 IMAGES = Path(__file__).parents[2] / "docs" / "images"
 PRESETS = {path.stem: path for path in paths()}
 ASKED = {"soft_bloom", "cinematic_grade", "night_street", "emboss_and_edges", "dreamy_glow", "noise_warp"}
@@ -161,16 +161,17 @@ def test_another_picture_of_another_size(name: str, renderer: Renderer) -> None:
 @each
 def test_thumbnail_is_as_approved(name: str, full: dict[str, Array]) -> None:
     """Mean difference below 2/255: other devices round differently."""
-    small = encoded(shrunk(full[name], 64, 36))
-    file = GOLDEN / f"{name}.png"
+    small = encoded(shrunk(full[name], 320, 180))
+    file = thumbnail(PRESETS[name])
     if RENEW:
-        cv2.imwrite(str(file), small[..., ::-1].round().astype(np.uint8))
+        fine = (cv2.IMWRITE_JPEG_QUALITY, 95, cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_444)
+        cv2.imwrite(str(file), small[..., ::-1].round().astype(np.uint8), fine)
     golden = cv2.imread(str(file))[..., ::-1].astype(np.float32)
     assert np.abs(small - golden).mean() < 2.0
 
 
 def test_no_thumbnail_is_left_over() -> None:
-    assert {file.stem for file in GOLDEN.iterdir()} == PRESETS.keys()
+    assert {file.stem for file in thumbnail(paths()[0]).parent.iterdir()} == PRESETS.keys()
 
 
 def test_a_display_view_goes_with_tone_mapping(renderer: Renderer, tmp_path: Path) -> None:

@@ -185,6 +185,19 @@ def test_a_proxy_covers_what_the_full_size_would(result, shown):
     np.testing.assert_array_equal(got, pixels[..., :3].repeat(2, 0).repeat(2, 1))
 
 
+@pytest.mark.parametrize("pan", [(0.0, 0.0), (31.0, -17.0), (-70.0, 60.0)])
+def test_an_enlarged_picture_shows_the_same_colors(result, shown, pan):
+    """The view is then computed once per texel."""
+    rng = np.random.default_rng(9)
+    pixels = stops(rng)
+    pixels[..., 3] = rng.uniform(0.0, 1.0, (48, 64))
+    look = {"exposure": 0.5, "gamma": 1.2, "checker": False, "background": (0.2, 0.4, 0.6)}
+    whole = shown(result(pixels), (64, 48), **look).repeat(4, 0).repeat(4, 1)
+    panel = shown(result(pixels), (100, 60), zoom=4.0, pan=pan, **look)
+    left, top = (int(part) for part in to_picture(Look(pan=pan), (100, 60), (256, 192), (0.0, 0.0)))
+    np.testing.assert_allclose(panel, whole[top : top + 60, left : left + 100], atol=1e-6)
+
+
 def test_points_of_panel_and_picture():
     look, panel, picture = Look(zoom=2.5, pan=(7.0, -3.0)), (101, 67), (30, 20)
     there = to_picture(look, panel, picture, (40.0, 20.0))

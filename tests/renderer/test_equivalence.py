@@ -66,11 +66,11 @@ def test_measured_peak_is_the_planned_one(seed):
 @pytest.mark.parametrize("pixels", [100, 300])
 def test_bands_equal_one_dispatch(renderer, monkeypatch, seed, pixels):
     """Large passes are dispatched in bands, between which an interrupt is heard."""
-    from halation.app.renderer import runner
+    from halation.app.renderer import executor
 
     graph, wanted = random_graph(seed), Wanted(pictures(seed), precision="float")
     whole = renderer.render(graph, wanted)
-    monkeypatch.setattr(runner, "BAND_PIXELS", pixels)
+    monkeypatch.setattr(executor, "BAND_PIXELS", pixels)
     engine = Renderer(open_device("compute"), budget=0)
     same_bits(engine.render(graph, wanted), whole)
     engine.close()

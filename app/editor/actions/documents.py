@@ -11,6 +11,7 @@ from ..dialogs import Browse, Question
 
 if TYPE_CHECKING:
     from ..editor import Editor
+    from ..recovery import Recovered
 
 
 def _unless_unsaved(editor: Editor, then: Callable[[], object], verb: str) -> None:
@@ -69,6 +70,18 @@ def open_preset(editor: Editor, path: Path) -> None:
         editor.dialogs.open.discard("start")
 
     _unless_unsaved(editor, lambda: editor.attempt(opened), "open the preset")
+
+
+def recover(editor: Editor, recovered: Recovered) -> None:
+    """Open work that was not saved, after asking about other unsaved work."""
+
+    def opened() -> None:
+        editor.session.restore(recovered)
+        editor.recovery.adopt(recovered)
+        editor.canvas.fit()
+        editor.dialogs.open.discard("start")
+
+    _unless_unsaved(editor, lambda: editor.attempt(opened), "recover")
 
 
 def _save(editor: Editor, then: Callable[[], object] = _nothing) -> None:

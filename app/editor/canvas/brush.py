@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from typing import Any
 
 from imgui_bundle import imgui
 
@@ -50,10 +51,15 @@ class Ink:
     kinds: dict[Kind | None, int]
     kinds_dim: dict[Kind | None, int]
 
+    headers: dict[str, int]
+    headers_muted: dict[str, int]
+    over: int
+    """Text of less weight on a header."""
+
     def category(self, name: str, muted: bool = False) -> int:
         """The header of a node of that menu."""
-        color = self.palette.category(name)
-        return u32(mix(color, self.palette.node, 0.6) if muted else color)
+        known = self.headers_muted if muted else self.headers
+        return known.get(name) or known[""]
 
 
 @lru_cache(maxsize=4)
@@ -71,6 +77,8 @@ def ink(theme: str) -> Ink:
         tuple((grow, u32(p.shadow, strength)) for grow in (1.0, 3.0, 6.0)),
         {kind: u32(color) for kind, color in kinds.items()},
         {kind: u32(mix(color, p.canvas, 0.7)) for kind, color in kinds.items()},
+        {name: u32(color) for name, color in p.categories.items()},
+        {name: u32(mix(color, p.node, 0.6)) for name, color in p.categories.items()}, u32(p.text, 0.6),
     )
 
 
@@ -86,6 +94,8 @@ class Texts:
     """Widths of words, measured once."""
 
     _widths: dict[tuple[bool, str], float] = field(default_factory=dict[tuple[bool, str], float])
+    sketches: dict[str, Any] = field(default_factory=dict[str, Any])
+    """What was thought out of elements, by key."""
     _short: dict[tuple[bool, str, float, float], str] = field(default_factory=dict[tuple[bool, str, float, float], str])
 
     def width(self, fonts: Fonts, text: str, size: float, bold: bool = False) -> float:

@@ -13,7 +13,7 @@ from .crumbs import draw_crumbs
 from .geometry import Point, Rect, bounds, curve, fitted, holds, overlap, transform
 from .gestures import Band, Draw, Idle, Link, Move, band_rect
 from .legend import Legend
-from .live import Live
+from .live import Live, drawn_live
 from .looks import Moment, moment
 from .menus import Menus
 from .minimap import Minimap
@@ -32,7 +32,7 @@ from .paint_decor import (
     paint_wire,
 )
 from .paint_node import paint_node, paint_pin
-from .places import record_places
+from .places import Places
 from .scene import Box, Scene
 from .search import Search
 from .staging import Stage
@@ -60,6 +60,7 @@ class Canvas:
         self._naming = Naming()
         self._minimap = Minimap()
         self._legend = Legend()
+        self._places = Places()
 
     def draw(self, editor: Editor) -> None:
         """Draw the graph at the session's place into the current window."""
@@ -92,7 +93,7 @@ class Canvas:
         brush.draw.pop_clip_rect()
         self._around(editor, brush, frame)
         view.sizes = scene.sizes
-        record_places(editor, self._mouse.dragged.scene, brush)
+        self._places.record(editor, self._mouse.dragged.scene, brush)
 
     # --- before painting ---------------------------------------------------------------------------------------------
 
@@ -182,7 +183,7 @@ class Canvas:
         if layout is None:
             return
         live = box.key == hot and brush.zoom >= 0.45 and box.sort == "node" and not layout.collapsed
-        names = frozenset(row.value.name for row in layout.rows if live and row.value and row.field)
+        names = frozenset(row.value.name for row in layout.rows if live and row.value and drawn_live(row))
         paint_node(brush, box, layout, now.look(box.key, names))
         if live:
             self._live.draw(brush, box, layout.rows)

@@ -21,8 +21,17 @@ from .geometry import Rect
 from .layout import FIELD_HEIGHT, Row
 from .paint_field import MOST_PARTS, paint_label, split
 from .scene import Box
+from .sketch import Sketch
 
 _CHOICES, _PICKER = "choices of a node", "color of a node"
+
+
+def drawn_live(row: Row) -> bool:
+    """True for fields whose widgets draw themselves; those of the others only notice the mouse."""
+    if row.value is None or row.field is None:
+        return False
+    few = row.value.type == "vector" and len(row.shown) <= MOST_PARTS
+    return few or row.value.type in ("float", "int", "bool", "text")
 
 
 @dataclass
@@ -82,7 +91,9 @@ class Live:
         elif value.type == "text":
             edit = text_field(fields, id, plain, value, width, label=row.label, hint=row.label, lines=1)
         elif value.type == "vector" and isinstance(plain, tuple) and len(plain) <= MOST_PARTS:
-            paint_label(brush, rect, row.label, len(plain))
+            label = Sketch(brush)
+            paint_label(label, rect, row.label, len(plain))
+            label.draw(brush, 0.0, 0.0)
             left, parts = split(rect, len(plain))
             imgui.set_cursor_screen_pos(brush.corners((left, *parts[0][1:]))[0])
             edit = row_of_numbers(fields, id, plain, value, (rect[2] - left) * brush.to.scale, ("",) * len(plain))

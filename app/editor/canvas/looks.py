@@ -30,26 +30,30 @@ class Moment:
     total: float
     warnings: frozenset[str]
     hot: str
+    prefix: str
+    selection: frozenset[str]
+    active: str
+    muted: frozenset[str]
+    problems: Mapping[str, tuple[str, ...]]
+    pictures: bool
 
     def sentences(self, key: str) -> tuple[str, ...]:
         """What is wrong with an element."""
-        session, preview = self.editor.session, self.editor.preview
-        found = session.problems.get(key, ())
-        fault = preview.faults.get(path_of(session.place, key), "")
+        found = self.problems.get(key, ())
+        fault = self.editor.preview.faults.get(self.prefix + key, "")
         return (*found, fault) if fault and fault not in found else found
 
     def look(self, key: str, live: frozenset[str]) -> Look:
         """The look of one node or end."""
-        session, preview = self.editor.session, self.editor.preview
         sentences = self.sentences(key)
         serious = next((one for one in sentences if one not in self.warnings), "")
         picture, fresh, size = None, True, (1, 1)
-        if preview.thumbnailing and (found := preview.thumbnail(path_of(session.place, key))):
+        if self.pictures and (found := self.editor.preview.thumbnail(self.prefix + key)):
             picture, fresh = imgui.ImTextureRef(found[0].glo), found[1]
             size = found[0].size
         overlay, color = self._cost(key)
         return Look(
-            selected=key in session.selection, active=key == session.active, muted=key in session.graph.muted,
+            selected=key in self.selection, active=key == self.active, muted=key in self.muted,
             fault=serious, warning="" if serious or not sentences else sentences[0],
             badges=self.badges.get(key, ""), viewed=self.shown.get(key, ""), hot=key == self.hot,
             lit=None if self.lit is None else self.lit.get(key, frozenset()), picture=picture, picture_size=size,
@@ -86,12 +90,11 @@ def moment(editor: Editor, ink: Ink, gesture: Gesture, hot: str) -> Moment:
         problem.sentence.removeprefix(_inside(session.place))
         for problem in session.all_problems if problem.severity == "warning"
     )
-    return Moment(editor, ink, shown, badges, lit, costs, total, sentences, hot)
-
-
-def path_of(place: tuple[str, ...], key: str) -> str:
-    """What pictures and times of an element are filed under."""
-    return "/".join((*place, key))
+    prefix = "".join(f"{id}/" for id in session.place)
+    return Moment(
+        editor, ink, shown, badges, lit, costs, total, sentences, hot, prefix, session.selection, session.active,
+        session.graph.muted, session.problems, editor.preview.thumbnailing,
+    )
 
 
 def _inside(place: tuple[str, ...]) -> str:
@@ -101,7 +104,7 @@ def _inside(place: tuple[str, ...]) -> str:
 def _costs(editor: Editor) -> tuple[dict[str, tuple[float, int]], float]:
     """Seconds and bytes of every element here, groups with all that is in them, and the seconds of everything."""
     timings = editor.preview.timings
-    prefix = path_of(editor.session.place, "")
+    prefix = "".join(f"{id}/" for id in editor.session.place)
     found: dict[str, dict[frozenset[str], tuple[float, int]]] = {}
     everything: dict[frozenset[str], float] = {}
     for path, timing in timings.items():

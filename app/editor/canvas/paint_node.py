@@ -13,6 +13,7 @@ from .geometry import Rect
 from .layout import HEADER, ROW, WIDTH, Layout, Pin, Row, words
 from .paint_field import paint_field
 from .scene import Box
+from .sketch import Sketch
 
 ROUND = 6.0
 PIN = 5.0
@@ -21,7 +22,7 @@ _ALL = int(imgui.ImDrawFlags_.round_all)
 _INSET = 12.0
 
 
-@dataclass(frozen=True)
+@dataclass(slots=True)
 class Look:
     """How a node stands in the moment. `lit` are the pins that a dragged link could take; None: none is dragged."""
 
@@ -42,9 +43,6 @@ class Look:
     """Values whose fields are widgets in this frame: they draw themselves."""
     overlay: str = ""
     overlay_color: int = 0
-
-
-PLAIN = Look()
 
 
 def paint_node(brush: Brush, box: Box, layout: Layout, look: Look) -> None:
@@ -70,8 +68,7 @@ def paint_node(brush: Brush, box: Box, layout: Layout, look: Look) -> None:
     if layout.picture:
         _picture(brush, box, layout.picture, look)
     if brush.zoom >= NAMES_FROM:
-        for row in layout.rows:
-            _row(brush, box, row, look)
+        _rows(brush, box, layout, look)
         if layout.more and brush.zoom >= WIDGETS_FROM:
             _more(brush, box, layout, look.hot)
     if look.muted:
@@ -163,31 +160,37 @@ def _title(brush: Brush, box: Box, layout: Layout, look: Look) -> None:
     left += brush.width(title, TITLE, True) + 7.0
     if layout.subtitle and right - left > 24.0:
         name = words(layout.subtitle)
-        brush.text(left, y + 0.5, _over(brush), brush.short(name, right - left, SMALL), SMALL)
+        brush.text(left, y + 0.5, ink.over, brush.short(name, right - left, SMALL), SMALL)
 
 
-def _over(brush: Brush) -> int:
-    """Text of less weight on a header."""
-    return (brush.ink.text & 0x00FFFFFF) | 0x99000000
+def _rows(brush: Brush, box: Box, layout: Layout, look: Look) -> None:
+    of = layout, look.muted, look.live, brush.zoom >= WIDGETS_FROM, brush.ink
+    known = brush.texts.sketches.get(box.key)
+    if known is None or known[0][0] is not layout or known[0][1:] != of[1:]:
+        sketch = Sketch(brush)
+        for row in layout.rows:
+            _row(sketch, row, look, brush.zoom >= WIDGETS_FROM)
+        known = brush.texts.sketches[box.key] = of, sketch
+    known[1].draw(brush, box.x, box.y)
 
 
-def _row(brush: Brush, box: Box, row: Row, look: Look) -> None:
-    ink, y = brush.ink, box.y + row.y + ROW / 2
+def _row(brush: Sketch, row: Row, look: Look, fields: bool) -> None:
+    ink, y = brush.ink, row.y + ROW / 2
     if row.value is not None:
         if row.linked:
-            brush.text(box.x + _INSET, y, ink.dim, brush.short(row.label, WIDTH - _INSET * 2))
-        elif brush.zoom >= WIDGETS_FROM and row.value.name not in look.live:
-            paint_field(brush, box, row, look.muted)
+            brush.text(_INSET, y, ink.dim, brush.short(row.label, WIDTH - _INSET * 2))
+        elif fields and row.value.name not in look.live:
+            paint_field(brush, row, look.muted)
         return
     color = ink.dim if look.muted else ink.text
     room = WIDTH - _INSET * 2 if not (row.left and row.right) else WIDTH / 2 - _INSET - 2.0
     if row.left:
         name = brush.short(words(row.left.name), room)
-        brush.text(box.x + _INSET, y, ink.dim if row.left.optional and not row.linked else color, name)
+        brush.text(_INSET, y, ink.dim if row.left.optional and not row.linked else color, name)
         if row.hint:
-            brush.right(box.x + WIDTH - _INSET, y, ink.faint, row.hint, SMALL)
+            brush.right(WIDTH - _INSET, y, ink.faint, row.hint, SMALL)
     if row.right:
-        brush.right(box.x + WIDTH - _INSET, y, color, brush.short(words(row.right.name), room))
+        brush.right(WIDTH - _INSET, y, color, brush.short(words(row.right.name), room))
 
 
 def _more(brush: Brush, box: Box, layout: Layout, hot: bool) -> None:

@@ -2,18 +2,34 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
+
 from ..editor import Editor
 from .brush import WIDGETS_FROM, Brush
-from .geometry import overlap
+from .geometry import Rect, overlap
 from .layout import HEADER
 from .scene import Scene
 
 _PIN = 5.0
 
 
-def record_places(editor: Editor, scene: Scene, brush: Brush) -> None:
-    """Note the screen rectangles of what is visible."""
-    places, to, s = editor.places, brush.to, brush.to.scale
+@dataclass
+class Places:
+    """Keeps what was found for as long as nothing moves."""
+
+    _of: tuple[object, ...] = ()
+    _found: dict[str, Rect] = field(default_factory=dict[str, Rect])
+
+    def record(self, editor: Editor, scene: Scene, brush: Brush) -> None:
+        """Note where everything visible is."""
+        of = scene, brush.to, brush.seen
+        if not self._of or self._of[0] is not scene or self._of[1:] != of[1:]:
+            self._of, self._found = of, _found(scene, brush)
+        editor.places.update(self._found)
+
+
+def _found(scene: Scene, brush: Brush) -> dict[str, Rect]:
+    places, to, s = dict[str, Rect](), brush.to, brush.to.scale
     for key, box in scene.boxes.items():
         if not overlap(box.rect, brush.seen):
             continue
@@ -38,3 +54,4 @@ def record_places(editor: Editor, scene: Scene, brush: Brush) -> None:
     for wire in scene.wires:
         x, y = to.to_screen(*wire.middle)
         places[f"link {wire.target}"] = x - 2.0, y - 2.0, x + 2.0, y + 2.0
+    return places

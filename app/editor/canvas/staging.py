@@ -39,8 +39,9 @@ class Stage:
             boxes[f"comments.{id}"] = _sized(graph, f"comments.{id}", "comment", COMMENT_SIZE, position)
         for key, layout in self._ends(graph, pictures):
             boxes[key] = Box(key, "end", *position(key), layout.width, layout.height, layout)
+        closed = {id for id, facts in entries(graph, "nodes").items() if facts.get("collapsed") is True}
         for id, item in graph.nodes.items():
-            layout = self._layout(graph, id, item, pictures, open)
+            layout = self._layout(graph, id, item, id in closed, pictures, open)
             boxes[id] = Box(id, "node", *position(id), layout.width, layout.height, layout)
         for id in entries(graph, "dots"):
             x, y = position(f"dots.{id}")
@@ -62,10 +63,10 @@ class Stage:
             key = f"{OUTPUTS}.{name}"
             yield key, _end(key, end.kind, end.socket(name), False, "")
 
-    def _layout(self, graph: Graph, id: str, item: Item, pictures: bool, open: str) -> Layout:
+    def _layout(self, graph: Graph, id: str, item: Item, collapsed: bool, pictures: bool, open: str) -> Layout:
         ins, outs = self._linked
         facts = Facts(
-            frozenset(ins.get(id, ())), frozenset(outs.get(id, ())), bool(entry(graph, id).get("collapsed")),
+            frozenset(ins.get(id, ())), frozenset(outs.get(id, ())), collapsed,
             id in self.expanded or id == open, pictures,
         )
         known = self._layouts.get(id)

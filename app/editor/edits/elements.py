@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Any, TypeGuard
 
 from ...graph import INPUTS, OUTPUTS, Graph, Port
@@ -49,16 +50,14 @@ def is_note(key: str) -> bool:
 
 def entries(graph: Graph, section: str) -> Mapping[str, Mapping[str, Any]]:
     """The well-formed entries of a section of `ui`."""
-    found = graph.ui.get(section)
-    if not isinstance(found, Mapping):
-        return {}
-    return {id: entry for id, entry in found.items() if isinstance(entry, Mapping)}
+    return {id: entry for id, entry in _section(graph, section).items() if _is_object(entry)}
 
 
 def entry(graph: Graph, key: str) -> Mapping[str, Any]:
     """What `ui` says of an element, empty if nothing."""
     section, id = _address(key)
-    return entries(graph, section).get(id, {})
+    found = _section(graph, section).get(id)
+    return found if _is_object(found) else {}
 
 
 def place(graph: Graph, key: str) -> Place | None:
@@ -73,9 +72,8 @@ def with_entries(graph: Graph, changes: Mapping[str, Mapping[str, Any]]) -> Grap
     sections: dict[str, dict[str, Any]] = {}
     for key, facts in changes.items():
         section, id = _address(key)
-        known = sections.setdefault(section, _raw(graph, section))
-        found = {**entries(graph, section).get(id, {}), **facts}
-        known[id] = {name: fact for name, fact in found.items() if fact is not None}
+        known = sections.setdefault(section, dict(_section(graph, section)))
+        known[id] = {name: fact for name, fact in {**entry(graph, key), **facts}.items() if fact is not None}
     return with_sections(graph, sections)
 
 
@@ -84,7 +82,7 @@ def without_entries(graph: Graph, gone: Iterable[str]) -> Graph:
     sections: dict[str, dict[str, Any]] = {}
     for key in gone:
         section, id = _address(key)
-        sections.setdefault(section, _raw(graph, section)).pop(id, None)
+        sections.setdefault(section, dict(_section(graph, section))).pop(id, None)
     return with_sections(graph, sections)
 
 
@@ -120,9 +118,13 @@ def clean(text: str) -> str:
     return text.encode("utf-8", "replace").decode()
 
 
-def _raw(graph: Graph, section: str) -> dict[str, Any]:
-    found = graph.ui.get(section)
-    return dict(found) if isinstance(found, Mapping) else {}
+def _section(graph: Graph, name: str) -> Mapping[str, Any]:
+    found = graph.ui.get(name)
+    return found if _is_object(found) else {}
+
+
+def _is_object(item: object) -> TypeGuard[Mapping[str, Any]]:
+    return isinstance(item, dict | MappingProxyType)
 
 
 def _address(key: str) -> tuple[str, str]:

@@ -1,13 +1,17 @@
 """Layered drawing of a directed graph: layers by longest path, few crossings, straight lines.
 
-After Sugiyama, Tagawa and Toda (1981): layers, barycenter sweeps, then coordinates. The coordinates of a layer are the
-exact least-squares fit to what its neighbors want, by pooling adjacent violators (Ayer et al., 1955).
+After Sugiyama, Tagawa and Toda (1981): layers, barycenter sweeps, then coordinates. Which boxes share a straight line is
+decided as by Brandes and Koepf (2002), "Fast and simple horizontal coordinate assignment".
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
+
+from ...graph.walk import sort
 
 _SWEEPS = 8
 
@@ -133,7 +137,7 @@ def _uncross(made: Layered) -> None:
 def _crossings(made: Layered) -> int:
     """How many pairs of links between neighboring layers cross."""
     total = 0
-    for upper, lower in zip(made.layers, made.layers[1:], strict=False):
+    for upper, lower in pairwise(made.layers):
         place = {name: number for number, name in enumerate(lower)}
         ends = [number for name in upper for number in sorted(place[one] for one in made.after[name])]
         seen: list[int] = []
@@ -148,40 +152,51 @@ def _crossings(made: Layered) -> int:
 
 
 def _tops(made: Layered, heights: Mapping[str, float], gap: float) -> dict[str, float]:
-    """The upper edge of every box: as level with its neighbors as the boxes of its layer allow."""
-    tops: dict[str, float] = {}
+    """The upper edge of every box. Those of one line move together, as near to what they are linked to as they can."""
+    line = _lines(made)
+    above: dict[str, dict[str, float]] = {root: {} for root in line.values()}
+    below: dict[str, dict[str, float]] = {root: {} for root in line.values()}
     for layer in made.layers:
-        y = 0.0
-        for name in layer:
-            tops[name] = y
-            y += heights[name] + gap
+        for upper, lower in pairwise(layer):
+            one, other, need = line[upper], line[lower], heights[upper] + gap
+            below[one][other] = above[other][one] = max(need, below[one].get(other, 0.0))
+    order = sort({root: sorted(above[root]) for root in sorted(above)})
+    tops: dict[str, float] = {}
+    for root in order:
+        tops[root] = max((tops[one] + need for one, need in above[root].items()), default=0.0)
+    beside: dict[str, list[str]] = {root: [] for root in above}
+    for name, root in line.items():
+        beside[root] += [line[one] for one in (*made.before[name], *made.after[name]) if line[one] != root]
     for sweep in range(_SWEEPS):
-        layers = made.layers if sweep % 2 == 0 else made.layers[::-1]
-        for layer in layers:
-            beside = made.before if sweep % 2 == 0 else made.after
-            other = made.after if sweep % 2 == 0 else made.before
-            wanted = [_median([tops[one] for one in beside[name] or other[name]], tops[name]) for name in layer]
-            weights = [4.0 if name in made.virtual else 1.0 for name in layer]
-            steps = [heights[name] + gap for name in layer]
-            tops.update(zip(layer, _fitted(wanted, weights, steps), strict=True))
-    return tops
+        for root in order[::-1] if sweep % 2 == 0 else order:
+            low = max((tops[one] + need for one, need in above[root].items()), default=-math.inf)
+            high = min((tops[one] - need for one, need in below[root].items()), default=math.inf)
+            wanted = _median([tops[one] for one in beside[root]], tops[root])
+            tops[root] = max(low, min(wanted, high))
+    return {name: tops[root] for name, root in line.items()}
 
 
-def _fitted(wanted: Sequence[float], weights: Sequence[float], steps: Sequence[float]) -> list[float]:
-    """Positions nearest to those `wanted` (weighted least squares), each `steps` after the one before or more."""
-    offsets, total = list[float](), 0.0
-    for step in steps:
-        offsets.append(total)
-        total += step
-    blocks: list[tuple[float, float, int]] = []
-    for want, weight, offset in zip(wanted, weights, offsets, strict=True):
-        value, mass, count = want - offset, weight, 1
-        while blocks and blocks[-1][0] > value:
-            before, heavy, many = blocks.pop()
-            value, mass, count = (value * mass + before * heavy) / (mass + heavy), mass + heavy, count + many
-        blocks.append((value, mass, count))
-    values = [value for value, _, count in blocks for _ in range(count)]
-    return [value + offset for value, offset in zip(values, offsets, strict=True)]
+def _lines(made: Layered) -> dict[str, str]:
+    """Boxes that lie on one straight line, by the first of them: each box joins its median source if it can.
+
+    Lines never cross; long links come first.
+    """
+    line = {name: name for layer in made.layers for name in layer}
+    for upper, lower in pairwise(made.layers):
+        place = {name: number for number, name in enumerate(upper)}
+        long = [(place[one], number) for number, name in enumerate(lower) if name in made.virtual
+                for one in made.before[name] if one in made.virtual]
+        reached = -1
+        for number, name in enumerate(lower):
+            sources = sorted(place[one] for one in made.before[name])
+            middle = len(sources) // 2
+            for source in sources[(len(sources) - 1) // 2 : middle + 1]:
+                crosses = any((one < source) != (end < number) and one != source for one, end in long if end != number)
+                if source > reached and not crosses:
+                    line[name] = line[upper[source]]
+                    reached = source
+                    break
+    return line
 
 
 def _mean(numbers: Sequence[float], default: float) -> float:

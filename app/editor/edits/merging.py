@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from ....nodes import Node
 from ...graph import INPUTS, OUTPUTS, Graph, Port
-from ...graph.names import fresh_name
 from .elements import DECOR, Place, entries, entry, with_entries, with_places
+from .naming import copy_of
 from .routes import routes, with_routes
 
 
@@ -30,8 +31,8 @@ def merged(graph: Graph, part: Graph, places: Mapping[str, Place]) -> Merged:
     """
     taken = {*graph.nodes, INPUTS, OUTPUTS}
     names: dict[str, str] = {}
-    for id in part.nodes:
-        names[id] = fresh_name(id if id not in taken else id.rstrip("0123456789") or id, taken)
+    for id, item in part.nodes.items():
+        names[id] = copy_of(id, taken, item.id if isinstance(item, Node) else "")
         taken.add(names[id])
     links = {
         Port(names[end.node], end.socket): Port(names[start.node], start.socket)
@@ -44,7 +45,7 @@ def merged(graph: Graph, part: Graph, places: Mapping[str, Place]) -> Merged:
     )
     for section in DECOR:
         for id in entries(part, section):
-            names[f"{section}.{id}"] = f"{section}.{_free(after, section, id)}"
+            names[f"{section}.{id}"] = f"{section}.{copy_of(id, entries(after, section))}"
             after = with_entries(after, {names[f"{section}.{id}"]: entry(part, f"{section}.{id}")})
     after = with_entries(after, {names[id]: entry(part, id) for id in part.nodes if entry(part, id)})
     found = Merged(with_places(after, {names[key]: spot for key, spot in places.items() if key in names}), names)
@@ -59,11 +60,6 @@ def merged(graph: Graph, part: Graph, places: Mapping[str, Place]) -> Merged:
 def moved_dots(found: Merged, dots: tuple[str, ...]) -> tuple[str, ...]:
     """Dots of the part as they are called now."""
     return tuple(found.keys[f"dots.{dot}"].removeprefix("dots.") for dot in dots)
-
-
-def _free(graph: Graph, section: str, id: str) -> str:
-    known = entries(graph, section)
-    return fresh_name(id if id not in known else id.rstrip("0123456789") or id, known)
 
 
 def _extra(part: Graph, names: Mapping[str, str]) -> dict[str, Mapping[str, object]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Container
 from pathlib import Path
 
 from ...graph.names import name_fault
@@ -12,6 +12,19 @@ def stem(path: str | Path) -> str:
     """A node id from the name of a file."""
     name = "".join(letter if letter.isalnum() else "_" for letter in Path(path).stem).strip("_") or "file"
     return name if name_fault(name, "node") is None else f"{name}_file"
+
+
+def copy_of(name: str, taken: Container[str], kind: str = "") -> str:
+    """A free name for a copy: `blur2` for `blur`, `n4` for `n3`. A name made from a `kind` (`convolve3x3`) is counted."""
+    if name not in taken:
+        return name
+    head = name.rstrip("0123456789")
+    if len(head) < len(kind) and name.startswith(kind):
+        head = kind
+    number = int(name[len(head) :] or 1)
+    while f"{head}{number}" in taken or number < 2:
+        number += 1
+    return f"{head}{number}"
 
 
 def spoken(keys: Collection[str]) -> str:

@@ -42,7 +42,7 @@ def choose(
         write((inner[0] + used + pad, inner[1], inner[2], inner[3]), text, palette.text, align=1.0)
     else:
         write(inner, text, palette.text if mixed or now in choices else palette.error)
-    _arrow(rect, palette.dim)
+    draw_arrow(rect, palette.dim)
     if pressed:
         fields.filter = ""
         imgui.open_popup(f"choices {id}")
@@ -103,7 +103,8 @@ def _typed_ahead(word: str) -> str:
     return word + "".join(pressed) if not imgui.get_io().key_ctrl else word
 
 
-def _arrow(rect: tuple[float, float, float, float], color: tuple[float, float, float]) -> None:
+def draw_arrow(rect: tuple[float, float, float, float], color: tuple[float, float, float]) -> None:
+    """The sign at the right of a field that opens a list."""
     size = (rect[3] - rect[1]) * 0.14
     x, y = rect[2] - imgui.get_style().frame_padding.x - size * 1.5, (rect[1] + rect[3]) * 0.5
     imgui.get_window_draw_list().add_triangle_filled(
@@ -127,7 +128,7 @@ def toggle_field(
     )
     lines.add_rect_filled((left, middle - height / 2), (left + long, middle + height / 2), u32(track), height / 2)
     knob = left + (0.5 if mixed else 1.0 - height / 2 / long if on else height / 2 / long) * long
-    lines.add_circle_filled((knob, middle), height * 0.36, u32(palette.on_accent if on else palette.text))
+    lines.add_circle_filled((knob, middle), height * 0.36, u32(palette.on_accent if on else palette.dim))
     if label:
         write((rect[0], rect[1], left, rect[3]), label, palette.dim)
     else:

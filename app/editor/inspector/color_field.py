@@ -22,6 +22,9 @@ _STOPS = Value("stops", "float", 0.0, low=0.0, high=8.0, minimum=0.0, maximum=16
 _TEXT = Value("hex", "text", "")
 _NAMES = ("R", "G", "B", "A")
 
+WIDTH = 17.0
+"""Of the picker, in heights of a text line."""
+
 
 def color_field(
     fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False
@@ -43,7 +46,7 @@ def color_field(
         gap = imgui.get_style().item_inner_spacing.x
         imgui.same_line(0.0, gap)
         found = row_of_numbers(fields, id, color, _LIGHT, width - side - gap, _NAMES, mixed)
-    imgui.set_next_window_pos((rect[0], rect[3]), imgui.Cond_.appearing)
+    imgui.set_next_window_pos(_inside(rect), imgui.Cond_.appearing)
     if imgui.begin_popup(f"picker {id}"):
         found = color_picker(fields, f"{id} picker", color) or found
         imgui.end_popup()
@@ -52,20 +55,20 @@ def color_field(
 
 def color_picker(fields: Fields, id: str, color: RGBA) -> Edit | None:
     """Wheel and triangle of display colors, intensity, linear numbers, hexadecimal digits, copy, paste, eyedropper."""
-    width = imgui.get_font_size() * 15
+    width, side = imgui.get_font_size() * WIDTH, imgui.get_font_size() * 5.5
     found = _wheel(fields, id, color, width)
-    _label("Intensity")
-    edit = number_field(fields, f"{id} stops", fields.stops, _STOPS, imgui.get_content_region_avail().x)
+    _label("Intensity", side)
+    edit = number_field(fields, f"{id} stops", fields.stops, _STOPS, width - side)
     if edit and isinstance(edit.value, int | float):
         found = replace(edit, value=brightened(color, edit.value - fields.stops))
         fields.stops = float(edit.value)
-    _label("Linear")
-    numbers = row_of_numbers(fields, f"{id} light", color, _LIGHT, imgui.get_content_region_avail().x, _NAMES)
+    numbers = row_of_numbers(fields, f"{id} light", color, _LIGHT, width, _NAMES)
     if numbers:
         fields.stops = intensity(_rgba(numbers.value))
         found = numbers
-    _label("sRGB hex")
-    text = text_field(fields, f"{id} hex", hexadecimal(color), _TEXT, imgui.get_content_region_avail().x * 0.5)
+    _label("sRGB hex", side)
+    room = width - side - 3 * (imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x)
+    text = text_field(fields, f"{id} hex", hexadecimal(color), _TEXT, room)
     if text:
         found = _from_text(fields, str(text.value), color) or found
     return _buttons(fields, id, color) or found
@@ -111,20 +114,23 @@ def _wheel(fields: Fields, id: str, color: RGBA, width: float) -> Edit | None:
 
 
 def _buttons(fields: Fields, id: str, color: RGBA) -> Edit | None:
-    found = None
-    imgui.same_line()
-    if imgui.button(f"{icons.ICON_FA_COPY}##{id}"):
+    found, side = None, imgui.get_frame_height()
+    gap = imgui.get_style().item_inner_spacing.x
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, (0.0, imgui.get_style().frame_padding.y))
+    imgui.same_line(0.0, gap)
+    if imgui.button(f"{icons.ICON_FA_COPY}##{id}", (side, side)):
         imgui.set_clipboard_text(" ".join(f"{part:g}" for part in color))
     imgui.set_item_tooltip("Copy the four linear numbers")
-    imgui.same_line()
-    if imgui.button(f"{icons.ICON_FA_PASTE}##{id}"):
+    imgui.same_line(0.0, gap)
+    if imgui.button(f"{icons.ICON_FA_PASTE}##{id}", (side, side)):
         found = _from_text(fields, imgui.get_clipboard_text(), color)
     imgui.set_item_tooltip("Paste linear numbers, or hexadecimal digits")
-    imgui.same_line()
-    if imgui.button(f"{icons.ICON_FA_EYE_DROPPER}##{id}"):
+    imgui.same_line(0.0, gap)
+    if imgui.button(f"{icons.ICON_FA_EYE_DROPPER}##{id}", (side, side)):
         fields.eyedropper = id.removesuffix(" picker")
         imgui.close_current_popup()
     imgui.set_item_tooltip("Pick the color from the viewer")
+    imgui.pop_style_var()
     return found
 
 
@@ -146,10 +152,20 @@ def _from_text(fields: Fields, text: str, color: RGBA) -> Edit | None:
     return Edit(made)
 
 
-def _label(text: str) -> None:
+def _label(text: str, side: float) -> None:
+    left = imgui.get_cursor_pos_x()
     imgui.align_text_to_frame_padding()
     imgui.text_disabled(text)
-    imgui.same_line(imgui.get_font_size() * 5.5)
+    imgui.same_line(left + side)
+
+
+def _inside(rect: Rect) -> tuple[float, float]:
+    """Where the picker opens: below the swatch, moved so that all of it can be seen."""
+    view, pad = imgui.get_main_viewport(), imgui.get_style().window_padding
+    width = imgui.get_font_size() * WIDTH + 2 * pad.x
+    height = imgui.get_font_size() * (WIDTH - 1.5) + 4 * imgui.get_frame_height_with_spacing() + 2 * pad.y
+    x = max(min(rect[0], view.pos.x + view.size.x - width), view.pos.x)
+    return x, max(min(rect[3], view.pos.y + view.size.y - height), view.pos.y)
 
 
 def _name_on(fields: Fields, rect: Rect, color: RGBA, label: str) -> None:

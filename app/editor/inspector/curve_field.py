@@ -80,7 +80,7 @@ def _pressed(fields: Fields, id: str, value: tuple[float, ...], area: _Area, hov
     if not imgui.is_item_activated():
         return None
     merge = fields.start_gesture()
-    fields.drag_id = id
+    fields.drag_id, fields.before = id, value
     index = nearest(value, 2, x, y, area.reach())
     if index >= 0:
         fields.point = (id, index)
@@ -97,7 +97,7 @@ def _pulled(
         return None
     if not active:
         fields.drag_id = ""
-        return None
+        return Edit(fields.before, fields.merge) if imgui.is_key_pressed(imgui.Key.escape) else None
     index = fields.point[1]
     if not imgui.is_mouse_dragging(imgui.MouseButton_.left, 2.0 * ui_scale()) or not 0 <= index < len(value) // 2:
         return None

@@ -62,23 +62,23 @@ class EndView:
             rows.name(f"{key} bound", "bound to", tip="A file that was given for this window only; it is not saved")
             tip = f"{bound}\nClick to use the file below"
             if rows.chip(bound, f"{key} bound", rows.field(), rows.palette.good, tip):
-                editor.attempt(lambda: session.bind(name, None))
+                rows.act(lambda: session.bind(name, None))
         rows.name(f"{key} file", "file", tip="What comes in unless something else is linked or bound")
         edit = self._files.path(
             rows, f"{key} file", end.file, rows.field(), lambda path: session.set_input(name, file=path)
         )
         if edit:
-            editor.attempt(lambda: session.set_input(name, file=str(edit.value)))
+            rows.act(lambda: session.set_input(name, file=str(edit.value)))
         if not bound:
             self._files.about(rows, end.file, end.layer)
         rows.name(f"{key} layer", "layer", tip="The layer of that file")
         layer = self._files.layer(rows, f"{key} layer", end.file, end.layer, rows.field())
         if layer:
-            editor.attempt(lambda: session.set_input(name, layer=str(layer.value)))
+            rows.act(lambda: session.set_input(name, layer=str(layer.value)))
         rows.name(f"{key} default", "default", tip="What comes in where nothing else does")
         found = self._default(rows, f"{key} default", end, rows.field())
         if found:
-            editor.attempt(lambda: session.set_input(name, default=found.value, merge=found.merge))
+            rows.act(lambda: session.set_input(name, default=found.value, merge=found.merge))
         self._text(rows, f"{key} doc", "doc", end.doc, lambda doc: session.set_input(name, doc=doc), "What it is for")
 
     def _default(self, rows: Rows, key: str, end: Input, width: float) -> Edit | None:
@@ -86,9 +86,10 @@ class EndView:
         session, name = rows.editor.session, key.removeprefix(f"{INPUTS}.").removesuffix(" default")
         channels = end.socket().channels
         if end.default is None:
-            if imgui.button(f"None: set one##{key}", (width, 0.0)):
+            if imgui.button(f"None##{key}", (width, 0.0)):
                 start: Plain = 0.0 if channels == 1 else (0.0,) * channels
-                rows.editor.attempt(lambda: session.set_input(name, default=start))
+                rows.act(lambda: session.set_input(name, default=start))
+            rows.tooltip("Without a default something must be linked, bound or read; click to set one")
             return None
         side = imgui.get_frame_height()
         color = end.kind in (Kind.IMAGE, Kind.COLOR)
@@ -100,7 +101,7 @@ class EndView:
             edit = number_field(self._fields, key, float(end.default), _NUMBER, width - side)
         imgui.same_line(0.0, 0.0)
         if rows.icon(icons.ICON_FA_XMARK, f"remove {key}", "No default"):
-            rows.editor.attempt(lambda: session.set_input(name, default=None))
+            rows.act(lambda: session.set_input(name, default=None))
         return edit
 
     def _output(self, rows: Rows, port: Port, end: Output) -> None:
@@ -125,7 +126,7 @@ class EndView:
             )
             rows.record(f"{key} view")
             if index is not None:
-                editor.attempt(lambda: session.set_output(name, view=known[index]))
+                rows.act(lambda: session.set_output(name, view=known[index]))
 
     def _text(self, rows: Rows, key: str, label: str, text: str, then: Then, tip: str, hint: str = "") -> None:
         draw_text(rows, self._fields, key, label, text, then, tip, hint)
@@ -140,4 +141,4 @@ def draw_text(
     edit = text_field(fields, key, text, _TEXT, rows.field(), hint=hint, lines=lines)
     rows.record(key)
     if edit:
-        rows.editor.attempt(lambda: then(str(edit.value)))
+        rows.act(lambda: then(str(edit.value)))

@@ -72,6 +72,8 @@ class Fields:
     """The color field whose eyedropper was pressed in this frame."""
     stops: float = 0.0
     """The intensity that the open color picker shows, in EV."""
+    before: Plain = 0.0
+    """The curve or ramp as it was before it was dragged."""
     point: tuple[str, int] = ("", -1)
     """The curve or ramp field whose point of that number is selected."""
     filter: str = ""

@@ -13,6 +13,7 @@ from ....nodes import Value
 from ...media import ImageInfo
 from ..dialogs import Browse
 from ..panels.textures import Textures
+from .choice_field import draw_arrow
 from .drawing import item_rect, place, write
 from .fields import Edit, Fields
 from .layers import HEIGHT, WIDTH, Layers, described
@@ -79,12 +80,14 @@ class FileField:
         imgui.set_next_item_width(width)
         found = None
         names = [layer.name for layer in header.layers]
+        flags = int(imgui.ComboFlags_.height_large) | int(imgui.ComboFlags_.no_arrow_button)
         imgui.push_style_color(
             imgui.Col_.text, imgui.get_color_u32((*(rows.palette.text if value else rows.palette.dim), 1.0))
         )
-        opened = imgui.begin_combo(f"##{key}", value or FIRST, int(imgui.ComboFlags_.height_large))
+        opened = imgui.begin_combo(f"##{key}", value or FIRST, flags)
         imgui.pop_style_color()
         first = item_rect()
+        draw_arrow(first, rows.palette.dim)
         if opened:
             if imgui.selectable(FIRST, not value)[0]:
                 found = Edit("")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
@@ -14,15 +12,14 @@ from ..edits.elements import entry
 from ..theme.style import ui_scale
 from .color_field import color_field
 from .colors import decode, encode
+from .drawing import item_rect
 from .end_view import draw_text
 from .fields import Fields
 from .heading import faults, heading
 from .number_field import row_of_numbers
+from .rows import Rows
 from .text_field import text_field
 from .value_rows import ValueRows, go_to
-
-if TYPE_CHECKING:
-    from .rows import Rows
 
 _SIDE = Value("size", "int", 1920, low=1.0, high=4096.0, minimum=1.0, maximum=16384.0, unit="px")
 _TEXT = Value("name", "text", "")
@@ -44,6 +41,7 @@ class GraphView:
         """The graph that the canvas shows."""
         session = rows.editor.session
         inside = session.place[-1] if session.place else ""
+        rows.fit(session.graph.controls)
         heading(rows, f"Group {inside}" if inside else session.name, rows.palette.category("group" if inside else ""))
         faults(rows, "")
         if not inside:
@@ -69,7 +67,7 @@ class GraphView:
         edit = color_field(self._fields, f"frames.{id} color", light, _COLOR, rows.field())
         if edit and isinstance(edit.value, tuple):
             made = tuple(min(max(encode(part), 0.0), 1.0) for part in edit.value[:3])
-            rows.editor.attempt(lambda: session.set_frame(id, color=(made[0], made[1], made[2]), merge=edit.merge))
+            rows.act(lambda: session.set_frame(id, color=(made[0], made[1], made[2]), merge=edit.merge))
 
     def comment(self, rows: Rows, id: str) -> None:
         """A comment: its text."""
@@ -79,7 +77,7 @@ class GraphView:
         edit = text_field(self._fields, f"comments.{id} text", text, _TEXT, rows.width, hint="Type a comment", lines=6)
         rows.record(f"comments.{id} text")
         if edit:
-            rows.editor.attempt(lambda: session.set_comment(id, str(edit.value)))
+            rows.act(lambda: session.set_comment(id, str(edit.value)))
         rows.note("Ctrl+Enter starts a new line.")
 
     # --- parts -------------------------------------------------------------------------------------------------------
@@ -90,20 +88,24 @@ class GraphView:
         rows.name("size", "canvas", tip="The size of what is made from nothing; automatic is that of the first picture")
         width, side = rows.field(), imgui.get_frame_height()
         if size is None:
-            if imgui.button("Automatic: set a size##size", (width, 0.0)):
-                rows.editor.attempt(lambda: session.set_size(FULL_HD))
+            if imgui.button("Automatic##size", (width, 0.0)):
+                rows.act(lambda: session.set_size(FULL_HD))
             rows.record("size")
+            rows.tooltip("The size of the first picture that is read; click to set one")
             return
+        imgui.begin_group()
         edit = row_of_numbers(
             self._fields, "size", size, _SIDE, width - side, ("w", "h") if width > 170 * ui_scale() else ("", ""),
             keep_type=True,
         )
+        imgui.end_group()
+        rows.record("size")
         imgui.same_line(0.0, 0.0)
         if rows.icon(icons.ICON_FA_XMARK, "automatic size", "Automatic: the size of the first picture"):
-            rows.editor.attempt(lambda: session.set_size(None))
+            rows.act(lambda: session.set_size(None))
         if edit and isinstance(edit.value, tuple):
             wide, high = edit.value
-            rows.editor.attempt(lambda: session.set_size((int(wide), int(high)), merge=edit.merge))
+            rows.act(lambda: session.set_size((int(wide), int(high)), merge=edit.merge))
 
     def _ends(self, rows: Rows, side: str) -> None:
         session = rows.editor.session
@@ -117,13 +119,13 @@ class GraphView:
             edit = text_field(self._fields, f"{key} row", name, _TEXT, room)
             rows.record(f"{key} row")
             if edit:
-                rows.editor.attempt(lambda key=key, edit=edit: session.rename_end(key, str(edit.value)))
+                rows.act(lambda key=key, edit=edit: session.rename_end(key, str(edit.value)))
             imgui.same_line(0.0, 0.0)
             if rows.icon(icons.ICON_FA_ARROW_RIGHT, f"go {key}", "Select it"):
-                go_to(rows.editor, Port(side, name))
+                rows.act(lambda name=name: go_to(rows.editor, Port(side, name)))
             imgui.same_line(0.0, 0.0)
             if rows.icon(icons.ICON_FA_XMARK, f"remove {key}", "Remove it and its links"):
-                rows.editor.attempt(lambda key=key: session.remove_end(key))
+                rows.act(lambda key=key: session.remove_end(key))
         word = side[:-1]
         if rows.wide_button(f"{icons.ICON_FA_PLUS}  Add {word.title()}", f"add {word}"):
             imgui.open_popup(f"kinds {side}")
@@ -132,7 +134,7 @@ class GraphView:
                 if imgui.menu_item(label, "", False)[0]:
                     name = fresh_name(kind.lower(), known)
                     add = session.add_input if side == "inputs" else session.add_output
-                    rows.editor.attempt(lambda add=add, name=name, kind=kind, width=width: add(name, kind, width))
+                    rows.act(lambda add=add, name=name, kind=kind, width=width: add(name, kind, width))
             imgui.end_popup()
 
     def _controls(self, rows: Rows) -> None:
@@ -151,8 +153,13 @@ class GraphView:
                 rows.name(key, name)
                 rows.field()
                 rows.note("its value is gone", rows.palette.error)
-            if imgui.tree_node(f"{target}##{key}"):
-                inner = replace_width(rows)
+            imgui.push_style_color(imgui.Col_.text, imgui.get_color_u32((*rows.palette.dim, 1.0)))
+            opened = imgui.tree_node(f"{target}##{key}")
+            imgui.pop_style_color()
+            rows.tooltip("Name, label and description of the control")
+            rows.editor.places[f"more {key}"] = item_rect()
+            if opened:
+                inner = rows.inset()
                 draw_text(inner, self._fields, f"{key} name", "name", name,
                           lambda new, name=name: session.rename_control(name, new))
                 draw_text(inner, self._fields, f"{key} label", "label", control.label,
@@ -161,10 +168,10 @@ class GraphView:
                           lambda doc, name=name: session.set_control_doc(name, doc=doc),
                           hint=declaration.doc if declaration else "")
                 if imgui.small_button(f"{icons.ICON_FA_ARROW_RIGHT}  Go to Node##{key}"):
-                    go_to(rows.editor, target)
+                    rows.act(lambda target=target: go_to(rows.editor, target))
                 imgui.same_line()
                 if imgui.small_button(f"{icons.ICON_FA_XMARK}  Remove##{key}"):
-                    rows.editor.attempt(lambda name=name: session.hide(name))
+                    rows.act(lambda name=name: session.hide(name))
                 imgui.tree_pop()
         if rows.wide_button(f"{icons.ICON_FA_PLUS}  Add Control", "add control"):
             imgui.open_popup("add control")
@@ -187,12 +194,8 @@ class GraphView:
             found = True
             for port in ports:
                 if imgui.menu_item(port.socket, "", False)[0]:
-                    rows.editor.attempt(lambda port=port: session.expose(port))
+                    rows.act(lambda port=port: session.expose(port))
             imgui.end_menu()
         if not found:
             imgui.text_disabled("No value is left to expose")
 
-
-def replace_width(rows: Rows) -> Rows:
-    """Rows for what is left of the width after an indent."""
-    return type(rows)(rows.editor, rows.fields)

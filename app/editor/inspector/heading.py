@@ -48,7 +48,7 @@ def name_field(rows: Rows, fields: Fields, key: str, name: str, then: Callable[[
     edit = text_field(fields, f"{key} name", name, _NAME, rows.field())
     rows.record(f"{key} name")
     if edit:
-        rows.editor.attempt(lambda: then(str(edit.value)))
+        rows.act(lambda: then(str(edit.value)))
 
 
 def explanation(rows: Rows, doc: str, open: bool) -> bool:
@@ -83,7 +83,7 @@ def faults(rows: Rows, key: str) -> None:
 def title_of(item: Item) -> str:
     """What kind of node it is, in words."""
     if isinstance(item, Node):
-        return item.id.replace("_", " ").title()
+        return " ".join(word[:1].upper() + word[1:] for word in item.id.split("_"))
     return "Group" if isinstance(item, Group) else item.type
 
 
@@ -93,5 +93,5 @@ def doc_of(item: Item) -> str:
 
 
 def _flowing(doc: str) -> str:
-    """Paragraphs without the line breaks inside them."""
-    return "\n\n".join(" ".join(part.split()) for part in doc.split("\n\n"))
+    """Paragraphs without the line breaks and marks inside them."""
+    return "\n\n".join(" ".join(part.split()) for part in doc.replace("`", "").split("\n\n"))

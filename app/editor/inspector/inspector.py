@@ -40,7 +40,9 @@ class Inspector:
         fields.palette = editor.palette
         self._values.begin()
         fields.begin()
-        self._draw(Rows(editor, fields))
+        rows = Rows(editor, fields)
+        self._draw(rows)
+        rows.finish()
         left = fields.end()
         if left:
             self._values.left(editor, left)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from imgui_bundle import icons_fontawesome_6 as icons
@@ -10,6 +12,7 @@ from imgui_bundle import imgui
 from ....nodes import Socket
 from ...graph import Group, Item, Port, Unknown, signature
 from .applying import common
+from .drawing import item_rect
 from .fields import Fields
 from .heading import doc_of, explanation, faults, heading, name_field, title_of
 from .value_rows import ValueRows, link_chip
@@ -29,6 +32,8 @@ class NodeView:
         """One node: header, values, inputs."""
         session = rows.editor.session
         item = session.graph.nodes[id]
+        face, labels = signature(item), _labels(item)
+        rows.fit(("name", *face.inputs, *(labels.get(name) or name for name in face.values)))
         heading(rows, title_of(item), rows.palette.category(_category(item)), lambda: self._buttons(rows, id, item), 3)
         name_field(rows, self._fields, id, id, lambda new: session.rename(id, new), "What links and files call it")
         self._explained = explanation(rows, doc_of(item), self._explained)
@@ -38,12 +43,10 @@ class NodeView:
         if isinstance(item, Unknown):
             rows.note("This type of node is not installed. It does nothing, and is saved back as it was.")
             return
-        face = signature(item)
         if face.values:
             rows.heading("Controls" if isinstance(item, Group) else "Values")
         for name, declaration in face.values.items():
-            label = item.graph.controls[name].label if isinstance(item, Group) else ""
-            self._values.draw(rows, (Port(id, name),), declaration, label)
+            self._values.draw(rows, (Port(id, name),), declaration, labels.get(name, ""))
         if face.inputs:
             rows.heading("Inputs")
         for name, socket in face.inputs.items():
@@ -61,6 +64,7 @@ class NodeView:
         if not found:
             rows.note("These nodes have no value in common.")
             return
+        rows.fit(declaration.name for declaration in found)
         rows.heading("Values in Common")
         for declaration in found:
             self._values.draw(rows, tuple(Port(id, declaration.name) for id in ids), declaration)
@@ -71,13 +75,13 @@ class NodeView:
         editor = rows.editor
         session = editor.session
         if rows.icon(icons.ICON_FA_EYE, f"view {id}", "Show in the viewer"):
-            editor.attempt(lambda: session.view_node(id))
+            rows.act(lambda: session.view_node(id))
         imgui.same_line()
         self._mute(rows, (id,))
         imgui.same_line()
         known = not isinstance(item, Unknown) and bool(signature(item).values)
         if rows.icon(icons.ICON_FA_ROTATE_LEFT, f"reset {id}", "Reset all values", enabled=known):
-            editor.attempt(lambda: session.reset_all(id))
+            rows.act(lambda: session.reset_all(id))
 
     def _shared_buttons(self, rows: Rows, ids: tuple[str, ...]) -> None:
         self._mute(rows, ids)
@@ -88,21 +92,27 @@ class NodeView:
         tip = "Muted: it passes its first input through. Click to let it work again" if muted else "Mute"
         glyph = icons.ICON_FA_EYE_SLASH if muted else icons.ICON_FA_POWER_OFF
         if rows.icon(glyph, f"mute {ids[0]}", tip, lit=muted):
-            rows.editor.attempt(session.mute)
+            rows.act(session.mute)
 
     def _group(self, rows: Rows, id: str, item: Group) -> None:
         editor, half = rows.editor, (rows.width - rows.gap) / 2
         if item.path:
             rows.name(f"{id} path", "file", tip="The graph file that this group comes from")
-            rows.chip(item.path, f"{id} path", rows.field(), rows.palette.good, item.path)
-        if imgui.button(f"{icons.ICON_FA_RIGHT_TO_BRACKET}  Enter##{id}", (half if item.path else rows.width, 0.0)):
-            editor.attempt(lambda: editor.session.enter(id))
+            rows.chip(PurePath(item.path).name, f"{id} path", rows.field(), rows.palette.good, item.path)
+        local = f"{icons.ICON_FA_HOUSE}  Make Local"
+        beside = imgui.calc_text_size(local).x + 2 * imgui.get_style().frame_padding.x <= half
+        width = half if item.path and beside else rows.width
+        if imgui.button(f"{icons.ICON_FA_RIGHT_TO_BRACKET}  Enter##{id}", (width, 0.0)):
+            rows.act(lambda: editor.session.enter(id))
         rows.tooltip("Show what is in the group")
+        editor.places[f"button enter {id}"] = item_rect()
         if item.path:
-            imgui.same_line(0.0, rows.gap)
-            if imgui.button(f"{icons.ICON_FA_HOUSE}  Make Local##{id}", (half, 0.0)):
-                editor.attempt(lambda: editor.session.make_local(id))
+            if beside:
+                imgui.same_line(0.0, rows.gap)
+            if imgui.button(f"{local}##{id}", (width, 0.0)):
+                rows.act(lambda: editor.session.make_local(id))
             rows.tooltip("Make it part of this document, so that it can be changed here")
+            editor.places[f"button local {id}"] = item_rect()
 
 
 def _input(rows: Rows, port: Port, socket: Socket) -> None:
@@ -127,6 +137,13 @@ def _input(rows: Rows, port: Port, socket: Socket) -> None:
 def _default(socket: Socket) -> str:
     default = socket.default
     return " ".join(f"{part:g}" for part in default) if isinstance(default, tuple) else f"{default:g}"
+
+
+def _labels(item: Item) -> Mapping[str, str]:
+    """What the controls of a group are called, where that is not their name."""
+    if not isinstance(item, Group):
+        return {}
+    return {name: control.label for name, control in item.graph.controls.items() if control.label}
 
 
 def _category(item: Item) -> str:

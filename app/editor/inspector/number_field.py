@@ -53,8 +53,8 @@ def _dragged(fields: Fields, id: str, value: float, declaration: Value, width: f
     if imgui.is_item_activated():
         fields.pressed = id
     if fields.drag_id == id and fields.drag and not active:
-        fields.drag, fields.drag_id = None, ""
-        return None
+        start, fields.drag, fields.drag_id = fields.drag.start, None, ""
+        return Edit(limited(start, declaration), fields.merge) if imgui.is_key_pressed(imgui.Key.escape) else None
     if not active or (fields.pressed != id and fields.drag_id != id):
         return None
     io = imgui.get_io()
@@ -65,9 +65,6 @@ def _dragged(fields: Fields, id: str, value: float, declaration: Value, width: f
         fields.start_gesture()
     if fields.drag is None:
         return None
-    if imgui.is_key_pressed(imgui.Key.escape):
-        start, fields.drag = fields.drag.start, None
-        return Edit(limited(start, declaration), fields.merge)
     fields.drag = fields.drag.moved(io.mouse_delta.x, width, declaration, fine=io.key_shift)
     number = fields.drag.number(declaration, fine=io.key_shift, snap=io.key_ctrl)
     return Edit(number, fields.merge) if number != value else None

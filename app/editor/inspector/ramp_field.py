@@ -58,7 +58,7 @@ def _pressed(fields: Fields, id: str, value: tuple[float, ...], rect: Rect, hove
     if not imgui.is_item_activated():
         return None
     merge = fields.start_gesture()
-    fields.drag_id = id
+    fields.drag_id, fields.before = id, value
     if near >= 0:
         fields.point = (id, near)
         return None
@@ -72,7 +72,7 @@ def _pulled(fields: Fields, id: str, value: tuple[float, ...], rect: Rect, activ
         return None
     if not active:
         fields.drag_id = ""
-        return None
+        return Edit(fields.before, fields.merge) if imgui.is_key_pressed(imgui.Key.escape) else None
     index, mouse = fields.point[1], imgui.get_mouse_pos()
     if not imgui.is_mouse_dragging(imgui.MouseButton_.left, 2.0 * ui_scale()) or not 0 <= index < len(value) // 5:
         return None

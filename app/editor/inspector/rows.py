@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -26,8 +26,31 @@ class Rows:
         self.gap = imgui.get_style().item_inner_spacing.x
         width = imgui.get_content_region_avail().x
         self.width = width
-        self.name_width = min(max(width * 0.34, 58.0 * ui_scale()), 150.0 * ui_scale())
-        self.field_width = max(width - self.name_width - self.gap, 1.0)
+        self._acts: list[Callable[[], object]] = []
+        self.fit(())
+
+    def act(self, act: Callable[[], object]) -> None:
+        """Do something once everything is drawn: until then the document stays as it is."""
+        self._acts.append(act)
+
+    def finish(self) -> None:
+        """Do what was asked for."""
+        for act in self._acts:
+            self.editor.attempt(act)
+
+    def inset(self) -> Rows:
+        """Rows for what is left of the width after an indent."""
+        inner = Rows(self.editor, self.fields)
+        inner._acts = self._acts
+        return inner
+
+    def fit(self, labels: Iterable[str]) -> None:
+        """Make the left column as wide as these names ask for, up to half of the panel."""
+        scale = ui_scale()
+        longest = max((imgui.calc_text_size(label.replace("_", " ")).x for label in labels), default=0.0)
+        wanted = max(self.width * 0.3, 64.0 * scale, longest + 22.0 * scale)
+        self.name_width = min(wanted, self.width * 0.48, 170.0 * scale)
+        self.field_width = max(self.width - self.name_width - self.gap, 1.0)
 
     def name(self, key: str, label: str, *, tip: str = "", changed: bool = False, color: RGB | None = None) -> None:
         """The name of a row, as the last item; the field comes next, on the same line."""

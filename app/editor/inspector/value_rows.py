@@ -44,7 +44,7 @@ class ValueRows:
         control = session.control_of(port) if len(ports) == 1 else None
         rows.name(key, label or port.socket, tip=self._tip(graph.value, port, declaration, control), changed=changed)
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left):
-            editor.attempt(lambda: reset(session, ports))
+            rows.act(lambda: reset(session, ports))
         menu = imgui.is_item_hovered() and imgui.is_mouse_released(imgui.MouseButton_.right)
         width = rows.field()
         if source is not None:
@@ -58,7 +58,7 @@ class ValueRows:
                 imgui.MouseButton_.right
             )
             if edit:
-                editor.attempt(lambda: apply(session, ports, declaration, edit))
+                rows.act(lambda: apply(session, ports, declaration, edit))
             if control:
                 self._mark(rows, port, control)
             if declaration.type == "path" and isinstance(value, str):
@@ -69,7 +69,7 @@ class ValueRows:
         if menu:
             imgui.open_popup(f"{_MENU} {key}")
         if imgui.begin_popup(f"{_MENU} {key}"):
-            self._menu(editor, ports, declaration, value, source, control)
+            self._menu(rows, ports, declaration, value, source, control)
             imgui.end_popup()
 
     def left(self, editor: Editor, left: tuple[str, Edit]) -> None:
@@ -140,32 +140,35 @@ class ValueRows:
             )
             if entered:
                 session, new = rows.editor.session, self._renaming
-                rows.editor.attempt(lambda: session.rename_control(control, new))
+                rows.act(lambda: session.rename_control(control, new))
                 imgui.close_current_popup()
             imgui.end_popup()
 
     def _menu(
-        self, editor: Editor, ports: Ports, declaration: Value, value: Plain, source: Port | None, control: str | None
+        self, rows: Rows, ports: Ports, declaration: Value, value: Plain, source: Port | None, control: str | None
     ) -> None:
-        session, port = editor.session, ports[0]
-        if imgui.menu_item(f"{icons.ICON_FA_ROTATE_LEFT}  Reset", "", False)[0]:
-            editor.attempt(lambda: reset(session, ports))
-        if imgui.menu_item(f"{icons.ICON_FA_COPY}  Copy Value", "", False)[0]:
-            editor.clipboard.put(as_text(value))
-        if imgui.menu_item(f"{icons.ICON_FA_PASTE}  Paste Value", "", False, source is None)[0]:
-            editor.attempt(lambda: apply(session, ports, declaration, Edit(from_text(editor.clipboard.get()))))
+        editor, port = rows.editor, ports[0]
+        session = editor.session
+
+        def entry(icon: str, label: str, enabled: bool, act: Callable[[], object]) -> None:
+            if imgui.menu_item(f"{icon}  {label}", "", False, enabled)[0]:
+                rows.act(act)
+            editor.places[f"menu {label}"] = item_rect()
+
+        entry(icons.ICON_FA_ROTATE_LEFT, "Reset", True, lambda: reset(session, ports))
+        entry(icons.ICON_FA_COPY, "Copy Value", True, lambda: editor.clipboard.put(as_text(value)))
+        entry(icons.ICON_FA_PASTE, "Paste Value", source is None, lambda: apply(
+            session, ports, declaration, Edit(from_text(editor.clipboard.get()))
+        ))
         imgui.separator()
         if control is None:
-            if imgui.menu_item(f"{icons.ICON_FA_SLIDERS}  Expose as Control", "", False, len(ports) == 1)[0]:
-                editor.attempt(lambda: session.expose(port))
-        elif imgui.menu_item(f"{icons.ICON_FA_EYE_SLASH}  Hide Control", "", False)[0]:
-            editor.attempt(lambda: session.hide(control))
+            entry(icons.ICON_FA_SLIDERS, "Expose as Control", len(ports) == 1, lambda: session.expose(port))
+        else:
+            entry(icons.ICON_FA_EYE_SLASH, "Hide Control", True, lambda: session.hide(control))
         if source is not None:
             imgui.separator()
-            if imgui.menu_item(f"{icons.ICON_FA_ARROW_LEFT}  Go to Source", "", False)[0]:
-                go_to(editor, source)
-            if imgui.menu_item(f"{icons.ICON_FA_LINK_SLASH}  Unlink", "", False)[0]:
-                editor.attempt(lambda: session.disconnect(port))
+            entry(icons.ICON_FA_ARROW_LEFT, "Go to Source", True, lambda: go_to(editor, source))
+            entry(icons.ICON_FA_LINK_SLASH, "Unlink", True, lambda: session.disconnect(port))
 
 
 def link_chip(rows: Rows, target: Port, source: Port, width: float) -> None:
@@ -175,11 +178,11 @@ def link_chip(rows: Rows, target: Port, source: Port, width: float) -> None:
     color = rows.palette.kinds[start.kind] if start else rows.palette.dim
     text = f"{icons.ICON_FA_ARROW_LEFT}  {source.socket if source.node == INPUTS else source}"
     if rows.chip(text, str(target), max(width - side, 1.0), color, f"Linked from {source}: click to go there"):
-        go_to(editor, source)
+        rows.act(lambda: go_to(editor, source))
     first = item_rect()
     imgui.same_line(0.0, 0.0)
     if rows.icon(icons.ICON_FA_XMARK, f"unlink {target}", "Unlink"):
-        editor.attempt(lambda: editor.session.disconnect(target))
+        rows.act(lambda: editor.session.disconnect(target))
     last = item_rect()
     editor.places[f"field {target}"] = (first[0], first[1], last[2], last[3])
 

@@ -45,6 +45,7 @@ class FileBrowser:
         self._new = ""
         self._naming = False
         self._focus = ""
+        self._elsewhere = False
 
     def close(self) -> None:
         """End what runs beside the window."""
@@ -68,7 +69,8 @@ class FileBrowser:
             height = imgui.get_content_region_avail().y - foot
             self._places(editor, now, height)
             imgui.same_line()
-            imgui.begin_child("files", ImVec2(0, height), int(imgui.ChildFlags_.borders), int(imgui.WindowFlags_.no_nav))
+            framed, still = imgui.ChildFlags_.borders.value, imgui.WindowFlags_.no_nav.value
+            imgui.begin_child("files", ImVec2(0, height), framed, still)
             self._files(editor, now)
             imgui.end_child()
             self._bottom(editor, now)
@@ -86,6 +88,7 @@ class FileBrowser:
         imgui.set_next_item_width(imgui.get_content_region_avail().x - width - 3 * imgui.get_style().item_spacing.x)
         entered, self._path = imgui.input_text("##path", self._path, int(imgui.InputTextFlags_.enter_returns_true))
         record(editor, "path field")
+        self._elsewhere = imgui.is_item_active() or imgui.is_item_deactivated()
         if entered:
             self._typed(now)
         imgui.same_line()
@@ -132,9 +135,8 @@ class FileBrowser:
             return
         items = now.items
         if not items:
-            busy = now.listing.busy
-            nothing = "Reading..." if busy else "Nothing here is called that." if now.query else "Nothing here to choose."
-            dim(editor, nothing)
+            nothing = "Nothing here is called that." if now.query else "Nothing here to choose."
+            dim(editor, "Reading..." if now.listing.busy else nothing)
             return
         shape = self._grid if self._as_grid and now.browse.purpose == "image" else self._table
         done = shape.draw(editor, now)
@@ -151,6 +153,7 @@ class FileBrowser:
             "##new", "Name of the new folder", self._new, int(imgui.InputTextFlags_.enter_returns_true)
         )
         record(editor, "new folder name")
+        self._elsewhere = True
         if entered:
             self._naming, self._focus = False, "field"
             made = editor.attempt(lambda: make_folder(now.folder, self._new))
@@ -161,12 +164,12 @@ class FileBrowser:
 
     def _steer(self, now: Browsing, columns: int) -> None:
         """Arrows choose; up and down only where a field does not need them."""
-        if editing := imgui.is_any_item_active() and self._focus == "path":
+        if self._elsewhere:
             return
         keys = ((imgui.Key.down_arrow, columns), (imgui.Key.up_arrow, -columns), (imgui.Key.page_down, 10 * columns),
                 (imgui.Key.page_up, -10 * columns))
         step = sum(amount for key, amount in keys if imgui.is_key_pressed(key))
-        if columns > 1 and not now.query and not now.browse.saving and not editing:
+        if columns > 1 and not now.query and not now.browse.saving:
             step += imgui.is_key_pressed(imgui.Key.right_arrow) - imgui.is_key_pressed(imgui.Key.left_arrow)
         if step:
             now.choose(min(max(now.chosen + step, 0), len(now.items) - 1))
@@ -179,19 +182,20 @@ class FileBrowser:
         empty = not now.query
         imgui.set_next_item_width(imgui.get_content_region_avail().x)
         if now.browse.saving:
-            now.name = imgui.input_text_with_hint("##name", "Name of the file", now.name)[1]
+            changed, name = imgui.input_text_with_hint("##name", "Name of the file", now.name)
+            if changed:
+                now.name, now.chosen = name, -1
         else:
             hint = f"{icons.ICON_FA_MAGNIFYING_GLASS}  Type to find"
             changed, query = imgui.input_text_with_hint("##query", hint, now.query)
             if changed:
                 now.search(query)
         record(editor, "file field")
-        here = imgui.is_item_active() or not imgui.is_any_item_active()
-        left = imgui.is_item_deactivated()
-        if imgui.is_key_pressed(imgui.Key.backspace, False) and empty and here and not now.browse.saving:
-            self._go(now, now.folder.parent)
-        if any(imgui.is_key_pressed(key, False) for key in (imgui.Key.enter, imgui.Key.keypad_enter)) and (here or left):
-            self._enter(editor, now, by_name=left)
+        if not self._elsewhere and editor.dialogs.question is None:
+            if imgui.is_key_pressed(imgui.Key.backspace, False) and empty and not now.browse.saving:
+                self._go(now, now.folder.parent)
+            if any(imgui.is_key_pressed(key, False) for key in (imgui.Key.enter, imgui.Key.keypad_enter)):
+                self._enter(editor, now)
         self._buttons(editor, now)
 
     def _buttons(self, editor: Editor, now: Browsing) -> None:
@@ -207,12 +211,12 @@ class FileBrowser:
         imgui.same_line()
         can = target is not None or (now.item is not None and now.item.is_folder)
         if main_button(editor, f"    {verb}    ", "choose file", enabled=can):
-            self._enter(editor, now, by_name=now.browse.saving)
+            self._enter(editor, now)
 
-    def _enter(self, editor: Editor, now: Browsing, by_name: bool = False) -> None:
+    def _enter(self, editor: Editor, now: Browsing) -> None:
         """Open the folder that is chosen, or answer with the file."""
         item, target = now.item, now.target
-        if item and item.is_folder and not (by_name and now.browse.saving):
+        if item and item.is_folder:
             self._go(now, now.folder / item.name)
             return
         if target is None or editor.dialogs.question is not None:

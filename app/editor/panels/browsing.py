@@ -26,14 +26,15 @@ class Browsing:
     order: Order = "name"
     down: bool = False
     hidden: bool = False
-    chosen: int = 0
+    chosen: int = -1
+    """The index in `items`; -1 is none, as while a new name is typed."""
     listing: Listing = field(default_factory=Listing)
     _back: str = ""
 
     def go(self, folder: Path) -> None:
         """Show another folder; the one that was left is chosen if it is in there."""
         self._back = self.folder.name if self.folder.parent == folder else ""
-        self.folder, self.query, self.chosen = folder, "", 0
+        self.folder, self.query, self.chosen = folder, "", self.first
         self.listing.show(folder)
 
     def up(self) -> None:
@@ -44,9 +45,14 @@ class Browsing:
         """Take what was read meanwhile."""
         if self.listing.poll() and self._back:
             names = [item.name for item in self.items]
-            self.chosen = names.index(self._back) if self._back in names else 0
+            self.chosen = names.index(self._back) if self._back in names else self.first
             self._back = ""
-        self.chosen = min(max(self.chosen, 0), max(len(self.items) - 1, 0))
+        self.chosen = min(max(self.chosen, self.first), max(len(self.items) - 1, 0))
+
+    @property
+    def first(self) -> int:
+        """What is chosen at first: while saving nothing, so that Enter takes the name."""
+        return -1 if self.browse.saving else 0
 
     @property
     def items(self) -> tuple[Item, ...]:
@@ -57,11 +63,11 @@ class Browsing:
     def item(self) -> Item | None:
         """The one that is chosen."""
         items = self.items
-        return items[self.chosen] if self.chosen < len(items) else None
+        return items[self.chosen] if 0 <= self.chosen < len(items) else None
 
     def search(self, query: str) -> None:
         """Filter by name; the best match is chosen."""
-        self.query, self.chosen = query, 0
+        self.query, self.chosen = query, self.first
 
     def choose(self, index: int) -> None:
         """Choose an item; while saving, a file gives its name."""

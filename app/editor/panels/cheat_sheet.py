@@ -9,9 +9,9 @@ from ..editor import Editor
 from ..keys import shown
 from ..theme.style import u32, ui_scale, vec4
 from .drawing import backdrop, dialog, dim, escaped, font, main_button
-from .shortcut_groups import MOUSE, columns, groups
+from .shortcut_groups import MOUSE, columns, condensed, groups
 
-_WIDTH = 1080.0
+_WIDTH = 1340.0
 
 
 class CheatSheet:
@@ -49,7 +49,8 @@ class CheatSheet:
 
 
 def _lines(editor: Editor, actions: tuple[Action, ...]) -> tuple[tuple[str, str], ...]:
-    return tuple((shown(editor.actions.shortcut(action.id)), action.label.removesuffix("...")) for action in actions)
+    lines = ((shown(editor.actions.shortcut(action.id)), action.label.removesuffix("...")) for action in actions)
+    return condensed(lines)
 
 
 def _block(editor: Editor, title: str, lines: tuple[tuple[str, str], ...]) -> None:

@@ -27,6 +27,8 @@ class Command:
     shortcut: str = ""
     doc: str = ""
     reason: str = ""
+    weight: float = 0.0
+    """Added to how well it matches: what is wanted less often stands lower."""
 
 
 def commands(editor: Editor) -> tuple[Command, ...]:
@@ -39,7 +41,10 @@ def ranked(query: str, offered: tuple[Command, ...], recent: Collection[str]) ->
     labels = tuple(command.label for command in offered)
     found = [(offered[one.index], one) for one in match(query, labels)]
     if query.strip():
-        return tuple(sorted(found, key=lambda pair: (bool(pair[0].reason), -pair[1].score, pair[1].index)))
+        def worth(pair: tuple[Command, Match]) -> tuple[bool, float, int]:
+            return bool(pair[0].reason), -pair[1].score - pair[0].weight, pair[1].index
+
+        return tuple(sorted(found, key=worth))
     order = {id: place for place, id in enumerate(reversed(tuple(recent)))}
     last = len(order)
     return tuple(sorted(found, key=lambda pair: (order.get(pair[0].id, last), bool(pair[0].reason), pair[1].index)))
@@ -71,11 +76,12 @@ def _all(editor: Editor) -> Iterator[Command]:
                       partial(_add, editor, id), doc=doc[0] if doc else "")
     for path in paths():
         name = words(path.stem).title()
-        yield Command(f"preset {path.stem}", f"Open Preset {name}", "Preset", partial(open_preset, editor, path))
-        yield Command(f"group {path.stem}", f"Add Preset {name}", "Preset", partial(_add_preset, editor, path))
+        opens, adds = partial(open_preset, editor, path), partial(_add_preset, editor, path)
+        yield Command(f"preset {path.stem}", f"Open Preset {name}", "Preset", opens, weight=-4.0)
+        yield Command(f"group {path.stem}", f"Add Preset {name}", "Preset", adds, weight=-5.0)
     for key, item in editor.session.graph.nodes.items():
         kind = "Group" if isinstance(item, Group) else "Node"
-        yield Command(f"go {key}", f"Go to {key}", kind, partial(_go, editor, key))
+        yield Command(f"go {key}", f"Go to {key}", kind, partial(_go, editor, key), weight=-6.0)
 
 
 def _add(editor: Editor, type_id: str) -> None:

@@ -12,7 +12,7 @@ from ..theme.style import u32, ui_scale
 from .browsing import Browsing, size_text, time_text
 from .drawing import dim, elided, outline, record
 from .listing import Item, Order
-from .pictures import HEIGHT, WIDTH, Pictures
+from .pictures import Pictures
 from .textures import Textures, fitted
 
 _ORDERS: tuple[Order, ...] = ("name", "size", "time")
@@ -64,7 +64,7 @@ class FileTable:
             done = imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
         record(editor, f"file {item.name}")
         if chosen and self.reveal:
-            imgui.scroll_to_item()
+            imgui.internal.scroll_to_item()
             self.reveal = False
         imgui.table_next_column()
         dim(editor, "" if item.is_folder else size_text(item.size))
@@ -122,7 +122,7 @@ class FileGrid:
         if chosen:
             outline(editor, palette.accent)
             if self.reveal:
-                imgui.scroll_to_item()
+                imgui.internal.scroll_to_item()
                 self.reveal = False
         low = imgui.get_item_rect_min()
         self._picture(editor, now.folder / item.name, item, low, pictures)
@@ -169,6 +169,3 @@ def _sort(now: Browsing) -> None:
 
 def _icon(name: str) -> str:
     return icons.ICON_FA_DIAGRAM_PROJECT if name.lower().endswith(".json") else icons.ICON_FA_IMAGE
-
-
-assert _PICTURE[0] <= WIDTH and _PICTURE[1] <= HEIGHT

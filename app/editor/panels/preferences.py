@@ -13,6 +13,7 @@ from .drawing import backdrop, dialog, dim, escaped, font, main_button, record, 
 from .shortcut_editor import ShortcutEditor
 
 _SCALES = (0.0, 1.0, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0)
+_FLAT = imgui.ChildFlags_.nav_flattened.value
 _PAGES = ("Interface", "Shortcuts", "System")
 
 
@@ -32,10 +33,10 @@ class PreferencesDialog:
         listening = self._shortcuts.listening
         close = backdrop(editor, "preferences") and not listening
         with dialog(editor, "Preferences", (720, 560), bare=True):
-            self._pages(editor)
+            height = imgui.get_content_region_avail().y - imgui.get_frame_height_with_spacing() - 6 * ui_scale()
+            self._pages(editor, height)
             imgui.same_line(0, 16 * ui_scale())
-            foot = imgui.get_frame_height_with_spacing() + 6 * ui_scale()
-            imgui.begin_child("page", ImVec2(0, imgui.get_content_region_avail().y - foot))
+            imgui.begin_child("page", ImVec2(0, height), _FLAT)
             pages = (self._interface, self._shortcuts.draw, self._system)
             pages[_PAGES.index(self._page)](editor)
             imgui.end_child()
@@ -46,8 +47,8 @@ class PreferencesDialog:
         if close:
             editor.dialogs.open.discard("preferences")
 
-    def _pages(self, editor: Editor) -> None:
-        imgui.begin_child("pages", ImVec2(130 * ui_scale(), imgui.get_content_region_avail().y))
+    def _pages(self, editor: Editor, height: float) -> None:
+        imgui.begin_child("pages", ImVec2(130 * ui_scale(), height), _FLAT)
         with font(editor, "bold", 18.0):
             imgui.text_unformatted("Preferences")
         imgui.dummy(ImVec2(0, 6 * ui_scale()))

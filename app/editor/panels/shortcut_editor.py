@@ -5,7 +5,7 @@ from __future__ import annotations
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from ..actions import Action
+from ..action import Action
 from ..editor import Editor
 from ..keys import pressed, shown
 from ..theme.style import ui_scale, vec4

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator
 
 from ..action import Action
 from ..editor import Editor
@@ -23,6 +24,27 @@ def groups(editor: Editor, every: bool = False) -> Iterator[tuple[str, tuple[Act
             title = _SCOPES.get(action.scope, action.menu.split("/")[0] or "Everywhere")
             found.setdefault(title, []).append(action)
     return ((title, tuple(actions)) for title, actions in found.items())
+
+
+def condensed(lines: Iterable[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
+    """Keys and labels, where a row that only counts up is one line: `1 - 9`, `View 1 - 9`."""
+    made: list[tuple[str, str]] = []
+    for keys, label in lines:
+        before = (re.sub(r"\d", "#", keys), re.sub(r"\d", "#", label))
+        if made and "#" in before[0] and "#" in before[1] and (_stem(made[-1][0]), _stem(made[-1][1])) == before:
+            digit = re.findall(r"\d", keys)[-1]
+            made[-1] = (_through(made[-1][0], digit), _through(made[-1][1], digit))
+        else:
+            made.append((keys, label))
+    return tuple(made)
+
+
+def _stem(text: str) -> str:
+    return re.sub(r"\d( - \d)?", "#", text)
+
+
+def _through(text: str, digit: str) -> str:
+    return re.sub(r"(\d)( - \d)?", rf"\1 - {digit}", text)
 
 
 def columns(sizes: tuple[int, ...], count: int) -> tuple[tuple[int, ...], ...]:

@@ -94,12 +94,12 @@ class State:
     @property
     def all_problems(self) -> tuple[Problem, ...]:
         """Everything that is wrong with the document, groups included."""
-        return self._kept("all problems", (self.root,), lambda: problems(self.root, self.types))
+        return self._kept("all problems", _logic(self.root, self.types), lambda: problems(self.root, self.types))
 
     @property
     def problems(self) -> Mapping[str, tuple[str, ...]]:
         """What is wrong with `graph`: sentences by element; what belongs to none is under ""."""
-        return self._kept("problems", (self.graph,), self._problems)
+        return self._kept("problems", (*_logic(self.graph, self.types), self.place), self._problems)
 
     @property
     def bindings(self) -> Mapping[str, str]:
@@ -221,7 +221,7 @@ class State:
 
     def _problems(self) -> Mapping[str, tuple[str, ...]]:
         found: dict[str, list[str]] = {}
-        for problem in problems(self.graph, self.types):
+        for problem in problems(self.graph, self.types) if self.place else self.all_problems:
             node = problem.node.partition("/")[0]
             key = f"{node}.{problem.socket}" if node in (INPUTS, OUTPUTS) else node if node in self.graph.nodes else ""
             found.setdefault(key, []).append(problem.sentence)
@@ -237,3 +237,8 @@ class State:
     def _chosen_nodes(self) -> tuple[str, ...]:
         """Ids of the selected nodes, in the order of the graph."""
         return tuple(id for id in self.graph.nodes if id in self.selection)
+
+
+def _logic(graph: Graph, types: object) -> tuple[object, ...]:
+    """What problems depend on: layout is not part of it."""
+    return graph.nodes, graph.links, graph.inputs, graph.outputs, graph.controls, graph.extra, types

@@ -52,8 +52,9 @@ def dropdown(editor: Editor, label: str, id: str, draw: Callable[[], object], do
     """A button that opens a menu, which `draw` fills."""
     if button(editor, f"{label}##{id}", lit):
         imgui.open_popup(id)
-    editor.places[f"button {id}"] = last_rectangle()
+    left, _, _, bottom = editor.places[f"button {id}"] = last_rectangle()
     imgui.set_item_tooltip(doc)
+    imgui.set_next_window_pos((left, bottom + 2), imgui.Cond_.appearing)
     if imgui.begin_popup(id):
         draw()
         imgui.end_popup()
@@ -87,7 +88,8 @@ def number(
         imgui.push_style_color(imgui.Col_.text, vec4(editor.palette.error))
     imgui.set_next_item_width(width)
     flags = int(imgui.SliderFlags_.logarithmic) if logarithmic else 0
-    _, value = imgui.drag_float(f"##{id}", value, speed, low, high, form, flags)
+    edited, dragged = imgui.drag_float(f"##{id}", value, speed, low, high, form, flags)
+    value = dragged if edited else value  # what is not edited would lose digits
     editor.places[f"field {id}"] = last_rectangle()
     if changed:
         imgui.pop_style_color()

@@ -59,8 +59,10 @@ def range_lines(lines: imgui.ImDrawList, palette: Palette, box: Box, low: float,
 
 def hint(lines: imgui.ImDrawList, color: RGB, box: Box, text: str) -> None:
     """A few words in the upper right corner of a scope."""
-    size = imgui.calc_text_size(text)
-    lines.add_text((box[2] - size.x - 4, box[1] + 2), u32(color), text)
+    size = imgui.get_font_size() * 0.8
+    width = imgui.calc_text_size(text).x * 0.8
+    if width < (box[2] - box[0]) * 0.6:
+        lines.add_text(imgui.get_font(), size, (box[2] - width - 4, box[1] + 2), u32(color), text)
 
 
 def _word(lines: imgui.ImDrawList, palette: Palette, at: tuple[float, float], text: str) -> None:

@@ -40,15 +40,20 @@ def row_height() -> float:
     return imgui.get_text_line_height() + 6 * ui_scale()
 
 
-def about(editor: Editor, shown: Shown | None, sight: Sight, seconds: float) -> list[Word]:
-    """What is shown, in a few words."""
+def about(editor: Editor, side: str, shown: Shown | None, sight: Sight, seconds: float) -> list[Word]:
+    """What a side shows, in a few words; for A also how, and how long it took."""
     palette, preview = editor.palette, editor.preview
     words: list[Word] = []
+    if editor.viewer.compares:
+        words.append(Word(side, palette.accent if side == "A" else palette.good))
     if shown is not None:
         width, height = shown.full_size
         words += [Word(f"{width}×{height}", palette.text), Word(describe(shown.kind, shown.channels), palette.dim)]
         if shown.scale != 1.0:
             words.append(Word(f"1/{1 / shown.scale:.0f}", palette.warning))
+    if side != "A":
+        return words
+    if shown is not None and shown.kind not in (Kind.NUMBER, Kind.COLOR):
         words.append(Word(f"{sight.zoom * 100:.0f} %" if sight.zoom >= 0.1 else f"{sight.zoom * 100:.1f} %", palette.dim))
     if preview.paused:
         words.append(Word("paused", palette.warning))
@@ -93,10 +98,11 @@ def of_pixel(editor: Editor, pixel: Pixels | None, values: tuple[float, ...], ki
 def draw_line(editor: Editor, name: str, words: list[Word], swatch: RGB | None = None) -> None:
     """One line of words, as many as fit."""
     lines = imgui.get_window_draw_list()
-    start, room = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail().x
+    inner = imgui.internal.get_current_window().inner_rect
+    left, top, right = inner.min.x, imgui.get_cursor_screen_pos().y, inner.max.x
     height, scale = row_height(), ui_scale()
-    lines.add_rect_filled(start, (start.x + room, start.y + height), u32(editor.palette.panel))
-    x, y, end = start.x + 8 * scale, round(start.y + 3 * scale), start.x + room - 4 * scale
+    lines.add_rect_filled((left, top), (right, top + height), u32(editor.palette.panel))
+    x, y, end = left + 8 * scale, round(top + 3 * scale), right - 4 * scale
     if editor.fonts is not None:
         imgui.push_font(editor.fonts.mono, 0.0)
     for number, word in enumerate(words):
@@ -109,6 +115,7 @@ def draw_line(editor: Editor, name: str, words: list[Word], swatch: RGB | None =
     if editor.fonts is not None:
         imgui.pop_font()
     if swatch is not None and x + height < end:
-        lines.add_rect_filled((x + 8 * scale, start.y + 4 * scale), (x + height, start.y + height - 4 * scale), u32(swatch))
-    imgui.dummy((room, height))
-    editor.places[name] = start.x, start.y, start.x + room, start.y + height
+        lines.add_rect_filled((x + 8 * scale, top + 4 * scale), (x + height, top + height - 4 * scale), u32(swatch))
+    imgui.set_cursor_screen_pos((left, top))
+    imgui.dummy((right - left, height))
+    editor.places[name] = left, top, right, top + height

@@ -174,7 +174,7 @@ def draw_message(editor: Editor, sight: Sight, text: str, color: RGB, dim: bool 
     pad = 12 * scale
     box = (x - pad, y - pad), (x + size.x + pad, y + size.y + pad)
     lines.add_rect_filled(*box, u32(palette.panel, 0.94), 6 * scale)
-    lines.add_rect(*box, u32(color, 0.8), 6 * scale)
+    lines.add_rect(*box, u32(color, 0.35), 6 * scale)
     lines.add_text(imgui.get_font(), imgui.get_font_size(), (x, y), u32(color), text, wrap_width=width)
     editor.places["viewer message"] = (*box[0], *box[1])
 

@@ -47,6 +47,7 @@ def pick_port(editor: Editor, side: str, label: str, in_menu: bool) -> None:
     if not in_menu:
         imgui.get_window_draw_list().add_rect_filled((left, bottom - line), (right, bottom), u32(color), line / 2)
     imgui.set_item_tooltip(f"What {side} shows. Keys 1 to 9 recall what Ctrl+1 to Ctrl+9 kept.")
+    imgui.set_next_window_pos((left, bottom + 2), imgui.Cond_.appearing)
     imgui.set_next_window_size_constraints((0, 0), (1e6, imgui.get_font_size() * 26))
     if imgui.begin_popup(id):
         _list(editor, side)

@@ -20,12 +20,15 @@ def histogram_image(rgb: Array, low: float, high: float, logarithmic: bool, dark
     inner = counts[:, 1:-1]  # what is clipped would flatten everything else
     if logarithmic:
         counts, inner = np.log1p(counts), np.log1p(inner)
-    height = np.clip(counts / max(float(inner.max(initial=0.0)), 1e-6), 0.0, 1.0) * rows
+    top = max(float(np.percentile(inner, 99.5)), 1e-6)  # one level that most pixels have would too
+    height = np.clip(counts / top, 0.0, 1.0) * rows
     row = np.arange(rows, 0, -1, dtype=np.float32)[:, None] - 0.5
     covered = np.clip(height[:, None, :] - row + 0.5, 0.0, 1.0)
     color = np.einsum("crw,ck->rwk", covered[:3], _CHANNELS)
-    gray = covered[3][..., None] * 0.35
-    return _image(np.maximum(color, gray) if dark else color, np.maximum(covered.max(axis=0), gray[..., 0]), dark)
+    gray = covered[3][..., None] * (0.35 if dark else 0.6)
+    cover = covered.max(axis=0)
+    color = np.maximum(color, gray) if dark else _ink(color) * (covered[:3].max(axis=0)[..., None] > 0.0)
+    return _image(color, cover if dark else np.maximum(covered[:3].max(axis=0) * 0.9, gray[..., 0]))
 
 
 def waveform_image(rgb: Array, low: float, high: float, dark: bool) -> Array:
@@ -48,18 +51,23 @@ def vectorscope_image(rgb: Array, dark: bool, size: int = 256) -> Array:
     color = np.stack([
         luma + 1.5748 * red, luma - 0.1873 * blue - 0.4681 * red, luma + 1.8556 * blue,
     ], axis=2)
-    return _image(np.clip(color, 0.15, 1.0) * light[..., None] if dark else color, light, dark)
+    return _image(np.clip(color, 0.15, 1.0) if dark else _ink(color), light)
 
 
 def _traces(counts: Array, dark: bool) -> Array:
+    """Hue by what each channel has there, opacity by how much it is."""
     light = scopes.glow(counts)
     color = light @ _CHANNELS
-    return _image(color, light.max(axis=2), dark)
+    hue = color / np.maximum(color.max(axis=2, keepdims=True), 1e-6)
+    return _image(hue if dark else _ink(hue), light.max(axis=2))
 
 
-def _image(color: Array, cover: Array, dark: bool) -> Array:
-    """Traces shine over a dark background; over a light one they are ink."""
-    if not dark:
-        color = np.clip(color / np.maximum(color.max(axis=2, keepdims=True), 1e-6), 0.0, 1.0) * 0.72
+def _ink(color: Array) -> Array:
+    """A color that can be seen on a light background."""
+    return color / np.maximum(color.max(axis=2, keepdims=True), 1e-6) * 0.72
+
+
+def _image(color: Array, cover: Array) -> Array:
+    """Straight color and opacity as 8 bits."""
     pixels = np.concatenate([np.clip(color, 0.0, 1.0), np.clip(cover, 0.0, 1.0)[..., None]], axis=2)
     return (pixels * 255.0 + 0.5).astype(np.uint8)

@@ -92,10 +92,10 @@ def chroma_place(rgb: tuple[float, float, float]) -> tuple[float, float]:
     return 0.5 + blue / (2 * CHROMA), 0.5 - red / (2 * CHROMA)
 
 
-def glow(counts: Array, gain: float = 1.0) -> Array:
+def glow(counts: Array) -> Array:
     """Counts as brightness 0..1: single pixels can be seen, and crowds do not hide everything else."""
-    top = float(np.percentile(counts[counts > 0], 98.0)) if (counts > 0).any() else 1.0
-    return np.clip(np.sqrt(counts / max(top, 1.0)) * gain, 0.0, 1.0).astype(np.float32)
+    top = float(np.percentile(counts[counts > 0], 97.0)) if (counts > 0).any() else 1.0
+    return np.clip((counts / max(top, 1.0)) ** 0.45 * 1.1, 0.0, 1.0).astype(np.float32)
 
 
 def extent(rgb: Array) -> tuple[float, float]:

@@ -73,18 +73,19 @@ class Scopes:
 
     def _draw_tools(self, editor: Editor) -> None:
         viewer = editor.viewer
-        imgui.push_style_var(imgui.StyleVar_.item_spacing, (2.0 * ui_scale(), imgui.get_style().item_spacing.y))
+        gap = 2.0 * ui_scale()
         for icon, name in zip(_ICONS, SCOPES, strict=True):
             tool(editor, icon, f"scopes.{name}")
-            imgui.same_line()
+            imgui.same_line(0.0, gap)
+        _wrap("log")
         if button(editor, "log##logarithmic", viewer.scopes_logarithmic):
             viewer.scopes_logarithmic = not viewer.scopes_logarithmic
         imgui.set_item_tooltip("Logarithmic histogram")
-        imgui.same_line()
+        imgui.same_line(0.0, gap)
+        _wrap("display")
         if button(editor, "scene" if viewer.scopes_of_scene else "display", viewer.scopes_of_scene):
             viewer.scopes_of_scene = not viewer.scopes_of_scene
         imgui.set_item_tooltip("What is measured: scene-linear numbers, or what the display shows")
-        imgui.pop_style_var()
 
     def _refresh(self, editor: Editor, shown: Shown, names: list[str]) -> None:
         """Measure again if the picture, or how it is shown, has changed, but not too often."""
@@ -153,6 +154,12 @@ class Scopes:
         else:
             graticules.level_lines(lines, palette, box, *self._range)
         lines.pop_clip_rect()
+
+
+def _wrap(label: str) -> None:
+    """Begin another line where a button with that label would not fit."""
+    if imgui.calc_text_size(label).x + 2 * imgui.get_style().frame_padding.x > imgui.get_content_region_avail().x:
+        imgui.new_line()
 
 
 def _columns(width: float, height: float, count: int) -> int:

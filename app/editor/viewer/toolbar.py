@@ -39,7 +39,7 @@ class _Item:
 
 def draw_toolbar(editor: Editor, asked_view: str, is_data: bool) -> None:
     """Draw the tools in one row."""
-    room = imgui.get_content_region_avail().x
+    room = imgui.internal.get_current_window().inner_rect.max.x - imgui.get_cursor_screen_pos().x
     gap = 2.0 * ui_scale()
     items = _items(editor, asked_view, is_data)
     more = _text_width(icons.ICON_FA_ELLIPSIS)
@@ -50,14 +50,13 @@ def draw_toolbar(editor: Editor, asked_view: str, is_data: bool) -> None:
         while count < len(items) and left >= items[count].width:
             left -= items[count].width + gap
             count += 1
-    imgui.push_style_var(imgui.StyleVar_.item_spacing, (gap, imgui.get_style().item_spacing.y))
     for index, item in enumerate(items[:count]):
         if index:
-            imgui.same_line()
+            imgui.same_line(0.0, gap)
         item.draw(False)
     if count < len(items):
         if count:
-            imgui.same_line()
+            imgui.same_line(0.0, gap)
         if button(editor, f"{icons.ICON_FA_ELLIPSIS}##more"):
             imgui.open_popup("more tools")
         imgui.set_item_tooltip("More tools")
@@ -65,7 +64,6 @@ def draw_toolbar(editor: Editor, asked_view: str, is_data: bool) -> None:
             for item in items[count:]:
                 item.draw(True)
             imgui.end_popup()
-    imgui.pop_style_var()
 
 
 def _items(editor: Editor, asked_view: str, is_data: bool) -> list[_Item]:
@@ -161,11 +159,11 @@ def _range(editor: Editor, font: float) -> None:
     low, high = viewer.span
     speed = max(abs(high - low), 1e-6) / 200
     low = number(editor, "data low", low, "%.4g", font * 3.2, "Shown as black", speed=speed)
-    imgui.same_line()
+    imgui.same_line(0.0, 2.0 * ui_scale())
     high = number(editor, "data high", high, "%.4g", font * 3.2, "Shown as white", speed=speed)
     if (low, high) != viewer.span:
         viewer.low, viewer.high = low, high
-    imgui.same_line()
+    imgui.same_line(0.0, 2.0 * ui_scale())
     dropdown(editor, icons.ICON_FA_RULER_HORIZONTAL, "range", menu, "How data is shown", not measured)
 
 

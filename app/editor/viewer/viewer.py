@@ -70,9 +70,9 @@ class Viewer:
         b = preview.shown(B) if viewer.compares else None
         now = _Now(preview.shown(A), b, asked_view(editor.session.graph, port) if port else "")
         self._time(editor, now)
-        scale = ui_scale()
-        imgui.set_cursor_pos((4 * scale, imgui.get_cursor_pos_y() + 3 * scale))
-        draw_toolbar(editor, now.view, now.a is not None and now.a.kind in (Kind.FIELD, Kind.NUMBER, Kind.VECTOR))
+        inner, pad = imgui.internal.get_current_window().inner_rect, 4 * ui_scale()
+        imgui.set_cursor_screen_pos((inner.min.x + pad, inner.min.y + pad))
+        draw_toolbar(editor, now.view, now.a is not None and now.a.kind in (Kind.FIELD, Kind.VECTOR))
         imgui.push_style_var(imgui.StyleVar_.item_spacing, (0.0, 0.0))
         try:
             self._draw_panel(editor, now)
@@ -84,18 +84,20 @@ class Viewer:
 
     def _draw_panel(self, editor: Editor, now: _Now) -> None:
         viewer, scale = editor.viewer, ui_scale()
-        imgui.set_cursor_pos((0.0, imgui.get_cursor_pos_y() + 3 * scale))
+        inner = imgui.internal.get_current_window().inner_rect
+        start = inner.min.x, imgui.get_cursor_screen_pos().y + 3 * scale
+        imgui.set_cursor_screen_pos(start)
         lines = 2 if now.b is not None else 1
         below = infobar.row_height() * lines
         table = imgui.get_text_line_height_with_spacing() * TABLE_LINES if viewer.table else 0.0
-        room = imgui.get_content_region_avail()
-        height = max(room.y - below - min(table, room.y * 0.45), 32.0)
-        sight = self._catch(editor, now.a, (max(room.x, 32.0), height))
+        width, room = inner.max.x - start[0], inner.max.y - start[1]
+        table = min(table, room * 0.45)
+        sight = self._catch(editor, now.a, (max(width, 32.0), max(room - below - table, 32.0)))
         look = self._draw_picture(editor, now, sight)
         self._draw_messages(editor, now, sight)
         self._read(editor, now, sight, look)
         if viewer.table:
-            draw_table(editor, self._reader, min(table, room.y * 0.45))
+            draw_table(editor, self._reader, table)
 
     def _catch(self, editor: Editor, a: Shown | None, size: tuple[float, float]) -> Sight:
         """The area of the picture, after mouse and wheel had their say."""
@@ -131,7 +133,7 @@ class Viewer:
                 return self._reader.small(editor.probe, shown)
 
             meaning = meaning_of(viewer, shown.kind, samples)
-            viewer.span = range_of(viewer, meaning, samples)
+            viewer.span = range_of(viewer, meaning, samples) if shown.kind is not Kind.NUMBER else (0.0, 1.0)
             look = look_of(viewer, sight, meaning, viewer.span, now.view, palette.surround)
         texture = editor.attempt(lambda: editor.display.draw("viewer", sight.panel, now.a, now.b, look))
         if texture is None:  # a view that there is not
@@ -167,7 +169,7 @@ class Viewer:
             draw_badge(editor, sight, f"Searching{'.' * (self._search // 8 % 4)}", palette.accent)
         elif self._scan.wrong and viewer.warn_nonfinite:
             self._offer_search(editor, sight)
-        if now.a is not None and now.a.kind in (Kind.NUMBER, Kind.COLOR):
+        if now.a is not None and not fault and now.a.kind in (Kind.NUMBER, Kind.COLOR):
             values = self._reader.pixel(editor.probe, "single", now.a, (0, 0))
             draw_message(editor, sight, "  ".join(written(value) for value in values), palette.text)
         waited = time.monotonic() - self._busy_since if self._busy_since is not None else 0.0
@@ -194,17 +196,16 @@ class Viewer:
         viewer = editor.viewer
         mouse = imgui.get_mouse_pos()
         viewer.pixel = sight.under((mouse.x, mouse.y)) if viewer.hovered and now.a is not None else None
-        first = infobar.about(editor, now.a, sight, self._seconds)
         for name, shown in ((A, now.a), (B, now.b)):
             if name == B and shown is None:
                 continue
             values: tuple[float, ...] = ()
             if shown is not None and viewer.pixel is not None:
                 values = self._reader.pixel(editor.probe, name, shown, viewer.pixel)
-            words = infobar.of_pixel(editor, viewer.pixel, values, shown.kind, look) if shown else []
-            if now.b is not None:
-                words = [infobar.Word(name, editor.palette.accent if name == A else editor.palette.good), *words]
-            infobar.draw_line(editor, f"viewer info {name}", [*first, *words] if name == A else words)
+            words = infobar.about(editor, name, shown, sight, self._seconds)
+            if shown is not None:
+                words += infobar.of_pixel(editor, viewer.pixel, values, shown.kind, look)
+            infobar.draw_line(editor, f"viewer info {name}", words)
             if name == A and values:
                 self._use(editor, values)
         viewer.copying = False

@@ -12,7 +12,7 @@ from ..editor import Editor
 def arrived(editor: Editor, paths: Sequence[Path]) -> None:
     """Pictures become nodes; a graph is opened, or becomes a group if it falls on the canvas."""
     graphs = [path for path in paths if path.suffix.casefold() == ".json"]
-    if len(paths) == len(graphs) == 1 and not editor.canvas.hovered:
+    if len(paths) == len(graphs) == 1 and editor.scope != "graph":
         open_graph(editor, graphs[0])
         return
     editor.session.drop_files(list(paths), editor.canvas.pointer)

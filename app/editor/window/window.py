@@ -164,6 +164,8 @@ class Window:
         guarded(self.editor, "Status", lambda: draw_status(self.editor))
 
     def _draw_panel(self, title: str) -> None:
+        corner, size = imgui.get_window_pos(), imgui.get_window_size()
+        self.editor.places[title] = (corner.x, corner.y, corner.x + size.x, corner.y + size.y)
         if title in self.editor.faults:
             failed(self.editor, title)
         else:

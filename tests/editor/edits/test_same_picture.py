@@ -16,7 +16,7 @@ from halation.app.graph import Control, Graph, Group, Port, signature
 from halation.nodes import catalogue
 from random_graphs import SIZE, random_graph
 
-SEEDS = range(150)
+SEEDS = range(60)
 
 
 def keys(graph: Graph) -> dict[str, str]:

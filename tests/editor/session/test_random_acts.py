@@ -24,6 +24,11 @@ def any_node(session: Session, rng: Random) -> str:
     return rng.choice([*session.graph.nodes, "nobody"])
 
 
+def any_group(session: Session, rng: Random) -> str:
+    groups = [id for id, item in session.graph.nodes.items() if isinstance(item, Group)]
+    return rng.choice([*groups, any_node(session, rng)])
+
+
 def any_key(session: Session, rng: Random) -> str:
     return rng.choice([*session.elements, "nobody"])
 
@@ -126,10 +131,10 @@ ACTS: dict[str, Act] = {
     "align": lambda s, r: s.align(r.choice(Side.__args__)),
     "arrange": lambda s, r: s.arrange(),
     "make_group": lambda s, r: s.make_group(r.choice(["", "glow", "a.b"])),
-    "ungroup": lambda s, r: s.ungroup(any_node(s, r)),
-    "enter": lambda s, r: s.enter(any_node(s, r)),
-    "leave": lambda s, r: s.leave(r.randint(1, 2)),
-    "make_local": lambda s, r: s.make_local(any_node(s, r)),
+    "ungroup": lambda s, r: s.ungroup(any_group(s, r)),
+    "enter": lambda s, r: s.enter(any_group(s, r)),
+    "leave": lambda s, r: s.leave(r.choice([0, 1, 1, 2])),
+    "make_local": lambda s, r: s.make_local(any_group(s, r)),
     "add_input": lambda s, r: s.add_input(r.choice("abc"), r.choice([*Kind]), r.randint(2, 4), r.choice([None, spot(r)])),
     "add_output": lambda s, r: s.add_output(r.choice("abc"), r.choice([*Kind]), r.randint(2, 4)),
     "remove_end": lambda s, r: s.remove_end(any_key(s, r)),

@@ -68,7 +68,7 @@ def test_chroma_is_that_of_bt709() -> None:
 
 def test_glow_shows_single_pixels() -> None:
     shown = scopes.glow(np.asarray([0, 1, 10, 100]))
-    assert shown[0] == 0.0 and 0.0 < shown[1] < shown[2] < shown[3] <= 1.0
+    assert shown[0] == 0.0 and 0.0 < shown[1] < shown[2] <= shown[3] <= 1.0
     assert not scopes.glow(np.zeros(3)).any()
 
 

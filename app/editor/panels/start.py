@@ -1,0 +1,182 @@
+"""Where to begin: presets, recent files, unsaved work."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from time import localtime, strftime
+
+from imgui_bundle import ImVec2, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
+
+from ....presets import paths, picture
+from ...media.thumbnail import load_thumbnail
+from ..actions.documents import open_graph, open_preset, recover
+from ..editor import Editor
+from ..preferences import Recent
+from ..recovery import Recovered
+from ..theme.style import mix, u32, ui_scale, vec4
+from .drawing import backdrop, dialog, dim, elided, escaped, font, icon_button, main_button, outline, record, wrapped
+from .textures import Textures
+
+_CARD, _PICTURE_HEIGHT = 196.0, 110.0
+
+HINTS = (
+    "Tab adds a node; drag from a pin into the open to add one that fits.",
+    "Click a node to see its result; 1 to 9 recall what you kept on keys.",
+    "Drop pictures and graphs on the window.",
+    "Ctrl+P finds everything that can be done, F1 shows all shortcuts.",
+    "Unsaved work comes back after a crash.",
+)
+
+
+class StartScreen:
+    """Shown when nothing is open, and from the File menu."""
+
+    def __init__(self) -> None:
+        self._textures = Textures()
+        self._found: tuple[Recovered, ...] | None = None
+
+    def close(self) -> None:
+        """Give pictures back."""
+        self._textures.clear()
+
+    def draw(self, editor: Editor) -> None:
+        """Draw over everything, if it is open."""
+        if "start" not in editor.dialogs.open:
+            self._found = None
+            return
+        if self._found is None:
+            self._found = editor.recovery.found()
+        covered = editor.dialogs.browse is not None or editor.dialogs.question is not None
+        close = backdrop(editor, "start") and not covered
+        with dialog(editor, "Start", (1000, 660), bare=True):
+            height = imgui.get_content_region_avail().y
+            imgui.begin_child("left", ImVec2(290 * ui_scale(), height), imgui.ChildFlags_.nav_flattened.value)
+            self._begin(editor)
+            self._recent(editor)
+            imgui.end_child()
+            imgui.same_line(0, 18 * ui_scale())
+            imgui.begin_child("right", ImVec2(0, height), imgui.ChildFlags_.nav_flattened.value)
+            self._recoveries(editor, self._found)
+            self._presets(editor)
+            imgui.end_child()
+            close = close or (escaped() and not covered)
+        if close:
+            editor.dialogs.open.discard("start")
+
+    def _begin(self, editor: Editor) -> None:
+        with font(editor, "bold", 30.0):
+            imgui.text_unformatted("Halation")
+        dim(editor, "Screen-space effects, node by node")
+        imgui.dummy(ImVec2(0, 8 * ui_scale()))
+        width = imgui.get_content_region_avail().x
+        if main_button(editor, f"{icons.ICON_FA_PLUS}  New graph", "start new", width=width):
+            editor.actions.run("file.new", editor)
+        if imgui.button(f"{icons.ICON_FA_FOLDER_OPEN}  Open...", ImVec2(width, 0)):
+            editor.actions.run("file.open", editor)
+        record(editor, "start open")
+        if not editor.store.now.hint_seen:
+            self._hint(editor)
+
+    def _hint(self, editor: Editor) -> None:
+        imgui.dummy(ImVec2(0, 4 * ui_scale()))
+        with font(editor, "bold"):
+            imgui.text_unformatted("First time here?")
+        for line in HINTS:
+            wrapped(editor.palette.dim, line)
+        if icon_button(editor, icons.ICON_FA_CHECK, "hint seen", "Show this no more", label="Got it"):
+            editor.attempt(lambda: editor.store.change(hint_seen=True))
+
+    def _recent(self, editor: Editor) -> None:
+        imgui.dummy(ImVec2(0, 4 * ui_scale()))
+        with font(editor, "bold"):
+            imgui.text_unformatted("Recent")
+        if not editor.store.now.recent:
+            dim(editor, "Files that you open appear here.")
+        for index, recent in enumerate(editor.store.now.recent):
+            imgui.push_id(index)
+            self._recent_row(editor, index, recent)
+            imgui.pop_id()
+
+    def _recent_row(self, editor: Editor, index: int, recent: Recent) -> None:
+        scale, path, there = ui_scale(), Path(recent.path), recent.exists
+        line = imgui.get_text_line_height()
+        room = imgui.get_content_region_avail().x - 30 * scale
+        start = imgui.get_cursor_pos()
+        imgui.set_next_item_allow_overlap()
+        clicked, _ = imgui.selectable("##recent", False, 0, ImVec2(0, 2 * line + 4 * scale))
+        record(editor, f"recent {index}")
+        imgui.set_item_tooltip(str(path) if there else f"{path}\nThis file is not there any more.")
+        over = imgui.is_mouse_hovering_rect(imgui.get_item_rect_min(), imgui.get_item_rect_max())
+        after = imgui.get_cursor_pos()
+        imgui.set_cursor_pos(ImVec2(start.x + 4 * scale, start.y + scale))
+        faint = mix(editor.palette.dim, editor.palette.panel, 0.4)
+        imgui.text_colored(vec4(editor.palette.text if there else faint), elided(path.stem, room))
+        imgui.set_cursor_pos(ImVec2(start.x + 4 * scale, start.y + line + 3 * scale))
+        imgui.text_colored(vec4(editor.palette.dim if there else faint), elided(str(path.parent), room))
+        if over:
+            imgui.set_cursor_pos(ImVec2(start.x + room + 2 * scale, start.y + 4 * scale))
+            if icon_button(editor, icons.ICON_FA_XMARK, f"forget {index}", "Take it off this list"):
+                editor.store.forget(recent.path)
+                clicked = False
+        imgui.set_cursor_pos(after)
+        imgui.dummy(ImVec2(0, 0))
+        if clicked and there:
+            open_graph(editor, path)
+        elif clicked:
+            editor.log.add(f"{path} is not there any more; take it off the list or bring it back", "warning")
+
+    def _recoveries(self, editor: Editor, found: tuple[Recovered, ...]) -> None:
+        if not found:
+            return
+        with font(editor, "bold"):
+            imgui.text_colored(vec4(editor.palette.warning), "Recover unsaved work")
+        for index, one in enumerate(found):
+            when = strftime("%Y-%m-%d %H:%M", localtime(one.time))
+            nodes = "1 node" if one.nodes == 1 else f"{one.nodes} nodes"
+            imgui.align_text_to_frame_padding()
+            imgui.text_unformatted(elided(one.title, 200 * ui_scale()))
+            imgui.same_line()
+            dim(editor, one.fault or f"{when}, {nodes}")
+            if one.path:
+                imgui.set_item_tooltip(str(one.path))
+            imgui.same_line()
+            if not one.fault:
+                if main_button(editor, "Recover", f"recover {index}"):
+                    recover(editor, one)
+                    self._found = None
+                imgui.same_line()
+            if imgui.button(f"Discard##{index}"):
+                editor.attempt(one.discard)
+                self._found = None
+            record(editor, f"discard {index}")
+        imgui.dummy(ImVec2(0, 6 * ui_scale()))
+
+    def _presets(self, editor: Editor) -> None:
+        scale = ui_scale()
+        with font(editor, "bold"):
+            imgui.text_unformatted("Presets")
+        gap = imgui.get_style().item_spacing.x
+        count = max(int((imgui.get_content_region_avail().x + gap) / (_CARD * scale + gap)), 1)
+        for index, path in enumerate(paths()):
+            if index % count:
+                imgui.same_line()
+            self._card(editor, path)
+
+    def _card(self, editor: Editor, path: Path) -> None:
+        scale, palette = ui_scale(), editor.palette
+        name = path.stem.replace("_", " ")
+        size = ImVec2(_CARD * scale, (_PICTURE_HEIGHT + 26) * scale)
+        clicked = imgui.invisible_button(f"##{path.stem}", size)
+        record(editor, f"preset {path.stem}")
+        low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+        lines, rounding = imgui.get_window_draw_list(), imgui.get_style().frame_rounding
+        lines.add_rect_filled(low, high, u32(palette.hover if imgui.is_item_hovered() else palette.raised), rounding)
+        corner = ImVec2(high.x, low.y + _PICTURE_HEIGHT * scale)
+        texture = self._textures.get(path, load_thumbnail(picture(path)))
+        lines.add_image_rounded(texture, low, corner, ImVec2(0, 0), ImVec2(1, 1), 0xFFFFFFFF, rounding)
+        lines.add_text(ImVec2(low.x + 8 * scale, corner.y + 5 * scale), u32(palette.text), name)
+        if imgui.is_item_hovered():
+            outline(editor, palette.accent)
+        if clicked:
+            open_preset(editor, path)

@@ -1,0 +1,104 @@
+"""The viewer's shaders: one program for every view and way to draw, compiled when it is first used."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import cast, get_args
+
+import moderngl
+import numpy as np
+
+from ..compiler import installed
+from ..errors import DeviceError
+from ..media import GpuView, gpu_view
+from .look import Channels, Compare, Meaning
+from .programs import VERTEX, undisturbed
+
+FIRST_LUT = 2
+"""The texture unit of a view's first table; pictures are bound to those before."""
+
+
+@dataclass(eq=False)
+class ViewProgram:
+    """A compiled program, and the tables that its view reads."""
+
+    handle: moderngl.Program
+    vertices: moderngl.VertexArray
+    luts: tuple[moderngl.Texture | moderngl.Texture3D, ...]
+
+    def set(self, name: str, value: object) -> None:
+        """Set a uniform, unless the driver found it unused."""
+        if name in self.handle:
+            self.handle[name] = value
+
+    def draw(self) -> None:
+        """Cover what the bound framebuffer shows."""
+        for unit, lut in enumerate(self.luts, FIRST_LUT):
+            lut.use(unit)
+        self.vertices.render(moderngl.TRIANGLES, vertices=3)
+
+
+class ViewPrograms:
+    """Views and ways to draw are programs of their own: a branch around one would cost as much as the view."""
+
+    def __init__(self, context: moderngl.Context) -> None:
+        self._context = context
+        self._known: dict[object, ViewProgram] = {}
+
+    def get(
+        self, view: tuple[str, str] | None, compare: Compare = "off", *, texels: bool = False, viewed: bool = False
+    ) -> ViewProgram:
+        """The program for a view and its display, or for data.
+
+        With `texels` it brings the texels of a picture through the view; with `viewed` it draws what that one made.
+        Raises UsageError for an unknown view.
+        """
+        key = (view, compare, texels, viewed)
+        if key not in self._known:
+            text = gpu_view(*view) if view else None
+            with undisturbed():
+                self._known[key] = self._compile(text, _source(text, compare, texels, viewed))
+        return self._known[key]
+
+    def release(self) -> None:
+        """Give everything back to the driver."""
+        for program in self._known.values():
+            for item in (*program.luts, program.vertices, program.handle):
+                item.release()
+        self._known.clear()
+
+    def _compile(self, view: GpuView | None, source: str) -> ViewProgram:
+        context = self._context
+        try:
+            handle = context.program(vertex_shader=VERTEX, fragment_shader=source)
+        except moderngl.Error as fault:
+            raise DeviceError(f"the viewer's shader does not compile: {fault}") from None
+        luts: list[moderngl.Texture | moderngl.Texture3D] = []
+        for unit, lut in enumerate(view.luts if view else (), FIRST_LUT):
+            values = np.ascontiguousarray(lut.values)
+            *depth, height, width, channels = values.shape
+            if depth:
+                made = context.texture3d((width, height, depth[0]), channels, values, dtype="f4")
+                made.repeat_z = False
+            else:
+                made = context.texture((width, height), channels, values, dtype="f4")
+            made.repeat_x = made.repeat_y = False
+            way = moderngl.LINEAR if lut.linear else moderngl.NEAREST
+            made.filter = (way, way)
+            luts.append(made)
+            if lut.sampler in handle:
+                handle[lut.sampler] = unit
+        return ViewProgram(handle, context.vertex_array(handle, []), tuple(luts))
+
+
+def _source(view: GpuView | None, compare: Compare, texels: bool, viewed: bool) -> str:
+    """The whole fragment shader; modes are numbers by name."""
+    names = {f"COMPARE_{mode}": number for number, mode in enumerate(cast("tuple[str, ...]", get_args(Compare)))}
+    names |= {mode: number for number, mode in enumerate(cast("tuple[str, ...]", get_args(Channels)))}
+    names |= {mode: number for number, mode in enumerate(cast("tuple[str, ...]", get_args(Meaning)))}
+    names |= {"DATA": view is None and not viewed, "VIEWED": viewed}
+    defines = [f"#define {name.replace(' ', '_').upper()} {number:d}" for name, number in names.items()]
+    return "\n".join([
+        "#version 410 core", *defines, f"#define COMPARE COMPARE_{compare.upper()}", view.text if view else "",
+        *(text.body for text in installed().closure((f"viewer/{'texels' if texels else 'display'}",), "viewer")),
+    ])

@@ -1,0 +1,16 @@
+#include "viewer/sample.glsl"
+#include "viewer/view.glsl"
+
+// Texels of picture a through the view: fewer than pixels of the panel where the picture is enlarged.
+
+uniform sampler2D a;
+uniform int a_channels;
+uniform ivec2 viewed_first;
+
+out vec4 result;
+
+void main() {
+    vec4 c = sampled(a, vec2(0.0), vec2(1.0), a_channels, gl_FragCoord.xy + vec2(viewed_first)).value;
+    c.rgb *= exposure;
+    result = vec4(seen(c), 1.0);
+}

@@ -1,0 +1,26 @@
+"""A preview on an engine of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+from halation.app.editor.preview import Preview
+from halation.app.renderer import Display, Renderer, open_device
+
+
+@pytest.fixture
+def engine() -> Iterator[Renderer]:
+    made = Renderer(open_device())
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def preview(engine: Renderer) -> Iterator[Preview]:
+    display = Display(engine.device)
+    made = Preview(engine, display)
+    made.patience = 0.0
+    yield made
+    made.close()
+    display.close()

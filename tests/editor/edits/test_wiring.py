@@ -1,0 +1,138 @@
+"""Links: what fits, what is put into them and taken out."""
+
+from __future__ import annotations
+
+import pytest
+from halation.app.editor.edits import routes, wiring
+from halation.app.editor.edits.elements import with_places
+from halation.app.editor.edits.layout import pinned
+from halation.app.errors import GraphError
+from halation.app.graph import Graph, Input, Output, Port, Unknown
+from halation.nodes import Kind
+from toy_nodes import Blend, Flow, Gain, Meter, Photo, Slope, Soften, Split, chain
+
+TOYS = {kind.id: kind for kind in (Gain, Soften, Blend, Split, Slope, Flow, Meter, Photo)}
+
+
+def port(text: str) -> Port:
+    return Port.parse(text)
+
+
+def links(graph: Graph) -> dict[str, str]:
+    return {str(end): str(start) for end, start in graph.links.items()}
+
+
+def test_the_types_that_fit_a_source():
+    graph = chain(1).add_input("depth", Input(Kind.FIELD)).add("slope", Slope()).add("lens", Unknown("lens"))
+    assert wiring.fitting(graph, port("inputs.beauty"), True, TOYS) == (
+        "gain", "soften", "blend", "split", "flow", "meter"
+    )
+    assert "slope" in wiring.fitting(graph, port("inputs.depth"), True, TOYS)
+    assert wiring.fitting(graph, port("slope.flow"), True, TOYS) == ("gain", "flow"), "a position is a vector of two"
+    assert wiring.fitting(graph, port("lens.out"), True, TOYS) == tuple(name for name in TOYS if name != "photo")
+
+
+def test_the_types_that_fit_a_target():
+    graph = Graph().add("flow", Flow()).add("blend", Blend())
+    assert wiring.fitting(graph, port("flow.by"), False, TOYS) == ("split", "slope", "meter"), "a field fits too"
+    assert wiring.fitting(graph, port("blend.mask"), False, TOYS) == ("split", "meter")
+    assert "photo" in wiring.fitting(graph, port("blend.first"), False, TOYS)
+
+
+def test_a_link_goes_to_the_first_free_socket_that_fits():
+    graph = chain(1).add("blend", Blend()).add("meter", Meter())
+    graph = wiring.linked(graph, "blend", port("n0.out"), True)
+    graph = wiring.linked(graph, "blend", port("inputs.beauty"), True)
+    assert links(graph)["blend.first"] == "n0.out"
+    assert links(graph)["blend.second"] == "inputs.beauty"
+    assert links(wiring.linked(graph, "blend", port("inputs.beauty"), True))["blend.first"] == "inputs.beauty", "none is free"
+    graph = wiring.linked(graph.add("split", Split()), "split", port("blend.mask"), False)
+    assert links(graph)["blend.mask"] == "split.grey"
+    with pytest.raises(GraphError, match=r"'meter.mean' fits no input of node 'photo': it has none"):
+        wiring.linked(graph.add("photo", Photo()), "photo", port("meter.mean"), True)
+    with pytest.raises(GraphError, match="form a loop"):
+        wiring.linked(graph, "n0", port("blend.out"), True)
+
+
+def test_a_refusal_names_types_and_loops():
+    graph = chain(2).add("slope", Slope())
+    assert wiring.refusal(graph, port("n0.out"), port("n1.image")) is None
+    assert "does not fit a Field" in str(wiring.refusal(graph, port("n0.out"), port("slope.depth")))
+    assert "n0 -> n1 -> n0" in str(wiring.refusal(graph, port("n1.out"), port("n0.image")))
+    assert "no node 'x'" in str(wiring.refusal(graph, port("x.out"), port("n0.image")))
+
+
+def test_dots_stay_on_their_side_of_a_node_that_is_put_in_and_come_together_again():
+    graph = with_places(pinned(chain(2)), {"n0": (0.0, 0.0), "n1": (900.0, 0.0)})
+    graph, right = routes.add_dot(graph, port("n1.image"), (700.0, 0.0))
+    graph, left = routes.add_dot(graph, port("n1.image"), (300.0, 0.0))
+    assert routes.route(graph, port("n1.image")) == (left, right)
+    fresh = with_places(graph.add("soften", Soften()), {"soften": (500.0, 0.0)})
+    graph_in = wiring.inserted(fresh, "soften", port("n1.image"))
+    assert links(graph_in)["n1.image"] == "soften.out"
+    assert links(graph_in)["soften.image"] == "n0.out"
+    assert routes.routes(graph_in) == {"soften.image": (left,), "n1.image": (right,)}
+    assert wiring.removed(graph_in, "soften") == graph
+    assert routes.routes(wiring.extracted(graph_in, ["soften"])) == {"n1.image": (left, right)}
+
+
+def test_a_node_is_not_put_into_its_own_link_or_into_none():
+    for id, target, said in (("n0", "n1.image", "an end of that link"), ("n0", "n0.gain", "nothing is linked")):
+        with pytest.raises(GraphError, match=said):
+            wiring.inserted(chain(2), id, port(target))
+
+
+def test_extracted_nodes_keep_the_links_among_themselves():
+    after = wiring.extracted(chain(4), ["n1", "n2"])
+    assert links(after) == {
+        "n0.image": "inputs.beauty", "n3.image": "n0.out", "n2.image": "n1.out", "outputs.image": "n3.out"
+    }
+    with pytest.raises(GraphError, match="nothing to take out"):
+        wiring.extracted(after, ["n1", "n2"])
+
+
+def test_swapping_the_first_two_inputs():
+    graph = chain(1).add("blend", Blend()).connect(port("n0.out"), port("blend.first"))
+    once = wiring.swapped(graph, "blend")
+    assert links(once)["blend.second"] == "n0.out" and "blend.first" not in links(once)
+    assert wiring.swapped(once, "blend") == graph
+    both = once.connect(port("inputs.beauty"), port("blend.first"))
+    assert links(wiring.swapped(both, "blend"))["blend.second"] == "inputs.beauty"
+    with pytest.raises(GraphError, match="no two inputs"):
+        wiring.swapped(graph, "n0")
+    with pytest.raises(GraphError, match="nothing is linked"):
+        wiring.swapped(graph.add("other", Blend()), "other")
+
+
+def test_a_replaced_node_keeps_values_of_the_same_name_and_type():
+    graph = chain(2).set(port("n0.gain"), 0.25)
+    after = wiring.replaced(graph, "n0", Blend)
+    assert after.value(port("n0.gain")) == 0.25
+    assert links(after)["n0.first"] == "inputs.beauty"
+    assert wiring.replaced(chain(1).set(port("n0.gain"), 9.0), "n0", Soften).nodes["n0"] == Soften()
+
+
+def test_a_moved_link_takes_its_dots_along():
+    graph = pinned(chain(2).add("blend", Blend()))
+    graph, dot = routes.add_dot(graph, port("n1.image"), (1.0, 2.0))
+    after = wiring.moved(graph, port("n1.image"), port("blend.first"))
+    assert "n1.image" not in links(after)
+    assert routes.routes(after) == {"blend.first": (dot,)}
+
+
+def test_links_from_one_source_share_a_dot():
+    graph = pinned(chain(2).add("blend", Blend()).connect(port("n0.out"), port("blend.first")))
+    graph, dot = routes.add_dot(graph, port("n1.image"), (1.0, 2.0))
+    graph = routes.join_dot(graph, dot, port("blend.first"))
+    assert routes.routes(graph) == {"n1.image": (dot,), "blend.first": (dot,)}
+    assert routes.routes(routes.remove_dots(graph, [dot])) == {}
+    assert "dots" in routes.tidied(graph.disconnect(port("n1.image"))).ui, "the other link still passes it"
+    gone = routes.tidied(graph.disconnect(port("n1.image")).disconnect(port("blend.first")))
+    assert "dots" not in gone.ui
+    with pytest.raises(GraphError, match="another signal"):
+        routes.join_dot(graph, dot, port("outputs.image"))
+
+
+def test_an_output_can_be_reached_too():
+    graph = Graph(outputs={"image": Output()}).add("photo", Photo())
+    assert links(wiring.linked(graph, "photo", port("outputs.image"), False)) == {"outputs.image": "photo.out"}

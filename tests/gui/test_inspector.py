@@ -1,0 +1,247 @@
+"""The inspector: values of the selection are dragged, typed, chosen, reset, linked and exposed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from halation.app import document
+from halation.app.graph import Graph, Group, Output, Port, Settings
+from halation.app.media import write
+from halation.nodes import Kind, catalogue
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import imgui
+
+
+def made() -> Graph:
+    """Noise through a grade and a tone map."""
+    node = catalogue()
+    graph = Graph(settings=Settings((64, 36)))
+    for id in ("noise", "grade", "tone_map", "vignette", "convolve3x3"):
+        graph = graph.add(id, node[id]())
+    graph = graph.add_output("image", Output(Kind.IMAGE, 4))
+    for source, target in (
+        ("noise.out", "grade.image"), ("grade.out", "tone_map.image"), ("tone_map.out", "outputs.image"),
+        ("noise.value", "tone_map.average"),
+    ):
+        graph = graph.connect(Port.parse(source), Port.parse(target))
+    return graph
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    path = tmp_path / "graph.json"
+    document.save(made(), path)
+    return path
+
+
+def value(ui, port: str):
+    return ui.session.value(Port.parse(port))
+
+
+def select(ui, *keys: str) -> int:
+    """Select elements; how many steps the history has."""
+    ui.session.select(keys)
+    ui.wait(3)
+    return len(ui.session.history.steps)
+
+
+def test_a_drag_is_one_step(gui, file) -> None:
+    def body(ui) -> None:
+        steps = select(ui, "tone_map")
+        left, _, right, _ = ui.editor.places["field tone_map.exposure"]
+        start, end = ui.at("field tone_map.exposure"), ui.at("field tone_map.exposure", (0.75, 0.5))
+        ui.drag(start, end, release=False)
+        assert ui.editor.dragging
+        ui.ctx.mouse_up(0)
+        ui.wait(3)
+        assert value(ui, "tone_map.exposure") == pytest.approx(12.0 * (end[0] - start[0]) / (right - left), abs=0.5)
+        assert len(ui.session.history.steps) == steps + 1
+        ui.keys("Ctrl+Z")
+        assert value(ui, "tone_map.exposure") == 0.0
+        ui.drag(start, end, release=False)
+        ui.keys("Escape")
+        ui.ctx.mouse_up(0)
+        ui.wait(3)
+        assert value(ui, "tone_map.exposure") == 0.0
+
+    gui(body, file)
+
+
+def test_numbers_are_typed(gui, file) -> None:
+    def body(ui) -> None:
+        steps = select(ui, "tone_map")
+        ui.click("field tone_map.exposure")
+        ui.type("-1.5EV")
+        assert value(ui, "tone_map.exposure") == -1.5
+        ui.click("field tone_map.exposure")
+        ui.type("*2+1")
+        assert value(ui, "tone_map.exposure") == -2.0
+        assert len(ui.session.history.steps) == steps + 2
+
+        ui.click("field tone_map.bias")
+        ui.type("7")
+        assert value(ui, "tone_map.bias") == 0.85
+        ui.keys("Escape")
+        assert value(ui, "tone_map.bias") == 0.85
+
+        ui.click("field tone_map.key")
+        ui.type("0.25", enter=False)
+        ui.ctx.key_press(imgui.Key.up_arrow)
+        ui.wait(3)
+        assert value(ui, "tone_map.key") == 0.26
+        ui.keys("Tab")
+        ui.type("20")
+        assert (value(ui, "tone_map.key"), value(ui, "tone_map.maximum")) == (0.26, 20.0)
+
+    gui(body, file)
+
+
+def test_what_is_typed_is_kept_when_something_else_is_selected(gui, file) -> None:
+    def body(ui) -> None:
+        select(ui, "tone_map")
+        ui.click("field tone_map.exposure")
+        ui.type("3", enter=False)
+        ui.session.select(["grade"])
+        ui.wait(3)
+        assert value(ui, "tone_map.exposure") == 3.0
+
+    gui(body, file)
+
+
+def test_reset_switch_and_choice(gui, file) -> None:
+    def body(ui) -> None:
+        ui.session.set(Port("tone_map", "bias"), 0.6)
+        select(ui, "tone_map")
+        ui.double_click("name tone_map.bias")
+        assert value(ui, "tone_map.bias") == 0.85
+        ui.click("field tone_map.clip", fraction=(0.05, 0.5))
+        assert value(ui, "tone_map.clip") is False
+        ui.click("field tone_map.operator")
+        ui.ctx.key_chars("hab")
+        ui.wait(3)
+        ui.keys("Enter")
+        assert value(ui, "tone_map.operator") == "hable"
+        ui.move("field tone_map.operator")
+        with ui.held("Ctrl"):
+            ui.wheel(1)
+        assert value(ui, "tone_map.operator") == "khronos neutral"
+
+    gui(body, file)
+
+
+def test_links(gui, file) -> None:
+    def body(ui) -> None:
+        select(ui, "tone_map")
+        ui.click("chip tone_map.average")
+        assert ui.session.selection == {"noise"}
+        select(ui, "tone_map")
+        ui.click("button unlink tone_map.average")
+        assert ui.session.linked(Port("tone_map", "average")) is None
+        ui.click("field tone_map.average")
+        ui.type("0.5")
+        assert value(ui, "tone_map.average") == 0.5
+
+    gui(body, file)
+
+
+def test_colors(gui, file) -> None:
+    def body(ui) -> None:
+        steps = select(ui, "grade")
+        ui.click("field grade.gain", fraction=(0.03, 0.5))
+        ui.ctx.item_click("//$FOCUSED/##grade.gain picker hex")
+        ui.wait(3)
+        ui.type("#ff0000")
+        assert value(ui, "grade.gain") == (1.0, 0.0, 0.0, 1.0)
+        ui.ctx.item_click("//$FOCUSED/##grade.gain picker stops")
+        ui.wait(3)
+        ui.type("2")
+        assert value(ui, "grade.gain") == (4.0, 0.0, 0.0, 1.0)
+        assert len(ui.session.history.steps) == steps + 2
+        ui.ctx.item_click(f"//$FOCUSED/{icons.ICON_FA_EYE_DROPPER}##grade.gain picker")
+        ui.wait(3)
+        assert ui.editor.viewer.picking == "grade.gain"
+
+    gui(body, file)
+
+
+def test_controls(gui, file) -> None:
+    def body(ui) -> None:
+        select(ui, "tone_map")
+        ui.click("name tone_map.exposure", button=1)
+        ui.click("menu Expose as Control")
+        assert ui.session.control_of(Port("tone_map", "exposure")) == "exposure"
+        ui.click("button control tone_map.exposure")
+        ui.type("brightness")
+        assert ui.session.control_of(Port("tone_map", "exposure")) == "brightness"
+        select(ui)
+        ui.click("field tone_map.exposure")
+        ui.type("2")
+        assert value(ui, "tone_map.exposure") == 2.0
+
+    gui(body, file)
+
+
+def test_several_nodes_are_changed_together(gui, file) -> None:
+    def body(ui) -> None:
+        ui.session.set(Port("vignette", "amount"), 0.25)
+        steps = select(ui, "grade", "vignette")
+        ui.click("field vignette.amount")
+        ui.type("*0.5")
+        assert (value(ui, "grade.amount"), value(ui, "vignette.amount")) == (0.5, 0.125)
+        assert len(ui.session.history.steps) == steps + 1
+        ui.double_click("name vignette.amount")
+        assert (value(ui, "grade.amount"), value(ui, "vignette.amount")) == (1.0, 0.5)
+
+    gui(body, file)
+
+
+def test_names_ends_and_groups(gui, file) -> None:
+    def body(ui) -> None:
+        select(ui, "noise")
+        ui.click("field noise name")
+        ui.type("grain")
+        assert "grain" in ui.session.graph.nodes
+        select(ui, "outputs.image")
+        assert not ui.editor.faults
+        ui.click("field outputs.image layer")
+        ui.type("beauty")
+        assert ui.session.graph.outputs["image"].layer == "beauty"
+        select(ui)
+        ui.click("field size", fraction=(0.2, 0.5))
+        ui.type("128")
+        assert ui.session.graph.settings.size == (128, 36)
+        select(ui, "grade", "vignette")
+        id = ui.session.make_group()
+        assert isinstance(ui.session.graph.nodes[id], Group)
+        select(ui, id)
+        ui.click(f"button enter {id}")
+        assert ui.session.place == (id,)
+
+    gui(body, file)
+
+
+def test_files(gui, tmp_path: Path) -> None:
+    picture = tmp_path / "picture.exr"
+    write(picture, {"beauty": np.full((8, 16, 4), 0.5, np.float32), "depth": np.ones((8, 16, 1), np.float32)},
+          kinds={"beauty": Kind.IMAGE, "depth": Kind.FIELD})
+    path = tmp_path / "graph.json"
+    document.save(Graph().add("read", catalogue()["read_image"]()), path)
+
+    def body(ui) -> None:
+        select(ui, "read")
+        ui.click("field read.path", fraction=(0.2, 0.5))
+        ui.type("pictur.exr")
+        ui.click("field read.path", fraction=(0.2, 0.5))
+        ui.type("picture.exr")
+        ui.wait(30)
+        ui.click("field read.layer")
+        ui.wait(5)
+        ui.ctx.item_click("//$FOCUSED/##layer depth")
+        ui.wait(3)
+        assert value(ui, "read.layer") == "depth"
+        ui.click("button browse read.path")
+        assert ui.editor.dialogs.browse is not None
+
+    gui(body, path)

@@ -1,0 +1,303 @@
+"""The viewer and the scopes, moved by mouse and keyboard."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import halation.app as hal
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+from halation import presets
+from halation.app.editor.viewer.geometry import Sight
+from halation.app.graph import Port
+
+PRESET = next(path for path in presets.paths() if path.stem == "film_halation")
+WIDTH, HEIGHT = 480, 270
+
+
+def inside(ui, x: float, y: float) -> tuple[float, float]:
+    """The screen point of a fraction of the picture."""
+    return ui.at("viewer image", (x, y))
+
+
+def hover(ui, x: float = 0.4, y: float = 0.4) -> None:
+    ui.move(inside(ui, x, y))
+    ui.wait(3)
+
+
+def seen(ui, x: float, y: float) -> np.ndarray:
+    """What the window shows at a fraction of the picture, 0..255."""
+    left, top = (int(part) for part in inside(ui, x, y))
+    ui.move((5.0, 5.0))
+    ui.wait(2)
+    return ui.pixels()[top, left].astype(int)
+
+
+def test_shows_numbers_of_the_picture_below_it(gui) -> None:
+    found = {}
+
+    def body(ui) -> None:
+        ui.settled()
+        hover(ui)
+        found["pixel"] = ui.editor.viewer.pixel
+        ui.keys("Ctrl+C")
+        found["text"] = ui.editor.clipboard.get()
+
+    gui(body, PRESET)
+    x, y = found["pixel"]
+    name, numbers = found["text"].split(": ")
+    assert name == f"outputs.image {x} {y}"
+    expected = hal.render(hal.load(PRESET))["image"][y, x]
+    assert [float(part) for part in numbers.split()] == pytest.approx([float(part) for part in expected], rel=1e-5)
+
+
+def test_keys_choose_channels_and_again_all(gui) -> None:
+    def body(ui) -> None:
+        ui.settled()
+        hover(ui)
+        for key, channels in (("R", "red"), ("G", "green"), ("L", "luminance"), ("L", "color"), ("A", "alpha")):
+            ui.keys(key)
+            assert ui.editor.viewer.channels == channels
+        assert (seen(ui, 0.3, 0.7) == 255).all()  # it is opaque
+        hover(ui)
+        ui.keys("R")
+        gray = seen(ui, 0.3, 0.7)
+        assert gray[0] == gray[1] == gray[2] < 255
+
+    gui(body, PRESET)
+
+
+def test_exposure_is_dragged_and_reset(gui) -> None:
+    def body(ui) -> None:
+        ui.settled()
+        before = seen(ui, 0.3, 0.7)
+        left, top, right, bottom = ui.editor.places["field viewer exposure"]
+        ui.drag("field viewer exposure", ((left + right) / 2 + 60, (top + bottom) / 2))
+        assert ui.editor.viewer.exposure > 0.5
+        assert (seen(ui, 0.3, 0.7) > before).all()
+        ui.click("button viewer.neutral")
+        assert ui.editor.viewer.neutral
+        assert (seen(ui, 0.3, 0.7) == before).all()
+        assert not ui.session.dirty
+
+    gui(body, PRESET)
+
+
+def test_the_wipe_shows_both_and_is_dragged(gui) -> None:
+    def body(ui) -> None:
+        ui.settled()
+        a = seen(ui, 0.8, 0.85)
+        ui.session.view(Port("inputs", "beauty"), "B")
+        hover(ui)
+        ui.keys("W")
+        ui.settled()
+        assert ui.editor.preview.shown("B").port == Port("inputs", "beauty")
+        b = seen(ui, 0.8, 0.85)
+        assert (a != b).any()
+        ui.drag("viewer wipe", inside(ui, 0.95, 0.5))
+        assert ui.editor.viewer.wipe == pytest.approx((0.95, 0.5), abs=0.01)
+        assert (seen(ui, 0.8, 0.85) == a).all()
+        left, top = ui.at("viewer wipe")
+        ui.drag("viewer wipe angle", (left - 80.0, top))
+        assert ui.editor.viewer.wipe_angle == pytest.approx(90.0)
+        assert (seen(ui, 0.8, 0.85) == b).all()
+        hover(ui, 0.3, 0.3)
+        ui.keys("Q")
+        assert (seen(ui, 0.3, 0.85) == seen(ui, 0.3, 0.85)).all() and ui.editor.viewer.toggled
+
+    gui(body, PRESET)
+
+
+def test_the_wheel_keeps_the_pixel_under_the_pointer(gui) -> None:
+    def body(ui) -> None:
+        ui.settled()
+        viewer = ui.editor.viewer
+        hover(ui, 0.3, 0.6)
+        before = viewer.pixel
+        ui.wheel(12)
+        ui.wait(3)
+        assert viewer.zoom > 5.0 and viewer.pixel == pytest.approx(before, abs=1)
+        near = viewer.zoom, viewer.pan
+        ui.session.view(Port("inputs", "beauty"))
+        viewer.proxy = 0.5
+        ui.settled()
+        assert (viewer.zoom, viewer.pan) == near and viewer.pixel == pytest.approx(before, abs=1)
+        start = ui.at("viewer panel")
+        ui.drag(start, (start[0] + 50.0, start[1] + 20.0), button=2)
+        assert viewer.pan == pytest.approx((near[1][0] + 50.0, near[1][1] + 20.0), abs=1.0)
+        ui.keys("F")
+        assert viewer.zoom == 0.0
+        ui.keys("0")
+        assert viewer.zoom == 1.0
+
+    gui(body, PRESET)
+
+
+def test_at_full_size_pixels_are_shown_one_to_one(gui) -> None:
+    """The noise of the picture makes every pixel different: a shift or a blur would be seen."""
+    shot = {}
+
+    def body(ui) -> None:
+        ui.settled()
+        ui.editor.viewer.zoom = 1.0
+        ui.editor.viewer.view = "none"
+        ui.move((5.0, 5.0))
+        ui.wait(3)
+        left, top, right, bottom = (int(part) for part in ui.editor.places["viewer image"])
+        shot["seen"] = ui.pixels()[top:bottom, left:right]
+
+    gui(body, PRESET, size=(1600, 1200))
+    expected = oiio_bytes(hal.render(hal.load(PRESET))["image"])
+    assert shot["seen"].shape == (HEIGHT, WIDTH, 3)
+    assert np.abs(shot["seen"].astype(int) - expected).max() <= 1
+
+
+def oiio_bytes(picture: np.ndarray) -> np.ndarray:
+    from halation.app.media import to_display
+
+    return to_display(picture, "none")[..., :3].astype(int)
+
+
+def test_a_region_is_drawn_resized_and_cleared(gui) -> None:
+    def body(ui) -> None:
+        ui.settled()
+        viewer = ui.editor.viewer
+        outside = seen(ui, 0.8, 0.85)
+        hover(ui)
+        ui.keys("Shift+R")
+        ui.drag(inside(ui, 0.2, 0.3), inside(ui, 0.5, 0.6))
+        assert viewer.region == pytest.approx((0.2, 0.3, 0.5, 0.6), abs=0.01)
+        assert (seen(ui, 0.8, 0.85) < outside).all()
+        ui.drag(inside(ui, 0.5, 0.6), inside(ui, 0.7, 0.8))
+        assert viewer.region == pytest.approx((0.2, 0.3, 0.7, 0.8), abs=0.02)
+        ui.editor.actions.run("viewer.clear_region", ui.editor)
+        assert viewer.region is None and not ui.session.dirty
+
+    gui(body, PRESET)
+
+
+def test_a_position_is_dragged_on_the_picture_as_one_step(gui) -> None:
+    def body(ui) -> None:
+        ui.settled()
+        ui.session.select({"vignette"})
+        ui.wait(3)
+        ui.drag("handle vignette.center", inside(ui, 0.7, 0.25))
+        ui.settled()
+        assert ui.session.value(Port("vignette", "center")) == pytest.approx((0.7, 0.25), abs=0.01)
+        assert len(ui.session.history.steps) == 1
+        ui.session.undo()
+        assert ui.session.value(Port("vignette", "center")) == (0.5, 0.5)
+
+    gui(body, PRESET)
+
+
+def test_the_table_measures_rectangles_and_markers(gui) -> None:
+    def body(ui) -> None:
+        ui.settled()
+        viewer = ui.editor.viewer
+        ui.click(inside(ui, 0.3, 0.3), keys="Ctrl")
+        assert viewer.table and viewer.markers[0] == pytest.approx((0.3, 0.3), abs=0.01)
+        ui.settled()
+        ui.drag(inside(ui, 0.2, 0.2), inside(ui, 0.4, 0.6), keys="Ctrl")
+        ui.settled()
+        assert viewer.measured == pytest.approx((0.2, 0.2, 0.4, 0.6), abs=0.02)
+        assert ui.editor.preview.shown("inputs.beauty") is not None
+        assert "Viewer" not in ui.editor.faults
+
+    gui(body, PRESET)
+
+
+def test_scopes_follow_the_picture(gui) -> None:
+    def body(ui) -> None:
+        ui.settled()
+        ui.editor.viewer.scopes = {"histogram", "waveform", "parade", "vectorscope"}
+        ui.wait(30)
+        places = [tuple(int(part) for part in ui.editor.places[f"scope {name}"])
+                  for name in ("histogram", "waveform", "parade", "vectorscope")]
+        before = ui.pixels()
+        for left, top, right, bottom in places:
+            assert before[top:bottom, left:right].max() > 150
+        ui.editor.viewer.exposure = 3.0
+        ui.until(lambda: (ui.wait(10), True)[1])
+        after = ui.pixels()
+        for left, top, right, bottom in places:
+            assert (before[top:bottom, left:right] != after[top:bottom, left:right]).any()
+        assert "Scopes" not in ui.editor.faults
+
+    gui(body, PRESET)
+
+
+def test_the_first_node_that_makes_infinity_is_found(gui) -> None:
+    def body(ui) -> None:
+        session = ui.session
+        ui.editor.dialogs.open.clear()
+        broken = np.ones((8, 16, 4), np.float32)
+        broken[3, 5] = np.inf
+        session.add_input("light", "Image")
+        session._bound["light"] = broken  # files are repaired when they are read
+        first = session.add_node("exposure", link=Port("inputs", "light"))
+        session.view(Port(first, "out"))
+        session.view(Port("inputs", "light"))
+        ui.settled()
+        ui.until(lambda: "viewer find" in ui.editor.places)
+        ui.click("viewer find")
+        ui.until(lambda: not ui.editor.viewer.finding)
+        assert session.active == "inputs.light"
+        assert "5, 3" in ui.editor.log.entries[-1].sentence
+
+    gui(body)
+
+
+def test_what_is_seen_is_saved(gui, tmp_path: Path) -> None:
+    def body(ui) -> None:
+        ui.settled()
+        ui.editor.viewer.exposure = 1.0
+        ui.editor.viewer.channels = "green"
+        ui.editor.viewer.region = (0.4, 0.4, 0.6, 0.6)  # only helps to judge
+        ui.click("button viewer.save")
+        browse = ui.editor.dialogs.browse
+        assert browse is not None and browse.saving and browse.name.endswith(".png")
+        browse.then(tmp_path / "seen.png")
+        ui.editor.dialogs.browse = None
+
+    gui(body, PRESET)
+    saved = oiio.ImageBuf(str(tmp_path / "seen.png"))
+    pixels = saved.get_pixels(oiio.UINT8)
+    assert (saved.spec().width, saved.spec().height) == (WIDTH, HEIGHT)
+    assert (pixels[..., 0] == pixels[..., 1]).all() and pixels.std() > 10
+
+
+def test_says_why_there_is_nothing(gui) -> None:
+    def body(ui) -> None:
+        ui.editor.dialogs.open.clear()
+        ui.wait(3)
+        assert "viewer message" in ui.editor.places
+        noise = ui.session.add_node("noise")
+        ui.session.view(Port(noise, "value"))
+        ui.settled()
+        assert "viewer message" not in ui.editor.places
+        low, high = ui.editor.viewer.span
+        assert 0.0 < low < high < 1.0  # measured
+        ui.session.view(Port(ui.session.add_node("read_image"), "out"))
+        ui.settled()
+        assert "viewer message" in ui.editor.places
+
+    gui(body)
+
+
+def test_at_any_size_tools_and_numbers_fit(gui) -> None:
+    def body(ui) -> None:
+        ui.settled()
+        for scale in (1.0, 2.0):
+            ui.editor.store.change(ui_scale=scale)
+            ui.settled()
+            hover(ui)
+            right = ui.editor.places["viewer panel"][2]
+            tools = [box for name, box in ui.editor.places.items() if name.startswith("button viewer")]
+            assert tools and all(box[2] <= right for box in tools)
+            sight = Sight.of((0.0, 0.0), ui.editor.viewer.panel, (WIDTH, HEIGHT), 0.0, (0.0, 0.0))
+            assert sight.zoom > 0.1
+        assert "Viewer" not in ui.editor.faults
+
+    gui(body, PRESET, size=(700, 600))

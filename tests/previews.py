@@ -1,0 +1,57 @@
+"""A graph to preview, and how a test waits for its picture."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+from halation.app.editor.preview import Preview
+from halation.app.graph import Graph, Input, Output, Port
+from halation.app.renderer import Renderer, Wanted
+from halation.nodes import Kind
+from halation.nodes.blur.gaussian_blur import GaussianBlur
+from halation.nodes.color.exposure import Exposure
+from halation.nodes.color.saturation import Saturation
+
+PICTURE = np.random.default_rng(8).random((23, 37, 4), np.float32)
+IMAGE = Port("outputs", "image")
+OUT = {"A": IMAGE}
+
+
+def chain(stops: float = 1.0, sigma: float = 2.0, saturation: float = 0.5) -> Graph:
+    graph = Graph(inputs={"image": Input(Kind.IMAGE)}, outputs={"image": Output()})
+    last = Port("inputs", "image")
+    nodes = {"light": Exposure(stops=stops), "blur": GaussianBlur(sigma=sigma)}
+    for name, node in (nodes | {"color": Saturation(saturation=saturation)}).items():
+        graph = graph.add(name, node).connect(last, Port(name, "image"))
+        last = Port(name, "out")
+    return graph.connect(last, Port("outputs", "image"))
+
+
+def want(preview: Preview, graph: Graph, ports=OUT, **rest) -> None:
+    preview.want(graph, ports, **({"bindings": {"image": PICTURE}} | rest))
+
+
+def settle(preview: Preview) -> int:
+    """Work to the end; how many calls that took."""
+    for count in range(1, 10_000):
+        if not preview.work(0.0):
+            return count
+        time.sleep(0.0005)
+    raise AssertionError("it never ends")
+
+
+def pixels(preview: Preview, engine: Renderer, name: str = "A") -> np.ndarray:
+    shown = preview.shown(name)
+    assert shown is not None
+    with engine.device.current():
+        data = np.frombuffer(shown.texture.read(), np.float32)
+    return data.reshape(shown.size[1], shown.size[0], -1)[..., : shown.channels]
+
+
+def rendered(engine: Renderer, graph: Graph, port: Port = IMAGE, **rest) -> np.ndarray:
+    return engine.render(graph, Wanted({"image": PICTURE}, {"x": port}, **rest))["x"]
+
+
+def passes(engine: Renderer) -> int:
+    return engine.runner.counters.passes
