@@ -27,7 +27,8 @@ from halation.app.graph import Graph, Output, Port
 from halation.nodes import Kind, catalogue
 
 _TEN = (
-    "exposure", "saturation", "grade", "gaussian_blur", "vignette", "exposure", "clip", "saturation", "bloom", "exposure",
+    "exposure", "saturation", "grade", "gaussian_blur", "vignette", "exposure", "clip", "saturation", "bloom",
+    "exposure",
 )
 _CAST = (
     "exposure", "grade", "saturation", "vignette", "clip", "gaussian_blur", "tone_map", "bloom", "edge_detect",

@@ -14,7 +14,7 @@ Gui = Callable[..., Window]
 
 @pytest.fixture
 def gui(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Gui:
-    """The arguments are those of `gui_driver.drive` without the folder; what an editor remembers is kept between calls."""
+    """Takes the arguments of `gui_driver.drive` but the folder; what an editor remembers is kept between calls."""
     monkeypatch.setenv("HALATION_STATE", str(tmp_path / "state"))
 
     def run(body: Callable[[Ui], object], path: Path | None = None, **options: object) -> Window:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import shutil
-import signal
 import subprocess
 import sys
 import time
@@ -123,14 +122,12 @@ def test_work_is_offered_again_after_the_process_was_killed(gui, look: Path, tmp
         "    ui.wait(5); print('ready', flush=True); ui.until(lambda: False, 60)\n"
         "drive(body, Path(sys.argv[2]), Path(sys.argv[3]))\n"
     )
-    process = subprocess.Popen(
+    with subprocess.Popen(
         [sys.executable, "-c", script, str(HERE), str(tmp_path), str(look)], stdout=subprocess.PIPE, text=True,
         env={**os.environ, "HALATION_STATE": str(tmp_path / "state")},
-    )
-    assert process.stdout
-    assert any(line.strip() == "ready" for line in process.stdout)
-    process.send_signal(signal.SIGKILL)
-    process.wait()
+    ) as process:
+        assert process.stdout and any(line.strip().endswith("ready") for line in process.stdout)
+        process.kill()
     assert document.load(look).value(Port("tone", "exposure")) != 2.5
     time.sleep(0.1)
 

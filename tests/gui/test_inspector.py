@@ -12,6 +12,7 @@ from halation.app.media import write
 from halation.nodes import Kind, catalogue
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
+from toy_nodes import Tint
 
 
 def made() -> Graph:
@@ -245,3 +246,102 @@ def test_files(gui, tmp_path: Path) -> None:
         assert ui.editor.dialogs.browse is not None
 
     gui(body, path)
+
+
+def test_positions_are_put_on_the_picture(gui, file) -> None:
+    def body(ui) -> None:
+        graph = ui.session.graph.connect(Port("tone_map", "out"), Port("vignette", "image"))
+        ui.session.edit("Link", graph.connect(Port("vignette", "out"), Port("outputs", "image")))
+        select(ui, "vignette")
+        ui.settled()
+        ui.click("button place vignette.center")
+        assert ui.editor.viewer.picking == "vignette.center"
+        left, top, right, bottom = ui.editor.places["viewer image"]
+        ui.click((left + (right - left) * 0.25, top + (bottom - top) * 0.75))
+        assert value(ui, "vignette.center") == pytest.approx((0.25, 0.75), abs=0.03)
+        assert ui.editor.viewer.picking == ""
+
+    gui(body, file)
+
+
+def test_curves_and_ramps(gui, file) -> None:
+    def body(ui) -> None:
+        ui.session.edit("Add", ui.session.graph.add("tint", Tint()))
+        steps = select(ui, "tint")
+        ui.drag(ui.at("field tint.curve", (0.5, 0.2)), ui.at("field tint.curve", (0.5, 0.55)))
+        curve = value(ui, "tint.curve")
+        assert (len(curve), len(ui.session.history.steps)) == (6, steps + 1)
+        assert curve[2] == pytest.approx(0.5, abs=0.02) and 0.2 < curve[3] < 0.5
+        ui.click("field tint.curve", button=1, fraction=(0.5, 0.55))
+        assert value(ui, "tint.curve") == (0.0, 0.0, 1.0, 1.0)
+        ui.click("field tint.ramp", fraction=(0.5, 0.15))
+        assert len(value(ui, "tint.ramp")) == 15
+        assert value(ui, "tint.ramp")[5:] == pytest.approx((0.5, 0.5, 0.5, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0), abs=0.02)
+        ui.shot("curves.png")
+
+    gui(body, file, size=(1400, 1200))
+
+
+def test_it_draws_every_node(gui, file) -> None:
+    def body(ui) -> None:
+        for id in catalogue():
+            node = ui.session.add_node(id)
+            ui.session.expose(Port(node, name)) if (name := next(iter(catalogue()[id].values), "")) else None
+            select(ui, node)
+            assert not ui.editor.faults, id
+        ui.session.add_frame("around")
+        select(ui, "frames.f1")
+        ui.session.add_comment((0.0, 0.0), "words")
+        select(ui, "comments.c1")
+        select(ui)
+        assert not ui.editor.faults
+
+    gui(body, file)
+
+
+def test_the_graph_itself(gui, file) -> None:
+    def body(ui) -> None:
+        select(ui)
+        ui.click("button add input")
+        ui.click("menu Field")
+        assert ui.session.graph.inputs["field"].kind is Kind.FIELD
+        ui.session.bind("field", "depth.exr")
+        select(ui, "inputs.field")
+        ui.click("field inputs.field name")
+        ui.type("depth")
+        ui.click("field inputs.depth doc")
+        ui.type("How far away.")
+        assert ui.session.graph.inputs["depth"].doc == "How far away."
+        assert ui.session.bindings == {"depth": "depth.exr"}
+        ui.click("chip inputs.depth bound")
+        assert ui.session.bindings == {}
+        select(ui)
+        ui.click("button remove inputs.depth")
+        assert not ui.session.graph.inputs
+        ui.session.expose(Port("grade", "amount"))
+        ui.wait(3)
+        ui.click("more controls.amount", fraction=(0.1, 0.5))
+        ui.click("field controls.amount name")
+        ui.type("strength")
+        assert list(ui.session.graph.controls) == ["strength"]
+        assert not ui.editor.faults
+
+    gui(body, file, size=(1400, 1200))
+
+
+def test_values_pass_the_clipboard(gui, file) -> None:
+    def body(ui) -> None:
+        select(ui, "grade")
+        ui.session.set(Port("grade", "gain"), (2.0, 1.0, 0.5, 1.0))
+        ui.wait(3)
+        ui.click("name grade.gain", button=1)
+        ui.click("menu Copy Value")
+        ui.click("name grade.lift", button=1)
+        ui.click("menu Paste Value")
+        assert value(ui, "grade.lift") == (2.0, 1.0, 0.5, 1.0)
+        ui.click("name grade.amount", button=1)
+        ui.click("menu Paste Value")
+        assert value(ui, "grade.amount") == 1.0
+        assert "takes a number" in ui.editor.log.entries[-1].sentence
+
+    gui(body, file)

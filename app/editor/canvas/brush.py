@@ -53,6 +53,8 @@ class Ink:
 
     headers: dict[str, int]
     headers_muted: dict[str, int]
+    marks: dict[str, int]
+    """Headers strong enough to be seen where they are small."""
     over: int
     """Text of less weight on a header."""
 
@@ -78,7 +80,8 @@ def ink(theme: str) -> Ink:
         {kind: u32(color) for kind, color in kinds.items()},
         {kind: u32(mix(color, p.canvas, 0.7)) for kind, color in kinds.items()},
         {name: u32(color) for name, color in p.categories.items()},
-        {name: u32(mix(color, p.node, 0.6)) for name, color in p.categories.items()}, u32(p.text, 0.6),
+        {name: u32(mix(color, p.node, 0.6)) for name, color in p.categories.items()},
+        {name: u32(mix(color, p.text, 0.3)) for name, color in p.categories.items()}, u32(p.text, 0.6),
     )
 
 

@@ -38,6 +38,7 @@ from .search import Search
 from .staging import Stage
 
 _HINTS = ("An empty graph", "Tab adds a node", "Drop an image or a graph file here")
+_ANY_TIME = int(imgui.HoveredFlags_.allow_when_blocked_by_active_item)
 _BUTTONS = int(imgui.ButtonFlags_.mouse_button_left) | int(imgui.ButtonFlags_.mouse_button_right) | int(
     imgui.ButtonFlags_.mouse_button_middle
 )
@@ -61,47 +62,68 @@ class Canvas:
         self._minimap = Minimap()
         self._legend = Legend()
         self._places = Places()
+        self._place: tuple[str, ...] = ()
+        self._views: dict[tuple[str, ...], tuple[Point, float]] = {}
 
     def draw(self, editor: Editor) -> None:
         """Draw the graph at the session's place into the current window."""
         fonts, view, scale = editor.fonts, editor.canvas, ui_scale()
-        low, area = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail()
-        panel = (low.x, low.y, low.x + area.x, low.y + area.y)
-        if fonts is None or area.x < 16 or area.y < 16:
+        panel = _whole_window()
+        area = panel[2] - panel[0], panel[3] - panel[1]
+        if fonts is None or min(area) < 16:
             return
+        imgui.set_scroll_x(0.0)
+        imgui.set_scroll_y(0.0)
+        self._enter(editor)
         scene = self._build(editor)
-        self._fit(editor, scene, (area.x / scale, area.y / scale))
+        self._fit(editor, scene, (area[0] / scale, area[1] / scale))
         to = transform(panel, view.center, view.zoom * scale)
         low_seen, high_seen = to.to_canvas(*panel[:2]), to.to_canvas(*panel[2:])
         brush = Brush(
             imgui.get_window_draw_list(), to, view.zoom, ink(editor.palette.name), fonts, self._texts,
             (*low_seen, *high_seen),
         )
+        brush.draw.push_clip_rect(panel[:2], panel[2:], False)
+        imgui.set_cursor_screen_pos(panel[:2])
         imgui.set_next_item_allow_overlap()
+        imgui.push_item_flag(int(imgui.ItemFlags_.no_nav), True)
         imgui.invisible_button("##canvas", area, _BUTTONS)
-        over = imgui.is_item_hovered() and not self._blocked(editor, panel)
+        imgui.pop_item_flag()
+        view.hovered = imgui.is_window_hovered(_ANY_TIME)
+        busy = imgui.is_any_item_active() and not imgui.is_item_active()
+        over = view.hovered and not busy and not self._blocked(editor, panel)
         at = imgui.get_mouse_pos()
         frame = Frame(editor, scene, to, panel, scale, over, to.to_canvas(at.x, at.y), (at.x, at.y))
-        view.hovered = imgui.is_window_hovered(int(imgui.HoveredFlags_.allow_when_blocked_by_active_item))
         if view.hovered and not self._search.is_open:
             view.pointer = frame.at
         self._mouse.update(frame)
 
-        brush.draw.push_clip_rect(panel[:2], panel[2:], True)
         paint_grid(brush, panel)
         self._paint(editor, brush, frame)
-        brush.draw.pop_clip_rect()
         self._around(editor, brush, frame)
+        brush.draw.pop_clip_rect()
         view.sizes = scene.sizes
         self._places.record(editor, self._mouse.dragged.scene, brush)
 
     # --- before painting ---------------------------------------------------------------------------------------------
 
+    def _enter(self, editor: Editor) -> None:
+        """Every group keeps the view that someone had of it; a new one is seen whole."""
+        place, view = editor.session.place, editor.canvas
+        if place == self._place:
+            return
+        self._views[self._place] = view.center, view.zoom
+        self._place = place
+        if place in self._views:
+            view.center, view.zoom = self._views[place]
+        else:
+            view.fit()
+
     def _build(self, editor: Editor) -> Scene:
         session, pictures = editor.session, editor.store.now.thumbnails
         gesture = self._mouse.gesture
         opened = self._opened if isinstance(gesture, Link) else ""
-        staged = (session.revision, pictures, opened, len(self._stage.expanded), id(session.graph))
+        staged = (session.revision, pictures, opened, frozenset(self._stage.expanded))
         if self._scene is None or staged != self._staged:
             positions = session.positions
             top = [key for key in session.elements if key in session.selection and key != session.active]
@@ -136,7 +158,8 @@ class Canvas:
         likes = editor.store.now
         return any(
             holds(rect, mouse.x, mouse.y) for rect in (
-                self._minimap.rect(panel) if likes.minimap else None, self._legend.rect(panel),
+                self._minimap.rect(panel) if likes.minimap else None, self._legend.rect(panel), self._naming.rect,
+                editor.places.get("crumbs"),
             ) if rect
         )
 
@@ -175,8 +198,7 @@ class Canvas:
             return self._live.holder
         if self._live.open:
             return self._live.open[0].node
-        inside = imgui.is_window_hovered(int(imgui.HoveredFlags_.allow_when_blocked_by_active_item))
-        return scene.node_at(*frame.at) if inside and isinstance(self._mouse.gesture, Idle) else ""
+        return scene.node_at(*frame.at) if frame.over and isinstance(self._mouse.gesture, Idle) else ""
 
     def _paint_node(self, brush: Brush, box: Box, now: Moment, hot: str) -> None:
         layout = box.layout
@@ -224,8 +246,8 @@ class Canvas:
                         imgui.MouseCursor_.resize_ew if across else imgui.MouseCursor_.resize_ns
                     )
                     imgui.set_mouse_cursor(cursor)
-        if mouse.refusal:
-            paint_note(brush, *frame.screen, mouse.refusal, brush.ink.error)
+        if editor.canvas.refusal:
+            paint_note(brush, *frame.screen, editor.canvas.refusal, brush.ink.error)
         elif editor.canvas.tool and frame.over:
             what = "cut them" if editor.canvas.tool == "cut" else "put dots on them"
             paint_note(brush, *frame.screen, f"Drag across links to {what}; Escape ends", brush.ink.text)
@@ -242,7 +264,7 @@ class Canvas:
         snap = self._mouse.dragged.snap
         end = snap[1] if snap else frame.at
         shape = curve(*start, *end) if link.output else curve(*end, *start)
-        color = brush.ink.error if self._mouse.refusal else brush.ink.kinds[pin.kind]
+        color = brush.ink.error if frame.editor.canvas.refusal else brush.ink.kinds[pin.kind]
         paint_curve(brush, shape, color, 3.0)
         paint_pin(brush, *start, pin.kind, color, 1.5)
         if snap:
@@ -287,6 +309,12 @@ class Canvas:
             view.searching = False
             self._search.begin(editor, view.pointer)
         self._search.draw(editor)
+
+
+def _whole_window() -> Rect:
+    """The window up to its borders, below its tab."""
+    low, pos, size = imgui.get_cursor_screen_pos(), imgui.get_window_pos(), imgui.get_window_size()
+    return pos.x, low.y - imgui.get_style().window_padding.y, pos.x + size.x, pos.y + size.y
 
 
 def _grown(rect: Rect, by: float) -> Rect:

@@ -20,6 +20,7 @@ def draw_crumbs(editor: Editor, brush: Brush, panel: Rect) -> None:
     pad, height = 8.0 * scale, imgui.get_frame_height() + 8.0 * scale
     brush.draw.add_rect_filled(panel[:2], (panel[2], panel[1] + height), u32(palette.panel, 0.94))
     brush.draw.add_line((panel[0], panel[1] + height), (panel[2], panel[1] + height), u32(palette.border))
+    editor.places["crumbs"] = (*panel[:3], panel[1] + height)
     imgui.set_cursor_screen_pos((panel[0] + pad, panel[1] + 4.0 * scale))
     imgui.push_style_color(imgui.Col_.button, vec4(palette.panel, 0.0))
     imgui.push_style_var(imgui.StyleVar_.item_spacing, (2.0 * scale, 0.0))
@@ -33,7 +34,6 @@ def draw_crumbs(editor: Editor, brush: Brush, panel: Rect) -> None:
         imgui.push_style_color(imgui.Col_.text, vec4(palette.text if here else palette.dim))
         if imgui.button(f"{title}##crumb {index}") and not here:
             editor.attempt(lambda place=place: session.go(place))
-            editor.canvas.fit()
         imgui.pop_style_color()
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
         editor.places[f"crumb {title}"] = low.x, low.y, high.x, high.y

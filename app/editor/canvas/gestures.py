@@ -183,7 +183,7 @@ def insertable(graph: Graph, scene: Scene, keys: Collection[str], at: Point, rea
         return None
     box = scene.boxes[id]
     wire = scene.wire_at(box.x + box.w / 2, box.y + min(box.h / 2, 24.0), reach) or scene.wire_at(*at, reach)
-    if wire is None or any(overlap(box.rect, scene.boxes[stop].rect) for stop in wire.stops):
+    if wire is None:
         return None
     try:
         inserted(graph, id, wire.target)

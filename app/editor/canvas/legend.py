@@ -45,7 +45,9 @@ class Legend:
         rect, palette, scale = self.rect(panel), editor.palette, ui_scale()
         imgui.set_cursor_screen_pos(rect[:2])
         imgui.set_next_item_allow_overlap()
+        imgui.push_item_flag(int(imgui.ItemFlags_.no_nav), True)
         pressed = imgui.invisible_button("##legend", (rect[2] - rect[0], rect[3] - rect[1]))
+        imgui.pop_item_flag()
         hovered = imgui.is_item_hovered()
         center = (rect[0] + rect[2]) / 2, (rect[1] + rect[3]) / 2
         brush.draw.add_circle_filled(center, _SIDE / 2 * scale, u32(palette.hover if hovered else palette.panel, 0.9))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from imgui_bundle import imgui
 
 from ..editor import Editor
-from ..theme.style import mix, u32, ui_scale
+from ..theme.style import u32, ui_scale
 from .brush import Brush
 from .geometry import Rect, bounds
 from .scene import Scene
@@ -43,17 +43,14 @@ class Minimap:
         draw, palette, selection = brush.draw, editor.palette, editor.session.selection
         rounding = 6.0 * ui_scale()
         draw.add_rect_filled(rect[:2], rect[2:], u32(palette.panel, 0.88), rounding)
+        faint = u32(palette.dim, 0.2)
         for key, box in scene.boxes.items():
             if box.sort == "dot":
                 continue
             low = left + box.x * scale, top + box.y * scale
             high = max(low[0] + box.w * scale, low[0] + 2.0), max(low[1] + box.h * scale, low[1] + 1.5)
-            header = palette.category(box.layout.category) if box.layout else palette.dim
-            if box.sort == "frame":
-                draw.add_rect_filled(low, high, u32(palette.dim, 0.18), 1.0)
-                continue
-            color = palette.accent if key in selection else mix(header, palette.text, 0.3)
-            draw.add_rect_filled(low, high, u32(color), 1.0)
+            header = brush.ink.marks.get(box.layout.category, brush.ink.marks[""]) if box.layout else faint
+            draw.add_rect_filled(low, high, brush.ink.accent if key in selection else header, 1.0)
         seen = brush.seen
         low, high = (left + seen[0] * scale, top + seen[1] * scale), (left + seen[2] * scale, top + seen[3] * scale)
         draw.push_clip_rect(rect[:2], rect[2:], True)
@@ -65,7 +62,9 @@ class Minimap:
 
         imgui.set_cursor_screen_pos(rect[:2])
         imgui.set_next_item_allow_overlap()
+        imgui.push_item_flag(int(imgui.ItemFlags_.no_nav), True)
         imgui.invisible_button("##minimap", (rect[2] - rect[0], rect[3] - rect[1]))
+        imgui.pop_item_flag()
         self.dragging = imgui.is_item_active()
         if self.dragging:
             mouse = imgui.get_mouse_pos()

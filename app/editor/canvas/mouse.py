@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 
 from imgui_bundle import imgui
 
-from ...errors import GraphError
 from ...graph import Group, Port
 from ..editor import Editor
 from .geometry import Point, Rect, Transform, drift, holds, zoomed
@@ -85,8 +84,6 @@ class Mouse:
     hit: Hit = EMPTY
     asked: Asked = field(default_factory=Asked)
     dragged: Dragged = field(default_factory=lambda: Dragged(Scene({}, ())))
-    refusal: str = ""
-    """Why the link in the hand does not fit the pin under the pointer."""
     _pressed: tuple[Hit, Point] | None = None
     """Where the right button went down."""
 
@@ -282,7 +279,7 @@ class Mouse:
                 editor.attempt(lambda: session.connect(source, target))
         elif not _far(frame.to.to_screen(*self._start(frame, link)), frame):
             if link.output and link.detached is None:
-                editor.attempt(lambda: session.select((_owner(link.port),)))
+                editor.attempt(lambda: session.view(link.port))
         elif refused(frame.scene, link, frame.at, frame.reach) is None and not frame.scene.node_at(*frame.at):
             if link.detached:
                 target = link.detached
@@ -302,7 +299,7 @@ class Mouse:
     def _show(self, frame: Frame) -> None:
         gesture, graph = self.gesture, frame.editor.session.graph
         self.dragged = Dragged(shown(frame.scene, gesture))
-        self.refusal = ""
+        frame.editor.canvas.refusal = ""
         match gesture:
             case Move() if gesture.going:
                 self.dragged.insert = insertable(graph, self.dragged.scene, gesture.keys, frame.at, frame.reach)
@@ -313,7 +310,7 @@ class Mouse:
                 if other := refused(frame.scene, gesture, frame.at, frame.reach):
                     source, target = (gesture.port, other) if gesture.output else (other, gesture.port)
                     if other != gesture.port and source.node != target.node:
-                        self.refusal = frame.editor.session.refusal(source, target) or ""
+                        frame.editor.canvas.refusal = frame.editor.session.refusal(source, target) or ""
                     self.dragged.snap = None
             case _:
                 pass
@@ -368,10 +365,3 @@ def _drawn(frame: Frame, draw: Draw) -> None:
         session.edit("Add dots", graph, keys)
 
     editor.attempt(dots if draw.dots else lambda: session.cut(tuple(crossings)))
-
-
-def _owner(port: Port) -> str:
-    return str(port) if port.node in ("inputs", "outputs") else port.node
-
-
-__all__ = ["Asked", "Frame", "GraphError", "Mouse"]

@@ -9,7 +9,8 @@ from imgui_bundle import imgui
 from ..editor import Editor
 from ..edits.elements import end_port, entry
 from .brush import TEXT, Brush
-from .scene import FRAME_TITLE, Scene
+from .geometry import Rect
+from .scene import Scene
 
 
 @dataclass
@@ -17,6 +18,8 @@ class Naming:
     """The element that is being named or written in."""
 
     key: str = ""
+    rect: Rect | None = None
+    """Where the field is, on the screen."""
     _text: str = ""
     _starting: bool = False
 
@@ -34,6 +37,7 @@ class Naming:
 
     def draw(self, editor: Editor, brush: Brush, scene: Scene) -> None:
         """Draw the field, and keep what was typed once that is over."""
+        self.rect = None
         if not self.key:
             return
         box = scene.boxes.get(self.key)
@@ -57,7 +61,8 @@ class Naming:
             _, self._text = imgui.input_text("##naming", self._text, flags)
         imgui.pop_style_var()
         imgui.pop_font()
-        active = imgui.is_item_active()
+        active, high = imgui.is_item_active(), imgui.get_item_rect_max()
+        self.rect = (*low, high.x, high.y)
         if self._starting:
             self._starting = not active
         elif imgui.is_item_deactivated() or not active:
@@ -77,6 +82,3 @@ def _keep(editor: Editor, key: str, text: str) -> None:
         session.rename_end(key, text.strip())
     else:
         session.rename(key, text.strip())
-
-
-__all__ = ["FRAME_TITLE", "Naming"]

@@ -19,6 +19,7 @@ from .geometry import Point
 
 _POPUP = "add to the graph"
 _RECENT = 5
+_FLAGS = int(imgui.WindowFlags_.no_move) | int(imgui.WindowFlags_.no_scrollbar)
 _WIDTH, _HEIGHT = 300.0, 360.0
 
 
@@ -59,7 +60,7 @@ class Search:
             mouse = imgui.get_mouse_pos()
             imgui.set_next_window_pos((mouse.x - 12 * scale, mouse.y - 12 * scale))
         imgui.set_next_window_size((_WIDTH * scale, _HEIGHT * scale))
-        self.is_open = imgui.begin_popup(_POPUP, int(imgui.WindowFlags_.no_move))
+        self.is_open = imgui.begin_popup(_POPUP, _FLAGS)
         if not self.is_open:
             self._opening = False
             return
@@ -86,7 +87,7 @@ class Search:
         moved = _arrows()
         self._marked = min(max(self._marked + moved, 0), max(len(lines) - 1, 0))
         chosen = None
-        foot = imgui.get_text_line_height() * 2 + imgui.get_style().item_spacing.y * 2
+        foot = imgui.get_text_line_height() * 2 + imgui.get_style().item_spacing.y * 2 + 2.0 * ui_scale()
         if imgui.begin_child("##found", (0, -foot)):
             chosen = self._list(editor, sections, bool(moved) or self._query != before)
         imgui.end_child()

@@ -34,6 +34,8 @@ class Stage:
         """The scene of a graph. `top` are drawn last, in order; `open` shows all its values for now."""
         if graph.links is not self._links:
             self._links, self._linked = graph.links, _linked_names(graph)
+            self._faults = {ends: known for ends, known in self._faults.items() if graph.links.get(ends[1]) == ends[0]}
+            self._layouts = {id: known for id, known in self._layouts.items() if id in graph.nodes}
         boxes = {box.key: box for box in self._frames(graph, position)}
         for id in entries(graph, "comments"):
             boxes[f"comments.{id}"] = _sized(graph, f"comments.{id}", "comment", COMMENT_SIZE, position)

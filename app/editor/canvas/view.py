@@ -32,6 +32,9 @@ class CanvasView:
     renaming: str = ""
     """An element whose name is to be typed: the canvas opens a field on it."""
 
+    refusal: str = ""
+    """Why the link in the hand does not fit the socket under the pointer."""
+
     def fit(self, keys: Collection[str] = ()) -> None:
         """Bring elements into view; none means all."""
         self.wanted = keys

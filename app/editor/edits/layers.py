@@ -1,7 +1,7 @@
 """Layered drawing of a directed graph: layers by longest path, few crossings, straight lines.
 
-After Sugiyama, Tagawa and Toda (1981): layers, barycenter sweeps, then coordinates. Which boxes share a straight line is
-decided as by Brandes and Koepf (2002), "Fast and simple horizontal coordinate assignment".
+After Sugiyama, Tagawa and Toda (1981): layers, barycenter sweeps, then coordinates. Which boxes share a straight line
+is decided as by Brandes and Koepf (2002), "Fast and simple horizontal coordinate assignment".
 """
 
 from __future__ import annotations

@@ -15,14 +15,14 @@ def stem(path: str | Path) -> str:
 
 
 def copy_of(name: str, taken: Container[str], kind: str = "") -> str:
-    """A free name for a copy: `blur2` for `blur`, `n4` for `n3`. A name made from a `kind` (`convolve3x3`) is counted."""
+    """A free name for a copy: `blur2` for `blur`, `n4` for `n3`; digits that belong to its `kind` are left alone."""
     if name not in taken:
         return name
     head = name.rstrip("0123456789")
     if len(head) < len(kind) and name.startswith(kind):
         head = kind
-    number = int(name[len(head) :] or 1)
-    while f"{head}{number}" in taken or number < 2:
+    number = int(name[len(head) :] or 1) + 1
+    while f"{head}{number}" in taken:
         number += 1
     return f"{head}{number}"
 

@@ -27,11 +27,12 @@ WIDTH = 17.0
 
 
 def color_field(
-    fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False
+    fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False,
+    eyedropper: bool = True,
 ) -> Edit | None:
     """A swatch that opens the picker; the numbers beside it where there is room. All numbers are scene-linear."""
     color = _rgba(value)
-    numbers = not label and width > imgui.get_font_size() * 10.5
+    numbers = not label and width > imgui.get_font_size() * 12.0
     side = imgui.get_frame_height() * 1.2 if numbers else width
     rect = place(side)
     pressed = imgui.invisible_button(f"##{id}", (rect[2] - rect[0], rect[3] - rect[1]))
@@ -48,12 +49,12 @@ def color_field(
         found = row_of_numbers(fields, id, color, _LIGHT, width - side - gap, _NAMES, mixed)
     imgui.set_next_window_pos(_inside(rect), imgui.Cond_.appearing)
     if imgui.begin_popup(f"picker {id}"):
-        found = color_picker(fields, f"{id} picker", color) or found
+        found = color_picker(fields, f"{id} picker", color, eyedropper) or found
         imgui.end_popup()
     return found
 
 
-def color_picker(fields: Fields, id: str, color: RGBA) -> Edit | None:
+def color_picker(fields: Fields, id: str, color: RGBA, eyedropper: bool) -> Edit | None:
     """Wheel and triangle of display colors, intensity, linear numbers, hexadecimal digits, copy, paste, eyedropper."""
     width, side = imgui.get_font_size() * WIDTH, imgui.get_font_size() * 5.5
     found = _wheel(fields, id, color, width)
@@ -67,11 +68,11 @@ def color_picker(fields: Fields, id: str, color: RGBA) -> Edit | None:
         fields.stops = intensity(_rgba(numbers.value))
         found = numbers
     _label("sRGB hex", side)
-    room = width - side - 3 * (imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x)
+    room = width - side - (3 if eyedropper else 2) * (imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x)
     text = text_field(fields, f"{id} hex", hexadecimal(color), _TEXT, room)
     if text:
         found = _from_text(fields, str(text.value), color) or found
-    return _buttons(fields, id, color) or found
+    return _buttons(fields, id, color, eyedropper) or found
 
 
 def draw_swatch(fields: Fields, rect: Rect, color: RGBA, hovered: bool = False) -> None:
@@ -113,7 +114,7 @@ def _wheel(fields: Fields, id: str, color: RGBA, width: float) -> Edit | None:
     return Edit(picked((made[0], made[1], made[2]), fields.stops, made[3]), fields.merge)
 
 
-def _buttons(fields: Fields, id: str, color: RGBA) -> Edit | None:
+def _buttons(fields: Fields, id: str, color: RGBA, eyedropper: bool) -> Edit | None:
     found, side = None, imgui.get_frame_height()
     gap = imgui.get_style().item_inner_spacing.x
     imgui.push_style_var(imgui.StyleVar_.frame_padding, (0.0, imgui.get_style().frame_padding.y))
@@ -125,11 +126,12 @@ def _buttons(fields: Fields, id: str, color: RGBA) -> Edit | None:
     if imgui.button(f"{icons.ICON_FA_PASTE}##{id}", (side, side)):
         found = _from_text(fields, imgui.get_clipboard_text(), color)
     imgui.set_item_tooltip("Paste linear numbers, or hexadecimal digits")
-    imgui.same_line(0.0, gap)
-    if imgui.button(f"{icons.ICON_FA_EYE_DROPPER}##{id}", (side, side)):
-        fields.eyedropper = id.removesuffix(" picker")
-        imgui.close_current_popup()
-    imgui.set_item_tooltip("Pick the color from the viewer")
+    if eyedropper:
+        imgui.same_line(0.0, gap)
+        if imgui.button(f"{icons.ICON_FA_EYE_DROPPER}##{id}", (side, side)):
+            fields.eyedropper = id.removesuffix(" picker")
+            imgui.close_current_popup()
+        imgui.set_item_tooltip("Pick the color from the viewer")
     imgui.pop_style_var()
     return found
 

@@ -94,8 +94,9 @@ class EndView:
         side = imgui.get_frame_height()
         color = end.kind in (Kind.IMAGE, Kind.COLOR)
         if isinstance(end.default, tuple):
-            edit = color_field(self._fields, key, end.default, _NUMBER, width - side) if color else row_of_numbers(
-                self._fields, key, end.default, _NUMBER, width - side, _AXES[:channels]
+            fields, room = self._fields, width - side
+            edit = color_field(fields, key, end.default, _NUMBER, room, eyedropper=False) if color else row_of_numbers(
+                fields, key, end.default, _NUMBER, room, _AXES[:channels]
             )
         else:
             edit = number_field(self._fields, key, float(end.default), _NUMBER, width - side)

@@ -84,8 +84,10 @@ class Fields:
     known: tuple[str, ...] = ()
     """The same of the whole frame before."""
 
-    def begin(self) -> None:
-        """Call before the panel's fields, every frame."""
+    def begin(self, held: bool = True) -> None:
+        """Call before the panel's fields, every frame; `held` says whether a mouse button is down."""
+        if not held:
+            self.drag_id = ""
         self.known = tuple(self.order)
         self.order.clear()
         self.eyedropper = ""

@@ -107,7 +107,7 @@ class FileField:
         lines = imgui.get_window_draw_list()
         pixels = self.known.picture(path, name)
         if pixels is not None:
-            texture = self._textures.get((str(path), self.known.version(path), name), pixels)
+            texture = self._textures.get((str(path), self.known.version(path), name), lambda: pixels)
             scale = min(size[0] / pixels.shape[1], size[1] / pixels.shape[0])
             wide, high = pixels.shape[1] * scale, pixels.shape[0] * scale
             left, top = rect[0] + (size[0] - wide) / 2, rect[1] + (size[1] - high) / 2

@@ -41,7 +41,6 @@ class GraphView:
         """The graph that the canvas shows."""
         session = rows.editor.session
         inside = session.place[-1] if session.place else ""
-        rows.fit(session.graph.controls)
         heading(rows, f"Group {inside}" if inside else session.name, rows.palette.category("group" if inside else ""))
         faults(rows, "")
         if not inside:
@@ -64,7 +63,7 @@ class GraphView:
         red, green, blue = shown or rows.palette.raised
         rows.name(f"frames.{id} color", "color")
         light = decode(red), decode(green), decode(blue), 1.0
-        edit = color_field(self._fields, f"frames.{id} color", light, _COLOR, rows.field())
+        edit = color_field(self._fields, f"frames.{id} color", light, _COLOR, rows.field(), eyedropper=False)
         if edit and isinstance(edit.value, tuple):
             made = tuple(min(max(encode(part), 0.0), 1.0) for part in edit.value[:3])
             rows.act(lambda: session.set_frame(id, color=(made[0], made[1], made[2]), merge=edit.merge))
@@ -111,6 +110,7 @@ class GraphView:
         session = rows.editor.session
         known = session.graph.inputs if side == "inputs" else session.graph.outputs
         rows.heading(side.title())
+        rows.fit((f"{end.kind}2" for end in known.values()), least=0.0)
         for name, end in known.items():
             key = f"{side}.{name}"
             width = str(end.width) if end.kind is Kind.VECTOR else ""
@@ -131,7 +131,9 @@ class GraphView:
             imgui.open_popup(f"kinds {side}")
         if imgui.begin_popup(f"kinds {side}"):
             for label, kind, width in _KINDS:
-                if imgui.menu_item(label, "", False)[0]:
+                chosen = imgui.menu_item(label, "", False)[0]
+                rows.editor.places[f"menu {label}"] = item_rect()
+                if chosen:
                     name = fresh_name(kind.lower(), known)
                     add = session.add_input if side == "inputs" else session.add_output
                     rows.act(lambda add=add, name=name, kind=kind, width=width: add(name, kind, width))
@@ -140,6 +142,7 @@ class GraphView:
     def _controls(self, rows: Rows) -> None:
         session = rows.editor.session
         rows.heading("Controls")
+        rows.fit(session.graph.controls)
         if not session.graph.controls:
             rows.note("Values that this graph shows under names of its own, to the command line and as a group.")
         for name, control in session.graph.controls.items():

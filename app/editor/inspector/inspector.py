@@ -39,10 +39,13 @@ class Inspector:
         fields = self._fields
         fields.palette = editor.palette
         self._values.begin()
-        fields.begin()
+        dragged = fields.dragging
+        fields.begin(imgui.is_mouse_down(imgui.MouseButton_.left))
         rows = Rows(editor, fields)
         self._draw(rows)
         rows.finish()
+        if dragged and not fields.dragging:
+            editor.session.seal()
         left = fields.end()
         if left:
             self._values.left(editor, left)

@@ -10,7 +10,7 @@ from ....nodes import Plain, Value
 from ..theme.style import mix, u32, ui_scale
 from .drawing import Rect, background, place, write
 from .fields import Edit, Fields
-from .numbers import SUFFIX, Drag, bar, editable, limited, shown, step
+from .numbers import SUFFIX, Drag, bar, editable, limited, shortened, shown, step
 from .text_entry import text_entry
 
 THRESHOLD = 3.0
@@ -100,6 +100,8 @@ def _draw(
     text_width = imgui.calc_text_size(text).x
     if text_width + unit_width > room:
         suffix, unit_width = "", 0.0
+    while text_width > room and (shorter := shortened(text)) != text:
+        text, text_width = shorter, imgui.calc_text_size(shorter).x
     if label:
         write((inner[0], rect[1], max(inner[2] - text_width - unit_width - pad, inner[0]), rect[3]), label, palette.dim)
         left = inner[2] - text_width - unit_width

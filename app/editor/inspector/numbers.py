@@ -50,6 +50,15 @@ def shown(number: float, declaration: Value) -> str:
     return text.removeprefix("-") if float(text) == 0.0 else text
 
 
+def shortened(text: str) -> str:
+    """A shown number with one digit less behind the point; the same where there is none to leave out."""
+    part = text.partition(".")[2]
+    if not part.isdigit():
+        return text
+    short = f"{float(text):.{len(part) - 1}f}"
+    return short.removeprefix("-") if float(short) == 0.0 else short
+
+
 def editable(number: float) -> str:
     """The number as text to edit: all of its digits, no needless ones."""
     return str(number) if isinstance(number, int) else repr(float(number)).removesuffix(".0")

@@ -122,7 +122,7 @@ def _below(fields: Fields, id: str, value: tuple[float, ...], declaration: Value
         imgui.open_popup(f"presets {id}")
     if chosen:
         stop = value[index * 5 : index * 5 + 5]
-        edit = color_field(fields, f"{id} color", stop[1:], _PLACE, width)
+        edit = color_field(fields, f"{id} color", stop[1:], _PLACE, width, eyedropper=False)
         if edit and isinstance(edit.value, tuple):
             found = replace(edit, value=changed(value, 5, index, (stop[0], *edit.value)))
     if imgui.begin_popup(f"presets {id}"):

@@ -44,11 +44,11 @@ class Rows:
         inner._acts = self._acts
         return inner
 
-    def fit(self, labels: Iterable[str]) -> None:
-        """Make the left column as wide as these names ask for, up to half of the panel."""
+    def fit(self, labels: Iterable[str], least: float = 0.3) -> None:
+        """Make the left column as wide as these names ask for: from a `least` part up to half of the panel."""
         scale = ui_scale()
-        longest = max((imgui.calc_text_size(label.replace("_", " ")).x for label in labels), default=0.0)
-        wanted = max(self.width * 0.3, 64.0 * scale, longest + 22.0 * scale)
+        longest = max((imgui.calc_text_size(label.replace("_", " ")).x for label in labels), default=42.0 * scale)
+        wanted = max(self.width * least, longest + 22.0 * scale)
         self.name_width = min(wanted, self.width * 0.48, 170.0 * scale)
         self.field_width = max(self.width - self.name_width - self.gap, 1.0)
 

@@ -50,7 +50,7 @@ class ValueRows:
         if source is not None:
             link_chip(rows, port, source, width)
         else:
-            mark = imgui.get_frame_height() if control else 0.0
+            mark = imgui.get_frame_height() * ((control is not None) + declaration.handle)
             mixed = any(graph.value(one) != value for one in ports[1:])
             edit = self._field(rows, ports, declaration, value, width - mark, mixed)
             rows.record(key)
@@ -59,6 +59,8 @@ class ValueRows:
             )
             if edit:
                 rows.act(lambda: apply(session, ports, declaration, edit))
+            if declaration.handle:
+                _crosshair(rows, key)
             if control:
                 self._mark(rows, port, control)
             if declaration.type == "path" and isinstance(value, str):
@@ -169,6 +171,15 @@ class ValueRows:
             imgui.separator()
             entry(icons.ICON_FA_ARROW_LEFT, "Go to Source", True, lambda: go_to(editor, source))
             entry(icons.ICON_FA_LINK_SLASH, "Unlink", True, lambda: session.disconnect(port))
+
+
+def _crosshair(rows: Rows, key: str) -> None:
+    """A switch: the next click on the picture says where."""
+    viewer = rows.editor.viewer
+    imgui.same_line(0.0, 0.0)
+    lit = viewer.picking == key
+    if rows.icon(icons.ICON_FA_CROSSHAIRS, f"place {key}", "Click on the picture to put it there", lit=lit):
+        viewer.picking = "" if lit else key
 
 
 def link_chip(rows: Rows, target: Port, source: Port, width: float) -> None:

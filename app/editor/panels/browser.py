@@ -176,7 +176,8 @@ class FileBrowser:
             self._table.reveal = self._grid.reveal = True
 
     def _bottom(self, editor: Editor, now: Browsing) -> None:
-        if self._focus == "field":
+        free = not imgui.is_any_item_active() and not self._naming and editor.dialogs.question is None
+        if self._focus == "field" or free:
             imgui.set_keyboard_focus_here()
             self._focus = ""
         empty = not now.query
@@ -186,8 +187,7 @@ class FileBrowser:
             if changed:
                 now.name, now.chosen = name, -1
         else:
-            hint = f"{icons.ICON_FA_MAGNIFYING_GLASS}  Type to find"
-            changed, query = imgui.input_text_with_hint("##query", hint, now.query)
+            changed, query = imgui.input_text_with_hint("##query", "Type to find", now.query)
             if changed:
                 now.search(query)
         record(editor, "file field")

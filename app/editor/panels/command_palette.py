@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import deque
 
 from imgui_bundle import ImVec2, imgui
-from imgui_bundle import icons_fontawesome_6 as icons
 
 from ..editor import Editor
 from ..keys import shown
@@ -58,11 +57,11 @@ class CommandPalette:
         editor.attempt(command.run)
 
     def _field(self, editor: Editor) -> None:
-        if imgui.is_window_appearing():
+        if not imgui.is_any_item_active():
             imgui.set_keyboard_focus_here()
         imgui.set_next_item_width(-1)
         with font(editor, "text", 18.0):
-            hint = f"{icons.ICON_FA_MAGNIFYING_GLASS}  Do anything: type a command, a node, a preset"
+            hint = "Do anything: type a command, a node, a preset"
             changed, self._query = imgui.input_text_with_hint("##command", hint, self._query)
         record(editor, "palette field")
         if changed:

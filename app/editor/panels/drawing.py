@@ -119,12 +119,15 @@ def main_button(editor: Editor, label: str, name: str, *, width: float = 0.0, en
 
 
 def right_aligned(*labels: str) -> None:
-    """Move to where buttons of these labels end at the right border, on the same line."""
+    """Move to where buttons of these labels end at the right border: on the same line, if they fit there."""
     style = imgui.get_style()
     width = sum(imgui.calc_text_size(label).x + 2 * style.frame_padding.x for label in labels)
     width += style.item_spacing.x * (len(labels) - 1)
-    left = imgui.get_cursor_pos_x()
-    imgui.same_line(max(left + imgui.get_content_region_avail().x - width, left))
+    imgui.same_line()
+    if imgui.get_content_region_avail().x < width:
+        imgui.new_line()
+    room = max(imgui.get_content_region_avail().x - width, 0.0)
+    imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + room)
 
 
 def backdrop(editor: Editor, name: str, opacity: float = 0.45) -> bool:

@@ -12,6 +12,11 @@ from ..exporting import Export, Options
 
 Sizing = Literal["as it is", "scale", "size"]
 
+Depth = Literal["", "half", "float"]
+
+DEPTHS: tuple[tuple[Depth, str], ...] = (
+    ("", "as the format has it"), ("half", "16 bit"), ("float", "32 bit (16 in PNG and TIFF)"),
+)
 FORMATS = (".exr", ".png", ".jpg", ".tif", ".webp", ".hdr")
 VIEWED = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp"})
 """Formats that show a picture as a display does."""
@@ -27,7 +32,7 @@ class Form:
     sizing: Sizing = "as it is"
     scale: float = 0.5
     size: tuple[int, int] = (1920, 1080)
-    precision: Literal["", "half", "float"] = ""
+    precision: Depth = ""
     view: str = ""
 
     def suggested(self, editor: Editor, output: str) -> Path:
@@ -46,7 +51,7 @@ class Form:
     def wanted(self, editor: Editor) -> tuple[str, ...]:
         """The outputs that are chosen; at first those that are pictures."""
         kinds = {name: output.kind for name, output in editor.session.root.outputs.items()}
-        return tuple(name for name, kind in kinds.items() if self.chosen.get(name, kind in (None, Kind.IMAGE, Kind.FIELD)))
+        return tuple(name for name, kind in kinds.items() if self.chosen.get(name, kind in (Kind.IMAGE, Kind.FIELD)))
 
     def reform(self, format: str) -> None:
         """Another format for all files."""

@@ -93,13 +93,13 @@ class FileGrid:
         if self._pictures is None:
             self._pictures = Pictures(editor.store.file.parent / "thumbnails")
         scale, items, done = ui_scale(), now.items, False
-        self.columns = max(int(imgui.get_content_region_avail().x / (_CELL[0] * scale)), 1)
+        self.columns = max(int((imgui.get_content_region_avail().x - 16 * scale) / (_CELL[0] * scale)), 1)
         imgui.begin_child("grid")
         clipper = imgui.ListClipper()
         clipper.begin(-(-len(items) // self.columns), _CELL[1] * scale)
         if self.reveal:
             clipper.include_item_by_index(now.chosen // self.columns)
-        start = imgui.get_cursor_pos()
+        start = imgui.get_cursor_pos() + ImVec2(4 * scale, 4 * scale)
         while clipper.step():
             for row in range(clipper.display_start, clipper.display_end):
                 for index in range(row * self.columns, min((row + 1) * self.columns, len(items))):
@@ -143,7 +143,7 @@ class FileGrid:
         if found is not None and not isinstance(found, str):
             across, down = fitted(found, width, height)
             corner = ImVec2(left + (width - across) / 2, top + (height - down) / 2)
-            texture = self._textures.get((path, item.time), found)
+            texture = self._textures.get((path, item.time), lambda: found)
             lines.add_image(texture, corner, ImVec2(corner.x + across, corner.y + down))
             return
         broken = isinstance(found, str)

@@ -26,12 +26,15 @@ def findings(editor: Editor) -> tuple[Finding, ...]:
 
 
 def _found(editor: Editor) -> Iterator[Finding]:
+    """What the preview says about a node that the graph itself has a problem with is the same thing in other words."""
     inside = "/".join(editor.session.place)
     for node, sentences in editor.session.problems.items():
         for sentence in sentences:
             yield Finding("error", "/".join(filter(None, (inside, node))), sentence)
+    known = {"/".join(filter(None, (inside, node))) for node in editor.session.problems}
     for where, sentence in editor.preview.faults.items():
-        yield Finding("error", where, sentence)
+        if where not in known:
+            yield Finding("error", where, sentence)
     for sentence in _services(editor):
         yield Finding("warning", "", sentence)
     for name, detail in editor.faults.items():

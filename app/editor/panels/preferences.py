@@ -32,7 +32,7 @@ class PreferencesDialog:
             return
         listening = self._shortcuts.listening
         close = backdrop(editor, "preferences") and not listening
-        with dialog(editor, "Preferences", (720, 560), bare=True):
+        with dialog(editor, "Preferences", (720, 500), bare=True):
             height = imgui.get_content_region_avail().y - imgui.get_frame_height_with_spacing() - 6 * ui_scale()
             self._pages(editor, height)
             imgui.same_line(0, 16 * ui_scale())

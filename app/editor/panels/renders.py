@@ -14,7 +14,7 @@ from ..editor import Editor
 from ..exporting import Export
 from ..theme.style import ui_scale, vec4
 from .drawing import dim, elided, font, icon_button, main_button, nothing_here, record, right_aligned, wrapped
-from .export_form import FORMATS, VIEWED, Form, Sizing, state_text, title
+from .export_form import DEPTHS, FORMATS, VIEWED, Form, Sizing, state_text, title
 from .opening_folders import show_folder
 
 _SIZINGS: tuple[Sizing, ...] = ("as it is", "scale", "size")
@@ -92,9 +92,9 @@ class Renders:
             imgui.set_next_item_width(-1)
             width, height = imgui.input_int2("##size", list(form.size))[1]
             form.size = (min(max(width, 1), 16384), min(max(height, 1), 16384))
-        depth = {"": "as the format has it", "half": "16 bit", "float": "32 bit (16 in PNG and TIFF)"}
+        depth = dict(DEPTHS)
         if chosen := _combo(editor, "Precision", depth[form.precision], tuple(depth.values())):
-            form.precision = next(name for name, text in depth.items() if text == chosen)
+            form.precision = next(name for name, text in DEPTHS if text == chosen)
         if now in VIEWED or now == "mixed":
             own = "as the output says"
             if chosen := _combo(editor, "View", form.view or own, (own, *views())):
@@ -105,13 +105,14 @@ class Renders:
         imgui.separator()
         exports = editor.exports.all
         if not exports:
-            dim(editor, "Renders appear here; you can go on working meanwhile.")
+            wrapped(editor.palette.dim, "Renders appear here; you can go on working meanwhile.")
             return
         ended = len(exports) - len(editor.exports.running)
         imgui.align_text_to_frame_padding()
         dim(editor, f"{len(exports) - ended} running, {ended} ended")
         right_aligned(f"{icons.ICON_FA_TRASH} Clear")
-        if icon_button(editor, icons.ICON_FA_TRASH, "clear renders", "Forget what has ended", enabled=ended > 0, label="Clear"):
+        tip = "Forget what has ended"
+        if icon_button(editor, icons.ICON_FA_TRASH, "clear renders", tip, enabled=ended > 0, label="Clear"):
             editor.exports.clear()
         for index, export in enumerate(reversed(editor.exports.all)):
             imgui.push_id(index)
@@ -146,7 +147,7 @@ def _export_row(editor: Editor, index: int, export: Export) -> None:
     if export.sentence:
         wrapped(editor.palette.error, export.sentence)
     for note in export.notes:
-        if note != export.sentence:
+        if not export.sentence or export.sentence not in note:
             wrapped(editor.palette.dim, note)
 
 

@@ -12,6 +12,7 @@ from ....presets import paths, picture
 from ...media.thumbnail import load_thumbnail
 from ..actions.documents import open_graph, open_preset, recover
 from ..editor import Editor
+from ..keys import chord
 from ..preferences import Recent
 from ..recovery import Recovered
 from ..theme.style import mix, u32, ui_scale, vec4
@@ -35,6 +36,8 @@ class StartScreen:
     def __init__(self) -> None:
         self._textures = Textures()
         self._found: tuple[Recovered, ...] | None = None
+        self._there: dict[str, bool] = {}
+        self._pictured = {path: picture(path).is_file() for path in paths()}
 
     def close(self) -> None:
         """Give pictures back."""
@@ -47,9 +50,10 @@ class StartScreen:
             return
         if self._found is None:
             self._found = editor.recovery.found()
+            self._there = {recent.path: recent.exists for recent in editor.store.now.recent}
         covered = editor.dialogs.browse is not None or editor.dialogs.question is not None
         close = backdrop(editor, "start") and not covered
-        with dialog(editor, "Start", (1000, 660), bare=True):
+        with dialog(editor, "Start", (1180, 610), bare=True):
             height = imgui.get_content_region_avail().y
             imgui.begin_child("left", ImVec2(290 * ui_scale(), height), imgui.ChildFlags_.nav_flattened.value)
             self._begin(editor)
@@ -60,9 +64,18 @@ class StartScreen:
             self._recoveries(editor, self._found)
             self._presets(editor)
             imgui.end_child()
-            close = close or (escaped() and not covered)
+            if not covered:
+                close = close or escaped()
+                self._keys(editor)
         if close:
             editor.dialogs.open.discard("start")
+
+    def _keys(self, editor: Editor) -> None:
+        """The shortcuts that make sense here."""
+        for id in ("file.new", "file.open", "file.quit", "help.shortcuts"):
+            keys = editor.actions.shortcut(id)
+            if keys and imgui.is_key_chord_pressed(chord(keys)):
+                editor.actions.run(id, editor)
 
     def _begin(self, editor: Editor) -> None:
         with font(editor, "bold", 30.0):
@@ -99,7 +112,7 @@ class StartScreen:
             imgui.pop_id()
 
     def _recent_row(self, editor: Editor, index: int, recent: Recent) -> None:
-        scale, path, there = ui_scale(), Path(recent.path), recent.exists
+        scale, path, there = ui_scale(), Path(recent.path), self._there.get(recent.path, True)
         line = imgui.get_text_line_height()
         room = imgui.get_content_region_avail().x - 30 * scale
         start = imgui.get_cursor_pos()
@@ -134,22 +147,19 @@ class StartScreen:
         for index, one in enumerate(found):
             when = strftime("%Y-%m-%d %H:%M", localtime(one.time))
             nodes = "1 node" if one.nodes == 1 else f"{one.nodes} nodes"
-            imgui.align_text_to_frame_padding()
-            imgui.text_unformatted(elided(one.title, 200 * ui_scale()))
+            if main_button(editor, "Recover", f"recover {index}", enabled=not one.fault):
+                recover(editor, one)
+                self._found = None
             imgui.same_line()
-            dim(editor, one.fault or f"{when}, {nodes}")
-            if one.path:
-                imgui.set_item_tooltip(str(one.path))
-            imgui.same_line()
-            if not one.fault:
-                if main_button(editor, "Recover", f"recover {index}"):
-                    recover(editor, one)
-                    self._found = None
-                imgui.same_line()
             if imgui.button(f"Discard##{index}"):
                 editor.attempt(one.discard)
                 self._found = None
             record(editor, f"discard {index}")
+            imgui.same_line()
+            imgui.text_unformatted(elided(one.title, 200 * ui_scale()))
+            imgui.set_item_tooltip(str(one.path or "never saved"))
+            imgui.same_line()
+            dim(editor, elided(one.fault or f"{when}, {nodes}", imgui.get_content_region_avail().x))
         imgui.dummy(ImVec2(0, 6 * ui_scale()))
 
     def _presets(self, editor: Editor) -> None:
@@ -173,8 +183,9 @@ class StartScreen:
         lines, rounding = imgui.get_window_draw_list(), imgui.get_style().frame_rounding
         lines.add_rect_filled(low, high, u32(palette.hover if imgui.is_item_hovered() else palette.raised), rounding)
         corner = ImVec2(high.x, low.y + _PICTURE_HEIGHT * scale)
-        texture = self._textures.get(path, load_thumbnail(picture(path)))
-        lines.add_image_rounded(texture, low, corner, ImVec2(0, 0), ImVec2(1, 1), 0xFFFFFFFF, rounding)
+        if self._pictured[path]:
+            texture = self._textures.get(path, lambda: load_thumbnail(picture(path)))
+            lines.add_image_rounded(texture, low, corner, ImVec2(0, 0), ImVec2(1, 1), 0xFFFFFFFF, rounding)
         lines.add_text(ImVec2(low.x + 8 * scale, corner.y + 5 * scale), u32(palette.text), name)
         if imgui.is_item_hovered():
             outline(editor, palette.accent)

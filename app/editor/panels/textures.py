@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable
 
 import numpy as np
 from imgui_bundle import hello_imgui, imgui
@@ -19,9 +19,10 @@ class Textures:
     def __init__(self) -> None:
         self._kept: OrderedDict[Hashable, hello_imgui.TextureGpu] = OrderedDict()
 
-    def get(self, key: Hashable, pixels: Array) -> imgui.ImTextureRef:
-        """The texture of [h, w, 3] of uint8; the same key is the same picture."""
+    def get(self, key: Hashable, make: Callable[[], Array]) -> imgui.ImTextureRef:
+        """The texture of what `make` gives, [h, w, 3] of uint8; the same key is the same picture."""
         if key not in self._kept:
+            pixels = make()
             opaque = np.full((*pixels.shape[:2], 4), 255, np.uint8)
             opaque[..., :3] = pixels
             self._kept[key] = hello_imgui.create_texture_gpu_from_rgba_data(opaque)

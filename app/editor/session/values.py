@@ -46,7 +46,7 @@ class Values(State):
         """Show a value as a control of the graph; returns its name, by default that of the value."""
         if known := self.control_of(port):
             raise GraphError(f"'{port}' is the control '{known}' already")
-        name = name or fresh_name(port.socket, self.graph.controls)
+        name = name or fresh_name(port.socket, {*self.graph.controls, *self.graph.inputs})
         self.edit(f"Expose {port}", self.graph.add_control(name, Control(port)))
         return name
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
+from .... import presets
 from ....nodes import Node
 from ...document import load
 from ...errors import GraphError
 from ...graph import Graph, Group, Item, Port, did_you_mean
 from ..edits import deleting, elements, naming, paths, wiring
 from ..edits.elements import Place
+from ..edits.ends import without_samples
 from .state import State
 
 DROP_STEP = 100.0
@@ -123,6 +125,8 @@ class Wiring(State):
     def drop_files(self, paths: Sequence[str | Path], at: Place = (0.0, 0.0)) -> tuple[str, ...]:
         """Files from outside as nodes: graphs become groups, all others `read_image`; returns their ids."""
         graph, ids = self.graph, list[str]()
+        if not paths:
+            return ()
         for number, path in enumerate(paths):
             id = graph.fresh_id(naming.stem(path))
             spot = (at[0], at[1] + number * DROP_STEP)
@@ -152,11 +156,16 @@ class Wiring(State):
         return self.types[type_id]()
 
     def _group(self, path: str | Path) -> Group:
-        """A graph file as an item, which must not hold this document."""
+        """A graph file as an item, which must not hold this document.
+
+        Presets become part of the document, without their sample pictures: it is not to depend on where Halation is.
+        """
         body = load(path, self.types)
         here = self.path.resolve() if self.path else None
         if here in {Path(path).resolve(), *(file.resolve() for file in paths.group_files(body))}:
             raise GraphError(f"a group cannot hold itself: '{Path(path).name}' is or holds this document")
+        if Path(path).resolve() in {preset.resolve() for preset in presets.paths()}:
+            return Group(paths.rebased(without_samples(body), self.root.folder))
         return Group(body, self.relative(path))
 
     def _dropped(self, path: str | Path) -> Item:

@@ -9,6 +9,7 @@ from ...graph import Port, Unknown, signature
 
 if TYPE_CHECKING:
     from ..session import Session
+    from .state import ViewerState
 
 Point = tuple[float, float]
 
@@ -33,3 +34,15 @@ def handles(session: Session) -> tuple[Handle, ...]:
             x, y = cast("Point", session.value(port))
             found.append(Handle(port, (x, y)))
     return tuple(found)
+
+
+def takes_position(session: Session, port: Port) -> bool:
+    """True if a position is picked for that value, not a color."""
+    return any(handle.port == port for handle in handles(session))
+
+
+def pixel_place(viewer: ViewerState) -> Point:
+    """The middle of the pixel under the pointer, as a fraction of the picture."""
+    assert viewer.pixel is not None
+    (x, y), (width, height) = viewer.pixel, viewer.picture
+    return round((x + 0.5) / max(width, 1), 5), round((y + 0.5) / max(height, 1), 5)

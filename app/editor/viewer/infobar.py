@@ -48,13 +48,13 @@ def about(editor: Editor, side: str, shown: Shown | None, sight: Sight, seconds:
         words.append(Word(side, palette.accent if side == "A" else palette.good))
     if shown is not None:
         width, height = shown.full_size
-        words += [Word(f"{width}×{height}", palette.text), Word(describe(shown.kind, shown.channels), palette.dim)]
+        words += [Word(f"{width}\u00d7{height}", palette.text), Word(describe(shown.kind, shown.channels), palette.dim)]
         if shown.scale != 1.0:
             words.append(Word(f"1/{1 / shown.scale:.0f}", palette.warning))
     if side != "A":
         return words
     if shown is not None and shown.kind not in (Kind.NUMBER, Kind.COLOR):
-        words.append(Word(f"{sight.zoom * 100:.0f} %" if sight.zoom >= 0.1 else f"{sight.zoom * 100:.1f} %", palette.dim))
+        words.append(Word(f"{sight.zoom * 100:.{0 if sight.zoom >= 0.1 else 1}f} %", palette.dim))
     if preview.paused:
         words.append(Word("paused", palette.warning))
     elif preview.busy:

@@ -84,3 +84,10 @@ def hsv(rgb: tuple[float, ...]) -> tuple[float, float, float]:
 def copied(name: str, pixel: tuple[int, int], values: tuple[float, ...]) -> str:
     """One line for the clipboard: where, and the numbers with all their digits."""
     return f"{name} {pixel[0]} {pixel[1]}: " + " ".join(repr(float(np.float32(one))) for one in values)
+
+
+def picked_color(values: tuple[float, ...]) -> tuple[float, float, float, float]:
+    """A pixel as an opaque, straight, scene-linear color."""
+    alpha = values[3] if len(values) == 4 and values[3] > 0.0 else 1.0
+    red, green, blue = (values[index if len(values) > 2 else 0] / alpha for index in range(3))
+    return red, green, blue, 1.0

@@ -41,7 +41,7 @@ def pick_port(editor: Editor, side: str, label: str, in_menu: bool) -> None:
     id = f"show {side}"
     if button(editor, f"{label}##{id}"):
         imgui.open_popup(id)
-    left, top, right, bottom = editor.places[f"button viewer {side}"] = last_rectangle()
+    left, _, right, bottom = editor.places[f"button viewer {side}"] = last_rectangle()
     color = palette.accent if side == "A" else palette.good
     line = 2.0 * ui_scale()
     if not in_menu:

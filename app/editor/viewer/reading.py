@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-SMALL = 256
+SMALL = 208
 """Width of what stands for a whole picture in scopes and ranges."""
 
 BAND = 2**19

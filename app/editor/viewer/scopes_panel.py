@@ -41,6 +41,9 @@ class Scopes:
         self._plates: dict[str, Plate] = {}
         self._textures: dict[str, int] = {}
         self._mark: object = None
+        self._rgb = np.zeros((1, 1, 3), np.float32)
+        self._waiting: list[str] = []
+        """Scopes still to be made of what was measured: one per frame, so that none of them stutters."""
         self._next = 0.0
         self._range = (0.0, 1.0)
         self._clipped = (0.0, 0.0)
@@ -96,16 +99,21 @@ class Scopes:
             editor.palette.name,
         )
         now = time.monotonic()
-        if mark == self._mark or (now < self._next and self._textures):
+        if self._waiting:
+            self._make(editor, self._waiting.pop(0))
+            return
+        if mark == self._mark or now < self._next:
             return
         self._mark, self._next = mark, now + SECONDS
-        rgb = self._measured(editor, shown)
-        self._range = extent(rgb) if viewer.scopes_of_scene else (0.0, 1.0)
-        self._clipped = clipped(rgb)
-        dark = _is_dark(editor)
-        for name in names:
-            plate = self._plates.get(name) or self._plates.setdefault(name, Plate(editor.preview.renderer.device))
-            self._textures[name] = plate.show(self._image(name, rgb, viewer.scopes_logarithmic, dark)).glo
+        self._rgb = self._measured(editor, shown)
+        self._range = extent(self._rgb) if viewer.scopes_of_scene else (0.0, 1.0)
+        self._clipped = clipped(self._rgb)
+        self._waiting = list(names)
+
+    def _make(self, editor: Editor, name: str) -> None:
+        plate = self._plates.get(name) or self._plates.setdefault(name, Plate(editor.preview.renderer.device))
+        pixels = self._image(name, self._rgb, editor.viewer.scopes_logarithmic, _is_dark(editor))
+        self._textures[name] = plate.show(pixels).glo
 
     def _measured(self, editor: Editor, shown: Shown) -> np.ndarray:
         """The picture, or its region, as [h, w, 3]."""

@@ -79,7 +79,7 @@ class ViewerState:
     """Size of the shown picture at full size, as drawn last."""
     hovered: bool = False
     picking: str = ""
-    """Where a picked color goes: `node.value` while the eyedropper is in hand."""
+    """`node.value` that the next click on the picture sets: a color to that of the pixel, a position to its place."""
     scopes: set[str] = field(default_factory=lambda: {"histogram", "waveform"})
     scopes_of_scene: bool = False
     """True measures scene-linear numbers, False what the display shows."""

@@ -16,8 +16,9 @@ from . import infobar
 from .finding import Finder
 from .geometry import Sight
 from .hand import Hand
+from .handles import pixel_place, takes_position
 from .looking import asked_view, look_of, meaning_of, range_of
-from .measuring import copied, written
+from .measuring import copied, picked_color, written
 from .overlays import draw_badge, draw_message, draw_overlays, draw_progress
 from .pacing import Stopwatch
 from .reading import Reader, Scan
@@ -161,7 +162,7 @@ class Viewer:
         elif viewer.compares and editor.session.viewed("B") is None:
             draw_badge(editor, sight, "B shows nothing: choose it above, or Shift+V on a node", palette.warning)
         elif viewer.picking:
-            draw_badge(editor, sight, "Click to pick a color; right click ends", palette.accent)
+            draw_badge(editor, sight, "Click to pick; right click ends", palette.accent)
         elif viewer.drawing_region:
             draw_badge(editor, sight, "Drag a rectangle", palette.accent)
         elif viewer.finding:
@@ -221,9 +222,9 @@ class Viewer:
             editor.clipboard.put(copied(str(port), viewer.pixel, values))
             editor.say(f"copied {viewer.pixel[0]}, {viewer.pixel[1]}")
         if self._hand.picked is not None and viewer.picking:
-            color = picked_color(values)
             port = Port.parse(viewer.picking)
-            editor.attempt(lambda: editor.session.set(port, color, merge=f"pick {port}"))
+            picked = pixel_place(viewer) if takes_position(editor.session, port) else picked_color(values)
+            editor.attempt(lambda: editor.session.set(port, picked, merge=f"pick {port}"))
             if not imgui.is_mouse_down(imgui.MouseButton_.left):
                 editor.session.seal()
                 viewer.picking = ""
@@ -246,10 +247,3 @@ class Viewer:
         if seconds is not None and now.a is not None:
             self._seconds = seconds
             editor.viewer.pace.took(now.a.scale, seconds)
-
-
-def picked_color(values: tuple[float, ...]) -> tuple[float, float, float, float]:
-    """A pixel as an opaque, straight, scene-linear color."""
-    red, green, blue = values[:3] if len(values) >= 3 else (values[0],) * 3
-    alpha = values[3] if len(values) == 4 and values[3] > 0.0 else 1.0
-    return red / alpha, green / alpha, blue / alpha, 1.0

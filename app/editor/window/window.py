@@ -122,6 +122,8 @@ class Window:
             self.editor.fonts = fonts.load()
 
     def _end(self) -> None:
+        for panel in (*self._panels.values(), *self._overlays.values()):
+            getattr(panel, "close", bool)()
         if self.fault is None:
             take_apart(self.editor)
 

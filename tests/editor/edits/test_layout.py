@@ -30,9 +30,10 @@ def test_a_chain_is_a_straight_line():
 
 
 def test_a_source_lies_next_to_its_reader():
-    assert layer_numbers(list("abcs"), [("a", "b"), ("b", "c"), ("s", "c")], (), ()) == {"a": 0, "b": 1, "c": 2, "s": 1}
-    assert layer_numbers(list("abcs"), [("a", "b"), ("b", "c"), ("s", "c")], "s", ())["s"] == 0
-    assert layer_numbers(list("abcs"), [("a", "b"), ("b", "c"), ("a", "s")], (), "cs") == {"a": 0, "b": 1, "c": 2, "s": 2}
+    names, chain_links = list("abcs"), [("a", "b"), ("b", "c")]
+    assert layer_numbers(names, [*chain_links, ("s", "c")], (), ()) == {"a": 0, "b": 1, "c": 2, "s": 1}
+    assert layer_numbers(names, [*chain_links, ("s", "c")], "s", ())["s"] == 0
+    assert layer_numbers(names, [*chain_links, ("a", "s")], (), "cs") == {"a": 0, "b": 1, "c": 2, "s": 2}
 
 
 def test_links_that_need_not_cross_do_not():

@@ -45,7 +45,8 @@ def test_a_link_goes_to_the_first_free_socket_that_fits():
     graph = wiring.linked(graph, "blend", port("inputs.beauty"), True)
     assert links(graph)["blend.first"] == "n0.out"
     assert links(graph)["blend.second"] == "inputs.beauty"
-    assert links(wiring.linked(graph, "blend", port("inputs.beauty"), True))["blend.first"] == "inputs.beauty", "none is free"
+    full = wiring.linked(graph, "blend", port("inputs.beauty"), True)
+    assert links(full)["blend.first"] == "inputs.beauty", "where none is free, the first is taken"
     graph = wiring.linked(graph.add("split", Split()), "split", port("blend.mask"), False)
     assert links(graph)["blend.mask"] == "split.grey"
     with pytest.raises(GraphError, match=r"'meter.mean' fits no input of node 'photo': it has none"):

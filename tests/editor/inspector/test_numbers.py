@@ -6,7 +6,7 @@ import ast
 
 import pytest
 from halation.app.editor.inspector.arithmetic import evaluate
-from halation.app.editor.inspector.numbers import Drag, bar, described, editable, shown, step, stepped, typed
+from halation.app.editor.inspector.numbers import Drag, bar, described, editable, shortened, shown, step, stepped, typed
 from halation.app.errors import UsageError
 from halation.nodes import Value
 from hypothesis import given
@@ -124,6 +124,12 @@ def test_what_is_shown():
     assert shown(-0.0, GAIN) == "0.00"
     assert shown(7, SEED) == "7"
     assert [editable(number) for number in (64.0, 1 / 3, 7)] == ["64", repr(1 / 3), "7"]
+
+
+def test_a_narrow_field_shows_fewer_digits():
+    assert [shortened(text) for text in ("0.185", "1.5", "-0.4", "7", "1.2e-05", "-0.0", "—")] == [
+        "0.18", "2", "0", "7", "1.2e-05", "0", "—",
+    ]
 
 
 def test_the_bar_starts_at_zero():

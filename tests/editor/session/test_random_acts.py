@@ -135,7 +135,7 @@ ACTS: dict[str, Act] = {
     "enter": lambda s, r: s.enter(any_group(s, r)),
     "leave": lambda s, r: s.leave(r.choice([0, 1, 1, 2])),
     "make_local": lambda s, r: s.make_local(any_group(s, r)),
-    "add_input": lambda s, r: s.add_input(r.choice("abc"), r.choice([*Kind]), r.randint(2, 4), r.choice([None, spot(r)])),
+    "add_input": lambda s, r: s.add_input(r.choice("abc"), r.choice([*Kind]), r.randint(2, 4), spot(r)),
     "add_output": lambda s, r: s.add_output(r.choice("abc"), r.choice([*Kind]), r.randint(2, 4)),
     "remove_end": lambda s, r: s.remove_end(any_key(s, r)),
     "rename_end": lambda s, r: s.rename_end(any_key(s, r), r.choice("abc")),
@@ -162,8 +162,8 @@ OTHERS = {
 """What needs files or graphs, and what all the others call: tested by name elsewhere."""
 
 QUESTIONS = {
-    "value", "is_default", "linked", "control_of", "fitting", "refusal", "relative", "position", "frame_members", "copy",
-    "viewed", "viewed_in_root",
+    "value", "is_default", "linked", "control_of", "fitting", "refusal", "relative", "position", "frame_members",
+    "copy", "viewed", "viewed_in_root",
 }
 
 
@@ -194,7 +194,7 @@ def shot(session: Session) -> tuple[object, ...]:
     return session.root, session.place, session.selection, session.active
 
 
-@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("seed", range(40))
 def test_random_acts(seed: int):
     rng = Random(seed)
     session = Session(TOYS)

@@ -1,0 +1,78 @@
+"""What the inspector shows of files: headers and small pictures, read in a thread."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from halation.app.editor.inspector.layers import Layers, described, small_picture
+from halation.app.media import ImageInfo, info, write
+from halation.nodes import Kind
+
+
+@pytest.fixture
+def layers():
+    made = Layers()
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def picture(tmp_path: Path) -> Path:
+    path = tmp_path / "picture.exr"
+    depth = np.linspace(5.0, 25.0, 40 * 200, dtype=np.float32).reshape(40, 200, 1)
+    depth[0, 0] = np.inf
+    color = np.full((40, 200, 4), 1.0, np.float32)
+    write(path, {"beauty": color, "depth": depth}, kinds={"beauty": Kind.IMAGE, "depth": Kind.FIELD})
+    return path
+
+
+def waited(ask):
+    end = time.monotonic() + 20.0
+    while (found := ask()) is None and time.monotonic() < end:
+        time.sleep(0.01)
+    return found
+
+
+def test_headers_and_pictures_come_later(layers, picture):
+    assert layers.header(picture) is None
+    header = waited(lambda: layers.header(picture))
+    assert isinstance(header, ImageInfo) and [layer.name for layer in header.layers] == ["beauty", "depth"]
+    color = waited(lambda: layers.picture(picture, "beauty"))
+    assert color.shape == (14, 67, 3) and color.dtype == np.uint8 and (color == 255).all()
+    assert not layers.busy
+
+
+def test_data_is_shown_from_its_lowest_to_its_highest(picture):
+    small = small_picture(str(picture), "depth", info(picture))
+    assert small[0, 1].max() < 5 and small[-1, -1].min() > 245
+    assert (small[0, 0] == 255).all()
+
+
+def test_a_missing_file_is_a_sentence(layers, tmp_path):
+    found = layers.header(tmp_path / "gone.exr")
+    assert isinstance(found, str) and "there is no such file" in found
+    assert layers.picture(tmp_path / "gone.exr", "beauty") is None
+
+
+def test_a_damaged_file_is_a_sentence(layers, tmp_path):
+    path = tmp_path / "broken.exr"
+    path.write_bytes(b"no picture at all")
+    assert isinstance(waited(lambda: layers.header(path)), str)
+
+
+def test_another_file_under_the_same_name_is_read_again(layers, picture, monkeypatch):
+    monkeypatch.setattr("halation.app.editor.inspector.layers._LOOK_AGAIN", 0.0)
+    before = waited(lambda: layers.header(picture))
+    write(picture, {"new": np.zeros((2, 3, 4), np.float32)}, kinds={"new": Kind.IMAGE})
+    after = waited(lambda: layers.header(picture))
+    assert (before.size, after.size) == ((200, 40), (3, 2))
+
+
+def test_the_line_about_a_file(picture):
+    header = info(picture)
+    assert described(header, "") == "200 x 40, RGBA, float16, linear color"
+    assert described(header, "depth") == "200 x 40, Z, float32, data"
+    assert described(header, "Deep").startswith("has no layer 'Deep'")

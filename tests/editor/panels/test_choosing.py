@@ -1,0 +1,144 @@
+"""The file browser and the form for renders, without a window."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pytest
+from halation.app.editor.dialogs import Browse
+from halation.app.editor.exporting import Exports, Options
+from halation.app.editor.panels.browsing import Browsing, begun, size_text
+from halation.app.editor.panels.export_form import Form, title
+from halation.app.editor.panels.opening_folders import command, show_folder
+from halation.app.editor.preferences import Store
+from halation.app.editor.session import Session
+from halation.app.errors import UsageError
+from halation.presets import paths
+
+PRESET = next(path for path in paths() if path.stem == "soft_bloom")
+
+
+@dataclass
+class Desk:
+    """As much of an editor as these need."""
+
+    store: Store
+    session: Session = field(default_factory=Session)
+    exports: Exports = field(default_factory=Exports)
+
+
+@pytest.fixture
+def desk(tmp_path: Path) -> Desk:
+    return Desk(Store(tmp_path / "state"))
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    made = tmp_path / "work"
+    (made / "inner").mkdir(parents=True)
+    for name in ("a.json", "b.json", "notes.txt", "picture.EXR"):
+        (made / name).write_text("{}")
+    return made
+
+
+def browsing(desk: Desk, **options: Any) -> Browsing:
+    made = begun(desk, Browse("Choose", options.pop("purpose", "graph"), print, **options))
+    made.listing.wait()
+    return made
+
+
+def names(now: Browsing) -> list[str]:
+    now.listing.wait()
+    return [item.name for item in now.items]
+
+
+def test_it_lists_what_is_wanted_where_it_was_last(desk: Desk, folder: Path) -> None:
+    desk.store.used("graph", folder / "a.json")
+    desk.store.used("image", folder / "x.exr")
+    assert names(browsing(desk)) == ["inner", "a.json", "b.json"]
+    assert names(browsing(desk, purpose="image")) == ["inner", "picture.EXR"]
+    assert names(browsing(desk, purpose="export", name="a.png")) != names(browsing(desk))
+
+
+def test_opening_and_going_back(desk: Desk, folder: Path) -> None:
+    desk.store.used("graph", folder / "a.json")
+    now = browsing(desk)
+    now.poll()
+    assert now.item is not None and now.item.is_folder
+    assert now.target is None
+    now.go(folder / "inner")
+    assert names(now) == []
+    now.up()
+    while now.listing.busy:
+        now.poll()
+    assert now.item is not None and now.item.name == "inner"
+    now.search("b")
+    assert now.target == folder / "b.json"
+
+
+def test_saving_takes_the_name_and_adds_the_ending(desk: Desk, folder: Path) -> None:
+    desk.store.used("graph", folder / "a.json")
+    now = browsing(desk, saving=True, name="look.json")
+    assert now.item is None
+    assert now.target == folder / "look.json"
+    now.name = "other"
+    assert now.target == folder / "other.json"
+    now.choose(1)
+    assert (now.name, now.target) == ("a.json", folder / "a.json")
+    now.name = " "
+    assert now.target is None
+
+
+@pytest.mark.parametrize(
+    ("size", "said"), [(0, "0 B"), (999, "999 B"), (1500, "1.5 kB"), (999_600, "1 MB"), (4_710_000, "4.71 MB")]
+)
+def test_sizes(size: int, said: str) -> None:
+    assert size_text(size) == said
+
+
+def test_the_form_suggests_files_and_gives_options(desk: Desk, tmp_path: Path) -> None:
+    desk.session.open(PRESET)
+    desk.store.used("export", tmp_path / "x.exr")
+    form = Form()
+    assert form.wanted(desk) == ("image",)
+    assert form.file(desk, "image") == tmp_path / "soft_bloom.exr"
+    form.files["image"] = str(tmp_path / "mine.exr")
+    form.reform(".png")
+    assert form.file(desk, "image") == tmp_path / "mine.png"
+    assert form.options() == Options()
+    form.sizing, form.scale, form.precision, form.view = "scale", 0.25, "float", "none"
+    assert form.options() == Options(scale=0.25, precision="float", view="none")
+    form.sizing, form.size = "size", (64, 32)
+    assert form.options() == Options(size=(64, 32), precision="float", view="none")
+
+
+def test_nothing_chosen_is_refused_with_a_sentence(desk: Desk) -> None:
+    desk.session.open(PRESET)
+    form = Form(chosen={"image": False})
+    with pytest.raises(UsageError, match="where to write"):
+        form.start(desk)
+
+
+def test_a_render_is_started_and_its_folder_remembered(desk: Desk, tmp_path: Path) -> None:
+    desk.session.open(PRESET)
+    form = Form(sizing="scale", scale=0.1, format=".png")
+    form.files["image"] = str(tmp_path / "small.png")
+    made = form.start(desk)
+    assert title(made) == "small.png"
+    assert made.wait(60)
+    assert (made.state, made.sentence) == ("done", "")
+    assert (tmp_path / "small.png").is_file()
+    assert desk.store.folder("export") == str(tmp_path)
+
+
+def test_folders_are_shown_by_the_system_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("shutil.which", lambda name: f"/bin/{name}")
+    monkeypatch.setenv("DISPLAY", ":0")
+    for system, program in (("linux", "xdg-open"), ("darwin", "open"), ("win32", "explorer")):
+        monkeypatch.setattr("sys.platform", system)
+        assert command(tmp_path) == [f"/bin/{program}", str(tmp_path)]
+    monkeypatch.setattr("shutil.which", lambda name: None)
+    assert command(tmp_path) is None
+    assert not show_folder(tmp_path)

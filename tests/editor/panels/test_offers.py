@@ -1,0 +1,143 @@
+"""What the palette, the sheet of shortcuts and the list of problems hold."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
+
+import pytest
+from halation.app.editor.action import Action, Actions
+from halation.app.editor.actions import table
+from halation.app.editor.editor import Editor
+from halation.app.editor.keys import chord, text
+from halation.app.editor.panels.commands import commands, ranked
+from halation.app.editor.panels.findings import findings, show
+from halation.app.editor.panels.shortcut_groups import columns, condensed, groups
+from halation.app.editor.panels.taking_over import assigned, reset, taken_over
+from halation.app.editor.preferences import Store
+from halation.app.editor.session import Session
+from halation.app.graph import Port
+from halation.presets import paths
+
+PRESET = next(path for path in paths() if path.stem == "soft_bloom")
+
+
+@pytest.fixture
+def desk(tmp_path: Path) -> Editor:
+    """An editor whose pictures and files are left out."""
+    store = Store(tmp_path)
+    silent, none = SimpleNamespace(fault="", faults={}), cast(Any, None)
+    preview, recovery, watcher = (cast(Any, SimpleNamespace(**vars(silent))) for _ in range(3))
+    actions = Actions(table(), lambda: store.now.shortcuts)
+    return Editor(Session(), preview, store, actions, none, recovery, watcher, none, none, none)
+
+
+def first(desk: Editor, query: str) -> str:
+    return ranked(query, commands(desk), ())[0][0].label
+
+
+def test_every_shortcut_can_be_pressed_and_is_written_in_one_way() -> None:
+    assert [one.id for one in table() if one.shortcut and text(chord(one.shortcut)) != one.shortcut] == []
+
+
+def test_no_two_actions_share_a_shortcut(desk: Editor) -> None:
+    assert not {one.id: clash for one in table() if (clash := desk.actions.conflicts(one.id, one.shortcut))}
+
+
+def test_a_few_letters_find_actions_nodes_presets_and_places(desk: Editor) -> None:
+    desk.session.open(PRESET)
+    assert first(desk, "save as") == "Save As"
+    assert first(desk, "gb") == "Add Gaussian Blur"
+    assert first(desk, "open preset night") == "Open Preset Night Street"
+    assert first(desk, "go bloom") == "Go to bloom"
+
+
+def test_what_cannot_be_done_says_why_and_comes_last(desk: Editor) -> None:
+    offered = {command.id: command for command in commands(desk)}
+    assert offered["edit.undo"].reason == "nothing was done yet"
+    assert offered["edit.copy"].reason == "select something first"
+    assert not offered["file.open"].reason
+    found = [bool(command.reason) for command, _ in ranked("o", tuple(offered.values()), ())]
+    assert found == sorted(found)
+    assert any(found)
+
+
+def test_what_was_used_last_comes_first(desk: Editor) -> None:
+    offered = commands(desk)
+    found = [one.id for one, _ in ranked("", offered, ("file.open", "file.save_as"))]
+    assert found[:2] == ["file.save_as", "file.open"]
+
+
+def test_a_command_adds_a_node_where_the_pointer_is(desk: Editor) -> None:
+    desk.canvas.pointer = (300.0, 200.0)
+    next(one for one in commands(desk) if one.id == "add bloom").run()
+    (key,) = desk.session.selection
+    assert desk.session.position(key) == (300.0, 200.0)
+
+
+def test_taking_a_shortcut_over_and_giving_it_back(desk: Editor) -> None:
+    assert [one.id for one in desk.actions.conflicts("file.new", "Ctrl+O")] == ["file.open"]
+    taken_over(desk, "file.new", "Ctrl+O")
+    assert desk.actions.shortcut("file.new") == "Ctrl+O"
+    assert desk.actions.shortcut("file.open") == ""
+    reset(desk, "file.open")
+    assert desk.actions.shortcut("file.open") == "Ctrl+O"
+    assert desk.actions.shortcut("file.new") == ""
+    reset(desk, "file.new")
+    assert desk.store.now.shortcuts == {}
+    assigned(desk, "file.new", "F5")
+    assert desk.store.now.shortcuts == {"file.new": "F5"}
+
+
+def test_the_same_keys_may_serve_two_panels() -> None:
+    acts = (Action("a", "A", print, shortcut="A", scope="graph"), Action("b", "B", print, shortcut="A", scope="viewer"),
+            Action("c", "C", print, shortcut="A"))
+    actions = Actions(acts, dict)
+    assert [one.id for one in actions.conflicts("a", "A")] == ["c"]
+    assert [one.id for one in actions.conflicts("c", "A")] == ["a", "b"]
+
+
+def test_the_sheet_has_every_shortcut_once(desk: Editor) -> None:
+    listed = [action.id for _, actions in groups(desk) for action in actions]
+    assert sorted(listed) == sorted(one.id for one in table() if one.shortcut)
+    assert len([1 for _, actions in groups(desk, every=True) for _ in actions]) == len(table())
+
+
+def test_rows_that_count_up_are_one_line() -> None:
+    lines = [("F", "Fit"), *((str(at), f"View {at}") for at in range(1, 10)), ("Ctrl+1", "Keep 1"), ("0", "Full size")]
+    assert condensed(lines) == (("F", "Fit"), ("1 - 9", "View 1 - 9"), ("Ctrl+1", "Keep 1"), ("0", "Full size"))
+
+
+def test_columns_are_as_equal_as_order_allows() -> None:
+    assert columns((5, 5, 5, 5), 2) == ((0, 1), (2, 3))
+    assert columns((9, 1, 1, 1), 2) == ((0,), (1, 2, 3))
+    assert columns((), 3) == ()
+
+
+def test_everything_that_is_wrong_is_listed_once(desk: Editor) -> None:
+    desk.session.open(PRESET)
+    assert findings(desk) == ()
+    desk.session.disconnect(Port("outputs", "image"))
+    desk.preview.faults = {"inputs.beauty": "there is no such file", "outputs.image": "the same in other words"}
+    desk.watcher.fault = desk.recovery.fault = "the disk is full"
+    desk.faults["Viewer"] = "Traceback"
+    found = [(one.level, one.where, one.sentence) for one in findings(desk)]
+    assert ("error", "inputs.beauty", "there is no such file") in found
+    assert ("error", "", "the panel Viewer failed; the document is safe") in found
+    assert found[-1] == ("warning", "", "the disk is full")
+    assert len(found) == 3 + sum(map(len, desk.session.problems.values()))
+    assert sum(map(len, desk.session.problems.values())) > 0
+
+
+def test_a_finding_leads_into_its_group(desk: Editor) -> None:
+    desk.session.open(PRESET)
+    desk.session.select(["bloom"])
+    group = desk.session.make_group()
+    show(desk, f"{group}/bloom")
+    assert desk.session.place == (group,)
+    assert desk.session.selection == {"bloom"}
+    assert desk.canvas.wanted == ("bloom",)
+    show(desk, "inputs.beauty")
+    assert desk.session.place == ()
+    assert desk.session.selection == {"inputs.beauty"}

@@ -1,0 +1,193 @@
+"""The document as a file."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from halation import presets
+from halation.app.document import dumps, load
+from halation.app.editor.session import Session
+from halation.app.errors import DocumentError, GraphError, HalationError, OutputError, UsageError
+from halation.app.graph import Graph, Group, Input, Output, Port
+from toy_nodes import TOYS, Gain, Photo, Soften, chain
+
+
+@pytest.fixture
+def session() -> Session:
+    return Session(TOYS)
+
+
+def written(path: Path, graph: Graph) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(dumps(graph))
+    return path
+
+
+def test_open_save_and_open_again(session, tmp_path):
+    path = written(tmp_path / "a.json", chain(2))
+    session.open(path)
+    assert (session.name, session.path, session.dirty, session.history.steps) == ("a", path, False, ())
+    session.set(Port("n0", "gain"), 3.0)
+    session.save()
+    assert not session.dirty and session.history.can_undo
+    assert load(path, TOYS) == session.root
+
+
+def test_a_file_that_cannot_be_read_leaves_the_document(session, tmp_path):
+    session.edit("Start", chain(1))
+    (tmp_path / "bad.json").write_text("{")
+    for act in (lambda: session.open(tmp_path / "bad.json"), lambda: session.open_text("nothing"),
+                lambda: session.open_copy(tmp_path / "none.json")):
+        with pytest.raises(DocumentError):
+            act()
+    assert "n0" in session.graph.nodes and session.history.can_undo
+
+
+def test_save_needs_a_file_and_a_folder(session, tmp_path):
+    with pytest.raises(UsageError, match="Save As"):
+        session.save()
+    with pytest.raises(UsageError, match="no file to read again"):
+        session.reload()
+    session.edit("Start", chain(1))
+    with pytest.raises(OutputError):
+        session.save_as(tmp_path / "none" / "a.json")
+    assert session.path is None and session.dirty
+
+
+def test_saving_elsewhere_still_finds_pictures_and_groups(session, tmp_path):
+    inner = Graph(nodes={"p": Photo(path="b.exr")}, outputs={"image": Output()})
+    written(tmp_path / "one/lib/inner.json", inner)
+    graph = Graph(inputs={"plate": Input(file="plates/a.exr")}, folder=str(tmp_path / "one"))
+    graph = graph.add("g", Group(load(tmp_path / "one/lib/inner.json", TOYS), "lib/inner.json"))
+    graph = graph.add("p", Photo(path="plates/c.exr")).add("q", Photo(path="/far/d.exr")).add("r", Photo())
+    session.open(written(tmp_path / "one/doc.json", graph))
+    session.select("p")
+    session.make_group("local")
+    (tmp_path / "two").mkdir()
+    session.save_as(tmp_path / "two/doc.json")
+    root = load(tmp_path / "two/doc.json", TOYS)
+    assert root == session.root and not session.dirty
+    assert root.inputs["plate"].file == "../one/plates/a.exr"
+    assert root.nodes["g"].path == "../one/lib/inner.json" and root.nodes["g"].graph == inner
+    assert root.nodes["local"].graph.nodes["p"].path == "../one/plates/c.exr"
+    assert [root.nodes[id].path for id in "qr"] == ["/far/d.exr", ""]
+    session.undo()
+    assert session.graph.value(Port("p", "path")) == "../one/plates/c.exr", "the past moved too"
+    session.redo()
+    assert not session.dirty
+
+
+def test_a_document_is_not_saved_into_itself(session, tmp_path):
+    path = written(tmp_path / "lib.json", chain(1))
+    session.add_group(path)
+    with pytest.raises(UsageError, match="used as a group"):
+        session.save_as(path)
+    session.save_as(tmp_path / "doc.json")
+    with pytest.raises(GraphError, match="cannot hold itself"):
+        session.add_group(tmp_path / "doc.json")
+    with pytest.raises(UsageError, match="of the document itself"):
+        session.select(session.add_node("gain"))
+        session.save_group(session.make_group(), tmp_path / "doc.json")
+    outer = Session(TOYS)
+    outer.open(path)
+    with pytest.raises(GraphError, match="cannot hold itself"):
+        outer.add_group(tmp_path / "doc.json")
+
+
+def test_a_preset_opens_as_a_new_document_that_finds_its_files(session, tmp_path):
+    path = written(tmp_path / "presets/look.json", Graph(nodes={"p": Photo(path="samples/a.exr")}))
+    session.open_copy(path)
+    assert session.path is None and not session.dirty
+    session.save_as(tmp_path / "mine.json")
+    assert session.graph.value(Port("p", "path")) == "presets/samples/a.exr"
+    assert load(path, TOYS).nodes["p"] == Photo(path="samples/a.exr")
+
+
+def test_a_preset_as_a_node_depends_on_no_file(tmp_path):
+    session = Session()
+    id = session.add_group(next(path for path in presets.paths() if path.stem == "soft_bloom"))
+    item = session.graph.nodes[id]
+    assert isinstance(item, Group) and not item.path
+    assert [end.file for end in item.graph.inputs.values()] == ["" for _ in item.graph.inputs]
+    session.enter(id)
+    assert session.borrowed == ""
+    session.save_as(tmp_path / "doc.json")
+    assert "sample" not in (tmp_path / "doc.json").read_text()
+
+
+def test_pasted_text_is_an_unsaved_document(session):
+    session.open_text(dumps(chain(2)))
+    assert session.dirty and session.path is None and "n1" in session.graph.nodes
+
+
+def test_revert_and_reload_can_be_undone_and_keep_the_view(session, tmp_path):
+    path = written(tmp_path / "a.json", chain(3))
+    session.open(path)
+    session.select(["n1", "n2"])
+    session.view_node("n1")
+    session.set(Port("n0", "gain"), 3.0)
+    session.revert()
+    assert session.value(Port("n0", "gain")) == 1.5 and not session.dirty
+    assert session.selection == {"n1", "n2"} and session.viewed() == Port("n1", "out")
+    session.undo()
+    assert session.value(Port("n0", "gain")) == 3.0 and session.dirty
+    written(path, chain(2))
+    session.reload()
+    assert set(session.graph.nodes) == {"n0", "n1"} and session.selection == {"n1"}
+    assert session.history.steps == ("Set n0.gain", "Reload")
+    session.reload()
+    assert session.history.steps == ("Set n0.gain", "Reload"), "nothing was new"
+
+
+def test_reloading_leaves_a_group_that_is_gone(session, tmp_path):
+    session.edit("Start", chain(2))
+    session.select("n0")
+    session.enter(session.make_group())
+    session.save_as(tmp_path / "a.json")
+    written(tmp_path / "a.json", chain(1))
+    session.reload()
+    assert session.place == ()
+
+
+def test_groups_are_read_again_everywhere(session, tmp_path):
+    path = written(tmp_path / "lib.json", chain(1))
+    id = session.add_group(path, (5.0, 5.0))
+    session.add_node("gain")
+    session.save_as(tmp_path / "doc.json")
+    written(path, chain(4))
+    session.reload_groups()
+    assert len(session.graph.nodes[id].graph.nodes) == 4 and not session.dirty
+    session.undo()
+    assert len(session.graph.nodes[id].graph.nodes) == 4, "in the past too"
+    path.write_text("{")
+    with pytest.raises(DocumentError):
+        session.reload_groups()
+    assert len(session.graph.nodes[id].graph.nodes) == 4
+
+
+def test_a_change_of_classes_reaches_the_whole_history(session):
+    session.edit("Start", Graph(nodes={"n": Gain()}))
+    session.add_node("soften")
+    session.migrate(lambda graph: Graph(nodes={id: Soften() for id in graph.nodes}, ui=graph.ui))
+    assert session.graph.nodes["n"] == Soften() and len(session.history.steps) == 2
+    session.undo()
+    assert session.graph.nodes == {"n": Soften()}
+
+
+def test_dropped_files(tmp_path):
+    session = Session()
+    session.save_as(tmp_path / "doc.json")
+    path = written(tmp_path / "my look.json", Graph(outputs={"image": Output()}))
+    ids = session.drop_files([tmp_path / "plates/shot 1.exr", "/far/b.png", path], (10.0, 20.0))
+    assert ids == ("shot_1", "b", "my_look")
+    assert [session.graph.nodes[id].path for id in ids] == ["plates/shot 1.exr", "/far/b.png", "my look.json"]
+    assert session.selection == set(ids) and session.position("shot_1") == (10.0, 20.0)
+    assert session.history.steps == ("Drop 3 files",)
+    with pytest.raises(HalationError):
+        session.drop_files([tmp_path / "none.json"])
+    assert json.loads((tmp_path / "doc.json").read_text()) == {
+        "halation": 1, "outputs": {"image": {"type": "Image"}},
+        "ui": {"nodes": {"outputs.image": {"x": 0.0, "y": 0.0}}},
+    }

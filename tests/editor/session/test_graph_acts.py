@@ -1,0 +1,270 @@
+"""What a person does on the canvas and in the inspector."""
+
+from __future__ import annotations
+
+import pytest
+from halation.app.document import load
+from halation.app.editor.session import Session
+from halation.app.errors import GraphError
+from halation.app.graph import Control, Graph, Group, Input, Port
+from halation.nodes import Kind
+from toy_nodes import TOYS, Gain, chain
+
+
+def port(text: str) -> Port:
+    return Port.parse(text)
+
+
+@pytest.fixture
+def session() -> Session:
+    made = Session(TOYS)
+    made.edit("Start", chain(3))
+    return made
+
+
+def links(session: Session) -> dict[str, str]:
+    return {str(end): str(start) for end, start in session.graph.links.items()}
+
+
+def test_selecting(session):
+    session.select("n0")
+    session.select(["n1", "nobody"], "add")
+    assert (session.selection, session.active) == ({"n0", "n1"}, "n1")
+    session.select(["n0", "n2"], "toggle")
+    assert (session.selection, session.active) == ({"n1", "n2"}, "n2")
+    session.select("n2", "remove")
+    assert (session.selection, session.active) == ({"n1"}, "n1")
+    session.select_upstream()
+    assert (session.selection, session.active) == ({"inputs.beauty", "n0", "n1"}, "n1")
+    session.select("n1")
+    session.select_downstream()
+    assert session.selection == {"n1", "n2", "outputs.image"}
+    session.select_inverse()
+    assert session.selection == {"inputs.beauty", "n0"}
+    session.add_node("photo")
+    session.select("n2")
+    session.select_linked()
+    assert session.selection == {"inputs.beauty", "n0", "n1", "n2", "outputs.image"}
+    session.select_none()
+    assert (session.selection, session.active) == (frozenset(), "")
+
+
+def test_adding_with_a_link(session):
+    assert session.add_node("blend", (5.0, 6.0), port("n0.out")) == "blend"
+    assert session.add_node("photo", (0.0, 0.0), port("blend.second"), output=False) == "photo"
+    assert {"blend.first": "n0.out", "blend.second": "photo.out"}.items() <= links(session).items()
+    assert session.position("blend") == (5.0, 6.0) and session.active == "photo"
+    before = session.root
+    with pytest.raises(GraphError, match="fits no input"):
+        session.add_node("photo", link=port("n0.out"))
+    assert session.root is before
+
+
+def test_inserting_new_and_existing_nodes(session):
+    assert session.insert("soften", port("n1.image"), (7.0, 8.0)) == "soften"
+    assert links(session)["n1.image"] == "soften.out" and session.position("soften") == (7.0, 8.0)
+    session.extract()
+    assert links(session)["n1.image"] == "n0.out"
+    session.insert("soften", port("outputs.image"))
+    assert links(session)["soften.image"] == "n2.out" and links(session)["outputs.image"] == "soften.out"
+
+
+def test_deleting_all_kinds_of_things(session):
+    frame, note = session.add_frame("f", (0.0, 0.0)), session.add_comment((0.0, 0.0), "c")
+    dot = session.add_dot(port("n1.image"), (1.0, 1.0))
+    session.select(["n0", "inputs.beauty", f"frames.{frame}", f"comments.{note}", f"dots.{dot}"])
+    session.delete()
+    assert set(session.elements) == {"n1", "n2", "outputs.image"}
+    assert session.selection == frozenset()
+    assert links(session) == {"n2.image": "n1.out", "outputs.image": "n2.out"}
+    with pytest.raises(GraphError, match="nothing is selected"):
+        session.delete()
+
+
+def test_delete_heals_unless_told_otherwise(session):
+    session.select("n1")
+    session.delete()
+    assert links(session)["n2.image"] == "n0.out"
+    session.undo()
+    session.delete(heal=False)
+    assert "n2.image" not in links(session)
+
+
+def test_mute_and_collapse_toggle_all_of_the_selection(session):
+    session.select("n0")
+    session.mute()
+    session.select(["n0", "n1"])
+    session.mute()
+    assert session.graph.muted == {"n0", "n1"}
+    session.mute()
+    assert session.graph.muted == frozenset()
+    session.collapse()
+    assert session.graph.ui["nodes"]["n0"]["collapsed"] is True
+    session.collapse()
+    assert "collapsed" not in session.graph.ui["nodes"]["n0"]
+
+
+def test_values(session):
+    gain, tint = port("n0.gain"), port("n0.tint")
+    session.set(gain, 2, "drag")
+    session.set(gain, 3, "drag")
+    session.set(tint, [1, 0, 0, 1])
+    assert (session.value(gain), session.value(tint)) == (3.0, (1.0, 0.0, 0.0, 1.0))
+    assert len(session.history.steps) == 3 and not session.is_default(gain)
+    session.reset(gain)
+    assert session.is_default(gain) and session.value(gain) == 1.0
+    session.reset_all("n0")
+    assert session.graph.nodes["n0"] == Gain()
+    for value, said in ((99.0, "outside the range"), ("a", "takes a number"), (float("nan"), "not a finite")):
+        with pytest.raises(GraphError, match=said):
+            session.set(gain, value)
+    assert session.linked(port("n1.image")) == port("n0.out") and session.linked(gain) is None
+
+
+def test_controls(session):
+    gain = port("n0.gain")
+    assert session.expose(gain) == "gain" and session.control_of(gain) == "gain"
+    assert session.expose(port("n1.gain")) == "gain2"
+    with pytest.raises(GraphError, match="control 'gain' already"):
+        session.expose(gain)
+    session.rename_control("gain", "glow")
+    session.set_control_doc("glow", label="Glow")
+    session.set_control_doc("glow", doc="How much.")
+    assert session.graph.controls["glow"] == Control(gain, "Glow", "How much.")
+    session.hide("glow")
+    assert session.control_of(gain) is None
+
+
+def test_values_of_a_group_and_of_what_is_inside(session):
+    session.expose(port("n1.gain"), "glow")
+    session.select(["n0", "n1"])
+    id = session.make_group("look")
+    glow = Port(id, "glow")
+    session.set(glow, 4.0)
+    assert not session.is_default(glow)
+    session.enter(id)
+    assert session.value(port("n1.gain")) == 4.0, "the value that the group sets"
+    session.set(port("n0.gain"), 0.5)
+    session.rename_control("glow", "shine")
+    session.rename_end("inputs.image", "plate")
+    session.leave()
+    assert session.value(Port(id, "shine")) == 4.0
+    assert session.graph.controls["glow"].target == Port(id, "shine")
+    assert links(session)["look.plate"] == "inputs.beauty"
+    session.enter(id)
+    session.remove_end("inputs.plate")
+    session.leave()
+    assert "look.plate" not in links(session)
+    session.undo()
+    assert session.place == (id,) and "plate" in session.graph.inputs
+    session.leave()
+    assert links(session)["look.plate"] == "inputs.beauty"
+
+
+def test_groups_from_files(session, tmp_path):
+    session.select(["n0", "n1"])
+    id = session.make_group("look")
+    session.save_as(tmp_path / "doc.json")
+    session.save_group(id, tmp_path / "look.json")
+    assert session.borrowed == "" and not session.dirty
+    session.save_group(id, tmp_path / "look.json", link=True)
+    assert session.graph.nodes[id].path == "look.json"
+    session.enter(id)
+    assert session.borrowed == "look.json" and session.crumbs == (("doc", ()), ("look", ("look",)))
+    with pytest.raises(GraphError, match=r"'look' comes from the file 'look.json': make it local first"):
+        session.set(port("n0.gain"), 2.0)
+    session.leave()
+    session.save()
+    assert load(tmp_path / "doc.json", TOYS) == session.root
+    session.make_local(id)
+    session.enter(id)
+    session.set(port("n0.gain"), 2.0)
+    assert session.borrowed == ""
+    session.leave()
+    with pytest.raises(GraphError, match="part of this document already"):
+        session.make_local(id)
+
+
+def test_entering_and_leaving(session):
+    session.select("n1")
+    session.enter(session.make_group("a"))
+    session.select("n1")
+    session.enter(session.make_group("b"))
+    assert session.place == ("a", "b") and session.crumbs == (("untitled", ()), ("a", ("a",)), ("b", ("a", "b")))
+    session.leave(2)
+    assert (session.place, session.active) == ((), "a")
+    session.go(("a", "b"))
+    session.go(("a",))
+    assert session.active == "b"
+    for act in (lambda: session.enter("n1"), lambda: session.enter("inputs.image"), lambda: session.go(("x",))):
+        with pytest.raises(GraphError):
+            act()
+    assert isinstance(session.root.nodes["a"], Group)
+
+
+def test_ends(session):
+    assert session.add_input("depth", "Field", at=(1.0, 2.0)) == "inputs.depth"
+    assert session.graph.inputs["depth"] == Input(Kind.FIELD) and session.position("inputs.depth") == (1.0, 2.0)
+    assert session.add_output("flow", Kind.VECTOR, 2) == "outputs.flow"
+    session.set_input("depth", file="a.exr", layer="Z", doc="Far.")
+    session.set_input("depth", default=1.0)
+    assert session.graph.inputs["depth"] == Input(Kind.FIELD, 1, "a.exr", "Z", 1.0, "Far.")
+    session.set_input("depth", default=None)
+    assert session.graph.inputs["depth"].default is None
+    for default in ((1.0, 2.0), "far", True, float("inf")):
+        with pytest.raises(GraphError, match="default"):
+            session.set_input("depth", default=default)
+    session.set_output("image", layer="rgba", view="none")
+    assert (session.graph.outputs["image"].layer, session.graph.outputs["image"].view) == ("rgba", "none")
+    session.set_size((64, 48))
+    assert session.root.settings.size == (64, 48)
+    session.remove_end("inputs.beauty")
+    assert "n0.image" not in links(session)
+    with pytest.raises(GraphError, match=r"no 'inputs\.beauty'"):
+        session.rename_end("inputs.beauty", "x")
+
+
+def test_bound_files_follow_their_input(session):
+    session.bind("beauty", "shot.exr")
+    session.rename_end("inputs.beauty", "plate")
+    assert session.bindings == {"plate": "shot.exr"}
+    session.undo()
+    assert session.bindings == {"beauty": "shot.exr"}
+    session.bind("beauty", None)
+    assert session.bindings == {}
+    with pytest.raises(GraphError, match="no input 'x'"):
+        session.bind("x", "a.exr")
+
+
+def test_frames_hold_what_lies_inside(session):
+    session.select(["n0", "n1"])
+    frame = session.add_frame("Grade")
+    assert session.frame_members(frame) == {"n0", "n1"} and session.active == f"frames.{frame}"
+    session.select(f"frames.{frame}")
+    outer = session.add_frame()
+    assert session.frame_members(outer) == {"n0", "n1", f"frames.{frame}"}
+    session.move([*session.frame_members(outer), f"frames.{outer}"], 1000.0, 0.0)
+    assert session.frame_members(frame) == {"n0", "n1"}
+    session.resize_frame(frame, 0.0, 0.0, 1.0, 1.0)
+    assert session.graph.ui["frames"][frame]["w"] == 40.0, "never too small to be grabbed"
+    session.set_frame(frame, color=(0.5, 0.25, 0.125))
+    assert session.graph.ui["frames"][frame]["title"] == "Grade"
+    assert session.graph.ui["frames"][frame]["color"] == (0.5, 0.25, 0.125)
+    with pytest.raises(GraphError, match="there is no frame 'x'"):
+        session.set_frame("x")
+    with pytest.raises(GraphError, match="there is no comment 'x'"):
+        session.resize_comment("x", 0.0, 0.0, 9.0)
+    with pytest.raises(GraphError, match="there is no dot 'x'"):
+        session.remove_dot("x")
+
+
+def test_cut_copy_and_paste(session):
+    session.select(["n1"])
+    text = session.cut_out()
+    assert links(session) == {"n0.image": "inputs.beauty", "n2.image": "n0.out", "outputs.image": "n2.out"}
+    assert session.paste(text) == ("n1",)
+    assert session.selection == {"n1"} and "n1.image" not in links(session)
+    assert session.duplicate() == ("n3",)
+    other = Session(TOYS)
+    assert other.paste(text, (50.0, 60.0)) == ("n1",) and other.position("n1") == (50.0, 60.0)
+    assert isinstance(other.root, Graph)

@@ -1,0 +1,136 @@
+"""What the viewer shows."""
+
+from __future__ import annotations
+
+import pytest
+from halation.app.compiler import Picture, Probed, Request, compile_graph
+from halation.app.editor.session import Session
+from halation.app.errors import GraphError
+from halation.app.graph import Graph, Input, Output, Port
+from halation.nodes import catalogue
+from toy_nodes import TOYS, chain
+
+
+def port(text: str) -> Port:
+    return Port.parse(text)
+
+
+@pytest.fixture
+def session() -> Session:
+    made = Session(TOYS)
+    made.edit("Start", chain(3))
+    return made
+
+
+def test_without_a_choice_a_shows_the_output_and_b_nothing(session):
+    assert session.viewed() == port("outputs.image") and session.viewed("B") is None
+    session.disconnect(port("outputs.image"))
+    assert session.viewed() == port("n2.out"), "the last node"
+    session.select_all()
+    session.delete()
+    assert session.viewed() is None
+
+
+def test_a_port_that_vanishes_comes_back(session):
+    session.view(port("n1.out"))
+    session.view(port("n0.out"), "B")
+    session.select(["n0", "n1"])
+    session.delete()
+    assert (session.viewed(), session.viewed("B")) == (port("outputs.image"), None)
+    session.undo()
+    assert (session.viewed(), session.viewed("B")) == (port("n1.out"), port("n0.out"))
+    session.view_nothing("B")
+    assert session.viewed("B") is None
+
+
+def test_the_view_follows_a_new_name_and_back(session):
+    session.view(port("n1.out"))
+    session.view(port("inputs.beauty"), "B")
+    session.rename("n1", "middle")
+    session.rename_end("inputs.beauty", "plate")
+    assert (session.viewed(), session.viewed("B")) == (port("middle.out"), port("inputs.plate"))
+    session.undo()
+    session.undo()
+    assert (session.viewed(), session.viewed("B")) == (port("n1.out"), port("inputs.beauty"))
+
+
+def test_viewing_a_node_again_shows_its_next_output(session):
+    id = session.add_node("split", link=port("n2.out"))
+    seen = []
+    for _ in range(3):
+        session.view_node(id)
+        seen.append(str(session.viewed()))
+    assert seen == ["split.grey", "split.rest", "split.grey"]
+    session.view_node("outputs.image")
+    assert session.viewed() == port("outputs.image")
+    with pytest.raises(GraphError, match=r"no 'n9\.out' to show"):
+        session.view(port("n9.out"))
+
+
+def test_every_group_has_a_view_of_its_own(session):
+    session.view(port("n0.out"))
+    session.select("n1")
+    session.enter(session.make_group("look"))
+    assert session.viewed() == port("outputs.out")
+    session.view_node("n1")
+    session.leave()
+    assert session.viewed() == port("n0.out")
+    session.enter("look")
+    assert session.viewed() == port("n1.out")
+    assert session.viewed_in_root() == port("look/n1.out")
+    session.view(port("inputs.image"))
+    assert session.viewed_in_root() == port("n0.out"), "what feeds the group"
+
+
+def test_what_the_compiler_is_asked_for():
+    session = Session()
+    graph = Graph(inputs={"image": Input()}, outputs={"image": Output()})
+    for id, before in (("a", "inputs.image"), ("b", "a.out"), ("c", "b.out")):
+        graph = graph.add(id, catalogue()["gaussian_blur"]()).connect(port(before), Port(id, "image"))
+    session.edit("Start", graph.connect(port("c.out"), port("outputs.image")))
+
+    def key(target: Port | None) -> str:
+        assert target is not None
+        request = Request({"x": target}, {"image": Picture("image", "", Input().kind, 4, in_memory=True)})
+        plan = compile_graph(session.root, request, lambda picture: Probed((8, 6), False, picture.path))
+        return plan.surfaces[plan.outputs["x"]].key
+
+    wanted = {name: key(port(name)) for name in ("inputs.image", "a.out", "b.out", "c.out")}
+    session.select(["a", "b"])
+    session.enter(session.make_group("outer"))
+    session.select(["b"])
+    session.enter(session.make_group("inner"))
+    for name, same in (("inputs.image", "a.out"), ("b.out", "b.out"), ("outputs.out", "b.out")):
+        session.view(port(name))
+        assert key(session.viewed_in_root()) == wanted[same]
+    session.leave()
+    for name, same in (("inputs.image", "inputs.image"), ("a.out", "a.out"), ("inner.out", "b.out")):
+        session.view(port(name))
+        assert key(session.viewed_in_root()) == wanted[same]
+
+
+def test_viewer_keys(session):
+    session.select("n1")
+    session.assign_viewer(1)
+    session.assign_viewer(2, port("inputs.beauty"))
+    assert session.viewers == {1: port("n1.out"), 2: port("inputs.beauty")}
+    assert session.graph.ui["viewers"] == {"1": "n1.out", "2": "inputs.beauty"}
+    session.recall_viewer(1, "B")
+    assert session.viewed("B") == port("n1.out") and session.viewed() == port("inputs.beauty")
+    session.rename("n1", "middle")
+    assert session.viewers[1] == port("middle.out")
+    session.select("middle")
+    session.delete()
+    assert set(session.viewers) == {2}
+    for number, said in ((3, "nothing is assigned"), (1, "nothing is assigned")):
+        with pytest.raises(GraphError, match=said):
+            session.recall_viewer(number)
+    with pytest.raises(GraphError, match="choose 1 to 9"):
+        session.assign_viewer(0)
+
+
+def test_another_document_forgets_what_was_viewed(session):
+    session.view(port("n0.out"))
+    session.new()
+    session.edit("Start", chain(3))
+    assert session.viewed() == port("outputs.image")

@@ -1,0 +1,96 @@
+"""What the mouse takes hold of on the picture."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from halation.app.editor.session import Session
+from halation.app.editor.viewer.geometry import Sight
+from halation.app.editor.viewer.handles import handles
+from halation.app.editor.viewer.holding import ARM, Hold, aim
+from halation.app.editor.viewer.state import ViewerState
+from halation.app.graph import Port
+
+SIGHT = Sight((0.0, 0.0), (800, 400), (400, 200), zoom=2.0)
+
+
+@pytest.fixture
+def editor() -> Any:
+    return SimpleNamespace(session=Session(), viewer=ViewerState(), dragging=False, attempt=lambda act: act())
+
+
+def drag(editor: Any, start: tuple[float, float], end: tuple[float, float], **keys: bool) -> str:
+    """Press, move, let go; returns what was held."""
+    hold = Hold.begin(editor, SIGHT, start, aim(editor, SIGHT, start, **keys))
+    hold.drag(editor, SIGHT, end, (end[0] - start[0], end[1] - start[1]))
+    hold.release(editor, SIGHT, end)
+    return hold.aim.what
+
+
+def test_the_picture_itself_is_panned(editor: Any) -> None:
+    assert drag(editor, (400.0, 200.0), (430.0, 190.0)) == "pan"
+    assert (editor.viewer.zoom, editor.viewer.pan) == (2.0, (30.0, -10.0))
+
+
+def test_a_click_pans_nothing(editor: Any) -> None:
+    assert drag(editor, (400.0, 200.0), (401.0, 200.0)) == "pan"
+    assert editor.viewer.zoom == 0.0
+
+
+def test_positions_of_the_active_node_can_be_dragged(editor: Any) -> None:
+    session = editor.session
+    ramp = session.add_node("ramp")
+    assert [str(one.port) for one in handles(session)] == ["ramp.start", "ramp.end"]
+    assert drag(editor, (2.0, 201.0), (202.0, 101.0)) == "handle"
+    assert session.value(Port(ramp, "start")) == pytest.approx((0.25, 0.25))
+    assert editor.dragging
+    assert session.history.position == 2  # the node, and one step for the whole drag
+    session.select_none()
+    assert handles(session) == ()
+
+
+def test_drags_in_a_row_are_steps_of_their_own(editor: Any) -> None:
+    ramp = editor.session.add_node("ramp")
+    drag(editor, (0.0, 200.0), (200.0, 100.0))
+    drag(editor, (200.0, 100.0), (400.0, 100.0))
+    editor.session.undo()
+    assert editor.session.value(Port(ramp, "start")) == pytest.approx((0.25, 0.25))
+
+
+def test_the_wipe_is_moved_and_turned(editor: Any) -> None:
+    viewer = editor.viewer
+    assert drag(editor, (401.0, 50.0), (201.0, 90.0)) == "pan"
+    viewer.compare, viewer.zoom, viewer.pan = "wipe", 0.0, (0.0, 0.0)
+    assert drag(editor, (401.0, 50.0), (201.0, 90.0)) == "wipe"
+    assert viewer.wipe == pytest.approx((0.25, 0.6))
+    assert drag(editor, (200.0, 240.0 + ARM), (100.0, 240.0)) == "wipe"
+    assert viewer.wipe_angle == pytest.approx(90.0)
+    assert viewer.wipe == pytest.approx((0.25, 0.6))
+
+
+def test_a_region_is_drawn_and_its_corner_dragged(editor: Any) -> None:
+    viewer = editor.viewer
+    viewer.drawing_region = True
+    assert drag(editor, (80.0, 40.0), (400.0, 200.0)) == "new region"
+    assert viewer.region == pytest.approx((0.1, 0.1, 0.5, 0.5)) and not viewer.drawing_region
+    assert drag(editor, (400.0, 200.0), (480.0, 240.0)) == "region"
+    assert viewer.region == pytest.approx((0.1, 0.1, 0.6, 0.6))
+    viewer.drawing_region = True
+    drag(editor, (80.0, 40.0), (81.0, 40.0))
+    assert viewer.region is None
+
+
+def test_ctrl_measures_rectangles_and_sets_markers(editor: Any) -> None:
+    viewer = editor.viewer
+    assert drag(editor, (80.0, 40.0), (400.0, 200.0), ctrl=True) == "measure"
+    assert viewer.measured == pytest.approx((0.1, 0.1, 0.5, 0.5)) and viewer.table and not viewer.markers
+    drag(editor, (100.0, 100.0), (100.0, 100.0), ctrl=True)
+    assert viewer.markers == (((50 + 0.5) / 400, (50 + 0.5) / 200),)
+    drag(editor, (101.0, 101.0), (101.0, 101.0), ctrl=True)
+    assert viewer.markers == ()
+
+
+def test_the_eyedropper_comes_first(editor: Any) -> None:
+    editor.session.add_node("ramp")
+    editor.viewer.picking = "constant.color"
+    assert aim(editor, SIGHT, (0.0, 200.0)).what == "pick"

@@ -1,0 +1,138 @@
+"""How results are shown, and what is wanted for that."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from halation.app.editor.session import Session
+from halation.app.editor.viewer.geometry import Sight
+from halation.app.editor.viewer.looking import asked_view, displayed, look_of, meaning_of, picture_only, range_of
+from halation.app.editor.viewer.measuring import picked_color
+from halation.app.editor.viewer.picking import ports_of, title
+from halation.app.editor.viewer.state import ViewerState
+from halation.app.editor.viewer.wanted import wanted
+from halation.app.graph import Graph, Output, Port
+from halation.app.media import to_display
+from halation.app.renderer.look import Look
+from halation.nodes import Kind
+
+SIGHT = Sight((0.0, 0.0), (800, 400), (400, 200), zoom=2.0, pan=(3.0, 4.0))
+
+
+def unread() -> np.ndarray:
+    raise AssertionError("nothing needs to be read for this")
+
+
+def test_kinds_decide_how_they_are_shown() -> None:
+    state = ViewerState()
+    up = np.zeros((4, 4, 3)) + (0.0, 1.0, 0.0)
+    assert meaning_of(state, Kind.IMAGE, unread) == "image"
+    assert meaning_of(state, Kind.FIELD, unread) == "field"
+    assert meaning_of(state, Kind.VECTOR, lambda: up) == "normal"
+    assert meaning_of(state, Kind.VECTOR, lambda: 3.0 * up) == "vector"
+    state.meaning = "image"
+    assert meaning_of(state, Kind.VECTOR, unread) == "image"
+
+
+def test_ranges_are_measured_unless_they_are_given() -> None:
+    state = ViewerState()
+    data = np.linspace(-1.0, 4.0, 1001).reshape(-1, 1, 1)
+    low, high = range_of(state, "field", lambda: data)
+    assert (low, high) == pytest.approx((-1.0, 4.0), abs=0.03)
+    low, high = range_of(state, "vector", lambda: data)
+    assert low == -high
+    assert range_of(state, "image", unread) == (0.0, 1.0)
+    state.low, state.high = 2.0, 5.0
+    assert range_of(state, "field", unread) == (2.0, 5.0)
+
+
+def test_an_output_asks_for_a_view_and_so_does_what_feeds_it() -> None:
+    session = Session()
+    noise = session.add_node("noise")
+    graph = Graph().add(noise, session.graph.nodes[noise]).add_output("image", Output(view="none"))
+    graph = graph.connect(Port(noise, "out"), Port("outputs", "image"))
+    assert asked_view(graph, Port("outputs", "image")) == "none"
+    assert asked_view(graph, Port(noise, "out")) == "none"
+    assert asked_view(graph, Port(noise, "value")) == ""
+
+
+def test_the_look_has_what_the_viewer_is_set_to() -> None:
+    state = ViewerState(compare="toggle", toggled=True, background="white", region=(0.5, 0.25, 0.25, 0.75))
+    look = look_of(state, SIGHT, "field", (2.0, 3.0), "none", (0.1, 0.1, 0.1))
+    assert (look.zoom, look.pan, look.compare, look.view) == (2.0, (3.0, 4.0), "b", "none")
+    assert (look.low, look.high, look.checker, look.background) == (2.0, 3.0, False, (1.0, 1.0, 1.0))
+    assert look.region == (100.0, 50.0, 100.0, 100.0)
+    state.view = "Raw"
+    assert look_of(state, SIGHT, "image", (0.0, 1.0), "none", (0.1, 0.1, 0.1)).view == "Raw"
+    saved = picture_only(look)
+    assert (saved.zoom, saved.pan, saved.region, saved.compare) == (1.0, (0.0, 0.0), None, "b")
+
+
+def test_what_scopes_measure_is_what_the_display_shows() -> None:
+    pixels = np.random.default_rng(5).random((6, 5, 4)).astype(np.float32)
+    pixels[..., 3] = 1.0
+    exposed = pixels * np.float32([2.0, 2.0, 2.0, 1.0])
+    expected = to_display(exposed, "none", bits=32)[..., :3].clip(0.0, 1.0)
+    assert np.allclose(displayed(pixels, Look(exposure=1.0, view="none")), expected, atol=1e-6)
+    assert np.allclose(displayed(pixels, Look(exposure=1.0, view="none", gamma=2.0)), expected**0.5, atol=1e-6)
+
+
+def test_scopes_see_transparency_over_black_and_light_without_alpha_as_it_is() -> None:
+    half = np.asarray([[[0.5, 0.5, 0.5, 0.5]]], np.float32)
+    assert displayed(half, Look(view="none"))[0, 0] == pytest.approx([0.5] * 3, abs=1e-5)
+    glow = np.asarray([[[1.0, 1.0, 1.0, 0.0]]], np.float32)
+    assert displayed(glow, Look(view="none"))[0, 0] == pytest.approx([1.0] * 3, abs=1e-5)
+
+
+def test_scopes_see_data_in_its_range() -> None:
+    data = np.asarray([[[2.0], [3.0], [9.0]]], np.float32)
+    assert displayed(data, Look(meaning="field", low=2.0, high=4.0))[0, :, 0].tolist() == [0.0, 0.5, 1.0]
+    assert displayed(np.zeros((1, 1, 3), np.float32), Look(meaning="normal")).tolist() == [[[0.5] * 3]]
+
+
+@pytest.fixture
+def editor() -> Any:
+    return SimpleNamespace(
+        session=Session(), viewer=ViewerState(), dragging=False,
+        store=SimpleNamespace(now=SimpleNamespace(proxy_while_dragging=True)),
+    )
+
+
+def test_only_what_is_seen_is_wanted(editor: Any) -> None:
+    session = editor.session
+    assert wanted(editor) == ({}, 1.0)
+    noise, light = session.add_node("noise"), "beauty"
+    session.add_input(light, "Image")
+    session.view(Port(noise, "value"))
+    session.view(Port("inputs", light), "B")
+    assert wanted(editor) == ({"A": Port(noise, "value")}, 1.0)
+    editor.viewer.compare, editor.viewer.proxy = "wipe", 0.5
+    assert wanted(editor) == ({"A": Port(noise, "value"), "B": Port("inputs", light)}, 0.5)
+    editor.viewer.compare, editor.viewer.table = "off", True
+    assert wanted(editor)[0] == {"A": Port(noise, "value"), f"inputs.{light}": Port("inputs", light)}
+
+
+def test_slow_pictures_are_wanted_coarser_while_dragging(editor: Any) -> None:
+    wanted(editor)
+    editor.viewer.pace.took(1.0, 0.2)
+    editor.dragging = True
+    assert wanted(editor)[1] == 0.5
+    editor.store.now.proxy_while_dragging = False
+    assert wanted(editor)[1] == 1.0
+
+
+def test_everything_can_be_chosen_by_its_name(editor: Any) -> None:
+    session = editor.session
+    session.add_input("beauty", "Image")
+    noise = session.add_node("noise")
+    session.add_node("exposure", link=Port(noise, "out"))
+    groups = {heading: [title(session.graph, port) for port in ports] for heading, ports in ports_of(session.graph)}
+    assert groups["Nodes"] == ["exposure", "noise.out", "noise.value", "noise.vector"]
+    assert groups["Inputs"] == ["beauty"]
+
+
+def test_picked_colors_are_straight_and_opaque() -> None:
+    assert picked_color((0.2, 0.1, 0.4, 0.5)) == pytest.approx((0.4, 0.2, 0.8, 1.0))
+    assert picked_color((0.2, 0.1, 0.4, 0.0)) == pytest.approx((0.2, 0.1, 0.4, 1.0))
+    assert picked_color((0.3,)) == pytest.approx((0.3, 0.3, 0.3, 1.0))
