@@ -151,15 +151,11 @@ class _Held:
 
 def drive(
     body: Callable[[Ui], object], folder: Path, path: Path | None = None, bindings: Mapping[str, str] | None = None,
-    size: tuple[int, int] = (1400, 900), likes: Mapping[str, object] | None = None, idle: bool = False,
+    size: tuple[int, int] = (1400, 900), likes: Mapping[str, object] | None = None,
 ) -> Window:
     """Open the editor, run `body(ui)` beside it, and close it. Its state is in `folder / "state"`."""
-    _without_display()
-    state = folder / "state"
-    state.mkdir(exist_ok=True)
-    window = Window(path, bindings or {}, state=state, size=size)
-    window.params.ini_disable = True
-    window.params.fps_idling.enable_idling = idle
+    window = headless(folder, path, bindings, size)
+    window.params.fps_idling.enable_idling = False
 
     def whole(ctx: Any) -> None:
         ui = Ui(window, ctx, folder)
@@ -178,9 +174,17 @@ def drive(
     return window
 
 
-def _without_display() -> None:
-    """The next window needs no display: what it shows is real all the same."""
+def headless(
+    folder: Path, path: Path | None = None, bindings: Mapping[str, str] | None = None,
+    size: tuple[int, int] = (1400, 900),
+) -> Window:
+    """A window that is ready to run and needs no display: what it shows is real all the same."""
     assert hello_imgui  # loaded first: both must use the same window library
     glfw.init_hint(glfw.PLATFORM, glfw.PLATFORM_NULL)
     assert glfw.init()
     glfw.window_hint(glfw.CONTEXT_CREATION_API, glfw.EGL_CONTEXT_API)
+    state = folder / "state"
+    state.mkdir(exist_ok=True)
+    window = Window(path, bindings or {}, state=state, size=size)
+    window.params.ini_disable = True
+    return window

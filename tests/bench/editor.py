@@ -21,10 +21,11 @@ from typing import Any
 
 sys.path.append(str(Path(__file__).parents[1]))
 
-from gui_driver import Ui, drive
+from gui_driver import Ui, drive, headless
 from halation.app import document
 from halation.app.graph import Graph, Output, Port
 from halation.nodes import Kind, catalogue
+from imgui_bundle import immapp
 
 _TEN = (
     "exposure", "saturation", "grade", "gaussian_blur", "vignette", "exposure", "clip", "saturation", "bloom",
@@ -111,20 +112,26 @@ def drag(folder: Path) -> dict[str, float]:
 
 
 def idle(folder: Path) -> float:
-    """Processor time per second of doing nothing."""
-    path = folder / "ten.json"
-    found = [0.0]
+    """Processor time per second of doing nothing, without the test engine, which never rests."""
+    window = headless(folder, folder / "ten.json", size=(1600, 1000))
+    before, marks = window.params.callbacks.before_imgui_render, list[tuple[float, float]]()
+    begun = time.perf_counter()
 
-    def body(ui: Ui) -> None:
-        ui.settled()
-        before, started = os.times(), time.perf_counter()
-        while time.perf_counter() - started < 6.0:
-            ui.wait(1)
-        after = os.times()
-        found[0] = (after.user + after.system - before.user - before.system) / (time.perf_counter() - started)
+    def after_frame() -> None:
+        before()
+        resting = window.params.fps_idling
+        if resting.is_idling:  # a display would wait so long for events; the platform without one returns at once
+            time.sleep(1.0 / resting.fps_idle)
+        now = time.perf_counter()
+        if now - begun > 8.0 and not window.editor.preview.busy:  # it rests some seconds after the last event
+            used = os.times()
+            marks.append((now, used.user + used.system))
+        if marks and now - marks[0][0] > 6.0:
+            window.editor.closing = True
 
-    drive(body, folder, path, size=(1600, 1000), idle=True)
-    return found[0]
+    window.params.callbacks.before_imgui_render = after_frame
+    immapp.run(window.params, immapp.AddOnsParams())
+    return (marks[-1][1] - marks[0][1]) / (marks[-1][0] - marks[0][0])
 
 
 def start(folder: Path) -> float:

@@ -107,6 +107,12 @@ def test_what_is_typed_is_kept_when_something_else_is_selected(gui, file) -> Non
         ui.session.select(["grade"])
         ui.wait(3)
         assert value(ui, "tone_map.exposure") == 3.0
+        ui.click("field grade.gain", fraction=(0.03, 0.5))
+        ui.ctx.item_click("//$FOCUSED/##grade.gain picker light#1")
+        ui.wait(3)
+        ui.type("0.25", enter=False)
+        ui.click("name grade.lift")
+        assert value(ui, "grade.gain") == (1.0, 0.25, 1.0, 1.0)
 
     gui(body, file)
 

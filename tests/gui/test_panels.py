@@ -119,6 +119,15 @@ def test_preferences_hold_at_once(gui) -> None:
         assert ui.editor.store.now.theme == "light"
         ui.click("preference thumbnails", fraction=(0.1, 0.5))
         assert not ui.editor.store.now.thumbnails
+        ui.click("page System")
+        ui.shot("system.png")
+        ui.click("preference autosave", keys="Ctrl")
+        ui.type("2")
+        assert ui.editor.store.now.autosave == 2.0
+        assert ui.editor.recovery.interval == 2.0
+        ui.click("reset preferences")
+        assert ui.editor.store.now.theme == "dark"
+        assert ui.editor.recovery.interval == 5.0
         ui.click("close preferences")
         assert not ui.editor.dialogs.any
 

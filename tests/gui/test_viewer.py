@@ -174,7 +174,7 @@ def test_a_region_is_drawn_resized_and_cleared(gui) -> None:
         assert (seen(ui, 0.8, 0.85) < outside).all()
         ui.drag(inside(ui, 0.5, 0.6), inside(ui, 0.7, 0.8))
         assert viewer.region == pytest.approx((0.2, 0.3, 0.7, 0.8), abs=0.02)
-        ui.editor.actions.run("viewer.clear_region", ui.editor)
+        ui.click("button viewer.region")
         assert viewer.region is None and not ui.session.dirty
 
     gui(body, PRESET)
@@ -305,3 +305,45 @@ def test_at_any_size_tools_and_numbers_fit(gui) -> None:
         assert "Viewer" not in ui.editor.faults
 
     gui(body, PRESET, size=(700, 600))
+
+
+def test_keys_keep_and_recall_what_is_viewed(gui) -> None:
+    def body(ui) -> None:
+        ui.settled()
+        ui.session.view(Port("halo", "glow"))
+        hover(ui)
+        ui.keys("Ctrl+3")
+        ui.session.view(Port("outputs", "image"))
+        ui.keys("3")
+        assert ui.session.viewed("A") == Port("halo", "glow")
+
+    gui(body, PRESET)
+
+
+def test_a_color_is_picked_from_the_picture(gui) -> None:
+    def body(ui) -> None:
+        ui.settled()
+        constant = ui.session.add_node("constant")
+        ui.session.view(Port("inputs", "beauty"))
+        ui.settled()
+        hover(ui, 0.3, 0.7)
+        ui.keys("Ctrl+C")
+        expected = [float(part) for part in ui.editor.clipboard.get().split(": ")[1].split()]
+        ui.editor.viewer.picking = f"{constant}.color"
+        ui.wait(2)
+        ui.click(inside(ui, 0.3, 0.7))
+        assert ui.editor.viewer.picking == ""
+        assert ui.session.value(Port(constant, "color"))[:3] == pytest.approx(expected[:3], rel=1e-6)
+
+    gui(body, PRESET)
+
+
+def test_everything_that_is_hidden_in_a_narrow_panel_is_in_its_menu(gui) -> None:
+    def body(ui) -> None:
+        ui.settled()
+        assert "button viewer.save" not in ui.editor.places
+        ui.click("button more tools")
+        ui.click("button viewer.table")
+        assert ui.editor.viewer.table
+
+    gui(body, PRESET, size=(600, 600))

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..action import Action
+from ..action import Act, Action
+from ..canvas.view import Tool
 
 if TYPE_CHECKING:
     from ..editor import Editor
@@ -37,6 +38,22 @@ def _search(editor: Editor) -> None:
     editor.canvas.searching = True
 
 
+def _frame(editor: Editor) -> None:
+    at = None if editor.session.selection else editor.canvas.pointer
+    editor.session.add_frame(at=at, sizes=editor.canvas.sizes)
+
+
+def _rename(editor: Editor) -> None:
+    editor.canvas.renaming = editor.session.active
+
+
+def _tool(tool: Tool) -> Act:
+    def take(editor: Editor) -> None:
+        editor.canvas.tool = tool
+
+    return take
+
+
 def _align(side: str, label: str) -> Action:
     return Action(
         f"align.{side.replace(' ', '_')}", label, lambda e: e.session.align(side, e.canvas.sizes or {}), "Graph/Align",
@@ -60,6 +77,12 @@ GRAPH: tuple[Action, ...] = (
            _node, contexts=frozenset({"node"})),
     Action("node.reset", "Reset Values", lambda e: e.session.reset_all(e.session.active), "Graph", enabled=_node,
            contexts=frozenset({"node"})),
+    Action("node.rename", "Rename...", _rename, "Graph", "F2", "graph", lambda e: bool(e.session.active),
+           contexts=frozenset({"node"})),
+    Action("link.cut", "Cut Links", _tool("cut"), "Graph", scope="graph", contexts=frozenset({"canvas"}),
+           doc="Drag a line across links; Ctrl and the right button do it at any time.", separated=True),
+    Action("link.dots", "Put Dots on Links", _tool("dot"), "Graph", scope="graph", contexts=frozenset({"canvas"}),
+           doc="Drag a line across links; Shift and the right button do it at any time."),
     Action("group.make", "Group", lambda e: e.session.make_group(), "Graph", "Ctrl+G", "graph", _some,
            contexts=frozenset({"node"}), separated=True),
     Action("group.ungroup", "Ungroup", lambda e: e.session.ungroup(e.session.active), "Graph", "Ctrl+Shift+G", "graph",
@@ -68,7 +91,7 @@ GRAPH: tuple[Action, ...] = (
            _group, contexts=frozenset({"node"})),
     Action("group.leave", "Leave Group", lambda e: e.session.leave(), "Graph", "Ctrl+Backspace", "graph",
            lambda e: bool(e.session.place), contexts=frozenset({"canvas"})),
-    Action("frame.add", "Frame", lambda e: e.session.add_frame(), "Graph", "Shift+F", "graph",
+    Action("frame.add", "Frame", _frame, "Graph", "Shift+F", "graph",
            contexts=frozenset({"node", "canvas"}), separated=True),
     Action("comment.add", "Comment", lambda e: e.session.add_comment(e.canvas.pointer, ""), "Graph", "Shift+C", "graph",
            contexts=frozenset({"canvas"})),

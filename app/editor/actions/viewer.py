@@ -70,6 +70,13 @@ def _swap(editor: Editor) -> None:
         session.view(first, "B")
 
 
+def _region(editor: Editor) -> None:
+    """Begin to draw one; where there is one, or one is being drawn, end that."""
+    viewer = editor.viewer
+    viewer.drawing_region = viewer.region is None and not viewer.drawing_region
+    viewer.region = None
+
+
 def _shown(editor: Editor) -> bool:
     return editor.session.viewed("A") is not None
 
@@ -94,12 +101,13 @@ def _scope(name: str) -> Action:
 
 def _numbered(number: int) -> tuple[Action, Action]:
     recall = Action(
-        f"viewer.recall.{number}", f"View {number}", lambda e: e.session.recall_viewer(number), "Viewer/Bookmarks",
+        f"viewer.recall.{number}", f"Show {number}", lambda e: e.session.recall_viewer(number), "Viewer/Bookmarks",
         str(number), enabled=lambda e: number in e.session.viewers, doc="Show what this key was given to.",
     )
     assign = Action(
-        f"viewer.assign.{number}", f"Give Key {number} to What Is Viewed",
+        f"viewer.assign.{number}", f"Assign {number}",
         lambda e: e.session.assign_viewer(number), "Viewer/Bookmarks", f"Ctrl+{number}", enabled=_shown,
+        doc="Let this key show the active node, or else what is viewed now.",
     )
     return recall, assign
 
@@ -137,11 +145,9 @@ VIEWER: tuple[Action, ...] = (
            checked=_is("warn_nonfinite"), doc="Magenta where numbers are none."),
     Action("viewer.find_nonfinite", "Find the First Node That Makes Them", _set(finding=True), "Viewer/Warnings",
            enabled=_shown, doc="Looks at one node after the other, from the inputs on."),
-    Action("viewer.region", "Draw a Region", _flip("drawing_region"), "Viewer", "Shift+R", "viewer", _shown,
-           _is("drawing_region"), contexts=_SHOWN,
-           doc="Drag a rectangle: scopes measure only that, and the rest is dimmed."),
-    Action("viewer.clear_region", "Clear the Region", _set(region=None, drawing_region=False), "Viewer", "", "viewer",
-           lambda e: e.viewer.region is not None, contexts=_SHOWN),
+    Action("viewer.region", "Region of Interest", _region, "Viewer", "Shift+R", "viewer", _shown,
+           lambda e: e.viewer.drawing_region or e.viewer.region is not None, contexts=_SHOWN,
+           doc="Drag a rectangle: scopes and the pixel table measure only that, and the rest is dimmed."),
     Action("viewer.table", "Pixel Values", _flip("table"), "Viewer", "I", "viewer", checked=_is("table"),
            contexts=_SHOWN, doc="The values of every input, and of rectangles (Ctrl+drag) and markers (Ctrl+click)."),
     Action("viewer.clear_markers", "Clear Markers", _set(markers=(), measured=None), "Viewer", "", "viewer",

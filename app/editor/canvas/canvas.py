@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 from imgui_bundle import imgui
 
 from ...graph import Port
@@ -62,6 +64,7 @@ class Canvas:
         self._minimap = Minimap()
         self._legend = Legend()
         self._places = Places()
+        self._hot = ""
         self._place: tuple[str, ...] = ()
         self._views: dict[tuple[str, ...], tuple[Point, float]] = {}
 
@@ -143,15 +146,20 @@ class Canvas:
     _over: Point = (0.0, 0.0)
 
     def _fit(self, editor: Editor, scene: Scene, size: tuple[float, float]) -> None:
+        """Bring into view what was asked for; what nobody has moved since stays so when the panel is resized."""
         view = editor.canvas
         if view.wanted is None:
-            return
-        keys, view.wanted = view.wanted, None
-        around = bounds(box.rect for key, box in scene.boxes.items() if not keys or key in keys)
-        if around:
-            view.center, view.zoom = fitted(around, size)
+            keys, seen, known = self._fitted
+            if seen != (view.center, view.zoom) or known == size:
+                return
         else:
-            view.center, view.zoom = (0.0, 0.0), 1.0
+            keys, view.wanted = view.wanted, None
+        around = bounds(box.rect for key, box in scene.boxes.items() if not keys or key in keys)
+        view.center, view.zoom = fitted(around, size) if around else ((0.0, 0.0), 1.0)
+        self._fitted = keys, (view.center, view.zoom), size
+
+    _fitted: tuple[Collection[str], tuple[Point, float], Point] = ((), ((0.0, 0.0), 0.0), (0.0, 0.0))
+    """What was brought into view last, the view that this gave, and the size of the panel."""
 
     def _blocked(self, editor: Editor, panel: Rect) -> bool:
         mouse = imgui.get_mouse_pos()
@@ -168,7 +176,7 @@ class Canvas:
     def _paint(self, editor: Editor, brush: Brush, frame: Frame) -> None:
         scene, session, mouse = self._mouse.dragged.scene, editor.session, self._mouse
         self._over = frame.at
-        hot = self._hot(frame, scene)
+        hot = self._hot = self._found_hot(frame, scene)
         now = moment(editor, brush.ink, mouse.gesture, hot)
         if not scene.boxes:
             paint_hint(brush, frame.panel, _HINTS)
@@ -192,12 +200,14 @@ class Canvas:
         self._paint_gesture(editor, brush, frame)
         self._tooltip(now, scene)
 
-    def _hot(self, frame: Frame, scene: Scene) -> str:
+    def _found_hot(self, frame: Frame, scene: Scene) -> str:
         """The node whose fields are widgets: the one that holds the mouse, else the one below it."""
         if self._live.holder:
             return self._live.holder
         if self._live.open:
             return self._live.open[0].node
+        if imgui.is_any_item_active() and isinstance(self._mouse.gesture, Idle):
+            return self._hot
         return scene.node_at(*frame.at) if frame.over and isinstance(self._mouse.gesture, Idle) else ""
 
     def _paint_node(self, brush: Brush, box: Box, now: Moment, hot: str) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ....nodes import Plain, Value
@@ -43,17 +42,6 @@ def reset(session: Session, ports: Ports) -> None:
 def default_of(graph: Graph, port: Port) -> Plain:
     """What a value is in a new node."""
     return signature(graph.node(port.node)).values[port.socket].default
-
-
-def finished(id: str, edit: Edit, value: Plain) -> tuple[str, Edit] | None:
-    """The field and the whole value after something was typed in one of its parts (`node.value#2`)."""
-    base, hash, part = id.partition("#")
-    if not hash:
-        return base, edit
-    if not isinstance(value, tuple) or not part.isdigit() or not isinstance(edit.value, int | float):
-        return None
-    at = int(part)
-    return base, replace(edit, value=(*value[:at], edit.value, *value[at + 1 :]))
 
 
 def common(graph: Graph, ids: tuple[str, ...]) -> tuple[Value, ...]:

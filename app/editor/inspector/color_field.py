@@ -57,22 +57,31 @@ def color_field(
 def color_picker(fields: Fields, id: str, color: RGBA, eyedropper: bool) -> Edit | None:
     """Wheel and triangle of display colors, intensity, linear numbers, hexadecimal digits, copy, paste, eyedropper."""
     width, side = imgui.get_font_size() * WIDTH, imgui.get_font_size() * 5.5
+    owner, stops = id.removesuffix(" picker"), fields.stops
+
+    def from_stops(edit: Edit) -> Edit | None:
+        number = edit.value
+        return replace(edit, value=brightened(color, number - stops)) if isinstance(number, int | float) else None
+
+    def from_hex(edit: Edit) -> Edit | None:
+        return _from_text(str(edit.value), color)
+
+    fields.part(f"{id} stops", owner, from_stops)
+    fields.part(f"{id} light", owner, lambda edit: edit)
+    fields.part(f"{id} hex", owner, from_hex)
     found = _wheel(fields, id, color, width)
     _label("Intensity", side)
-    edit = number_field(fields, f"{id} stops", fields.stops, _STOPS, width - side)
-    if edit and isinstance(edit.value, int | float):
-        found = replace(edit, value=brightened(color, edit.value - fields.stops))
-        fields.stops = float(edit.value)
+    if edit := number_field(fields, f"{id} stops", stops, _STOPS, width - side):
+        found = from_stops(edit)
+        fields.stops = float(edit.value) if isinstance(edit.value, int | float) else stops
     numbers = row_of_numbers(fields, f"{id} light", color, _LIGHT, width, _NAMES)
-    if numbers:
-        fields.stops = intensity(_rgba(numbers.value))
-        found = numbers
     _label("sRGB hex", side)
     room = width - side - (3 if eyedropper else 2) * (imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x)
     text = text_field(fields, f"{id} hex", hexadecimal(color), _TEXT, room)
-    if text:
-        found = _from_text(fields, str(text.value), color) or found
-    return _buttons(fields, id, color, eyedropper) or found
+    fresh = numbers or (from_hex(text) if text else None) or _buttons(fields, id, color, eyedropper)
+    if fresh:
+        fields.stops = intensity(_rgba(fresh.value))
+    return fresh or found
 
 
 def draw_swatch(fields: Fields, rect: Rect, color: RGBA, hovered: bool = False) -> None:
@@ -124,7 +133,7 @@ def _buttons(fields: Fields, id: str, color: RGBA, eyedropper: bool) -> Edit | N
     imgui.set_item_tooltip("Copy the four linear numbers")
     imgui.same_line(0.0, gap)
     if imgui.button(f"{icons.ICON_FA_PASTE}##{id}", (side, side)):
-        found = _from_text(fields, imgui.get_clipboard_text(), color)
+        found = _from_text(imgui.get_clipboard_text(), color)
     imgui.set_item_tooltip("Paste linear numbers, or hexadecimal digits")
     if eyedropper:
         imgui.same_line(0.0, gap)
@@ -136,7 +145,7 @@ def _buttons(fields: Fields, id: str, color: RGBA, eyedropper: bool) -> Edit | N
     return found
 
 
-def _from_text(fields: Fields, text: str, color: RGBA) -> Edit | None:
+def _from_text(text: str, color: RGBA) -> Edit | None:
     """A color that was pasted or typed; anything else changes nothing."""
     parts = text.replace(",", " ").split()
     try:
@@ -150,7 +159,6 @@ def _from_text(fields: Fields, text: str, color: RGBA) -> Edit | None:
             made = from_hexadecimal(text, color[3])
         except UsageError:
             return None
-    fields.stops = intensity(made)
     return Edit(made)
 
 

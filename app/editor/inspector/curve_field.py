@@ -137,9 +137,13 @@ def _below(fields: Fields, id: str, value: tuple[float, ...], declaration: Value
     if 0 <= index < len(value) // 2:
         point = value[2 * index : 2 * index + 2]
         part = replace(declaration, low=min(0.0, declaration.low), high=max(1.0, declaration.high))
+
+        def whole(edit: Edit) -> Edit | None:
+            return replace(edit, value=changed(value, 2, index, edit.value)) if isinstance(edit.value, tuple) else None
+
+        fields.part(f"{id} point", id, whole)
         edit = row_of_numbers(fields, f"{id} point", point, part, width - side - gap, ("x", "y"))
-        if edit and isinstance(edit.value, tuple):
-            found = replace(edit, value=changed(value, 2, index, edit.value))
+        found = whole(edit) if edit else None
         imgui.same_line(0.0, gap)
     if imgui.button(f"Presets##{id}", (side if 0 <= index < len(value) // 2 else width, 0.0)):
         imgui.open_popup(f"presets {id}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from ....nodes import Plain, Value
@@ -81,6 +82,10 @@ class Fields:
     gesture: int = 0
     order: list[str] = field(default_factory=list[str])
     """Fields that can be typed in, as drawn so far in this frame."""
+    parts: dict[str, Callable[[Edit], Edit | None]] = field(default_factory=dict[str, "Callable[[Edit], Edit | None]"])
+    """How an edit of a field that is part of another (`gain#2` of `gain`) becomes one of that, by the part's name."""
+    owners: dict[str, str] = field(default_factory=dict[str, str])
+    """The field that a part belongs to."""
     known: tuple[str, ...] = ()
     """The same of the whole frame before."""
 
@@ -93,6 +98,9 @@ class Fields:
         self.eyedropper = ""
         if self.typing:
             self.typing.seen = False
+        else:
+            self.parts.clear()
+            self.owners.clear()
 
     def end(self) -> tuple[str, Edit] | None:
         """Call after them: what was typed in a field that is not there any more, since something else was selected."""
@@ -104,7 +112,14 @@ class Fields:
             edit = None if left.starting else left.result()
         except UsageError:
             edit = None
-        return (left.id, edit) if edit else None
+        id = left.id
+        while edit and id in self.owners:
+            edit, id = self.parts[id](edit), self.owners[id]
+        return (id, edit) if edit else None
+
+    def part(self, id: str, owner: str, whole: Callable[[Edit], Edit | None]) -> None:
+        """Say that field `id` is part of another one; `whole` makes an edit of that of an edit of the part."""
+        self.parts[id], self.owners[id] = whole, owner
 
     @property
     def dragging(self) -> bool:

@@ -133,9 +133,15 @@ def row_of_numbers(
         if index > first:
             imgui.same_line(0.0, gap)
         named = name if each > imgui.get_font_size() * 4.2 else ""
+
+        def whole(edit: Edit, at: int = index) -> Edit | None:
+            if not isinstance(edit.value, int | float):
+                return None
+            return replace(edit, value=(*value[:at], edit.value, *value[at + 1 :]))
+
+        fields.part(f"{id}#{index}", id, whole)
         edit = number_field(fields, f"{id}#{index}", value[index], part, each, label=named, mixed=mixed)
-        if edit:
-            found = replace(edit, value=(*value[:index], edit.value, *value[index + 1 :]))
+        found = whole(edit) if edit else found
     return found
 
 

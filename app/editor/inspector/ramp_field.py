@@ -112,19 +112,29 @@ def _below(fields: Fields, id: str, value: tuple[float, ...], declaration: Value
     side = imgui.get_font_size() * 4.5
     index = fields.point[1] if fields.point[0] == id else -1
     chosen = 0 <= index < len(value) // 5
+    stop = value[index * 5 : index * 5 + 5] if chosen else ()
+
+    def with_place(edit: Edit) -> Edit | None:
+        place = edit.value
+        return replace(edit, value=changed(value, 5, index, (float(place), *stop[1:]))) if isinstance(
+            place, int | float
+        ) else None
+
+    def with_color(edit: Edit) -> Edit | None:
+        color = edit.value
+        return replace(edit, value=changed(value, 5, index, (stop[0], *color))) if isinstance(color, tuple) else None
+
     if chosen:
-        stop = value[index * 5 : index * 5 + 5]
+        fields.part(f"{id} place", id, with_place)
+        fields.part(f"{id} color", id, with_color)
         edit = number_field(fields, f"{id} place", stop[0], _PLACE, width - side - gap, label="at")
-        if edit and isinstance(edit.value, int | float):
-            found = replace(edit, value=changed(value, 5, index, (float(edit.value), *stop[1:])))
+        found = with_place(edit) if edit else None
         imgui.same_line(0.0, gap)
     if imgui.button(f"Presets##{id}", (side if chosen else width, 0.0)):
         imgui.open_popup(f"presets {id}")
     if chosen:
-        stop = value[index * 5 : index * 5 + 5]
         edit = color_field(fields, f"{id} color", stop[1:], _PLACE, width, eyedropper=False)
-        if edit and isinstance(edit.value, tuple):
-            found = replace(edit, value=changed(value, 5, index, (stop[0], *edit.value)))
+        found = with_color(edit) if edit else found
     if imgui.begin_popup(f"presets {id}"):
         for name, preset in RAMPS.items():
             if imgui.menu_item(name, "", False)[0]:

@@ -10,8 +10,8 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ....nodes import Plain, Value
-from ...graph import INPUTS, Port
-from .applying import Ports, apply, as_text, default_of, finished, from_text, reset
+from ...graph import INPUTS, Graph, Port, signature
+from .applying import Ports, apply, as_text, default_of, from_text, reset
 from .drawing import item_rect
 from .fields import Edit, Fields
 from .file_field import FileField
@@ -42,7 +42,7 @@ class ValueRows:
         value, source = graph.value(port), session.linked(port)
         changed = any(graph.value(one) != default_of(graph, one) for one in ports)
         control = session.control_of(port) if len(ports) == 1 else None
-        rows.name(key, label or port.socket, tip=self._tip(graph.value, port, declaration, control), changed=changed)
+        rows.name(key, label or port.socket, tip=_tip(declaration, control), changed=changed)
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left):
             rows.act(lambda: reset(session, ports))
         menu = imgui.is_item_hovered() and imgui.is_mouse_released(imgui.MouseButton_.right)
@@ -64,7 +64,7 @@ class ValueRows:
             if control:
                 self._mark(rows, port, control)
             if declaration.type == "path" and isinstance(value, str):
-                self.files.about(rows, value, self._layer_of(graph.value, port, declaration))
+                self.files.about(rows, value, _layer_of(graph, port, declaration))
         if self.fields.eyedropper == key:
             editor.viewer.picking = key
         self._targets[key] = ports, declaration
@@ -76,15 +76,11 @@ class ValueRows:
 
     def left(self, editor: Editor, left: tuple[str, Edit]) -> None:
         """What was typed in a field before something else was selected goes where it belongs."""
-        base = left[0].partition("#")[0]
-        if base not in self._targets:
-            return
-        ports, declaration = self._targets[base]
-        if any(port.node not in editor.session.graph.nodes for port in ports):
-            return
-        found = finished(*left, editor.session.graph.value(ports[0]))
-        if found:
-            editor.attempt(lambda: apply(editor.session, ports, declaration, found[1]))
+        id, edit = left
+        graph = editor.session.graph
+        ports, declaration = self._targets.get(id, ((), None))
+        if declaration and all(port.node in graph.nodes for port in ports):
+            editor.attempt(lambda: apply(editor.session, ports, declaration, edit))
 
     def begin(self) -> None:
         """Call once a frame, before the rows."""
@@ -102,30 +98,10 @@ class ValueRows:
             return self.files.path(rows, str(port), value, width, lambda path: apply(
                 rows.editor.session, ports, declaration, Edit(path)
             ))
-        file = self._file_of(port, graph)
+        file = _file_of(graph, port)
         if file is not None and isinstance(value, str):
             return self.files.layer(rows, str(port), file, value, width)
         return value_field(self.fields, str(port), value, declaration, width, mixed=mixed)
-
-    def _file_of(self, port: Port, graph: object) -> str | None:
-        """The path whose layer this value picks, if it does."""
-        from ...graph import Graph, signature
-
-        assert isinstance(graph, Graph)
-        for name, other in signature(graph.node(port.node)).values.items():
-            if other.layer_by == port.socket:
-                path = graph.value(Port(port.node, name))
-                return path if isinstance(path, str) else None
-        return None
-
-    def _layer_of(self, value_of: Callable[[Port], Plain], port: Port, declaration: Value) -> str:
-        layer = value_of(Port(port.node, declaration.layer_by)) if declaration.layer_by else ""
-        return layer if isinstance(layer, str) else ""
-
-    def _tip(self, value_of: Callable[[Port], Plain], port: Port, declaration: Value, control: str | None) -> str:
-        lines = described(declaration, _worded(declaration))
-        hints = "Double click: reset. Right click: more."
-        return "\n".join(part for part in (lines, f"Control: {control}" if control else "", hints) if part)
 
     def _mark(self, rows: Rows, port: Port, control: str) -> None:
         """A sign that a value is a control; a click renames that."""
@@ -203,6 +179,26 @@ def go_to(editor: Editor, port: Port) -> None:
     key = str(port) if port.node in ("inputs", "outputs") else port.node
     editor.session.select(key)
     editor.canvas.fit((key,))
+
+
+def _file_of(graph: Graph, port: Port) -> str | None:
+    """The path whose layer a value picks, if it does."""
+    for name, other in signature(graph.node(port.node)).values.items():
+        if other.layer_by == port.socket:
+            path = graph.value(Port(port.node, name))
+            return path if isinstance(path, str) else None
+    return None
+
+
+def _layer_of(graph: Graph, port: Port, declaration: Value) -> str:
+    layer = graph.value(Port(port.node, declaration.layer_by)) if declaration.layer_by else ""
+    return layer if isinstance(layer, str) else ""
+
+
+def _tip(declaration: Value, control: str | None) -> str:
+    lines = described(declaration, _worded(declaration))
+    hints = "Double click: reset. Right click: more."
+    return "\n".join(part for part in (lines, f"Control: {control}" if control else "", hints) if part)
 
 
 def _worded(declaration: Value) -> str:

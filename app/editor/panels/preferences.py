@@ -8,6 +8,7 @@ from imgui_bundle import ImVec2, imgui
 
 from ..editor import Editor
 from ..preferences import MAX_SCALE, MIN_SCALE, Preferences
+from ..recovery import LONGEST
 from ..theme.style import ui_scale, vec4
 from .drawing import backdrop, dialog, dim, escaped, font, main_button, record, wrapped
 from .shortcut_editor import ShortcutEditor
@@ -127,6 +128,7 @@ class PreferencesDialog:
 
 def _change(editor: Editor, **values: Any) -> None:
     editor.attempt(lambda: editor.store.change(**values))
+    editor.recovery.interval = min(editor.store.now.autosave, LONGEST)
 
 
 def _heading(editor: Editor, title: str) -> None:

@@ -98,6 +98,7 @@ def _colors(p: Palette) -> list[tuple[str, RGB, float]]:
         ("table_header_bg", p.raised, 1), ("table_border_strong", p.border, 1), ("table_border_light", p.border, 0.6),
         ("table_row_bg", p.panel, 0), ("table_row_bg_alt", p.text, 0.03), ("text_link", p.accent, 1),
         ("text_selected_bg", p.accent, 0.35), ("tree_lines", p.raised, 1), ("drag_drop_target", p.accent, 1),
+        ("drag_drop_target_bg", p.accent, 0.1), ("checkbox_selected_bg", p.field, 1),
         ("nav_cursor", p.accent, 0.8), ("nav_windowing_highlight", p.text, 0.7),
         ("nav_windowing_dim_bg", p.shadow, 0.4), ("modal_window_dim_bg", p.shadow, 0.5),
         ("unsaved_marker", p.accent, 1),

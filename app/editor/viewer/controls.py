@@ -30,8 +30,8 @@ def tool(editor: Editor, icon: str, id: str, labeled: bool = False) -> None:
         clicked, _ = imgui.menu_item(f"{icon}  {action.label}", "", lit, action.enabled(editor))
     else:
         clicked = button(editor, f"{icon}##{id}", lit, action.enabled(editor))
-        editor.places[f"button {id}"] = last_rectangle()
         imgui.set_item_tooltip(tip(editor, action))
+    editor.places[f"button {id}"] = last_rectangle()
     if clicked:
         editor.actions.run(id, editor)
 
@@ -48,8 +48,15 @@ def button(editor: Editor, label: str, lit: bool = False, enabled: bool = True) 
     return clicked
 
 
-def dropdown(editor: Editor, label: str, id: str, draw: Callable[[], object], doc: str, lit: bool = False) -> None:
-    """A button that opens a menu, which `draw` fills."""
+def dropdown(
+    editor: Editor, label: str, id: str, draw: Callable[[], object], doc: str, lit: bool = False, in_menu: bool = False
+) -> None:
+    """A button that opens a menu, which `draw` fills; itself in a menu, it is a menu in that."""
+    if in_menu:
+        if imgui.begin_menu(f"{doc}##{id}"):
+            draw()
+            imgui.end_menu()
+        return
     if button(editor, f"{label}##{id}", lit):
         imgui.open_popup(id)
     left, _, _, bottom = editor.places[f"button {id}"] = last_rectangle()

@@ -9,6 +9,12 @@ import numpy as np
 
 Array = np.ndarray
 
+FAR = 1e8
+"""Renderers write larger depths where there is nothing."""
+
+HALF_MAX = 65504.0
+"""What infinity becomes in files and nodes."""
+
 
 @dataclass(frozen=True)
 class Statistics:
@@ -36,8 +42,10 @@ def statistics(pixels: Array) -> Statistics:
 
 
 def data_range(pixels: Array) -> tuple[float, float]:
-    """From where to where data [h, w, channels] is worth showing: nearly all of it, leaving out stray extremes."""
+    """From where to where data [h, w, channels] is worth showing: leaves out stray extremes, and what stands for far."""
     finite = pixels[np.isfinite(pixels)]
+    near = finite[(np.abs(finite) < FAR) & (np.abs(finite) != HALF_MAX)]
+    finite = near if near.size else finite
     if not finite.size:
         return 0.0, 1.0
     low, high = (float(part) for part in np.percentile(finite, (0.5, 99.5)))

@@ -44,11 +44,12 @@ def rows_of(editor: Editor, reader: Reader) -> list[tuple[str, str, tuple[float,
             at = _same_place(pixel, viewer.picture, one.full_size)
             values = reader.pixel(editor.probe, f"table {mark} {name}", one, at)
             rows.append((f"{name} {mark}".strip(), f"{at[0]}, {at[1]}", values))
-    if viewer.measured is not None:
+    box = viewer.measured or viewer.region
+    if box is not None:
         for name, one in shown:
             if name not in ("A", "B"):
                 continue
-            found = reader.measured(editor.probe, name, one, viewer.measured)
+            found = reader.measured(editor.probe, name, one, box)
             rows += [
                 (f"{name} least", "", found.low), (f"{name} mean", f"{found.count} px", found.mean),
                 (f"{name} most", f"{found.wrong} NaN" if found.wrong else "", found.high),

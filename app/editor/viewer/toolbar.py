@@ -12,7 +12,7 @@ from imgui_bundle import imgui
 
 from ...media import displays, views
 from ..theme.style import ui_scale
-from .controls import button, dropdown, entry, menu_of, number, tool
+from .controls import button, dropdown, entry, last_rectangle, menu_of, number, tool
 from .picking import pick_port
 from .state import MEANINGS
 from .wanted import A, B
@@ -59,7 +59,9 @@ def draw_toolbar(editor: Editor, asked_view: str, is_data: bool) -> None:
             imgui.same_line(0.0, gap)
         if button(editor, f"{icons.ICON_FA_ELLIPSIS}##more"):
             imgui.open_popup("more tools")
+        left, _, _, bottom = editor.places["button more tools"] = last_rectangle()
         imgui.set_item_tooltip("More tools")
+        imgui.set_next_window_pos((left, bottom + 2), imgui.Cond_.appearing)
         if imgui.begin_popup("more tools"):
             for item in items[count:]:
                 item.draw(True)
@@ -70,25 +72,25 @@ def _items(editor: Editor, asked_view: str, is_data: bool) -> list[_Item]:
     viewer = editor.viewer
     font = imgui.get_font_size()
     found = [_port(editor, A, font)]
-    found.append(_Item(_text_width(icons.ICON_FA_CLONE), lambda menu: _compare(editor)))
+    found.append(_Item(_text_width(icons.ICON_FA_CLONE), lambda menu: _compare(editor, menu)))
     if viewer.compares:
         found.append(_port(editor, B, font))
     if is_data:
         found.append(_Item(font * 8.4, lambda menu: _range(editor, font)))
-    found.append(_Item(_text_width(_SHORT[viewer.channels]), lambda menu: _channels(editor)))
+    found.append(_Item(_text_width(_SHORT[viewer.channels]), lambda menu: _channels(editor, menu)))
     found.append(_Item(font * 4.6, lambda menu: _exposure(editor, font)))
     found.append(_Item(font * 3.6, lambda menu: _gamma(editor, font)))
     if viewer.exposure != 0.0 or viewer.gamma != 1.0:
         found.append(_tool(editor, icons.ICON_FA_ROTATE_LEFT, "viewer.neutral"))
-    found.append(_Item(_text_width(f"1/{1 / viewer.proxy:.0f}"), lambda menu: _proxy(editor)))
+    found.append(_Item(_text_width(f"1/{1 / viewer.proxy:.0f}"), lambda menu: _proxy(editor, menu)))
     found.append(_tool(editor, icons.ICON_FA_PLAY if viewer.paused else icons.ICON_FA_PAUSE, "viewer.pause"))
     found.append(_tool(editor, icons.ICON_FA_EXPAND, "viewer.fit"))
     found.append(_Item(_text_width("1:1"), lambda menu: tool(editor, "1:1", "viewer.actual", menu)))
-    found.append(_Item(_text_width(icons.ICON_FA_TRIANGLE_EXCLAMATION), lambda menu: _warnings(editor)))
+    found.append(_Item(_text_width(icons.ICON_FA_TRIANGLE_EXCLAMATION), lambda menu: _warnings(editor, menu)))
     found += (_tool(editor, icon, id) for icon, id in _ACTIONS_AT_END)
-    found.append(_Item(_text_width(icons.ICON_FA_CHESS_BOARD), lambda menu: _background(editor)))
+    found.append(_Item(_text_width(icons.ICON_FA_CHESS_BOARD), lambda menu: _background(editor, menu)))
     label = f"{icons.ICON_FA_DISPLAY}  {viewer.view or asked_view or 'Default'}"
-    found.append(_Item(_text_width(label), lambda menu: _view(editor, label, asked_view)))
+    found.append(_Item(_text_width(label), lambda menu: _view(editor, label, asked_view, menu)))
     return found
 
 
@@ -108,20 +110,20 @@ def _port(editor: Editor, side: str, font: float) -> _Item:
     return _Item(_text_width(label), lambda menu: pick_port(editor, side, label, menu))
 
 
-def _compare(editor: Editor) -> None:
+def _compare(editor: Editor, in_menu: bool) -> None:
     def menu() -> None:
         menu_of(editor, "Viewer/Compare")
 
-    dropdown(editor, icons.ICON_FA_CLONE, "compare", menu, "Compare A with B", editor.viewer.compares)
+    dropdown(editor, icons.ICON_FA_CLONE, "compare", menu, "Compare A with B", editor.viewer.compares, in_menu)
 
 
-def _channels(editor: Editor) -> None:
+def _channels(editor: Editor, in_menu: bool) -> None:
     viewer = editor.viewer
 
     def menu() -> None:
         menu_of(editor, "Viewer/Channels")
 
-    dropdown(editor, _SHORT[viewer.channels], "channels", menu, "Channels", viewer.channels != "color")
+    dropdown(editor, _SHORT[viewer.channels], "channels", menu, "Channels", viewer.channels != "color", in_menu)
 
 
 def _exposure(editor: Editor, font: float) -> None:
@@ -167,7 +169,7 @@ def _range(editor: Editor, font: float) -> None:
     dropdown(editor, icons.ICON_FA_RULER_HORIZONTAL, "range", menu, "How data is shown", not measured)
 
 
-def _view(editor: Editor, label: str, asked: str) -> None:
+def _view(editor: Editor, label: str, asked: str, in_menu: bool) -> None:
     viewer = editor.viewer
 
     def menu() -> None:
@@ -182,25 +184,26 @@ def _view(editor: Editor, label: str, asked: str) -> None:
                         viewer.view, viewer.display = view, display
                 imgui.end_menu()
 
-    dropdown(editor, label, "view", menu, "Display and view (OpenColorIO)", bool(viewer.view))
+    dropdown(editor, label, "view", menu, "Display and view (OpenColorIO)", bool(viewer.view), in_menu)
 
 
-def _background(editor: Editor) -> None:
+def _background(editor: Editor, in_menu: bool) -> None:
     def menu() -> None:
         menu_of(editor, "Viewer/Background")
 
     dropdown(editor, icons.ICON_FA_CHESS_BOARD, "background", menu, "Behind what is transparent",
-             editor.viewer.background != "checker")
+             editor.viewer.background != "checker", in_menu)
 
 
-def _warnings(editor: Editor) -> None:
+def _warnings(editor: Editor, in_menu: bool) -> None:
     def menu() -> None:
         menu_of(editor, "Viewer/Warnings")
 
-    dropdown(editor, icons.ICON_FA_TRIANGLE_EXCLAMATION, "warnings", menu, "Warnings", editor.viewer.warn_clipping)
+    dropdown(editor, icons.ICON_FA_TRIANGLE_EXCLAMATION, "warnings", menu, "Warnings", editor.viewer.warn_clipping,
+             in_menu)
 
 
-def _proxy(editor: Editor) -> None:
+def _proxy(editor: Editor, in_menu: bool) -> None:
     viewer = editor.viewer
 
     def menu() -> None:
@@ -210,7 +213,8 @@ def _proxy(editor: Editor) -> None:
         if imgui.menu_item("Coarser while dragging", "", coarse)[0]:
             editor.attempt(lambda: editor.store.change(proxy_while_dragging=not coarse))
 
-    dropdown(editor, f"1/{1 / viewer.proxy:.0f}", "proxy", menu, "Proxy: compute fewer pixels", viewer.proxy != 1.0)
+    label = f"1/{1 / viewer.proxy:.0f}"
+    dropdown(editor, label, "proxy", menu, "Proxy: compute fewer pixels", viewer.proxy != 1.0, in_menu)
 
 
 def context_menu(editor: Editor) -> None:

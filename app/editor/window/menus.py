@@ -9,6 +9,7 @@ from imgui_bundle import imgui
 from ..action import Action
 from ..actions import MENUS
 from ..editor import Editor
+from ..keys import shown
 
 
 @dataclass
@@ -35,7 +36,7 @@ def draw_menus(editor: Editor, panels: dict[str, bool]) -> None:
 def action_item(editor: Editor, action: Action) -> None:
     """A menu entry that does `action`."""
     checked = action.checked is not None and action.checked(editor)
-    shortcut = editor.actions.shortcut(action.id)
+    shortcut = shown(editor.actions.shortcut(action.id))
     clicked, _ = imgui.menu_item(action.label, shortcut, checked, action.enabled(editor))
     if action.doc:
         imgui.set_item_tooltip(action.doc)

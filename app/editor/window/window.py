@@ -28,6 +28,8 @@ from .shortcuts import note_scope, run_shortcuts
 from .status import draw_status
 
 SIZE = (1600, 1000)
+_NODE = int(imgui.internal.DockNodeFlagsPrivate_.no_close_button.value)
+"""Tabs can be closed, not whole docks."""
 
 
 class Window:
@@ -69,12 +71,12 @@ class Window:
         window.show_menu_app = window.show_menu_view = window.show_status_fps = False
         window.remember_theme = window.remember_status_bar_settings = False
         params.docking_params.docking_splits = [
-            hello_imgui.DockingSplit("MainDockSpace", "Right", imgui.Dir.right, 0.25),
-            hello_imgui.DockingSplit("Right", "RightLower", imgui.Dir.down, 0.38),
-            hello_imgui.DockingSplit("MainDockSpace", "Lower", imgui.Dir.down, 0.5),
+            hello_imgui.DockingSplit("MainDockSpace", "Right", imgui.Dir.right, 0.25, _NODE),
+            hello_imgui.DockingSplit("Right", "RightLower", imgui.Dir.down, 0.38, _NODE),
+            hello_imgui.DockingSplit("MainDockSpace", "Lower", imgui.Dir.down, 0.5, _NODE),
         ]
+        params.docking_params.main_dock_space_node_flags |= _NODE
         params.docking_params.dockable_windows = [self._dockable(docked) for docked in DOCKED]
-        params.fps_idling.fps_idle = 4.0
         calls = params.callbacks
         calls.load_additional_fonts = self._load_fonts
         calls.post_init = self._begin
@@ -153,7 +155,9 @@ class Window:
         if editor.closing:
             self.params.app_shall_exit = True
         self._serve_requests()
-        self.params.fps_idling.enable_idling = not (editor.preview.busy and not editor.preview.paused)
+        resting = self.params.fps_idling
+        resting.enable_idling = not (editor.preview.busy and not editor.preview.paused)
+        resting.fps_idle = 10.0 if editor.exports.running or editor.dialogs.any else 2.0
 
     def _draw_menus(self) -> None:
         windows = {docked.title: self.params.docking_params.dockable_window_of_name(docked.title) for docked in DOCKED}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.editor.inspector.applying import apply, as_text, common, finished, from_text, reset
+from halation.app.editor.inspector.applying import apply, as_text, common, from_text, reset
 from halation.app.editor.inspector.fields import Edit, Fields
 from halation.app.editor.session import Session
 from halation.app.editor.theme.palette import DARK
@@ -36,6 +36,15 @@ class TestTyping:
         fields.begin()
         assert fields.end() == ("one.gain", Edit(4.0, text="*4"))
         assert fields.typing is None
+
+    def test_a_part_hands_over_the_whole(self):
+        fields = Fields(DARK)
+        fields.type_in("one.tint picker light#1", "1", 1.0, GAIN)
+        fields.typing.starting, fields.typing.text = False, "0.25"
+        fields.part("one.tint picker light#1", "one.tint picker light", lambda edit: Edit((9.0, edit.value)))
+        fields.part("one.tint picker light", "one.tint", lambda edit: edit)
+        fields.begin()
+        assert fields.end() == ("one.tint", Edit((9.0, 0.25)))
 
     @pytest.mark.parametrize("text", ["1", "nonsense", "99"])
     def test_nothing_new_and_mistakes_are_dropped(self, text):
@@ -100,11 +109,6 @@ class TestApplying:
         assert [value.name for value in common(graph, ("one", "blend"))] == ["gain"]
         assert common(graph, ("one", "soft")) == ()
         assert common(graph.add("odd", Unknown("odd")), ("one", "odd")) == ()
-
-    def test_a_part_of_a_list_becomes_the_whole(self):
-        assert finished("a.tint#2", Edit(0.5), (1.0, 2.0, 3.0)) == ("a.tint", Edit((1.0, 2.0, 0.5)))
-        assert finished("a.gain", Edit(0.5), 1.0) == ("a.gain", Edit(0.5))
-        assert finished("a.tint#x", Edit(0.5), (1.0,)) is None
 
     @pytest.mark.parametrize("plain", [1.5, 3, True, "soft light", (1.0, 2.0)])
     def test_values_pass_the_clipboard(self, plain):

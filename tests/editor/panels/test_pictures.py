@@ -10,7 +10,7 @@ import pytest
 from halation.app.editor.panels.pictures import Pictures
 from halation.app.errors import InputError
 from halation.app.media import write
-from halation.app.media.thumbnail import load_thumbnail, save_thumbnail, thumbnail
+from halation.app.media.thumbnail import load_thumbnail, readable, save_thumbnail, thumbnail
 from halation.nodes import Kind
 
 
@@ -87,3 +87,8 @@ def test_only_what_was_asked_for_last_waits(tmp_path: Path) -> None:
     pictures.forget()
     assert not pictures.busy
     pictures.close()
+
+
+def test_pictures_are_told_by_their_endings() -> None:
+    assert {".exr", ".png", ".jpg", ".tif", ".hdr", ".webp"} <= readable()
+    assert not {".json", ".null", ".py", ""} & readable()

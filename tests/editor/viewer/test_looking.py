@@ -26,7 +26,7 @@ def unread() -> np.ndarray:
 
 def test_kinds_decide_how_they_are_shown() -> None:
     state = ViewerState()
-    up = np.zeros((4, 4, 3)) + (0.0, 1.0, 0.0)
+    up = np.full((4, 4, 3), (0.0, 1.0, 0.0))
     assert meaning_of(state, Kind.IMAGE, unread) == "image"
     assert meaning_of(state, Kind.FIELD, unread) == "field"
     assert meaning_of(state, Kind.VECTOR, lambda: up) == "normal"

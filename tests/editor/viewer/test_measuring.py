@@ -19,6 +19,15 @@ def test_ranges_ignore_stray_extremes() -> None:
     assert 2.0 <= low < 2.1 and 8.9 < high <= 9.0
 
 
+@pytest.mark.parametrize("sky", [1e10, 65504.0])
+def test_the_sky_is_not_part_of_the_range_of_depth(sky: float) -> None:
+    depth = np.linspace(2.0, 9.0, 1000).reshape(20, 50, 1)
+    depth[:8] = sky
+    low, high = measuring.data_range(depth)
+    assert 4.0 < low < high <= 9.0
+    assert measuring.data_range(np.full((2, 2, 1), sky))[0] == sky
+
+
 def test_ranges_of_masks_and_of_nothing() -> None:
     mask = np.zeros((100, 100, 1))
     mask[:10] = 1.0

@@ -1,0 +1,173 @@
+"""What is on the canvas and what the mouse hits; no window."""
+
+from __future__ import annotations
+
+import pytest
+from halation.app.editor.canvas.entries import PRESETS, found, graph_entries, narrowed, node_entries
+from halation.app.editor.canvas.gestures import (
+    Link,
+    Move,
+    Resize,
+    dotted,
+    fitting,
+    insertable,
+    moved,
+    nearest,
+    refused,
+    resized,
+    shown,
+    touched,
+)
+from halation.app.editor.canvas.scene import Scene
+from halation.app.editor.canvas.staging import Stage
+from halation.app.editor.edits.decor import add_frame
+from halation.app.editor.edits.layout import pinned, positions
+from halation.app.graph import Graph, Input, Output, Port, Unknown
+from halation.nodes import catalogue
+
+from gui_canvas import chain  # isort: skip
+
+P = Port.parse
+
+
+def staged(graph: Graph, stage: Stage | None = None, pictures: bool = False, open: str = "") -> Scene:
+    return (stage or Stage()).build(graph, positions(pinned(graph)).__getitem__, (), pictures, open)
+
+
+def pin(scene: Scene, port: str, output: bool) -> tuple[float, float]:
+    return next((box.x + one.x, box.y + one.y) for name, box, one in scene.pins(output) if name == P(port))
+
+
+def test_hits_pins_fields_titles_and_links() -> None:
+    scene = staged(chain("exposure", "bloom"))
+    box = scene.boxes["exposure"]
+    assert scene.hit(*pin(scene, "exposure.out", True), 8.0).port == P("exposure.out")
+    assert scene.hit(box.x + 60, box.y + 10, 8.0).part == "title"
+    field = next(row.field for row in box.layout.rows if row.field)
+    hit = scene.hit(box.x + field[0] + 40, box.y + field[1] + 5, 8.0)
+    assert (hit.part, hit.port) == ("field", P("exposure.stops"))
+    wire = scene.by_target[P("bloom.image")]
+    assert scene.hit(*wire.middle, 8.0).port == P("bloom.image")
+    assert scene.hit(box.x, box.y - 300, 8.0).part == "empty"
+
+
+def test_what_is_drawn_last_is_hit_first() -> None:
+    graph = chain("exposure", "bloom")
+    scene = Stage().build(graph, lambda key: (0.0, 0.0), ["exposure"], False)
+    assert scene.hit(60.0, 12.0, 1.0).key == "exposure"
+
+
+def test_links_follow_what_moves_and_nothing_else_does() -> None:
+    scene = staged(chain("exposure", "bloom"))
+    after = scene.moved({"bloom"}, 10.0, 20.0)
+    start, end = after.by_target[P("bloom.image")].curves[0][:2], after.by_target[P("bloom.image")].curves[0][6:]
+    assert start == scene.by_target[P("bloom.image")].curves[0][:2]
+    assert end == pin(after, "bloom.image", False)
+    assert after.by_target[P("exposure.image")] is scene.by_target[P("exposure.image")]
+
+
+def test_layouts_are_built_again_only_where_something_changed() -> None:
+    stage, graph = Stage(), chain("exposure", "bloom")
+    first = staged(graph, stage)
+    second = staged(graph.set(P("exposure.stops"), 2.0), stage)
+    assert second.boxes["bloom"].layout is first.boxes["bloom"].layout
+    assert second.boxes["exposure"].layout is not first.boxes["exposure"].layout
+
+
+def test_a_node_shows_few_values_until_asked_for_all_and_linked_ones_always() -> None:
+    graph = chain("tone_map").add("mean", catalogue()["luminance_statistics"]())
+    graph = graph.connect(P("inputs.beauty"), P("mean.image")).connect(P("mean.maximum"), P("tone_map.maximum"))
+    few = staged(graph).boxes["tone_map"].layout
+    every = staged(graph, open="tone_map").boxes["tone_map"].layout
+    assert few.hidden > 0 and every.hidden == 0 and every.height > few.height
+    assert {row.value.name for row in every.rows if row.value} == set(catalogue()["tone_map"].values)
+    linked = {row.value.name for row in few.rows if row.value and row.linked}
+    assert linked == {"maximum"}
+
+
+def test_unknown_nodes_keep_pins_for_their_links() -> None:
+    graph = chain("exposure").add("old", Unknown("gone", {}))
+    graph = graph.connect(P("exposure.out"), P("old.a")).connect(P("old.b"), P("outputs.image"))
+    layout = staged(graph).boxes["old"].layout
+    assert set(layout.ins) == {"a"} and set(layout.outs) == {"b"}
+
+
+def test_a_dragged_link_fits_what_makes_no_loop_and_snaps() -> None:
+    graph = chain("exposure", "bloom")
+    scene = staged(graph)
+    targets = fitting(graph, scene, P("bloom.out"), True)
+    assert P("outputs.image") in targets and P("exposure.image") not in targets
+    link = Link(P("bloom.out"), True, None, targets)
+    x, y = pin(scene, "outputs.image", False)
+    assert nearest(scene, link, (x - 10, y + 5), 20.0)[0] == P("outputs.image")
+    assert nearest(scene, link, (x - 100, y - 200), 20.0) is None
+    assert refused(scene, link, pin(scene, "exposure.image", False), 8.0) == P("exposure.image")
+
+
+def test_a_free_node_on_a_link_can_be_put_into_it() -> None:
+    graph = chain("exposure", "bloom").add("clip", catalogue()["clip"]())
+    scene = staged(graph)
+    box = scene.boxes["clip"]
+    x, y = scene.by_target[P("bloom.image")].middle
+    there = scene.moved({"clip"}, x - box.x - box.w / 2, y - box.y - 24.0)
+    assert insertable(graph, there, {"clip"}, (x, y), 9.0) == P("bloom.image")
+    assert insertable(graph, there, {"exposure"}, (x, y), 9.0) is None
+    assert insertable(graph, there, {"clip", "bloom"}, (x, y), 9.0) is None
+
+
+def test_links_of_one_source_share_the_dot_that_a_line_makes() -> None:
+    graph = chain("exposure").add("bloom", catalogue()["bloom"]())
+    graph = graph.connect(P("exposure.out"), P("bloom.image"))
+    after, keys = dotted(graph, {P("bloom.image"): (500.0, 10.0), P("outputs.image"): (500.0, 20.0)})
+    assert len(keys) == 1
+    assert after.ui["routes"]["bloom.image"] == after.ui["routes"]["outputs.image"]
+    wires = staged(after).by_target
+    assert wires[P("bloom.image")].stops == ("exposure", keys[0], "bloom")
+
+
+def test_rectangles_take_what_they_touch_but_frames_only_whole() -> None:
+    graph = chain("exposure")
+    scene = staged(graph)
+    box = scene.boxes["exposure"]
+    rect = (box.x - 5, box.y - 5, box.x + 5, box.y + 5)
+    assert touched(scene, rect) == ("exposure",)
+    framed, _ = add_frame(graph, ["exposure"], positions(graph))
+    scene = staged(framed)
+    assert touched(scene, rect) == ("exposure",)
+    assert set(touched(scene, (-900.0, -900.0, 2000.0, 900.0))) == set(scene.boxes)
+
+
+def test_moving_snaps_to_the_grid_and_resizing_keeps_the_other_edges() -> None:
+    scene = staged(chain("exposure"))
+    move = moved(Move("exposure", (0.0, 0.0), frozenset({"exposure"})), scene, (5.0, 13.0), snap=True)
+    box = shown(scene, move).boxes["exposure"]
+    assert box.x % 16 == 0 and box.y % 16 == 0
+    before = (0.0, 0.0, 200.0, 100.0)
+    assert resized(Resize("f", "r", (200.0, 50.0), before, before), (260.0, 90.0), False).rect == (0, 0, 260, 100)
+    assert resized(Resize("f", "lt", (0.0, 0.0), before, before), (999.0, 999.0), False).rect == (104, 36, 200, 100)
+
+
+@pytest.mark.parametrize(("query", "first"), [("gaus", "gaussian_blur"), ("edge", "edge_detect"), ("expo", "exposure")])
+def test_a_few_letters_find_a_node(query: str, first: str) -> None:
+    assert found(node_entries(catalogue()), query)[0].entries[0].id == first
+
+
+def test_without_letters_the_recent_come_first_and_all_are_listed_by_category() -> None:
+    entries = (*node_entries(catalogue()), *graph_entries())
+    sections = found(entries, "", ["bloom", "gone"])
+    assert [entry.id for entry in sections[0].entries] == ["bloom"]
+    assert sum(len(section.entries) for section in sections[1:]) == len(entries)
+    assert PRESETS not in {section.title for section in sections}
+    assert [entry.id for entry in narrowed(entries, ["bloom", "clip"])] == ["clip", "bloom"]
+
+
+def test_words_of_the_description_find_too() -> None:
+    entries = node_entries(catalogue())
+    assert "exposure" in {entry.id for entry in found(entries, "stops")[0].entries}
+
+
+def test_ends_and_outputs_are_boxes_with_one_pin() -> None:
+    graph = Graph().add_input("a", Input()).add_output("b", Output()).connect(P("inputs.a"), P("outputs.b"))
+    scene = staged(graph)
+    assert [str(port) for port, _, _ in scene.pins(True)] == ["inputs.a"]
+    assert [str(port) for port, _, _ in scene.pins(False)] == ["outputs.b"]
