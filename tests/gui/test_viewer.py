@@ -77,7 +77,7 @@ def test_exposure_is_dragged_and_reset(gui) -> None:
         assert ui.editor.viewer.exposure > 0.5
         assert (seen(ui, 0.3, 0.7) > before).all()
         ui.click("button viewer.neutral")
-        assert ui.editor.viewer.neutral
+        assert ui.editor.viewer.exposure == 0.0
         assert (seen(ui, 0.3, 0.7) == before).all()
         assert not ui.session.dirty
 
@@ -347,3 +347,19 @@ def test_everything_that_is_hidden_in_a_narrow_panel_is_in_its_menu(gui) -> None
         assert ui.editor.viewer.table
 
     gui(body, PRESET, size=(600, 600))
+
+
+def test_slow_pictures_are_coarser_while_something_is_dragged(gui) -> None:
+    def body(ui) -> None:
+        ui.settled()
+        ui.session.select({"vignette"})
+        ui.wait(3)
+        ui.editor.viewer.pace.took(1.0, 0.5)
+        ui.drag("handle vignette.center", inside(ui, 0.7, 0.25), release=False)
+        ui.until(lambda: ui.editor.preview.shown("A").scale < 1.0)
+        assert ui.editor.preview.shown("A").full_size == (WIDTH, HEIGHT)
+        ui.ctx.mouse_up(0)
+        ui.settled()
+        assert ui.editor.preview.shown("A").scale == 1.0
+
+    gui(body, PRESET)

@@ -47,6 +47,7 @@ class Ink:
     grid: int
     grid_strong: int
     picture: int
+    picture_hint: int
     shadow: tuple[tuple[float, int], ...]
     kinds: dict[Kind | None, int]
     kinds_dim: dict[Kind | None, int]
@@ -74,8 +75,9 @@ def ink(theme: str) -> Ink:
     return Ink(
         p, u32(p.node), u32(mix(p.node, p.canvas, 0.6)), u32(p.border if dark else mix(p.border, p.shadow, 0.25)),
         u32(p.field), u32(mix(p.field, p.accent, 0.35)), u32(p.raised), u32(p.accent), u32(p.on_accent), u32(p.text),
-        u32(p.dim), u32(p.dim, 0.6), u32(p.accent), u32(p.accent, 0.18), u32(p.error), u32(p.warning), u32(p.canvas),
+        u32(p.dim), u32(p.dim, 0.6), u32(p.accent), u32(p.accent, 0.12), u32(p.error), u32(p.warning), u32(p.canvas),
         u32(p.grid), u32(mix(p.grid, p.dim, 0.16)), u32(mix(p.node, p.shadow, 0.35 if dark else 0.12)),
+        u32(mix(p.node, p.dim, 0.22)),
         tuple((grow, u32(p.shadow, strength)) for grow in (1.0, 3.0, 6.0)),
         {kind: u32(color) for kind, color in kinds.items()},
         {kind: u32(mix(color, p.canvas, 0.7)) for kind, color in kinds.items()},

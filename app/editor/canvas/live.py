@@ -99,7 +99,8 @@ class Live:
             edit = row_of_numbers(fields, id, plain, value, (rect[2] - left) * brush.to.scale, ("",) * len(plain))
         elif value.type in ("choice", "color", "path") and imgui.invisible_button(f"##{id}", (width, high[1] - low[1])):
             self.open, self._opening, self._at = (port, value), value.type, (low[0], high[1])
-        if value.doc and imgui.is_item_hovered(int(imgui.HoveredFlags_.for_tooltip)) and not fields.dragging:
+        idle = not fields.dragging and fields.typing is None
+        if value.doc and idle and imgui.is_item_hovered(int(imgui.HoveredFlags_.for_tooltip)):
             imgui.set_tooltip(value.doc)
         if edit:
             self._edits.append((port, edit))
@@ -109,9 +110,9 @@ class Live:
         fields = self.fields
         if fields is None:
             return
-        if left := fields.end():
-            self._edits.append((Port.parse(left[0].removeprefix("canvas ").partition("#")[0]), left[1]))
         self._popups(editor, fields)
+        if left := fields.end():
+            self._edits.append((Port.parse(left[0].removeprefix("canvas ")), left[1]))
         editor.dragging = editor.dragging or fields.dragging
         for port, edit in self._edits:
             editor.attempt(lambda port=port, edit=edit: editor.session.set(port, edit.value, edit.merge))

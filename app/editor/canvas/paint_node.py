@@ -205,6 +205,8 @@ def _picture(brush: Brush, box: Box, place: Rect, look: Look) -> None:
     area = box.x + place[0], box.y + place[1] + 2.0, box.x + place[2], box.y + place[3]
     brush.fill(area, brush.ink.picture, 3.0)
     if look.picture is None:
+        x, y = (area[0] + area[2]) / 2, (area[1] + area[3]) / 2
+        brush.text(x - 9.0, y, brush.ink.picture_hint, icons.ICON_FA_IMAGE, 18.0)
         return
     across, down = area[2] - area[0], area[3] - area[1]
     width, height = look.picture_size

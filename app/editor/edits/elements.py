@@ -109,8 +109,9 @@ def fresh_id(graph: Graph, section: str) -> str:
 
 
 def tidy(number: float) -> float:
-    """A coordinate with as many digits as anyone can see."""
-    return round(float(number), 2) + 0.0
+    """A coordinate with as many digits as anyone can see; a whole one without a point, as people write it."""
+    found = round(float(number), 2)
+    return int(found) if found == int(found) else found
 
 
 def clean(text: str) -> str:

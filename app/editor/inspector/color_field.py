@@ -54,7 +54,7 @@ def color_field(
     return found
 
 
-def color_picker(fields: Fields, id: str, color: RGBA, eyedropper: bool) -> Edit | None:
+def color_picker(fields: Fields, id: str, color: RGBA, eyedropper: bool = True) -> Edit | None:
     """Wheel and triangle of display colors, intensity, linear numbers, hexadecimal digits, copy, paste, eyedropper."""
     width, side = imgui.get_font_size() * WIDTH, imgui.get_font_size() * 5.5
     owner, stops = id.removesuffix(" picker"), fields.stops

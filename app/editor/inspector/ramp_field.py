@@ -112,7 +112,7 @@ def _below(fields: Fields, id: str, value: tuple[float, ...], declaration: Value
     side = imgui.get_font_size() * 4.5
     index = fields.point[1] if fields.point[0] == id else -1
     chosen = 0 <= index < len(value) // 5
-    stop = value[index * 5 : index * 5 + 5] if chosen else ()
+    stop = value[index * 5 : index * 5 + 5]
 
     def with_place(edit: Edit) -> Edit | None:
         place = edit.value

@@ -19,7 +19,7 @@ from ..theme.style import mix, u32, ui_scale, vec4
 from .drawing import backdrop, dialog, dim, elided, escaped, font, icon_button, main_button, outline, record, wrapped
 from .textures import Textures
 
-_CARD, _PICTURE_HEIGHT = 196.0, 110.0
+_CARD, _PICTURE_HEIGHT = 200.0, 112.0
 
 HINTS = (
     "Tab adds a node; drag from a pin into the open to add one that fits.",
@@ -53,7 +53,7 @@ class StartScreen:
             self._there = {recent.path: recent.exists for recent in editor.store.now.recent}
         covered = editor.dialogs.browse is not None or editor.dialogs.question is not None
         close = backdrop(editor, "start") and not covered
-        with dialog(editor, "Start", (1180, 610), bare=True):
+        with dialog(editor, "Start", (1180, 560), bare=True):
             height = imgui.get_content_region_avail().y
             imgui.begin_child("left", ImVec2(290 * ui_scale(), height), imgui.ChildFlags_.nav_flattened.value)
             self._begin(editor)

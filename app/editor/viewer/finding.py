@@ -6,7 +6,6 @@ import time
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from ...errors import HalationError
 from ...graph import Port
 from ...renderer import Nonfinite, Wanted, first_nonfinite
 
@@ -39,7 +38,7 @@ class Finder:
             self._steps = _search(editor, port)
         try:
             self._go_on(editor)
-        except HalationError:
+        except Exception:
             editor.viewer.finding = False
             raise
 

@@ -27,7 +27,7 @@ _CHANNEL_COLORS: tuple[RGB, ...] = ((0.93, 0.36, 0.36), (0.30, 0.72, 0.36), (0.3
 
 @dataclass(frozen=True)
 class Word:
-    """A piece of text in the line, and its color."""
+    """A piece of text in the line, and its color; without text it is a square of that color."""
 
     text: str
     color: RGB
@@ -89,13 +89,14 @@ def of_pixel(editor: Editor, pixel: Pixels | None, values: tuple[float, ...], ki
         hue, saturation, value = hsv(tuple(float(part) for part in shown))
         light = float(np.dot(values[:3], LUMINANCE))
         words += [
-            Word(eight, palette.dim, 1.5), Word(f"H{hue:4.0f} S{saturation:5.2f} V{value:5.2f}", palette.dim, 1.5),
+            Word("", (float(shown[0]), float(shown[1]), float(shown[2])), 1.5), Word(eight, palette.dim, 0.5),
+            Word(f"H{hue:4.0f} S{saturation:5.2f} V{value:5.2f}", palette.dim, 1.5),
             Word(f"L {written(light)}", palette.dim, 1.5),
         ]
     return words
 
 
-def draw_line(editor: Editor, name: str, words: list[Word], swatch: RGB | None = None) -> None:
+def draw_line(editor: Editor, name: str, words: list[Word]) -> None:
     """One line of words, as many as fit."""
     lines = imgui.get_window_draw_list()
     inner = imgui.internal.get_current_window().inner_rect
@@ -107,15 +108,16 @@ def draw_line(editor: Editor, name: str, words: list[Word], swatch: RGB | None =
         imgui.push_font(editor.fonts.mono, 0.0)
     for number, word in enumerate(words):
         x += word.gap * imgui.get_font_size() if number else 0.0
-        width = imgui.calc_text_size(word.text).x
+        width = imgui.calc_text_size(word.text).x if word.text else height - 8 * scale
         if x + width > end:
             break
-        lines.add_text((round(x), y), u32(word.color), word.text)
+        if word.text:
+            lines.add_text((round(x), y), u32(word.color), word.text)
+        else:
+            lines.add_rect_filled((x, top + 4 * scale), (x + width, top + height - 4 * scale), u32(word.color))
         x += width
     if editor.fonts is not None:
         imgui.pop_font()
-    if swatch is not None and x + height < end:
-        lines.add_rect_filled((x + 8 * scale, top + 4 * scale), (x + height, top + height - 4 * scale), u32(swatch))
     imgui.set_cursor_screen_pos((left, top))
     imgui.dummy((right - left, height))
     editor.places[name] = left, top, right, top + height

@@ -42,7 +42,7 @@ def statistics(pixels: Array) -> Statistics:
 
 
 def data_range(pixels: Array) -> tuple[float, float]:
-    """From where to where data [h, w, channels] is worth showing: leaves out stray extremes, and what stands for far."""
+    """From where to where data [h, w, channels] is worth showing: without stray extremes, and what stands for far."""
     finite = pixels[np.isfinite(pixels)]
     near = finite[(np.abs(finite) < FAR) & (np.abs(finite) != HALF_MAX)]
     finite = near if near.size else finite

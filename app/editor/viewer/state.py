@@ -86,11 +86,6 @@ class ViewerState:
     scopes_logarithmic: bool = False
 
     @property
-    def neutral(self) -> bool:
-        """True if nothing is changed that a saved picture would not show too."""
-        return self.exposure == 0.0 and self.gamma == 1.0 and self.channels == "color"
-
-    @property
     def compares(self) -> bool:
         """True if B is needed."""
         return self.compare != "off"

@@ -78,10 +78,11 @@ def _items(editor: Editor, asked_view: str, is_data: bool) -> list[_Item]:
     if is_data:
         found.append(_Item(font * 8.4, lambda menu: _range(editor, font)))
     found.append(_Item(_text_width(_SHORT[viewer.channels]), lambda menu: _channels(editor, menu)))
-    found.append(_Item(font * 4.6, lambda menu: _exposure(editor, font)))
-    found.append(_Item(font * 3.6, lambda menu: _gamma(editor, font)))
-    if viewer.exposure != 0.0 or viewer.gamma != 1.0:
-        found.append(_tool(editor, icons.ICON_FA_ROTATE_LEFT, "viewer.neutral"))
+    if not is_data or viewer.meaning == "image":  # other data is shown as it is
+        found.append(_Item(font * 4.6, lambda menu: _exposure(editor, font)))
+        found.append(_Item(font * 3.6, lambda menu: _gamma(editor, font)))
+        if viewer.exposure != 0.0 or viewer.gamma != 1.0:
+            found.append(_tool(editor, icons.ICON_FA_ROTATE_LEFT, "viewer.neutral"))
     found.append(_Item(_text_width(f"1/{1 / viewer.proxy:.0f}"), lambda menu: _proxy(editor, menu)))
     found.append(_tool(editor, icons.ICON_FA_PLAY if viewer.paused else icons.ICON_FA_PAUSE, "viewer.pause"))
     found.append(_tool(editor, icons.ICON_FA_EXPAND, "viewer.fit"))
@@ -89,6 +90,8 @@ def _items(editor: Editor, asked_view: str, is_data: bool) -> list[_Item]:
     found.append(_Item(_text_width(icons.ICON_FA_TRIANGLE_EXCLAMATION), lambda menu: _warnings(editor, menu)))
     found += (_tool(editor, icon, id) for icon, id in _ACTIONS_AT_END)
     found.append(_Item(_text_width(icons.ICON_FA_CHESS_BOARD), lambda menu: _background(editor, menu)))
+    if is_data and viewer.meaning != "image":
+        return found
     label = f"{icons.ICON_FA_DISPLAY}  {viewer.view or asked_view or 'Default'}"
     found.append(_Item(_text_width(label), lambda menu: _view(editor, label, asked_view, menu)))
     return found

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from ..editor import Editor
     from ..preview import Shown
 
-TABLE_LINES = 9
+TABLE_LINES = 8
 _CATCH = (
     int(imgui.ButtonFlags_.mouse_button_left) | int(imgui.ButtonFlags_.mouse_button_middle)
     | int(imgui.ButtonFlags_.mouse_button_right)
@@ -63,6 +63,7 @@ class Viewer:
         self._seconds = 0.0
         self._busy_since: float | None = None
         self._search = 0
+        self._rows = 3
 
     def draw(self, editor: Editor) -> None:
         """Everything, into the current window."""
@@ -79,7 +80,7 @@ class Viewer:
             self._draw_panel(editor, now)
         finally:
             imgui.pop_style_var()
-        self._finder.step(editor)
+        editor.attempt(lambda: self._finder.step(editor))
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
@@ -90,15 +91,16 @@ class Viewer:
         imgui.set_cursor_screen_pos(start)
         lines = 2 if now.b is not None else 1
         below = infobar.row_height() * lines
-        table = imgui.get_text_line_height_with_spacing() * TABLE_LINES if viewer.table else 0.0
+        lines = min(self._rows + 1, TABLE_LINES) if viewer.table else 0
+        table = (imgui.get_text_line_height() + 2 * imgui.get_style().cell_padding.y) * lines
         width, room = inner.max.x - start[0], inner.max.y - start[1]
-        table = min(table, room * 0.45)
+        table = min(table, room * 0.4)
         sight = self._catch(editor, now.a, (max(width, 32.0), max(room - below - table, 32.0)))
         look = self._draw_picture(editor, now, sight)
         self._draw_messages(editor, now, sight)
         self._read(editor, now, sight, look)
         if viewer.table:
-            draw_table(editor, self._reader, table)
+            self._rows = draw_table(editor, self._reader, table)
 
     def _catch(self, editor: Editor, a: Shown | None, size: tuple[float, float]) -> Sight:
         """The area of the picture, after mouse and wheel had their say."""
