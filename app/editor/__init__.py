@@ -4,10 +4,10 @@ Data flows one way. A person's act, through an action or a panel, calls a method
 graph; the `Preview` turns what is wanted of that graph into pictures, pass by pass; panels draw both.
 
     session/ edits/      what a person can do to a document, and the pure functions behind it
-    preview.py           pictures within a frame budget
-    editor.py            everything that one window has
+    preview/             pictures within a frame budget
+    editor.py            everything that one window has; log.py dialogs.py action.py are parts of it
     actions/             one table for menus, shortcuts, context menus and the command palette
-    preferences.py recovery.py watching.py reloading.py exporting.py locks.py log.py dialogs.py
+    services/            preferences, recovery, watched files, renders to disk
     theme/ window/       how it looks; the window that hosts the panels
     canvas/ inspector/ viewer/ panels/
 

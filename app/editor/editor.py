@@ -18,13 +18,13 @@ if TYPE_CHECKING:
     from ..renderer.display import Display
     from ..renderer.probe import Probe
     from .action import Actions, Scope
-    from .exporting import Exports
-    from .preferences import Store
     from .preview import Preview
-    from .recovery import Recovery
+    from .services.exporting import Exports
+    from .services.preferences import Store
+    from .services.recovery import Recovery
+    from .services.watching import Watcher
     from .session import Session
     from .theme.fonts import Fonts
-    from .watching import Watcher
 
 T = TypeVar("T")
 

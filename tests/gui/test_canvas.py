@@ -269,3 +269,69 @@ def test_three_hundred_nodes_are_all_drawn(gui) -> None:
         assert sum(name.startswith("link n") for name in ui.editor.places) == 299
 
     gui(body)
+
+
+def test_fields_leave_the_wheel_and_the_right_button_to_the_canvas(gui) -> None:
+    def body(ui) -> None:
+        show(ui, chain("exposure"))
+        port = Port("exposure", "stops")
+        ui.session.set(port, 2.0)
+        ui.move(f"widget {port}")
+        ui.wait(2)
+        zoom = ui.editor.canvas.zoom
+        ui.wheel(1)
+        assert ui.editor.canvas.zoom > zoom
+        ui.click(f"widget {port}", button=1)
+        ui.click("menu Reset stops")
+        assert ui.session.value(port) == 0.0
+
+    gui(body)
+
+
+def test_typing_a_number_on_a_node(gui) -> None:
+    def body(ui) -> None:
+        show(ui, chain("exposure"))
+        ui.move("widget exposure.stops")
+        ui.wait(2)
+        ui.click("widget exposure.stops")
+        ui.move(empty(ui))
+        ui.wait(2)
+        ui.type("1.5")
+        assert ui.session.value(Port("exposure", "stops")) == 1.5
+
+    gui(body)
+
+
+def test_renames_a_node_in_place(gui) -> None:
+    def body(ui) -> None:
+        show(ui, chain("exposure"))
+        ui.click("title exposure", fraction=(0.3, 0.5))
+        ui.keys("F2")
+        ui.wait(3)
+        ui.type("brighter")
+        assert "brighter" in ui.session.graph.nodes
+        ui.click(empty(ui))
+        ui.click("node outputs.image", fraction=(0.5, 0.5))
+        ui.keys("F2")
+        ui.wait(3)
+        ui.type("final")
+        assert set(ui.session.graph.outputs) == {"final"}
+
+    gui(body)
+
+
+def test_every_group_keeps_its_view(gui) -> None:
+    def body(ui) -> None:
+        show(ui, chain("exposure", "bloom"))
+        ui.session.select(("bloom",))
+        group = ui.session.make_group("glow")
+        ui.wait(3)
+        before = ui.editor.canvas.center, ui.editor.canvas.zoom
+        ui.session.enter(group)
+        ui.wait(3)
+        assert "node bloom" in ui.editor.places
+        ui.session.leave()
+        ui.wait(3)
+        assert (ui.editor.canvas.center, ui.editor.canvas.zoom) == before
+
+    gui(body)

@@ -11,7 +11,7 @@ from ..dialogs import Browse, Question
 
 if TYPE_CHECKING:
     from ..editor import Editor
-    from ..recovery import Recovered
+    from ..services.recovery import Recovered
 
 
 def _unless_unsaved(editor: Editor, then: Callable[[], object], verb: str) -> None:

@@ -13,10 +13,10 @@ from ..theme.style import ui_scale
 from .brush import Brush, Texts, ink
 from .crumbs import draw_crumbs
 from .geometry import Point, Rect, bounds, curve, fitted, holds, overlap, transform
-from .gestures import Band, Draw, Idle, Link, Move, band_rect
+from .gestures import Band, Draw, Idle, Link, Move, Resize, band_rect
 from .legend import Legend
 from .live import Live, drawn_live
-from .looks import Moment, moment
+from .looks import Judgement, Moment, judged, moment
 from .menus import Menus
 from .minimap import Minimap
 from .mouse import Frame, Mouse
@@ -65,6 +65,8 @@ class Canvas:
         self._legend = Legend()
         self._places = Places()
         self._hot = ""
+        self._judgement: Judgement | None = None
+        self._judged = -1
         self._place: tuple[str, ...] = ()
         self._views: dict[tuple[str, ...], tuple[Point, float]] = {}
 
@@ -177,13 +179,13 @@ class Canvas:
         scene, session, mouse = self._mouse.dragged.scene, editor.session, self._mouse
         self._over = frame.at
         hot = self._hot = self._found_hot(frame, scene)
-        now = moment(editor, brush.ink, mouse.gesture, hot)
+        now = moment(editor, brush.ink, mouse.gesture, hot, self._judge(editor))
         if not scene.boxes:
             paint_hint(brush, frame.panel, _HINTS)
         visible = [box for box in scene.boxes.values() if overlap(box.rect, _grown(brush.seen, 32.0))]
         for box in visible:
             if box.sort == "frame":
-                lit = mouse.hit.key == box.key or mouse.gesture == box.key
+                lit = mouse.hit.key == box.key or (isinstance(mouse.gesture, Resize) and mouse.gesture.key == box.key)
                 paint_frame(brush, box, entry(session.graph, box.key), box.key in session.selection, lit)
         self._paint_wires(editor, brush, scene)
         self._live.begin(editor)
@@ -209,6 +211,13 @@ class Canvas:
         if imgui.is_any_item_active() and isinstance(self._mouse.gesture, Idle):
             return self._hot
         return scene.node_at(*frame.at) if frame.over and isinstance(self._mouse.gesture, Idle) else ""
+
+    def _judge(self, editor: Editor) -> Judgement:
+        """What is wrong; looked for again only once a value has been let go."""
+        stale = self._judged != editor.session.revision and not editor.dragging
+        if self._judgement is None or stale:
+            self._judgement, self._judged = judged(editor), editor.session.revision
+        return self._judgement
 
     def _paint_node(self, brush: Brush, box: Box, now: Moment, hot: str) -> None:
         layout = box.layout

@@ -87,11 +87,6 @@ def overlap(first: Rect, second: Rect) -> bool:
     return first[0] <= second[2] and second[0] <= first[2] and first[1] <= second[3] and second[1] <= first[3]
 
 
-def within(inner: Rect, outer: Rect) -> bool:
-    """True if `inner` lies in `outer` whole."""
-    return outer[0] <= inner[0] and outer[1] <= inner[1] and inner[2] <= outer[2] and inner[3] <= outer[3]
-
-
 def spanned(start: Point, end: Point) -> Rect:
     """The rectangle between two corners."""
     return min(start[0], end[0]), min(start[1], end[1]), max(start[0], end[0]), max(start[1], end[1])

@@ -10,7 +10,7 @@ from ...graph import INPUTS, OUTPUTS, Graph, Port
 from ..edits import routes
 from ..edits.wiring import inserted
 from .geometry import Point, Rect, overlap, snapped, spanned
-from .scene import Box, Scene
+from .scene import Scene
 
 SMALLEST = (96.0, 64.0)
 """The least size of frames; comments may be as low as their text."""
@@ -226,8 +226,3 @@ def shown(scene: Scene, gesture: Gesture) -> Scene:
     if isinstance(gesture, Resize):
         return scene.resized(gesture.key, gesture.rect)
     return scene
-
-
-def grabs(box: Box) -> bool:
-    """True for elements that move by their whole body."""
-    return box.sort != "frame"

@@ -69,7 +69,24 @@ class Moment:
         return f"{seconds * 1e3:.1f} ms   {_size(size)}", color
 
 
-def moment(editor: Editor, ink: Ink, gesture: Gesture, hot: str) -> Moment:
+@dataclass(frozen=True)
+class Judgement:
+    """What is wrong with the elements of a graph, and which of those sentences only warn."""
+
+    problems: Mapping[str, tuple[str, ...]]
+    warnings: frozenset[str]
+
+
+def judged(editor: Editor) -> Judgement:
+    """Look for problems."""
+    session = editor.session
+    within = "".join(f"in group '{id}': " for id in session.place)
+    return Judgement(session.problems, frozenset(
+        problem.sentence.removeprefix(within) for problem in session.all_problems if problem.severity == "warning"
+    ))
+
+
+def moment(editor: Editor, ink: Ink, gesture: Gesture, hot: str, judgement: Judgement) -> Moment:
     """What holds for all nodes in this frame."""
     session = editor.session
     shown: dict[str, str] = {}
@@ -86,19 +103,11 @@ def moment(editor: Editor, ink: Ink, gesture: Gesture, hot: str) -> Moment:
             lit[owner(port)] = lit.get(owner(port), frozenset()) | {(not gesture.output, port.socket)}
         lit[owner(gesture.port)] = frozenset({(gesture.output, gesture.port.socket)})
     costs, total = _costs(editor) if editor.preview.timed else ({}, 0.0)
-    sentences = frozenset(
-        problem.sentence.removeprefix(_inside(session.place))
-        for problem in session.all_problems if problem.severity == "warning"
-    )
     prefix = "".join(f"{id}/" for id in session.place)
     return Moment(
-        editor, ink, shown, badges, lit, costs, total, sentences, hot, prefix, session.selection, session.active,
-        session.graph.muted, session.problems, editor.preview.thumbnailing,
+        editor, ink, shown, badges, lit, costs, total, judgement.warnings, hot, prefix, session.selection,
+        session.active, session.graph.muted, judgement.problems, editor.preview.thumbnailing,
     )
-
-
-def _inside(place: tuple[str, ...]) -> str:
-    return "".join(f"in group '{id}': " for id in place)
 
 
 def _costs(editor: Editor) -> tuple[dict[str, tuple[float, int]], float]:

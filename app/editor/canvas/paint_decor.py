@@ -9,7 +9,7 @@ from typing import Any
 from imgui_bundle import imgui
 
 from ..theme.style import mix, u32
-from .brush import SMALL, TEXT, Brush, Ink
+from .brush import TEXT, Brush, Ink
 from .geometry import Curve, Point, Rect
 from .scene import FRAME_TITLE, Box, Wire
 
@@ -171,9 +171,3 @@ def _visible(brush: Brush, shape: Curve) -> bool:
     left, top, right, bottom = brush.seen
     xs, ys = shape[0::2], shape[1::2]
     return max(xs) >= left and min(xs) <= right and max(ys) >= top and min(ys) <= bottom
-
-
-__all__ = [
-    "SMALL", "frame_color", "paint_band", "paint_comment", "paint_curve", "paint_cut", "paint_dashes", "paint_dot",
-    "paint_frame", "paint_grid", "paint_hint", "paint_note", "paint_wire",
-]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -216,12 +216,6 @@ def routed(boxes: Mapping[str, Box], source: Port, target: Port, stops: tuple[st
         pin_place(boxes[stops[-1]], target.socket, output=False),
     ]
     return (curve(*start, *end) for start, end in pairwise(places))
-
-
-def inside(boxes: Mapping[str, Box], frame: str, holds_all: Callable[[Rect, Rect], bool]) -> frozenset[str]:
-    """The elements that lie whole on a frame."""
-    outer = boxes[frame].rect
-    return frozenset(key for key, box in boxes.items() if key != frame and holds_all(box.rect, outer))
 
 
 def _in_node(box: Box, layout: Layout, x: float, y: float, reach: float) -> Hit | None:

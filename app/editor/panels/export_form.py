@@ -8,7 +8,7 @@ from typing import Literal
 
 from ....nodes import Kind
 from ..editor import Editor
-from ..exporting import Export, Options
+from ..services.exporting import Export, Options
 
 Sizing = Literal["as it is", "scale", "size"]
 

@@ -7,8 +7,8 @@ from typing import Any
 from imgui_bundle import ImVec2, imgui
 
 from ..editor import Editor
-from ..preferences import MAX_SCALE, MIN_SCALE, Preferences
-from ..recovery import LONGEST
+from ..services.preferences import MAX_SCALE, MIN_SCALE, Preferences
+from ..services.recovery import LONGEST
 from ..theme.style import ui_scale, vec4
 from .drawing import backdrop, dialog, dim, escaped, font, main_button, record, wrapped
 from .shortcut_editor import ShortcutEditor

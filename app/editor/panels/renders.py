@@ -11,7 +11,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ...media import views
 from ..dialogs import Browse
 from ..editor import Editor
-from ..exporting import Export
+from ..services.exporting import Export
 from ..theme.style import ui_scale, vec4
 from .drawing import dim, elided, font, icon_button, main_button, nothing_here, record, right_aligned, wrapped
 from .export_form import DEPTHS, FORMATS, VIEWED, Form, Sizing, state_text, title

@@ -13,8 +13,8 @@ from ...media.thumbnail import load_thumbnail
 from ..actions.documents import open_graph, open_preset, recover
 from ..editor import Editor
 from ..keys import chord
-from ..preferences import Recent
-from ..recovery import Recovered
+from ..services.preferences import Recent
+from ..services.recovery import Recovered
 from ..theme.style import mix, u32, ui_scale, vec4
 from .drawing import backdrop, dialog, dim, elided, escaped, font, icon_button, main_button, outline, record, wrapped
 from .textures import Textures

@@ -14,7 +14,7 @@ from .history import Step
 from .state import State
 
 if TYPE_CHECKING:
-    from ..recovery import Recovered
+    from ..services.recovery import Recovered
 
 
 class Files(State):

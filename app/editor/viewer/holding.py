@@ -100,7 +100,7 @@ class Hold:
             case "new region" if self.moved:
                 viewer.region = ordered((*begun, x, y))
             case "measure" if self.moved:
-                viewer.measured, viewer.table = ordered((*begun, x, y)), True
+                viewer.measured = ordered((*begun, x, y))
             case _:
                 pass
 
@@ -112,8 +112,10 @@ class Hold:
         elif self.aim.what == "new region":
             viewer.drawing_region = False
             viewer.region = viewer.region if self.moved else None
-        elif self.aim.what == "measure" and not self.moved and sight.under(at):
-            viewer.markers, viewer.table = toggled(viewer.markers, sight, at), True
+        elif self.aim.what == "measure":
+            viewer.table = True  # only now: it takes room, and the picture would move under the pointer
+            if not self.moved and sight.under(at):
+                viewer.markers = toggled(viewer.markers, sight, at)
 
     def _move_handle(self, editor: Editor, to: Point) -> None:
         port = self.aim.port

@@ -57,13 +57,13 @@ def rows_of(editor: Editor, reader: Reader) -> list[tuple[str, str, tuple[float,
     return rows
 
 
-def draw_table(editor: Editor, reader: Reader, height: float) -> int:
-    """Draw it, `height` high; returns how many rows it has."""
+def draw_table(editor: Editor, reader: Reader, height: float) -> None:
+    """Draw it, `height` high."""
     try:
         rows = rows_of(editor, reader)
     except HalationError as error:
         imgui.text_wrapped(str(error))
-        return 1
+        return
     if editor.fonts is not None:
         imgui.push_font(editor.fonts.mono, 0.0)
     if imgui.begin_table("pixel values", len(_HEADINGS), _FLAGS, (0, height)):
@@ -77,7 +77,6 @@ def draw_table(editor: Editor, reader: Reader, height: float) -> int:
         imgui.end_table()
     if editor.fonts is not None:
         imgui.pop_font()
-    return len(rows)
 
 
 def _row(editor: Editor, name: str, place: str, values: tuple[float, ...]) -> None:

@@ -31,7 +31,8 @@ if TYPE_CHECKING:
     from ..editor import Editor
     from ..preview import Shown
 
-TABLE_LINES = 8
+TABLE_LINES = 7
+"""Always the same, whatever it holds: else the picture would move under the pointer."""
 _CATCH = (
     int(imgui.ButtonFlags_.mouse_button_left) | int(imgui.ButtonFlags_.mouse_button_middle)
     | int(imgui.ButtonFlags_.mouse_button_right)
@@ -63,7 +64,6 @@ class Viewer:
         self._seconds = 0.0
         self._busy_since: float | None = None
         self._search = 0
-        self._rows = 3
 
     def draw(self, editor: Editor) -> None:
         """Everything, into the current window."""
@@ -91,8 +91,8 @@ class Viewer:
         imgui.set_cursor_screen_pos(start)
         lines = 2 if now.b is not None else 1
         below = infobar.row_height() * lines
-        lines = min(self._rows + 1, TABLE_LINES) if viewer.table else 0
-        table = (imgui.get_text_line_height() + 2 * imgui.get_style().cell_padding.y) * lines
+        row = imgui.get_text_line_height() + 2 * imgui.get_style().cell_padding.y
+        table = row * TABLE_LINES if viewer.table else 0.0
         width, room = inner.max.x - start[0], inner.max.y - start[1]
         table = min(table, room * 0.4)
         sight = self._catch(editor, now.a, (max(width, 32.0), max(room - below - table, 32.0)))
@@ -100,7 +100,7 @@ class Viewer:
         self._draw_messages(editor, now, sight)
         self._read(editor, now, sight, look)
         if viewer.table:
-            self._rows = draw_table(editor, self._reader, table)
+            draw_table(editor, self._reader, table)
 
     def _catch(self, editor: Editor, a: Shown | None, size: tuple[float, float]) -> Sight:
         """The area of the picture, after mouse and wheel had their say."""

@@ -13,12 +13,12 @@ from ...renderer.probe import Probe
 from ..action import Actions
 from ..actions import table
 from ..editor import Editor
-from ..exporting import Exports
-from ..preferences import Store, state_folder
 from ..preview import Preview
-from ..recovery import Recovery
+from ..services.exporting import Exports
+from ..services.preferences import Store, state_folder
+from ..services.recovery import Recovery
+from ..services.watching import Watcher
 from ..session import Session
-from ..watching import Watcher
 
 
 class SystemClipboard:

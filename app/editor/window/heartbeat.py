@@ -10,9 +10,9 @@ from ...compiler import installed
 from ...graph import Port
 from ..dialogs import Question
 from ..editor import Editor
-from ..reloading import NodeFiles, migrated, shader_folder
+from ..services.reloading import NodeFiles, migrated, shader_folder
+from ..services.watching import Change, groups_of, pictures_of
 from ..viewer.wanted import wanted
-from ..watching import Change, groups_of, pictures_of
 
 FRAME_BUDGET = 0.012
 """Seconds of rendering per frame: the rest of a sixtieth is for drawing panels."""

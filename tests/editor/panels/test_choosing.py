@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 from halation.app.editor.dialogs import Browse
-from halation.app.editor.exporting import Exports, Options
 from halation.app.editor.panels.browsing import Browsing, begun, size_text
 from halation.app.editor.panels.export_form import Form, title
 from halation.app.editor.panels.opening_folders import command, show_folder
-from halation.app.editor.preferences import Store
+from halation.app.editor.services.exporting import Exports, Options
+from halation.app.editor.services.preferences import Store
 from halation.app.editor.session import Session
 from halation.app.errors import UsageError
 from halation.presets import paths

@@ -15,7 +15,7 @@ from halation.app.editor.panels.commands import commands, ranked
 from halation.app.editor.panels.findings import findings, show
 from halation.app.editor.panels.shortcut_groups import columns, condensed, groups
 from halation.app.editor.panels.taking_over import assigned, reset, taken_over
-from halation.app.editor.preferences import Store
+from halation.app.editor.services.preferences import Store
 from halation.app.editor.session import Session
 from halation.app.graph import Port
 from halation.presets import paths

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...nodes import Kind
-from ..renderer import Display, Handle, Look, Probe, Renderer
+from ....nodes import Kind
+from ...renderer import Display, Handle, Look, Probe, Renderer
 
 LARGEST = (160, 90)
 RANGE_WIDTH = 64

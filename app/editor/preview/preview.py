@@ -1,4 +1,4 @@
-"""What panels show, computed pass by pass within the time that a frame of the window has left."""
+"""Pictures for panels: compiled, run step by step, kept until better ones are ready."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from ...nodes import Kind, Size
-from ..compiler import Library, Plan
-from ..errors import HalationError
-from ..graph import Graph, Port
-from ..renderer import Display, Handle, Lease, Renderer, Run, Wanted
+from ....nodes import Kind, Size
+from ...compiler import Library, Plan
+from ...errors import HalationError
+from ...graph import Graph, Port
+from ...renderer import Display, Handle, Lease, Renderer, Run, Wanted
 from .thumbnails import Subject, Thumbnails
 from .timing import Timing, key_of, timings_of
 from .wishes import Wish, kind_of, path_of
 
 if TYPE_CHECKING:
-    from ..compiler import Pass
-    from ..media.pictures import Binding
+    from ...compiler import Pass
+    from ...media.pictures import Binding
 
 PATIENCE = 0.3
 """Seconds that a run may go on after the graph has changed: during a long drag, pictures would never come otherwise."""

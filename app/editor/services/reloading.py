@@ -13,11 +13,11 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from ... import nodes, shaders
-from ...nodes import Node, catalogue
-from .. import document
-from ..errors import DocumentError, GraphError
-from ..graph import Graph, Group, Item, Unknown
+from .... import nodes, shaders
+from ....nodes import Node, catalogue
+from ... import document
+from ...errors import DocumentError, GraphError
+from ...graph import Graph, Group, Item, Unknown
 
 Types = Mapping[str, type[Node]]
 

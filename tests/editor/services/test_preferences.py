@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
-from halation.app.editor.preferences import Preferences, Store, state_folder
+from halation.app.editor.services.preferences import Preferences, Store, state_folder
 from halation.app.errors import UsageError
 
 

@@ -17,9 +17,9 @@ from typing import Literal
 
 from watchfiles import watch
 
-from ...nodes import Node
-from ..graph import Graph, Group, Port
-from ..media.pictures import split_layer
+from ....nodes import Node
+from ...graph import Graph, Group, Port
+from ...media.pictures import split_layer
 
 Kind = Literal["graph", "group", "picture", "shader", "node"]
 _Key = tuple[Kind, Path]

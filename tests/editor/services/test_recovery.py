@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from halation.app import document
-from halation.app.editor.recovery import Recovery
+from halation.app.editor.services.recovery import Recovery
 from halation.app.errors import DocumentError
 from halation.app.graph import Graph, Group, Input
 from halation.nodes import catalogue
@@ -210,7 +210,7 @@ SCRIPT = """
 import itertools, sys, time
 from pathlib import Path
 from halation.app import document
-from halation.app.editor.recovery import Recovery
+from halation.app.editor.services.recovery import Recovery
 from halation.app.graph import Graph
 from halation.nodes import catalogue
 

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 from halation.app import document
-from halation.app.editor import watching
-from halation.app.editor.watching import Change, Watcher, pictures_of
+from halation.app.editor.services import watching
+from halation.app.editor.services.watching import Change, Watcher, pictures_of
 from halation.app.graph import Graph, Group, Input, Port
 from halation.nodes import catalogue
 

@@ -10,16 +10,16 @@ from pathlib import Path
 from typing import Annotated
 
 import pytest
-from halation.app.editor.reloading import migrated, shader_folder
+from halation.app.editor.services.reloading import migrated, shader_folder
 from halation.app.graph import Graph, Group, Port, Unknown
 from halation.nodes import Image, Pointwise, Slider, catalogue
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 BEGIN = """
 from pathlib import Path
 from halation.app import document
-from halation.app.editor.reloading import NodeFiles, migrated
+from halation.app.editor.services.reloading import NodeFiles, migrated
 from halation.app.graph import Graph, Unknown
 from halation.nodes import Node, catalogue
 

@@ -15,8 +15,8 @@ from typing import Annotated, Any, Literal, cast, get_type_hints
 import msgspec
 import platformdirs
 
-from ..document.disk import write_text
-from ..errors import OutputError, UsageError
+from ...document.disk import write_text
+from ...errors import OutputError, UsageError
 from .locks import locked
 
 MAX_RECENT = 20

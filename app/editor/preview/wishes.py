@@ -8,13 +8,13 @@ from functools import cached_property
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
-from ...nodes import Kind, Size
-from ..compiler import upstream_hashes
-from ..errors import GraphError
-from ..graph import INPUTS, OUTPUTS, Graph, Group, Port
+from ....nodes import Kind, Size
+from ...compiler import upstream_hashes
+from ...errors import GraphError
+from ...graph import INPUTS, OUTPUTS, Graph, Group, Port
 
 if TYPE_CHECKING:
-    from ..media.pictures import Binding
+    from ...media.pictures import Binding
 
 
 @dataclass(eq=False)

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from exr_files import write_exr
-from halation.app.editor.exporting import Exports, Options
+from halation.app.editor.services.exporting import Exports, Options
 from halation.app.errors import UsageError
 from halation.app.graph import Graph, Group, Input, Output, Port
 from halation.app.media import read

@@ -15,11 +15,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from .. import document
-from ..compiler import Precision
-from ..errors import OutputError, UsageError
-from ..graph import Graph
-from ..media.store import part_prefix
+from ... import document
+from ...compiler import Precision
+from ...errors import OutputError, UsageError
+from ...graph import Graph
+from ...media.store import part_prefix
 
 State = Literal["running", "done", "failed", "cancelled"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ..compiler import Pass, Plan
+from ...compiler import Pass, Plan
 
 
 @dataclass(frozen=True)

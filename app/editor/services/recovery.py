@@ -18,10 +18,10 @@ from pathlib import Path
 
 import msgspec
 
-from .. import document
-from ..document.disk import read_text, write_text
-from ..errors import DocumentError, HalationError, OutputError
-from ..graph import Graph
+from ... import document
+from ...document.disk import read_text, write_text
+from ...errors import DocumentError, HalationError, OutputError
+from ...graph import Graph
 from .locks import is_held, lock
 
 FIRST = 1.0
