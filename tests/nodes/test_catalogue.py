@@ -104,7 +104,7 @@ def test_shader_names_do_not_clash(name):
 @pytest.mark.parametrize("name", sorted(installed().texts))
 def test_every_shader_belongs_to_a_node(name):
     folder, _, id = name.partition("/")
-    assert folder in ("lib", "primitive") or (id in catalogue() and catalogue()[id].category == folder)
+    assert folder in ("lib", "primitive", "viewer") or (id in catalogue() and catalogue()[id].category == folder)
     source = re.sub(r"//[^\n]*", "", (ROOT / "shaders" / f"{name}.glsl").read_text(encoding="utf-8"))
     for word in ("#version", "void main", "uniform ", "texture(", "imageLoad"):
         assert word not in source

@@ -19,8 +19,8 @@ TEXT, SMALL, TITLE = 13.5, 12.0, 14.0
 
 _MEASURED = 48.0
 
-WIDGETS_FROM, NAMES_FROM = 0.45, 0.25
-"""The zoom below which values, and then names of sockets, are left out."""
+WIDGETS_FROM, NAMES_FROM = 0.45, 0.33
+"""The zoom below which values, and then names of sockets, are left out and titles grow."""
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ GRID = 8.0
 SAMPLES = 24
 """Straight pieces that stand for a curve where it is measured."""
 
-_MIN_HANDLE, _MAX_HANDLE = 24.0, 160.0
+_MIN_HANDLE, _MAX_HANDLE = 24.0, 200.0
 _MARGIN = 48.0
 
 
@@ -100,8 +100,10 @@ def snapped(number: float, step: float = GRID * 2) -> float:
 def curve(x0: float, y0: float, x1: float, y1: float) -> Curve:
     """The shape of a link: it leaves to the right and arrives from the left, with room to turn where it runs back."""
     across, down = x1 - x0, abs(y1 - y0)
-    handle = across * 0.5 if across > 0 else -across * 0.75 + min(down, _MAX_HANDLE) * 0.5
-    handle = min(max(handle, min(_MIN_HANDLE, (abs(across) + down) * 0.5)), max(_MAX_HANDLE, abs(across) * 0.5))
+    if across > 0:
+        handle = max(across * 0.5, min(_MIN_HANDLE, (across + down) * 0.5))
+    else:
+        handle = min(max(-across * 0.75 + down * 0.5, _MIN_HANDLE), _MAX_HANDLE)
     return x0, y0, x0 + handle, y0, x1 - handle, y1, x1, y1
 
 

@@ -131,9 +131,9 @@ def _title(brush: Brush, box: Box, layout: Layout, look: Look) -> None:
     ink, y = brush.ink, box.y + HEADER / 2
     color = ink.dim if look.muted else ink.text
     left, right = box.x + _INSET, box.x + box.w - 8.0
-    if brush.zoom < NAMES_FROM + 0.08:
-        size = min(TITLE * 0.62 / brush.zoom, 30.0)
-        middle = box.y + min(box.h, 72.0) / 2 if not layout.collapsed and box.sort == "node" else y
+    if brush.zoom < NAMES_FROM:
+        size = min(TITLE * 0.62 / brush.zoom, 40.0)
+        middle = y if box.h < HEADER + size * 1.3 or layout.picture else box.y + HEADER + size * 0.65
         brush.text(left, middle, color, brush.short(layout.title, box.w - _INSET * 2, size), size)
         return
     if look.fault or look.warning:

@@ -181,7 +181,7 @@ class Scene:
                 if hit := _in_node(box, box.layout, x, y, reach):
                     return hit
             elif box.sort == "comment":
-                if edges := _edges(box.rect, x, y, reach * 0.7, "rb"):
+                if edges := _edges(box.rect, x, y, reach * 0.7, "r"):
                     return Hit("edge", key, name=edges)
                 if holds(box.rect, x, y):
                     return Hit("body", key)

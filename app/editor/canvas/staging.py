@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from textwrap import wrap
 from typing import Any
 
 from ....nodes import Kind, Node
@@ -14,6 +15,9 @@ from ..edits.routes import routes
 from .geometry import Point
 from .layout import Facts, Layout, end_layout, node_layout
 from .scene import DOT, Box, Scene, Wire, routed
+
+_LETTER = 6.6, 17.0
+"""Width of a letter, and height of a line, in comments."""
 
 FRAME_SIZE, COMMENT_SIZE = (320.0, 200.0), (200.0, 64.0)
 
@@ -38,7 +42,9 @@ class Stage:
             self._layouts = {id: known for id, known in self._layouts.items() if id in graph.nodes}
         boxes = {box.key: box for box in self._frames(graph, position)}
         for id in entries(graph, "comments"):
-            boxes[f"comments.{id}"] = _sized(graph, f"comments.{id}", "comment", COMMENT_SIZE, position)
+            box = _sized(graph, f"comments.{id}", "comment", COMMENT_SIZE, position)
+            text = str(entry(graph, box.key).get("text", ""))
+            boxes[box.key] = replace(box, h=comment_height(text, box.w))
         for key, layout in self._ends(graph, pictures):
             boxes[key] = Box(key, "end", *position(key), layout.width, layout.height, layout)
         closed = {id for id, facts in entries(graph, "nodes").items() if facts.get("collapsed") is True}
@@ -101,6 +107,13 @@ class Stage:
         fault = graph.link_fault(source, target) or ""
         self._faults[source, target] = types, fault
         return fault
+
+
+def comment_height(text: str, width: float) -> float:
+    """How high a comment must be for its text, with letters of the usual width."""
+    across = max(int((width - 20.0) / _LETTER[0]), 1)
+    lines = sum(max(len(wrap(line, across)), 1) for line in text.split("\n"))
+    return max(lines * _LETTER[1] + 16.0, 40.0)
 
 
 def _face(graph: Graph, port: Port) -> object:

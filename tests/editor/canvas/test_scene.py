@@ -19,7 +19,7 @@ from halation.app.editor.canvas.gestures import (
     touched,
 )
 from halation.app.editor.canvas.scene import Scene
-from halation.app.editor.canvas.staging import Stage
+from halation.app.editor.canvas.staging import Stage, comment_height
 from halation.app.editor.edits.decor import add_frame
 from halation.app.editor.edits.layout import pinned, positions
 from halation.app.graph import Graph, Input, Output, Port, Unknown
@@ -171,3 +171,10 @@ def test_ends_and_outputs_are_boxes_with_one_pin() -> None:
     scene = staged(graph)
     assert [str(port) for port, _, _ in scene.pins(True)] == ["inputs.a"]
     assert [str(port) for port, _, _ in scene.pins(False)] == ["outputs.b"]
+
+
+def test_comments_are_as_high_as_their_text() -> None:
+    short, long = (comment_height(text, 200.0) for text in ("a note", "many words " * 20))
+    assert short == 40.0 and long > 120.0
+    assert comment_height("one\n\ntwo", 200.0) > comment_height("one", 200.0)
+    assert comment_height("many words " * 20, 400.0) < long
