@@ -39,6 +39,8 @@ class Action:
     doc: str = ""
     separated: bool = False
     """True draws a line above it in menus."""
+    repeats: bool = False
+    """True does it again and again while its keys are held."""
 
 
 @dataclass(frozen=True)

@@ -66,7 +66,7 @@ class Editor:
     places: dict[str, Rectangle] = field(default_factory=dict[str, Rectangle])
     """Where things were drawn last, by name: for tests and hints."""
     requests: set[str] = field(default_factory=set[str])
-    """What the window shall do next: "reset layout", "screenshot"."""
+    """What the window shall do next: "reset layout", "screenshot", "show Renders" or another panel."""
     scope: Scope = "graph"
     """The panel that keys go to: the one that the mouse was over last."""
     closing: bool = False

@@ -44,7 +44,7 @@ def dev(checkout: Path, *words: str, commands: dict[str, str]) -> subprocess.Com
 def test_help(checkout: Path, word: str) -> None:
     result = dev(checkout, *filter(None, [word]), commands={})
     assert result.returncode == 0
-    assert "./dev demo" in result.stdout and "./dev test" in result.stdout
+    assert all(f"./dev {task}" in result.stdout for task in ("demo", "edit", "test"))
 
 
 def test_an_unknown_word_is_a_usage_error(checkout: Path) -> None:
@@ -82,7 +82,7 @@ case $1 in
         pip) echo pip "$@" >>log; echo Collecting a; echo ERROR: no network; exit {pip} ;;
         pytest) echo run "$@" >>log; exit 7 ;;
     esac ;;
-    demo) echo run "$@" >>log; exit 7 ;;
+    demo | edit) echo run "$@" >>log; exit 7 ;;
 esac
 """
 
@@ -106,6 +106,7 @@ def test_set_up_happens_once_and_again_when_something_changed(checkout: Path) ->
         return [line.split()[0] for line in log.read_text().splitlines()]
 
     assert steps("demo") == ["run"]
+    assert steps("edit", "look.json") == ["run"]
     assert steps("test") == ["pip", "run"]
     assert steps("demo") == ["run"]
     (checkout / "pyproject.toml").write_text("changed")

@@ -138,5 +138,8 @@ DOCUMENTS: tuple[Action, ...] = (
     Action("file.save", "Save", _save, "File", "Ctrl+S", separated=True),
     Action("file.save_as", "Save As...", _save_as, "File", "Ctrl+Shift+S"),
     Action("file.revert", "Revert", _revert, "File", enabled=lambda e: e.session.path is not None and e.session.dirty),
+    Action(
+        "file.render", "Render to Files...", lambda e: e.requests.add("show Renders"), "File", "F12", separated=True
+    ),
     Action("file.quit", "Quit", _quit, "File", "Ctrl+Q", separated=True),
 )

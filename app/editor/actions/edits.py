@@ -17,11 +17,11 @@ def _some(editor: Editor) -> bool:
 EDITS: tuple[Action, ...] = (
     Action(
         "edit.undo", "Undo", lambda e: e.session.undo(), "Edit", "Ctrl+Z",
-        enabled=lambda e: e.session.history.can_undo,
+        enabled=lambda e: e.session.history.can_undo, repeats=True,
     ),
     Action(
         "edit.redo", "Redo", lambda e: e.session.redo(), "Edit", "Ctrl+Shift+Z",
-        enabled=lambda e: e.session.history.can_redo,
+        enabled=lambda e: e.session.history.can_redo, repeats=True,
     ),
     Action(
         "edit.cut", "Cut", lambda e: e.clipboard.put(e.session.cut_out()), "Edit", "Ctrl+X", "graph", _some,

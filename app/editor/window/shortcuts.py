@@ -20,10 +20,12 @@ def run_shortcuts(editor: Editor) -> None:
         return
     for action in editor.actions.all:
         text = editor.actions.shortcut(action.id)
-        if text and action.scope in ("", editor.scope) and imgui.shortcut(chord(text), _ROUTE):
+        flags = _ROUTE | _REPEAT if action.repeats else _ROUTE
+        if text and action.scope in ("", editor.scope) and imgui.shortcut(chord(text), flags):
             editor.actions.run(action.id, editor)
             return
 
 
-_ROUTE = int(imgui.InputFlags_.route_global) | int(imgui.InputFlags_.repeat)
+_ROUTE = int(imgui.InputFlags_.route_global)
+_REPEAT = int(imgui.InputFlags_.repeat)
 _ANY_POPUP = int(imgui.PopupFlags_.any_popup)

@@ -207,6 +207,10 @@ class Window:
             self.params.docking_params.layout_reset = True
         if "screenshot" in requests:
             self._screenshot()
+        for docked in DOCKED:
+            if f"show {docked.title}" in requests:
+                window = self.params.docking_params.dockable_window_of_name(docked.title)
+                window.is_visible = window.focus_window_at_next_frame = True
 
     def _screenshot(self) -> None:
         """Save the window as it was shown last."""
