@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...graph import Group
 from ..action import Act, Action
 from ..canvas.view import Tool
+from ..dialogs import Browse
+from .documents import open_graph
 
 if TYPE_CHECKING:
     from ..editor import Editor
@@ -29,9 +33,28 @@ def _node(editor: Editor) -> bool:
 
 
 def _group(editor: Editor) -> bool:
-    from ...graph import Group
-
     return isinstance(editor.session.graph.nodes.get(editor.session.active), Group)
+
+
+def _borrowed_group(editor: Editor) -> bool:
+    item = editor.session.graph.nodes.get(editor.session.active)
+    return isinstance(item, Group) and bool(item.path)
+
+
+def _save_group(editor: Editor) -> None:
+    """Ask for a file, and let the group come from it from now on."""
+    id = editor.session.active
+
+    def saved(path: Path) -> None:
+        editor.attempt(lambda: editor.session.save_group(id, path.with_suffix(".json"), link=True))
+
+    editor.dialogs.browse = Browse("Save the group as", "graph", saved, saving=True, name=f"{id}.json")
+
+
+def _open_group(editor: Editor) -> None:
+    item = editor.session.graph.nodes[editor.session.active]
+    assert isinstance(item, Group)
+    open_graph(editor, Path(editor.session.graph.folder, item.path))
 
 
 def _search(editor: Editor) -> None:
@@ -91,6 +114,13 @@ GRAPH: tuple[Action, ...] = (
            _group, contexts=frozenset({"node"})),
     Action("group.leave", "Leave Group", lambda e: e.session.leave(), "Graph", "Ctrl+Backspace", "graph",
            lambda e: bool(e.session.place), contexts=frozenset({"canvas"})),
+    Action("group.save", "Save Group As...", _save_group, "Graph", enabled=_group, contexts=frozenset({"group"}),
+           doc="Write the group to a file of its own, for use in other graphs; from now on it comes from there."),
+    Action("group.local", "Make Group Local", lambda e: e.session.make_local(e.session.active), "Graph",
+           enabled=_borrowed_group, contexts=frozenset({"group"}),
+           doc="Keep the group in this graph, so that it can be changed here."),
+    Action("group.open", "Open Group's File", _open_group, "Graph", enabled=_borrowed_group,
+           contexts=frozenset({"group"})),
     Action("frame.add", "Frame", _frame, "Graph", "Shift+F", "graph",
            contexts=frozenset({"node", "canvas"}), separated=True),
     Action("comment.add", "Comment", lambda e: e.session.add_comment(e.canvas.pointer, ""), "Graph", "Shift+C", "graph",

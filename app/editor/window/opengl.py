@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import warnings
 
 from imgui_bundle import hello_imgui  # noqa: F401  (first: both must use the same window library)
@@ -21,26 +22,37 @@ def best_version() -> tuple[int, int]:
     """The newest OpenGL of ours that a window here can have. Raises DeviceError.
 
     A refused version would spoil every later attempt of the window library in this process, so a hidden window is
-    asked first.
+    asked first. HALATION_WINDOW=none opens windows that no display is needed for, and that nobody sees: for tests.
     """
+    seen = os.environ.get("HALATION_WINDOW") != "none"
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        if not glfw.init():
+        if not (glfw.init() if seen else needs_no_display()):
             raise DeviceError(_NO_WINDOW)
         try:
-            for version in _VERSIONS:
-                if _opens(version):
-                    return version
+            version = next(filter(_opens, _VERSIONS), None)
         finally:
             glfw.default_window_hints()
             glfw.terminate()
-    raise DeviceError(
-        "no window with OpenGL 4.1 can be opened here: update the graphics driver; 'halation render' may still work"
-    )
+    if version is None:
+        raise DeviceError(
+            "no window with OpenGL 4.1 can be opened here: update the graphics driver; 'halation render' may still work"
+        )
+    if not seen:
+        needs_no_display()
+    return version
+
+
+def needs_no_display() -> bool:
+    """The next window is drawn like any other, but shown nowhere; False if that is not possible here."""
+    glfw.init_hint(glfw.PLATFORM, glfw.PLATFORM_NULL)
+    if not glfw.init():
+        return False
+    glfw.window_hint(glfw.CONTEXT_CREATION_API, glfw.EGL_CONTEXT_API)
+    return True
 
 
 def _opens(version: tuple[int, int]) -> bool:
-    glfw.default_window_hints()
     glfw.window_hint(glfw.VISIBLE, False)
     glfw.window_hint(glfw.CONTEXT_VERSION_MAJOR, version[0])
     glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, version[1])

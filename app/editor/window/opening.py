@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import os
+import signal
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 
 from imgui_bundle import hello_imgui, immapp
@@ -13,11 +16,54 @@ from .window import Window
 
 
 def open_window(path: Path | None, bindings: Mapping[str, str]) -> None:
-    """Run the editor. Raises DeviceError where no window can be opened."""
+    """Run the editor. Raises DeviceError where no window can be opened, KeyboardInterrupt if it was interrupted."""
     state = state_folder()
     window = Window(path, bindings, version=best_version(), state=state)
-    window.params.ini_folder_type = hello_imgui.IniFolderType.absolute_path
-    window.params.ini_filename = str(state / "layout.ini")
-    immapp.run(window.params, immapp.AddOnsParams())
+    _keep_layout(window.params, state)
+    with _asked_to_end(window) as asked:
+        run(window)
+    if signal.SIGINT in asked:
+        raise KeyboardInterrupt
+
+
+def run(window: Window) -> None:
+    """Run a window until it is closed. Raises why it could not begin, and what failed outside of all panels."""
+    try:
+        immapp.run(window.params, immapp.AddOnsParams())
+    finally:
+        window.close()
     if window.fault is not None:
         raise window.fault
+
+
+def _keep_layout(params: hello_imgui.RunnerParams, state: Path) -> None:
+    """Remember where panels are, if the folder lets us: the library would end the program if not."""
+    try:
+        state.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        params.ini_disable = True
+        return
+    params.ini_disable = not os.access(state, os.W_OK)
+    params.ini_folder_type = hello_imgui.IniFolderType.absolute_path
+    params.ini_filename = str(state / "layout.ini")
+
+
+@contextmanager
+def _asked_to_end(window: Window) -> Iterator[list[int]]:
+    """Signals that ask the process to end close the window; unsaved work is offered at the next start.
+
+    They are heard between two frames: an exception at any moment could cut a save in two.
+    """
+    asked: list[int] = []
+
+    def ask(number: int, _: object) -> None:
+        asked.append(number)
+        window.params.app_shall_exit = True
+
+    numbers = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+    before = {number: signal.signal(number, ask) for number in numbers}
+    try:
+        yield asked
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

@@ -51,6 +51,7 @@ class Window:
         self.frames = 0
         self.fault: Exception | None = None
         """Why the window could not begin."""
+        self._closed = False
 
     # --- what the host asks for --------------------------------------------------------------------------------------
 
@@ -86,7 +87,7 @@ class Window:
         calls.show_gui = self._draw_overlays
         calls.before_imgui_render = self._after_panels
         calls.confirm_exit = self._confirm_exit
-        calls.before_exit = self._end
+        calls.before_exit = self.close
         return params
 
     def _dockable(self, docked: Docked) -> hello_imgui.DockableWindow:
@@ -123,10 +124,14 @@ class Window:
         if self.fault is None:
             self.editor.fonts = fonts.load()
 
-    def _end(self) -> None:
+    def close(self) -> None:
+        """Give everything back, once; unsaved work that nobody agreed to lose is kept."""
+        if self._closed:
+            return
+        self._closed = True
         for panel in (*self._panels.values(), *self._overlays.values()):
             getattr(panel, "close", bool)()
-        if self.fault is None:
+        if hasattr(self, "editor"):
             take_apart(self.editor)
 
     def _confirm_exit(self) -> bool:
