@@ -13,14 +13,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from imgui_bundle import ImVec2, hello_imgui, immapp
-from imgui_bundle.immapp import testing
-
-import glfw  # isort: skip
-
 from halation.app.editor.editor import Editor
 from halation.app.editor.keys import chord
+from halation.app.editor.window.opengl import needs_no_display
 from halation.app.editor.window.window import Window
+from imgui_bundle import ImVec2, imgui, immapp
+from imgui_bundle.immapp import testing
 
 Point = tuple[float, float]
 
@@ -151,18 +149,24 @@ class _Held:
 
 def drive(
     body: Callable[[Ui], object], folder: Path, path: Path | None = None, bindings: Mapping[str, str] | None = None,
-    size: tuple[int, int] = (1400, 900), likes: Mapping[str, object] | None = None,
+    size: tuple[int, int] = (1400, 900), likes: Mapping[str, object] | None = None, faulty: bool = False,
 ) -> Window:
-    """Open the editor, run `body(ui)` beside it, and close it. Its state is in `folder / "state"`."""
+    """Open the editor, run `body(ui)` beside it, and close it. Its state is in `folder / "state"`.
+
+    A panel that fails, or anything else that says it is a fault in Halation, fails the test unless it is `faulty`.
+    """
     window = headless(folder, path, bindings, size)
     window.params.fps_idling.enable_idling = False
 
     def whole(ctx: Any) -> None:
         ui = Ui(window, ctx, folder)
+        imgui.get_io().config_error_recovery_enable_assert = True  # what a panel leaves open is a fault here
         if likes:
             ui.editor.store.change(**likes)
         ui.wait(8)
         body(ui)
+        found = [entry for entry in ui.editor.log.entries if entry.detail]
+        assert faulty or not found, "\n".join(f"{entry.sentence}\n{entry.detail}" for entry in found)
 
     def leave() -> None:
         window.editor.closing = True  # as if a person had said so
@@ -179,10 +183,7 @@ def headless(
     size: tuple[int, int] = (1400, 900),
 ) -> Window:
     """A window that is ready to run and needs no display: what it shows is real all the same."""
-    assert hello_imgui  # loaded first: both must use the same window library
-    glfw.init_hint(glfw.PLATFORM, glfw.PLATFORM_NULL)
-    assert glfw.init()
-    glfw.window_hint(glfw.CONTEXT_CREATION_API, glfw.EGL_CONTEXT_API)
+    assert needs_no_display()
     state = folder / "state"
     state.mkdir(exist_ok=True)
     window = Window(path, bindings or {}, state=state, size=size)

@@ -17,12 +17,12 @@ from .plan import Pass, Plan, Shader, Surface, Upload
 from .request import Probe, Probed, Request
 from .schedule import schedule
 from .target import NULL, Form, Precision, Target
-from .upstream import upstream_hashes
+from .upstream import Upstream
 
 __all__ = [
     "MAX_WEIGHTS", "NULL", "Form", "Library", "Memory", "Pass", "Picture", "Plan", "Precision", "Probe", "Probed",
-    "Request", "Shader", "Surface", "Target", "Upload", "as_json", "compile_graph", "dot", "explain", "installed",
-    "upstream_hashes",
+    "Request", "Shader", "Surface", "Target", "Upload", "Upstream", "as_json", "compile_graph", "dot", "explain",
+    "installed",
 ]
 
 

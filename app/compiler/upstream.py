@@ -2,66 +2,121 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from hashlib import blake2b
 
+from ...nodes import Node
 from ..errors import GraphError
-from ..graph import INPUTS, OUTPUTS, Graph, Port
+from ..graph import INPUTS, OUTPUTS, Graph, Group, Port
 from .expand import Flat, expand
 
 
-def upstream_hashes(graph: Graph) -> dict[str, str]:
+class Upstream:
     """A hash by path of every node (`glow/bloom`), group (`glow`) and input (`inputs.beauty`, `glow/inputs.image`).
 
     It changes with the node, its values and links, and with those of all that feed it; not with pictures bound to the
-    graph. What cannot be rendered, because it goes in a circle say, has none.
+    graph. What cannot be rendered, because it goes in a circle say, has none. From what is `known` of another graph
+    that differs in values of nodes only, as while one is dragged, only what they reach is found out anew.
     """
-    try:
-        return _Hashes(graph).found
-    except GraphError:
-        return {}
 
+    def __init__(self, graph: Graph, known: Upstream | None = None) -> None:
+        self.graph = graph
+        self.hashes: dict[str, str] = {}
+        changed = _changed(known.graph, graph) if known else None
+        try:
+            if known is None or changed is None:
+                self._find_all()
+            else:
+                self._follow(known, changed)
+        except GraphError:
+            self.hashes = {}
 
-class _Hashes:
-    """The work in progress."""
+    def _find_all(self) -> None:
+        self._flat: Flat = expand(self.graph)
+        self._settings = repr(self.graph.settings)
+        self._reads = {path: self._sources(path) for path in self._order()}
+        for path in self._reads:
+            self._hash_node(path)
+        self._ends = [
+            end for end in (*self._flat.inputs, *self._flat.links)
+            if end.node.rpartition("/")[2] == INPUTS or end.node.endswith(f"/{OUTPUTS}")
+        ]
+        self._hash_ends()
 
-    def __init__(self, graph: Graph) -> None:
-        self.flat: Flat = expand(graph)
-        self.settings = repr(graph.settings)
-        self.found: dict[str, str] = {}
-        for path in self._order():
-            self._node(path)
-        for end in (*self.flat.inputs, *self.flat.links):
-            group, _, side = end.node.rpartition("/")
-            if side == INPUTS:
-                self.found[f"{end}"] = self._of(self.flat.behind(end))
-            elif side == OUTPUTS and group:
-                self.found[group] = _hash(self.found.get(group, ""), end.socket, self._of(self.flat.behind(end)))
+    def _follow(self, known: Upstream, changed: dict[str, Node]) -> None:
+        self.hashes = dict(known.hashes)
+        if not known.hashes:
+            return
+        self._flat = replace(known._flat, nodes={**known._flat.nodes, **changed})
+        self._settings, self._reads, self._ends = known._settings, known._reads, known._ends
+        reached = set(changed)
+        for path, sources in self._reads.items():
+            if path in reached or any(source and source.node in reached for source in sources):
+                reached.add(path)
+                self._hash_node(path)
+        self._hash_ends()
 
     def _order(self) -> list[str]:
-        paths = [Port(path, "") for path in self.flat.nodes]
+        paths = [Port(path, "") for path in self._flat.nodes]
         try:
-            return self.flat.order(paths)
+            return self._flat.order(paths)
         except GraphError:  # something is wrong somewhere: take what can be had
             found: dict[str, None] = {}
             for path in paths:
                 try:
-                    found |= dict.fromkeys(self.flat.order((path,)))
+                    found |= dict.fromkeys(self._flat.order((path,)))
                 except GraphError:
                     continue
             return list(found)
 
-    def _node(self, path: str) -> None:
-        node = self.flat.nodes[path]
+    def _sources(self, path: str) -> list[Port | None]:
+        node = self._flat.nodes[path]
+        return [self._flat.source(Port(path, name)) for name in (*node.inputs, *node.values)]
+
+    def _hash_node(self, path: str) -> None:
+        node = self._flat.nodes[path]
         values = {name: getattr(node, name) for name in node.values}
-        sources = [self.flat.source(Port(path, name)) for name in (*node.inputs, *node.values)]
-        read = [f"{source} {self._of(source)}" if source else "-" for source in sources]
-        self.found[path] = _hash(node.category, node.id, values, path in self.flat.muted, self.settings, *read)
+        read = [f"{source} {self._of(source)}" if source else "-" for source in self._reads[path]]
+        self.hashes[path] = _hash(node.category, node.id, values, path in self._flat.muted, self._settings, *read)
+
+    def _hash_ends(self) -> None:
+        groups: dict[str, str] = {}
+        for end in self._ends:
+            group, _, side = end.node.rpartition("/")
+            if side == INPUTS:
+                self.hashes[f"{end}"] = self._of(self._flat.behind(end))
+            else:
+                groups[group] = _hash(groups.get(group, ""), end.socket, self._of(self._flat.behind(end)))
+        self.hashes |= groups
 
     def _of(self, source: Port) -> str:
         """The hash of what a link starts at."""
-        if source in self.flat.inputs:
-            return _hash(f"{source}", self.flat.inputs[source], self.settings)
-        return self.found.get(source.node, "")
+        if source in self._flat.inputs:
+            return _hash(f"{source}", self._flat.inputs[source], self._settings)
+        return self.hashes.get(source.node, "")
+
+
+def _changed(before: Graph, after: Graph, prefix: str = "") -> dict[str, Node] | None:
+    """The nodes that have other values, by path, if two graphs differ in nothing else that matters; else None."""
+    parts = ("links", "inputs", "outputs", "controls", "muted", "settings")
+    same = all(getattr(before, part) is getattr(after, part) for part in parts) and [*before.nodes] == [*after.nodes]
+    if not same:
+        return None
+    found: dict[str, Node] = {}
+    for id, item in after.nodes.items():
+        old = before.nodes[id]
+        if item is old:
+            continue
+        if isinstance(item, Node) and type(item) is type(old):
+            found[prefix + id] = item
+        elif isinstance(item, Group) and isinstance(old, Group) and id not in after.muted:
+            inner = None if item.values or old.values else _changed(old.graph, item.graph, f"{prefix}{id}/")
+            if inner is None:
+                return None
+            found |= inner
+        else:
+            return None
+    return found
 
 
 def _hash(*parts: object) -> str:

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import contextlib
+import glob
 import os
 import secrets
+import stat
+import time
 from pathlib import Path
 
 from ..errors import DocumentError, OutputError
 from .limits import MAX_BYTES, size_fault
+
+STALE = 60.0
+"""Seconds after which what a process began to write and never finished is nobody's any more."""
 
 
 def read_text(path: Path) -> str:
@@ -35,7 +41,10 @@ def write_text(path: Path, text: str) -> None:
     try:
         # A link to a file stays a link: what it points at is replaced.
         target = path.resolve()
-        temporary = target.with_name(f".{target.name[:100]}.{secrets.token_hex(4)}.tmp")
+        if target.exists() and not target.stat().st_mode & (stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH):
+            raise OutputError(f"{path}: the file is read-only; save under another name, or make it writable")
+        begun = f".{target.name[:100]}."
+        temporary = target.with_name(f"{begun}{secrets.token_hex(4)}.tmp")
         handle = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
     except (OSError, ValueError, RuntimeError) as error:
         raise OutputError(f"{path}: it cannot be saved here ({_reason(error)}); choose another folder") from None
@@ -55,6 +64,15 @@ def write_text(path: Path, text: str) -> None:
             raise OutputError(f"{path}: it could not be saved ({_reason(error)}){kept}") from None
         raise
     _sync_folder(target.parent)
+    _tidy(target.parent, begun)
+
+
+def _tidy(folder: Path, begun: str) -> None:
+    """Remove what processes that were killed have left of the same file."""
+    with contextlib.suppress(OSError):
+        for left in folder.glob(f"{glob.escape(begun)}{'[0-9a-f]' * 8}.tmp"):
+            if time.time() - left.stat().st_mtime > STALE:
+                left.unlink()
 
 
 def _sync_folder(folder: Path) -> None:

@@ -44,6 +44,11 @@ class Dialogs:
         """Open a dialog, or close it."""
         self.open ^= {name}
 
+    def close(self) -> None:
+        """Nothing is asked any more."""
+        self.browse = self.question = None
+        self.open.clear()
+
     @property
     def any(self) -> bool:
         """True if something asks for an answer."""

@@ -47,6 +47,26 @@ def problems(graph: Graph, known: Mapping[str, type[Node]] | None = None) -> tup
     return tuple(sorted(found, key=lambda item: (item.severity, item.node, item.socket, item.sentence)))
 
 
+def rechecked(
+    graph: Graph, before: Graph, found: tuple[Problem, ...], known: Mapping[str, type[Node]] | None = None
+) -> tuple[Problem, ...]:
+    """The same as `problems(graph, known)`, given what that `found` in a graph of `before`.
+
+    It costs nothing where only values of nodes differ that had no problem and have none now, as while one is dragged.
+    """
+    parts = ("links", "inputs", "outputs", "controls", "extra")
+    same = all(getattr(graph, part) is getattr(before, part) for part in parts) and [*graph.nodes] == [*before.nodes]
+    if not same:
+        return problems(graph, known)
+    changed = {id: item for id, item in graph.nodes.items() if item is not before.nodes[id]}
+    faulty = {problem.node for problem in found}
+    for id, item in changed.items():
+        like = isinstance(item, Node) and type(item) is type(before.nodes[id])
+        if not like or id in faulty or any(_values(id, item)):
+            return problems(graph, known)
+    return found
+
+
 def _inside(graph: Graph, known: Mapping[str, type[Node]], depth: int) -> Iterator[Problem]:
     yield from _ends(graph)
     yield from _links(graph)

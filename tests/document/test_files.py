@@ -191,3 +191,23 @@ class TestGroupFiles:
         top = write(tmp_path / "y.json", nodes={"g": group("small.json", glow=3, gone=1)})
         assert load(top, TOYS).nodes["g"].values == {"glow": 3.0}
         assert json.loads(dumps(load(top, TOYS)))["nodes"]["g"] == group("small.json", glow=3.0, gone=1)
+
+
+def test_what_a_killed_process_left_goes_with_the_next_save_of_the_same_file(tmp_path: Path) -> None:
+    path = tmp_path / "a[1].json"
+    old, fresh, other = (tmp_path / f".{name}.tmp" for name in ("a[1].json.01234567", "a[1].json.89abcdef", "a1.json.x"))
+    for left in (old, fresh, other):
+        left.write_text("half")
+    for left in (old, other):
+        os.utime(left, (1.0, 1.0))
+    save(small(), path)
+    assert sorted(tmp_path.iterdir()) == sorted([path, fresh, other])
+
+
+def test_a_read_only_file_is_not_replaced(tmp_path: Path) -> None:
+    path = tmp_path / "a.json"
+    save(small(), path)
+    path.chmod(0o444)
+    with pytest.raises(OutputError, match="read-only"):
+        save(Graph(), path)
+    assert load(path, TOYS) == small()

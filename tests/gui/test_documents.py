@@ -112,6 +112,43 @@ def test_a_file_changed_by_another_program_is_loaded_again(gui, look: Path) -> N
     gui(body, look)
 
 
+def test_saving_over_what_another_program_wrote_asks_first(gui, look: Path) -> None:
+    def body(ui) -> None:
+        ui.session.set(Port("tone", "exposure"), 3.0)
+        ui.wait()
+        theirs = document.load(look).set(Port("tone", "exposure"), -1.0)
+        ui.editor.watcher.close()  # it does not notice in time
+        document.save(theirs, look)
+        ui.keys("Ctrl+S")
+        assert "another program" in ui.editor.dialogs.question.sentence and ui.session.dirty
+        ui.keys("Escape")
+        assert document.load(look) == theirs
+        ui.keys("Ctrl+S")
+        ui.editor.dialogs.question.answers[0][1]()
+        ui.editor.dialogs.question = None
+        ui.wait()
+        assert not ui.session.dirty
+        ui.session.set(Port("tone", "exposure"), 4.0)
+        ui.keys("Ctrl+S")
+        assert ui.editor.dialogs.question is None and not ui.session.dirty
+
+    gui(body, look)
+    assert document.load(look).value(Port("tone", "exposure")) == 4.0
+
+
+def test_a_read_only_file_is_opened_and_not_replaced(gui, look: Path) -> None:
+    look.chmod(0o444)
+    text = look.read_text()
+
+    def body(ui) -> None:
+        ui.session.set(Port("tone", "exposure"), 3.0)
+        ui.keys("Ctrl+S")
+        assert "read-only" in ui.editor.log.entries[-1].sentence and ui.session.dirty
+        assert look.read_text() == text
+
+    gui(body, look)
+
+
 def test_work_is_offered_again_after_the_process_was_killed(gui, look: Path, tmp_path: Path) -> None:
     script = (
         "import sys, time; sys.path.append(sys.argv[1])\n"

@@ -34,7 +34,7 @@ def another(value: Value) -> float | int | bool | tuple[float, ...]:
         return not value.default
     if value.type in ("float", "int"):
         low, high = max(value.low, -100.0), min(value.high, 100.0)
-        found = low + (high - low) * 0.75
+        found = low + max(high - low, 0.0) * 0.75
         return round(found) if value.type == "int" else found
     return tuple(0.3 + 0.2 * index for index in range(value.length))
 

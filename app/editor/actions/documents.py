@@ -85,13 +85,24 @@ def recover(editor: Editor, recovered: Recovered) -> None:
 
 
 def _save(editor: Editor, then: Callable[[], object] = _nothing) -> None:
-    if editor.session.path is None:
+    path = editor.session.path
+    if path is None:
         _save_as(editor, then)
         return
-    editor.session.save()
-    editor.watcher.expect(editor.session.path)
-    editor.say(f"saved {editor.session.path.name}")
-    then()
+
+    def act() -> None:
+        editor.session.save()
+        editor.watcher.expect(path)
+        editor.say(f"saved {path.name}")
+        then()
+
+    if not editor.watcher.differs(path):
+        act()
+        return
+    editor.dialogs.question = Question(
+        "Changed on disk", f"{path.name} was changed by another program since it was read here.",
+        (("Replace it", lambda: editor.attempt(act)), ("Cancel", _nothing)),
+    )
 
 
 def _save_as(editor: Editor, then: Callable[[], object] = _nothing) -> None:

@@ -19,8 +19,11 @@ TEXT, SMALL, TITLE = 13.5, 12.0, 14.0
 
 _MEASURED = 48.0
 
-WIDGETS_FROM, NAMES_FROM = 0.45, 0.33
-"""The zoom below which values, and then names of sockets, are left out and titles grow."""
+WIDGETS_FROM, NAMES_FROM = 0.5, 0.45
+"""The zoom below which values, and then names of sockets, are left out: a picture then fills the node."""
+
+READABLE = 11.0
+"""Titles are no smaller than this, in pixels at UI scale 1, however far the canvas is zoomed out."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +50,6 @@ class Ink:
     grid: int
     grid_strong: int
     picture: int
-    picture_hint: int
     shadow: tuple[tuple[float, int], ...]
     kinds: dict[Kind | None, int]
     kinds_dim: dict[Kind | None, int]
@@ -74,10 +76,9 @@ def ink(theme: str) -> Ink:
     strength = 0.10 if dark else 0.055
     return Ink(
         p, u32(p.node), u32(mix(p.node, p.canvas, 0.6)), u32(p.border if dark else mix(p.border, p.shadow, 0.25)),
-        u32(p.field), u32(mix(p.field, p.accent, 0.35)), u32(p.raised), u32(p.accent), u32(p.on_accent), u32(p.text),
+        u32(p.field), u32(p.fill), u32(p.raised), u32(p.accent), u32(p.on_accent), u32(p.text),
         u32(p.dim), u32(p.dim, 0.6), u32(p.accent), u32(p.accent, 0.12), u32(p.error), u32(p.warning), u32(p.canvas),
         u32(p.grid), u32(mix(p.grid, p.dim, 0.16)), u32(mix(p.node, p.shadow, 0.35 if dark else 0.12)),
-        u32(mix(p.node, p.dim, 0.22)),
         tuple((grow, u32(p.shadow, strength)) for grow in (1.0, 3.0, 6.0)),
         {kind: u32(color) for kind, color in kinds.items()},
         {kind: u32(mix(color, p.canvas, 0.7)) for kind, color in kinds.items()},
@@ -101,7 +102,8 @@ class Texts:
     _widths: dict[tuple[bool, str], float] = field(default_factory=dict[tuple[bool, str], float])
     sketches: dict[str, Any] = field(default_factory=dict[str, Any])
     """What was thought out of elements, by key."""
-    _short: dict[tuple[bool, str, float, float], str] = field(default_factory=dict[tuple[bool, str, float, float], str])
+    _short: dict[tuple[bool, str, float], str] = field(default_factory=dict[tuple[bool, str, float], str])
+    """Lines that were cut, by how many times their height they may be wide."""
 
     def width(self, fonts: Fonts, text: str, size: float, bold: bool = False) -> float:
         """The width of a line in the units of `size`."""
@@ -116,7 +118,7 @@ class Texts:
         """A line that fits in `room`, cut with an ellipsis where it must be."""
         if self.width(fonts, text, size, bold) <= room:
             return text
-        key = (bold, text, size, round(room, 1))
+        key = (bold, text, round(room / size, 2))
         known = self._short.get(key)
         if known is None:
             if len(self._short) > 4000:
@@ -178,6 +180,11 @@ class Brush:
         """The outline of a rectangle; `thickness` is in pixels at UI scale 1."""
         low, high = self.corners(rect, grow)
         self.draw.add_rect(low, high, color, (rounding + grow) * self.to.scale, thickness * self.line)
+
+    @property
+    def title(self) -> float:
+        """The size of titles in canvas units: it grows where they could not be read otherwise."""
+        return max(TITLE, READABLE / self.zoom)
 
     @property
     def line(self) -> float:

@@ -16,7 +16,7 @@ from .geometry import Point, Rect, bounds, curve, fitted, holds, overlap, transf
 from .gestures import Band, Draw, Idle, Link, Move, Resize, band_rect
 from .legend import Legend
 from .live import Live, drawn_live
-from .looks import Judgement, Moment, judged, moment
+from .looks import Moment, moment
 from .menus import Menus
 from .minimap import Minimap
 from .mouse import Frame, Mouse
@@ -34,6 +34,7 @@ from .paint_decor import (
     paint_wire,
 )
 from .paint_node import paint_node, paint_pin
+from .pictures import Pictures
 from .places import Places
 from .scene import Box, Scene
 from .search import Search
@@ -64,9 +65,8 @@ class Canvas:
         self._minimap = Minimap()
         self._legend = Legend()
         self._places = Places()
+        self._pictures = Pictures()
         self._hot = ""
-        self._judgement: Judgement | None = None
-        self._judged = -1
         self._place: tuple[str, ...] = ()
         self._views: dict[tuple[str, ...], tuple[Point, float]] = {}
 
@@ -125,13 +125,13 @@ class Canvas:
             view.fit()
 
     def _build(self, editor: Editor) -> Scene:
-        session, pictures = editor.session, editor.store.now.thumbnails
+        session, pictures = editor.session, self._pictures.of(editor)
         gesture = self._mouse.gesture
         opened = self._opened if isinstance(gesture, Link) else ""
         staged = (session.revision, pictures, opened, frozenset(self._stage.expanded))
         if self._scene is None or staged != self._staged:
-            positions = session.positions
-            top = [key for key in session.elements if key in session.selection and key != session.active]
+            positions, others = session.positions, session.selection - {session.active}
+            top = [key for key in session.elements if key in others] if others else []
             self._scene = self._stage.build(
                 session.graph, positions.__getitem__, [*top, session.active], pictures, opened
             )
@@ -179,7 +179,7 @@ class Canvas:
         scene, session, mouse = self._mouse.dragged.scene, editor.session, self._mouse
         self._over = frame.at
         hot = self._hot = self._found_hot(frame, scene)
-        now = moment(editor, brush.ink, mouse.gesture, hot, self._judge(editor))
+        now = moment(editor, brush.ink, mouse.gesture, hot)
         if not scene.boxes:
             paint_hint(brush, frame.panel, _HINTS)
         visible = [box for box in scene.boxes.values() if overlap(box.rect, _grown(brush.seen, 32.0))]
@@ -211,13 +211,6 @@ class Canvas:
         if imgui.is_any_item_active() and isinstance(self._mouse.gesture, Idle):
             return self._hot
         return scene.node_at(*frame.at) if frame.over and isinstance(self._mouse.gesture, Idle) else ""
-
-    def _judge(self, editor: Editor) -> Judgement:
-        """What is wrong; looked for again only once a value has been let go."""
-        stale = self._judged != editor.session.revision and not editor.dragging
-        if self._judgement is None or stale:
-            self._judgement, self._judged = judged(editor), editor.session.revision
-        return self._judgement
 
     def _paint_node(self, brush: Brush, box: Box, now: Moment, hot: str) -> None:
         layout = box.layout
@@ -300,7 +293,7 @@ class Canvas:
             words = _pin_words(now.editor, hit.port, hit.output)
         elif hit.part == "title":
             box = scene.boxes[hit.key]
-            words = "\n".join(now.sentences(hit.key)) or (box.layout.doc if box.layout else "")
+            words = "\n".join((*now.faults(hit.key), *now.warnings(hit.key))) or (box.layout.doc if box.layout else "")
         flags = int(imgui.HoveredFlags_.for_tooltip)
         if words and imgui.is_window_hovered(flags):
             imgui.set_tooltip(words)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,7 +10,7 @@ from ....nodes import Kind, Node
 from ..panels.fuzzy import match
 from .layout import words
 
-PRESETS, GRAPH = "presets", "graph"
+GROUP, GRAPH = "group", "graph"
 
 
 @dataclass(frozen=True)
@@ -36,11 +36,10 @@ def node_entries(types: Mapping[str, type[Node]]) -> tuple[Entry, ...]:
     )
 
 
-def preset_entries(folder: Path) -> tuple[Entry, ...]:
+def preset_entries(files: Iterable[Path]) -> tuple[Entry, ...]:
     """The graphs that come with the program."""
     return tuple(
-        Entry(str(path), words(path.stem), PRESETS, "A ready graph, added as a group.")
-        for path in sorted(folder.glob("*.json"))
+        Entry(str(path), words(path.stem), GROUP, "A preset: a ready graph, added as a group.") for path in files
     )
 
 
@@ -83,7 +82,7 @@ def found(entries: Sequence[Entry], query: str, recent: Sequence[str] = ()) -> t
 
 
 def narrowed(entries: Collection[Entry], fitting: Collection[str]) -> tuple[Entry, ...]:
-    """The node types among those that a link fits."""
+    """Those that a link fits."""
     known = set(fitting)
     return tuple(entry for entry in entries if entry.id in known)
 

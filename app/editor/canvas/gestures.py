@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Port
 from ..edits import routes
-from ..edits.wiring import inserted
+from ..edits.wiring import spliced
 from .geometry import Point, Rect, overlap, snapped, spanned
 from .scene import Scene
 
@@ -48,6 +48,8 @@ class Move:
     by: Point = (0.0, 0.0)
     alone: bool = False
     """True selects only `key` if it stays a click."""
+    merge: str = ""
+    """What makes one step of it with what was done when it began: nodes taken out of their chains."""
 
     @property
     def going(self) -> bool:
@@ -177,16 +179,18 @@ def refused(scene: Scene, link: Link, at: Point, reach: float) -> Port | None:
 
 
 def insertable(graph: Graph, scene: Scene, keys: Collection[str], at: Point, reach: float) -> Port | None:
-    """The target of the link that a moved node would be put into: it is alone, has no links, and fits there."""
-    id = next(iter(keys), "")
-    if len(keys) != 1 or id not in graph.nodes or any(id in wire.stops for wire in scene.wires):
+    """The target of the link that moved nodes would be put into: they are a chain without other links, and fit."""
+    ids = [key for key in keys if key in graph.nodes]
+    if not ids or any(key not in graph.nodes and not key.startswith("dots.") for key in keys):
         return None
-    box = scene.boxes[id]
-    wire = scene.wire_at(box.x + box.w / 2, box.y + min(box.h / 2, 24.0), reach) or scene.wire_at(*at, reach)
+    if any(wire.leaves(keys) for wire in scene.wires):
+        return None
+    spots = [(box.x + box.w / 2, box.y + min(box.h / 2, 24.0)) for box in map(scene.boxes.__getitem__, ids)]
+    wire = next((found for spot in (*spots, at) if (found := scene.net.at(*spot, reach, keys))), None)
     if wire is None:
         return None
     try:
-        inserted(graph, id, wire.target)
+        spliced(graph, ids, wire.target)
     except GraphError:
         return None
     return wire.target

@@ -86,6 +86,9 @@ class Layout:
     ins: Mapping[str, Pin] = field(default_factory=dict[str, Pin])
     outs: Mapping[str, Pin] = field(default_factory=dict[str, Pin])
     picture: Rect | None = None
+    """Where the picture is of what the node makes: below all else, so that nothing moves when there is a first one."""
+    foot: float = 0.0
+    """Where the strip begins that shows all values."""
     hidden: int = 0
     open: bool = False
     collapsed: bool = False
@@ -95,7 +98,7 @@ class Layout:
         """The strip that shows all values, or fewer again."""
         if self.collapsed or not (self.hidden or self.open):
             return None
-        return 0.0, self.height - MORE, self.width, self.height
+        return 0.0, self.foot, self.width, self.foot + MORE
 
 
 def value_kind(value: Value) -> Kind | None:
@@ -158,10 +161,6 @@ def node_layout(id: str, item: Item, graph: Graph, facts: Facts) -> Layout:
         )
 
     y = HEADER + PAD / 2
-    picture = None
-    if facts.picture and any(one.kind in (Kind.IMAGE, Kind.FIELD, Kind.VECTOR) for one in face.outputs.values()):
-        picture = (PAD / 2, HEADER, WIDTH - PAD / 2, HEADER + PICTURE)
-        y += PICTURE
     rows: list[Row] = []
     for index in range(max(len(left), len(right))):
         start = _at(left[index], y) if index < len(left) else None
@@ -177,10 +176,15 @@ def node_layout(id: str, item: Item, graph: Graph, facts: Facts) -> Layout:
         y += ROW
     hidden = len(values) - len(shown)
     is_open = facts.expanded and len(_first(values)) < len(values)
+    foot, picture = y, None
+    y += MORE if hidden or is_open else PAD / 2 if facts.picture else PAD
+    if facts.picture:
+        picture = PAD / 2, y, WIDTH - PAD / 2, y + PICTURE
+        y += PICTURE + PAD / 2
     return Layout(
-        what, WIDTH, y + (MORE if hidden or is_open else PAD), id, subtitle, category, doc, tuple(rows),
+        what, WIDTH, y, id, subtitle, category, doc, tuple(rows),
         {row.left.name: row.left for row in rows if row.left}, {row.right.name: row.right for row in rows if row.right},
-        picture, hidden, is_open,
+        picture, foot, hidden, is_open,
     )
 
 

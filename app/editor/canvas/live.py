@@ -41,6 +41,7 @@ class Live:
     fields: Fields | None = None
     open: tuple[Port, Value] | None = None
     _opening: str = ""
+    _dragged: bool = False
     _at: tuple[float, float] = (0.0, 0.0)
     _edits: list[tuple[Port, Edit]] = field(default_factory=list[tuple[Port, Edit]])
 
@@ -57,7 +58,8 @@ class Live:
         palette = on_nodes(editor.palette.name)
         if self.fields is None or self.fields.palette is not palette:
             self.fields = Fields(palette)
-        self.fields.begin()
+        self.fields.begin(imgui.is_mouse_down(imgui.MouseButton_.left))
+        self._dragged = self.fields.dragging
 
     def draw(self, brush: Brush, box: Box, rows: tuple[Row, ...]) -> None:
         """The fields of a node, which must have been painted up to them."""
@@ -113,10 +115,14 @@ class Live:
         self._popups(editor, fields)
         if left := fields.end():
             self._edits.append((Port.parse(left[0].removeprefix("canvas ")), left[1]))
+        if fields.eyedropper:
+            editor.viewer.picking = fields.eyedropper.removeprefix("canvas ")
         editor.dragging = editor.dragging or fields.dragging
         for port, edit in self._edits:
             editor.attempt(lambda port=port, edit=edit: editor.session.set(port, edit.value, edit.merge))
         self._edits.clear()
+        if self._dragged and not fields.dragging:
+            editor.session.seal()
 
     def _popups(self, editor: Editor, fields: Fields) -> None:
         if self.open is None:

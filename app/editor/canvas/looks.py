@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from imgui_bundle import imgui
 
+from ...graph import Problem
 from ..editor import Editor
 from ..edits.elements import owner
 from .brush import Ink
@@ -28,25 +29,28 @@ class Moment:
     lit: Mapping[str, frozenset[tuple[bool, str]]] | None
     costs: Mapping[str, tuple[float, int]]
     total: float
-    warnings: frozenset[str]
     hot: str
     prefix: str
     selection: frozenset[str]
     active: str
     muted: frozenset[str]
-    problems: Mapping[str, tuple[str, ...]]
+    problems: Mapping[str, tuple[Problem, ...]]
     pictures: bool
 
-    def sentences(self, key: str) -> tuple[str, ...]:
-        """What is wrong with an element."""
-        found = self.problems.get(key, ())
+    def faults(self, key: str) -> tuple[str, ...]:
+        """What keeps an element from rendering."""
+        found = tuple(one.sentence for one in self.problems.get(key, ()) if one.severity == "error")
         fault = self.editor.preview.faults.get(self.prefix + key, "")
         return (*found, fault) if fault and fault not in found else found
 
+    def warnings(self, key: str) -> tuple[str, ...]:
+        """What else is worth a look."""
+        return tuple(one.sentence for one in self.problems.get(key, ()) if one.severity == "warning")
+
     def look(self, key: str, live: frozenset[str]) -> Look:
         """The look of one node or end."""
-        sentences = self.sentences(key)
-        serious = next((one for one in sentences if one not in self.warnings), "")
+        faults = self.faults(key)
+        warnings = () if faults else self.warnings(key)
         picture, fresh, size = None, True, (1, 1)
         if self.pictures and (found := self.editor.preview.thumbnail(self.prefix + key)):
             picture, fresh = imgui.ImTextureRef(found[0].glo), found[1]
@@ -54,7 +58,7 @@ class Moment:
         overlay, color = self._cost(key)
         return Look(
             selected=key in self.selection, active=key == self.active, muted=key in self.muted,
-            fault=serious, warning="" if serious or not sentences else sentences[0],
+            fault=faults[0] if faults else "", warning=warnings[0] if warnings else "",
             badges=self.badges.get(key, ""), viewed=self.shown.get(key, ""), hot=key == self.hot,
             lit=None if self.lit is None else self.lit.get(key, frozenset()), picture=picture, picture_size=size,
             fresh=fresh, live=live, overlay=overlay, overlay_color=color,
@@ -69,24 +73,7 @@ class Moment:
         return f"{seconds * 1e3:.1f} ms   {_size(size)}", color
 
 
-@dataclass(frozen=True)
-class Judgement:
-    """What is wrong with the elements of a graph, and which of those sentences only warn."""
-
-    problems: Mapping[str, tuple[str, ...]]
-    warnings: frozenset[str]
-
-
-def judged(editor: Editor) -> Judgement:
-    """Look for problems."""
-    session = editor.session
-    within = "".join(f"in group '{id}': " for id in session.place)
-    return Judgement(session.problems, frozenset(
-        problem.sentence.removeprefix(within) for problem in session.all_problems if problem.severity == "warning"
-    ))
-
-
-def moment(editor: Editor, ink: Ink, gesture: Gesture, hot: str, judgement: Judgement) -> Moment:
+def moment(editor: Editor, ink: Ink, gesture: Gesture, hot: str) -> Moment:
     """What holds for all nodes in this frame."""
     session = editor.session
     shown: dict[str, str] = {}
@@ -105,8 +92,8 @@ def moment(editor: Editor, ink: Ink, gesture: Gesture, hot: str, judgement: Judg
     costs, total = _costs(editor) if editor.preview.timed else ({}, 0.0)
     prefix = "".join(f"{id}/" for id in session.place)
     return Moment(
-        editor, ink, shown, badges, lit, costs, total, judgement.warnings, hot, prefix, session.selection,
-        session.active, session.graph.muted, judgement.problems, editor.preview.thumbnailing,
+        editor, ink, shown, badges, lit, costs, total, hot, prefix, session.selection, session.active,
+        session.graph.muted, session.problems, editor.preview.thumbnailing,
     )
 
 

@@ -12,6 +12,7 @@ from ...graph import Port
 from ..actions import Action
 from ..editor import Editor
 from ..keys import shown
+from ..toolkit.buttons import entry
 from .geometry import Point
 from .scene import EMPTY, Hit
 
@@ -110,12 +111,7 @@ def _colors(editor: Editor, key: str) -> None:
 def _action(editor: Editor, action: Action) -> None:
     if action.separated:
         imgui.separator()
-    checked = action.checked is not None and action.checked(editor)
-    if imgui.menu_item(action.label, _key(editor, action.id), checked, action.enabled(editor))[0]:
-        editor.actions.run(action.id, editor)
-    _record(editor, f"menu {action.id}")
-    if action.doc:
-        imgui.set_item_tooltip(action.doc)
+    entry(editor, action)
 
 
 def _key(editor: Editor, id: str) -> str:

@@ -83,9 +83,10 @@ class Mouse:
     gesture: Gesture = IDLE
     hit: Hit = EMPTY
     asked: Asked = field(default_factory=Asked)
-    dragged: Dragged = field(default_factory=lambda: Dragged(Scene({}, ())))
+    dragged: Dragged = field(default_factory=lambda: Dragged(Scene({})))
     _pressed: tuple[Hit, Point] | None = None
     """Where the right button went down."""
+    _moves: int = 0
 
     def update(self, frame: Frame) -> None:
         """Go on with the gesture, or begin one."""
@@ -195,6 +196,8 @@ class Mouse:
             not isinstance(gesture, Draw | Pan) and imgui.is_mouse_clicked(RIGHT)
         )
         if cancelled:
+            if isinstance(gesture, Move):
+                frame.editor.session.abandon(gesture.merge)
             self.gesture = IDLE
             return
         match gesture:
@@ -206,7 +209,7 @@ class Mouse:
             case Band():
                 self._until(not imgui.is_mouse_down(LEFT), lambda: self._banded(frame, gesture))
             case Move():
-                self.gesture = self._moving(frame, gesture, snap=io.key_ctrl)
+                self.gesture = self._moving(frame, gesture, snap=io.key_ctrl, extract=io.key_alt)
                 self._until(not imgui.is_mouse_down(LEFT), lambda: self._moved(frame))
             case Resize():
                 self.gesture = changed = resized(gesture, frame.at, snap=io.key_ctrl)
@@ -224,7 +227,7 @@ class Mouse:
             act()
             self.gesture = IDLE
 
-    def _moving(self, frame: Frame, move: Move, snap: bool) -> Move:
+    def _moving(self, frame: Frame, move: Move, snap: bool, extract: bool) -> Move:
         session = frame.editor.session
         if not move.going:
             if not _far(frame.to.to_screen(*move.start), frame):
@@ -234,6 +237,12 @@ class Mouse:
                 for key in session.selection if key.startswith("frames.")
             ]
             move = replace(move, keys=with_members(session.selection, frame.scene, members))
+            if extract and any(wire.leaves(move.keys) for wire in frame.scene.wires):
+                self._moves += 1
+                merge, steps = f"move {self._moves}", session.history.position
+                frame.editor.attempt(lambda: session.extract(merge))
+                if session.history.position > steps:
+                    move = replace(move, merge=merge)
         return moved(move, frame.scene, frame.at, snap)
 
     def _moved(self, frame: Frame) -> None:
@@ -246,11 +255,12 @@ class Mouse:
             return
         target = insertable(session.graph, shown(frame.scene, move), move.keys, frame.at, frame.reach)
         if target:
-            box = frame.scene.boxes[move.key]
-            at = box.x + move.by[0], box.y + move.by[1]
-            frame.editor.attempt(lambda: session.insert(move.key, target, at))
+            ids, sizes = sorted(move.keys & session.graph.nodes.keys()), frame.scene.sizes
+            frame.editor.attempt(lambda: session.splice(ids, target, move.by, sizes, move.merge))
         elif move.by != (0.0, 0.0):
-            frame.editor.attempt(lambda: session.move(sorted(move.keys), *move.by))
+            keys = sorted(move.keys & frame.scene.boxes.keys())
+            frame.editor.attempt(lambda: session.move(keys, *move.by, merge=move.merge))
+        session.seal()
 
     def _banded(self, frame: Frame, band: Band) -> None:
         editor = frame.editor
@@ -304,7 +314,7 @@ class Mouse:
             case Move() if gesture.going:
                 self.dragged.insert = insertable(graph, self.dragged.scene, gesture.keys, frame.at, frame.reach)
             case Draw():
-                self.dragged.crossed = frame.scene.crossed(gesture.start, frame.at)
+                self.dragged.crossed = frame.scene.net.crossed(gesture.start, frame.at)
             case Link():
                 self.dragged.snap = nearest(frame.scene, gesture, frame.at, _SNAP * frame.scale / frame.to.scale)
                 if other := refused(frame.scene, gesture, frame.at, frame.reach):
@@ -356,7 +366,7 @@ def _resize(editor: Editor, resize: Resize) -> None:
 
 def _drawn(frame: Frame, draw: Draw) -> None:
     editor, session = frame.editor, frame.editor.session
-    crossings = frame.scene.crossed(draw.start, frame.at)
+    crossings = frame.scene.net.crossed(draw.start, frame.at)
     if not crossings:
         return
 

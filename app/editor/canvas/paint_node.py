@@ -50,23 +50,28 @@ def paint_node(brush: Brush, box: Box, layout: Layout, look: Look) -> None:
     ink, rect = brush.ink, box.rect
     is_end = box.sort == "end"
     rounding = HEADER / 2 if is_end and not layout.picture else ROUND
-    if brush.zoom > NAMES_FROM:
+    if brush.zoom >= NAMES_FROM:
         for grow, color in ink.shadow:
             brush.fill((rect[0], rect[1] + 2.0, rect[2], rect[3] + 2.0), color, rounding, grow)
     if look.selected:
         brush.frame(rect, ink.accent, rounding, 2.0, 1.5)
     brush.fill(rect, ink.node_muted if look.muted else ink.node, rounding)
-    header = (rect[0], rect[1], rect[2], rect[1] + min(HEADER, box.h))
+    top = max(HEADER, brush.title * 1.45)
     whole = layout.collapsed or (is_end and not layout.picture)
+    if whole and top > box.h:  # nothing but a title: it grows to both sides
+        rect = rect[0], rect[1] - (top - box.h) / 2, rect[2], rect[3] + (top - box.h) / 2
+        rounding = max(rounding, top / 2) if is_end else rounding
+    header = (rect[0], rect[1], rect[2], min(rect[1] + top, rect[3]))
     brush.fill(header, ink.category(layout.category, look.muted), rounding, flags=_ALL if whole else _TOP)
     if layout.what == "unknown":
         brush.frame(rect, ink.warning, rounding, 1.5)
     brush.frame(rect, ink.error if look.fault else ink.outline, rounding, 1.5 if look.fault else 1.0)
     if layout.what == "group":
         brush.frame(rect, ink.error if look.fault else ink.category("group"), rounding, 1.5, 3.0)
-    _title(brush, box, layout, look)
-    if layout.picture:
-        _picture(brush, box, layout.picture, look)
+    _title(brush, box, layout, look, (header[1] + header[3]) / 2)
+    if look.picture and layout.picture:
+        place = layout.picture if brush.zoom >= NAMES_FROM else (layout.picture[0], top, *layout.picture[2:])
+        _picture(brush, box, place, look.picture, look)
     if brush.zoom >= NAMES_FROM:
         _rows(brush, box, layout, look)
         if layout.more and brush.zoom >= WIDGETS_FROM:
@@ -127,14 +132,15 @@ def _is_linked(box: Box, pin: Pin) -> bool:
     return any(row.linked for row in rows if row.left is pin) or bool(box.layout and box.layout.collapsed)
 
 
-def _title(brush: Brush, box: Box, layout: Layout, look: Look) -> None:
-    ink, y = brush.ink, box.y + HEADER / 2
+def _title(brush: Brush, box: Box, layout: Layout, look: Look, y: float) -> None:
+    ink, size = brush.ink, brush.title
     color = ink.dim if look.muted else ink.text
     left, right = box.x + _INSET, box.x + box.w - 8.0
     if brush.zoom < NAMES_FROM:
-        size = min(TITLE * 0.62 / brush.zoom, 40.0)
-        middle = y if box.h < HEADER + size * 1.3 or layout.picture else box.y + HEADER + size * 0.65
-        brush.text(left, middle, color, brush.short(layout.title, box.w - _INSET * 2, size), size)
+        room = box.w - _INSET * 2
+        title = brush.short(layout.title, room, size)
+        if len(title) > 2 or title == layout.title:
+            brush.text(left, y, color, title, size)
         return
     if look.fault or look.warning:
         icon = icons.ICON_FA_TRIANGLE_EXCLAMATION
@@ -155,9 +161,9 @@ def _title(brush: Brush, box: Box, layout: Layout, look: Look) -> None:
         icon = icons.ICON_FA_RIGHT_TO_BRACKET if is_input else icons.ICON_FA_RIGHT_FROM_BRACKET
         brush.text(left, y, ink.dim, icon, SMALL)
         left += 20.0
-    title = brush.short(layout.title, right - left, TITLE, True)
-    brush.text(left, y, color, title, TITLE, True)
-    left += brush.width(title, TITLE, True) + 7.0
+    title = brush.short(layout.title, right - left, size, True)
+    brush.text(left, y, color, title, size, True)
+    left += brush.width(title, size, True) + 7.0
     if layout.subtitle and right - left > 24.0:
         name = words(layout.subtitle)
         brush.text(left, y + 0.5, ink.over, brush.short(name, right - left, SMALL), SMALL)
@@ -201,13 +207,10 @@ def _more(brush: Brush, box: Box, layout: Layout, hot: bool) -> None:
     brush.text(x - brush.width(text, 10.0) / 2, y, color, text, 10.0)
 
 
-def _picture(brush: Brush, box: Box, place: Rect, look: Look) -> None:
+def _picture(brush: Brush, box: Box, place: Rect, picture: imgui.ImTextureRef, look: Look) -> None:
     area = box.x + place[0], box.y + place[1] + 2.0, box.x + place[2], box.y + place[3]
-    brush.fill(area, brush.ink.picture, 3.0)
-    if look.picture is None:
-        x, y = (area[0] + area[2]) / 2, (area[1] + area[3]) / 2
-        brush.text(x - 9.0, y, brush.ink.picture_hint, icons.ICON_FA_IMAGE, 18.0)
-        return
+    if brush.zoom >= NAMES_FROM:
+        brush.fill(area, brush.ink.picture, 3.0)
     across, down = area[2] - area[0], area[3] - area[1]
     width, height = look.picture_size
     ratio = min(across / width, down / height)
@@ -215,7 +218,7 @@ def _picture(brush: Brush, box: Box, place: Rect, look: Look) -> None:
     half = width * ratio / 2, height * ratio / 2
     low, high = brush.corners((x - half[0], y - half[1], x + half[0], y + half[1]))
     veil = 0xFFFFFFFF if look.fresh else 0x90FFFFFF
-    brush.draw.add_image_rounded(look.picture, low, high, (0, 0), (1, 1), veil, 3.0 * brush.to.scale)
+    brush.draw.add_image_rounded(picture, low, high, (0, 0), (1, 1), veil, 3.0 * brush.to.scale)
 
 
 def _bypass(brush: Brush, box: Box, layout: Layout) -> None:

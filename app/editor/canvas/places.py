@@ -6,52 +6,70 @@ from dataclasses import dataclass, field
 
 from ..editor import Editor
 from .brush import WIDGETS_FROM, Brush
-from .geometry import Rect, overlap
+from .geometry import Rect, Transform, overlap
 from .layout import HEADER
-from .scene import Scene
+from .net import Net, Wire
+from .scene import Box, Scene
 
 _PIN = 5.0
+
+Found = dict[str, Rect]
 
 
 @dataclass
 class Places:
-    """Keeps what was found for as long as nothing moves."""
+    """Keeps what was found of every element and of all links for as long as it does not move."""
 
     _of: tuple[object, ...] = ()
-    _found: dict[str, Rect] = field(default_factory=dict[str, Rect])
+    _boxes: dict[str, tuple[Box, Found]] = field(default_factory=dict[str, tuple[Box, Found]])
+    _net: tuple[Net, Found] = field(default_factory=lambda: (Net(), {}))
 
     def record(self, editor: Editor, scene: Scene, brush: Brush) -> None:
         """Note where everything visible is."""
-        of = scene, brush.to, brush.seen
-        if not self._of or self._of[0] is not scene or self._of[1:] != of[1:]:
-            self._of, self._found = of, _found(scene, brush)
-        editor.places.update(self._found)
+        of = brush.to, brush.seen
+        if self._of != of:
+            self._of, self._boxes, self._net = of, {}, (Net(), {})
+        known, boxes = self._boxes, dict[str, tuple[Box, Found]]()
+        places = editor.places
+        for key, box in scene.boxes.items():
+            one = known.get(key)
+            boxes[key] = one = one if one and one[0] is box else (box, _of_box(box, brush))
+            places.update(one[1])
+        self._boxes = boxes
+        if self._net[0] is not scene.net:
+            self._net = scene.net, dict(_of_wire(wire, brush.to) for wire in scene.wires)
+        places.update(self._net[1])
 
 
-def _found(scene: Scene, brush: Brush) -> dict[str, Rect]:
-    places, to, s = dict[str, Rect](), brush.to, brush.to.scale
-    for key, box in scene.boxes.items():
-        if not overlap(box.rect, brush.seen):
-            continue
-        left, top = to.to_screen(box.x, box.y)
-        places[f"node {key}"] = left, top, left + box.w * s, top + box.h * s
-        places[f"title {key}"] = left, top, left + box.w * s, top + min(HEADER, box.h) * s
-        if box.layout is None:
-            continue
-        for word, output, pins in (("in", False, box.layout.ins), ("out", True, box.layout.outs)):
-            for pin in pins.values():
-                x, y, r = left + pin.x * s, top + pin.y * s, _PIN * s
-                places[f"pin {word} {box.port(pin, output)}"] = x - r, y - r, x + r, y + r
-        if brush.zoom < WIDGETS_FROM:
-            continue
+def _of_wire(wire: Wire, to: Transform) -> tuple[str, Rect]:
+    x, y = to.to_screen(*wire.middle)
+    return f"link {wire.target}", (x - 2.0, y - 2.0, x + 2.0, y + 2.0)
+
+
+def _of_box(box: Box, brush: Brush) -> Found:
+    if not overlap(box.rect, brush.seen):
+        return {}
+    to, s, key = brush.to, brush.to.scale, box.key
+    left, top = to.to_screen(box.x, box.y)
+    places: Found = {
+        f"node {key}": (left, top, left + box.w * s, top + box.h * s),
+        f"title {key}": (left, top, left + box.w * s, top + min(HEADER, box.h) * s),
+    }
+    if box.layout is None:
+        return places
+
+    def add(name: str, rect: Rect) -> None:
+        places[name] = left + rect[0] * s, top + rect[1] * s, left + rect[2] * s, top + rect[3] * s
+
+    for word, output, pins in (("in", False, box.layout.ins), ("out", True, box.layout.outs)):
+        for pin in pins.values():
+            add(f"pin {word} {box.port(pin, output)}", (pin.x - _PIN, pin.y - _PIN, pin.x + _PIN, pin.y + _PIN))
+    if box.layout.picture:
+        add(f"picture {key}", box.layout.picture)
+    if brush.zoom >= WIDGETS_FROM:
         for row in box.layout.rows:
-            if row.value and (field := row.field):
-                places[f"widget {key}.{row.value.name}"] = (
-                    left + field[0] * s, top + field[1] * s, left + field[2] * s, top + field[3] * s
-                )
-        if more := box.layout.more:
-            places[f"more {key}"] = left + more[0] * s, top + more[1] * s, left + more[2] * s, top + more[3] * s
-    for wire in scene.wires:
-        x, y = to.to_screen(*wire.middle)
-        places[f"link {wire.target}"] = x - 2.0, y - 2.0, x + 2.0, y + 2.0
+            if row.value and row.field:
+                add(f"widget {key}.{row.value.name}", row.field)
+        if box.layout.more:
+            add(f"more {key}", box.layout.more)
     return places

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
-from ....nodes import Kind
 from ...graph import Port
-from .geometry import SAMPLES, Curve, Point, Rect, crossed, crossing, curve, distances, holds, midpoint, sampled
+from .geometry import Curve, Point, Rect, curve, holds
 from .layout import HEADER, ROW, Layout, Pin
+from .net import Net, Wire
 
 DOT = 7.0
 """Radius of a dot."""
@@ -50,25 +46,6 @@ class Box:
 
 
 @dataclass(frozen=True, slots=True)
-class Wire:
-    """A link as drawn: one curve from pin to dot to pin. `fault` says why it cannot work."""
-
-    target: Port
-    source: Port
-    stops: tuple[str, ...]
-    """Keys of the elements that it joins, from the source on."""
-    kind: Kind | None
-    curves: tuple[Curve, ...]
-    fault: str = ""
-    muted: bool = False
-
-    @property
-    def middle(self) -> Point:
-        """A point on it, about half way."""
-        return midpoint(self.curves[len(self.curves) // 2])
-
-
-@dataclass(frozen=True, slots=True)
 class Hit:
     """What is under a point. `name` is the row of a field, or the edges (of `lrtb`) of a frame or comment."""
 
@@ -87,23 +64,17 @@ class Scene:
     """Elements in the order in which they are drawn, and links."""
 
     boxes: dict[str, Box]
-    wires: tuple[Wire, ...]
+    net: Net = field(default_factory=Net)
 
-    @cached_property
-    def lines(self) -> NDArray[np.float64]:
-        """All curves of all links as polylines."""
-        shapes = [shape for wire in self.wires for shape in wire.curves]
-        return sampled(np.array(shapes, float)) if shapes else np.zeros((0, SAMPLES + 1, 2))
+    @property
+    def wires(self) -> tuple[Wire, ...]:
+        """All links."""
+        return self.net.wires
 
-    @cached_property
-    def _owners(self) -> list[tuple[int, int]]:
-        """The link and the curve of it that each of `lines` is."""
-        return [(at, index) for at, wire in enumerate(self.wires) for index in range(len(wire.curves))]
-
-    @cached_property
+    @property
     def by_target(self) -> Mapping[Port, Wire]:
         """Links by what they feed."""
-        return {wire.target: wire for wire in self.wires}
+        return self.net.by_target
 
     @property
     def sizes(self) -> dict[str, tuple[float, float]]:
@@ -122,18 +93,18 @@ class Scene:
             if any(stop in keys for stop in wire.stops) else wire
             for wire in self.wires
         )
-        return Scene(boxes, wires)
+        return Scene(boxes, Net(wires))
 
     def resized(self, key: str, rect: Rect) -> Scene:
         """The same with one element of another shape."""
         left, top, right, bottom = rect
         box = replace(self.boxes[key], x=left, y=top, w=right - left, h=bottom - top)
-        return Scene({**self.boxes, key: box}, self.wires)
+        return Scene({**self.boxes, key: box}, self.net)
 
     def hit(self, x: float, y: float, reach: float) -> Hit:
         """What is at a point; `reach` is how far off pins, links and edges may be."""
         found = self._on_top(x, y, reach)
-        if found is None and (wire := self.wire_at(x, y, reach)):
+        if found is None and (wire := self.net.at(x, y, reach)):
             return Hit("link", port=wire.target)
         return found or self._frame(x, y, reach) or EMPTY
 
@@ -150,28 +121,6 @@ class Scene:
             if box.layout:
                 for pin in (box.layout.outs if output else box.layout.ins).values():
                     yield box.port(pin, output), box, pin
-
-    def wire_at(self, x: float, y: float, reach: float, skip: Collection[str] = ()) -> Wire | None:
-        """The link nearest to a point within reach, leaving out those that join one of `skip`."""
-        if not len(self.lines):
-            return None
-        gaps = distances(self.lines, (x, y))
-        for index in np.argsort(gaps):
-            if gaps[index] > reach:
-                return None
-            wire = self.wires[self._owners[index][0]]
-            if not any(stop in skip for stop in wire.stops):
-                return wire
-        return None
-
-    def crossed(self, start: Point, end: Point) -> dict[Port, Point]:
-        """The links that a straight line crosses, and where."""
-        if not len(self.lines):
-            return {}
-        return {
-            self.wires[self._owners[index][0]].target: crossing(self.lines[index], start, end)
-            for index in np.flatnonzero(crossed(self.lines, start, end))
-        }
 
     def _on_top(self, x: float, y: float, reach: float) -> Hit | None:
         for key, box in reversed(self.boxes.items()):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
 
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
@@ -14,7 +13,7 @@ from ....nodes import Kind
 from ...graph import Port
 from ..editor import Editor
 from ..theme.style import mix, u32, ui_scale, vec4
-from .entries import GRAPH, PRESETS, Entry, Section, found, graph_entries, narrowed, node_entries, preset_entries
+from .entries import GRAPH, GROUP, Entry, Section, found, graph_entries, narrowed, node_entries, preset_entries
 from .geometry import Point
 
 _POPUP = "add to the graph"
@@ -38,7 +37,7 @@ class Search:
 
     @cached_property
     def _fixed(self) -> tuple[Entry, ...]:
-        return (*preset_entries(Path(presets.__file__).parent), *graph_entries())
+        return (*preset_entries(presets.paths()), *graph_entries())
 
     def begin(self, editor: Editor, at: Point, port: Port | None = None, output: bool = True) -> None:
         """Open it for something at a canvas position; with a port, for what can be linked with it."""
@@ -49,7 +48,8 @@ class Search:
         else:
             self._link = port, output
             fits = editor.attempt(lambda: session.fitting(port, output), ()) or ()
-            self._entries = narrowed(nodes, fits)
+            files = editor.attempt(lambda: session.fitting_files(presets.paths(), port, output), ()) or ()
+            self._entries = narrowed((*nodes, *self._fixed), {*fits, *map(str, files)})
         self._at, self._query, self._marked, self._opening = at, "", 0, True
 
     def draw(self, editor: Editor) -> None:
@@ -144,8 +144,8 @@ class Search:
         if port is not None:
             # The socket that takes the link lies near the pointer, not the node's corner.
             at = (at[0] - (0.0 if output else 184.0), at[1] - 48.0)
-        if entry.category == PRESETS:
-            session.add_group(entry.id, at)
+        if entry.category == GROUP:
+            session.add_group(entry.id, at, port, output)
         elif entry.category != GRAPH:
             session.add_node(entry.id, at, port, output)
         elif entry.id == "frame":

@@ -8,13 +8,14 @@ from functools import lru_cache
 from textwrap import wrap
 from typing import Any
 
-from ....nodes import Kind, Node
+from ....nodes import Node
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Item, Port
 from ..edits.elements import entries, entry, owner
 from ..edits.routes import routes
 from .geometry import Point
 from .layout import Facts, Layout, end_layout, node_layout
-from .scene import DOT, Box, Scene, Wire, routed
+from .net import Net, Wire
+from .scene import DOT, Box, Scene, routed
 
 _LETTER = 6.6, 17.0
 """Width of a letter, and height of a line, in comments."""
@@ -31,11 +32,47 @@ class Stage:
     _links: object = None
     _linked: tuple[dict[str, set[str]], dict[str, set[str]]] = field(default_factory=lambda: ({}, {}))
     _faults: dict[tuple[Port, Port], tuple[Any, str]] = field(default_factory=dict[tuple[Port, Port], tuple[Any, str]])
+    _last: tuple[Graph, tuple[object, ...], dict[str, Box], Net] | None = None
 
     def build(
-        self, graph: Graph, position: Callable[[str], Point], top: Collection[str], pictures: bool, open: str = ""
+        self, graph: Graph, position: Callable[[str], Point], top: Collection[str],
+        pictures: Collection[str] = frozenset(), open: str = "",
     ) -> Scene:
-        """The scene of a graph. `top` are drawn last, in order; `open` shows all its values for now."""
+        """The scene of a graph.
+
+        `top` are drawn last, in order; `pictures` are the elements with one; `open` shows all its values for now.
+        """
+        shown = pictures, open, frozenset(self.expanded)
+        boxes, net = self._changed(graph, shown) or self._whole(graph, position, *shown[:2])
+        self._last = graph, shown, boxes, net
+        raised = [key for key in top if key in boxes and boxes[key].sort != "frame"]
+        if raised:
+            boxes = {key: box for key, box in boxes.items() if key not in raised} | {key: boxes[key] for key in raised}
+        return Scene(boxes, net)
+
+    def _changed(self, graph: Graph, shown: tuple[Any, ...]) -> tuple[dict[str, Box], Net] | None:
+        """The last boxes and links, with new boxes of changed nodes, where that is all: so it is while values change."""
+        if self._last is None or self._last[1] != shown:
+            return None
+        last, (pictures, open, _), boxes, net = self._last
+        parts = ("ui", "links", "inputs", "outputs", "muted")
+        if any(getattr(graph, part) is not getattr(last, part) for part in parts) or [*graph.nodes] != [*last.nodes]:
+            return None
+        fresh: dict[str, Box] = {}
+        for id, item in graph.nodes.items():
+            if item is not last.nodes[id]:
+                box = boxes[id]
+                layout = self._layout(graph, id, item, box.layout is not None and box.layout.collapsed, pictures, open)
+                if box.layout is None or (layout.ins, layout.outs) != (box.layout.ins, box.layout.outs):
+                    return None
+                if _face(graph, Port(id, "")) != _face(last, Port(id, "")):
+                    return None
+                fresh[id] = replace(box, h=layout.height, layout=layout)
+        return ({**boxes, **fresh} if fresh else boxes), net
+
+    def _whole(
+        self, graph: Graph, position: Callable[[str], Point], pictures: Collection[str], open: str
+    ) -> tuple[dict[str, Box], Net]:
         if graph.links is not self._links:
             self._links, self._linked = graph.links, _linked_names(graph)
             self._faults = {ends: known for ends, known in self._faults.items() if graph.links.get(ends[1]) == ends[0]}
@@ -54,28 +91,27 @@ class Stage:
         for id in entries(graph, "dots"):
             x, y = position(f"dots.{id}")
             boxes[f"dots.{id}"] = Box(f"dots.{id}", "dot", x - DOT, y - DOT, DOT * 2, DOT * 2)
-        for key in top:
-            if key in boxes and boxes[key].sort != "frame":
-                boxes[key] = boxes.pop(key)
-        return Scene(boxes, tuple(self._wires(graph, boxes)))
+        return boxes, Net(tuple(self._wires(graph, boxes)))
 
     def _frames(self, graph: Graph, position: Callable[[str], Point]) -> list[Box]:
         found = [_sized(graph, f"frames.{id}", "frame", FRAME_SIZE, position) for id in entries(graph, "frames")]
         return sorted(found, key=lambda box: (-box.w * box.h, box.key))
 
-    def _ends(self, graph: Graph, pictures: bool):
+    def _ends(self, graph: Graph, pictures: Collection[str]):
         for name, end in graph.inputs.items():
             key = f"{INPUTS}.{name}"
-            yield key, _end(key, end.kind, end.socket(name), pictures, end.doc)
+            yield key, _end(key, end.socket(name), key in pictures, end.doc)
         for name, end in graph.outputs.items():
             key = f"{OUTPUTS}.{name}"
-            yield key, _end(key, end.kind, end.socket(name), False, "")
+            yield key, _end(key, end.socket(name), False, "")
 
-    def _layout(self, graph: Graph, id: str, item: Item, collapsed: bool, pictures: bool, open: str) -> Layout:
+    def _layout(
+        self, graph: Graph, id: str, item: Item, collapsed: bool, pictures: Collection[str], open: str
+    ) -> Layout:
         ins, outs = self._linked
         facts = Facts(
             frozenset(ins.get(id, ())), frozenset(outs.get(id, ())), collapsed,
-            id in self.expanded or id == open, pictures,
+            id in self.expanded or id == open, id in pictures,
         )
         known = self._layouts.get(id)
         if known and known[0] is item and known[1] == facts:
@@ -145,5 +181,5 @@ def _sized(graph: Graph, key: str, sort: Any, size: Point, position: Callable[[s
 
 
 @lru_cache(maxsize=1024)
-def _end(key: str, kind: Kind, socket: Any, pictures: bool, doc: str) -> Layout:
-    return end_layout(key, socket, pictures and kind in (Kind.IMAGE, Kind.FIELD, Kind.VECTOR), doc)
+def _end(key: str, socket: Any, picture: bool, doc: str) -> Layout:
+    return end_layout(key, socket, picture, doc)

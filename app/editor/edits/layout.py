@@ -35,11 +35,17 @@ def positions(graph: Graph, sizes: Sizes | None = None) -> dict[str, Place]:
     return found
 
 
-def pinned(graph: Graph) -> Graph:
-    """A graph where every element has a saved place, so that later edits move none."""
-    found = {key for key in keys(graph) if place(graph, key) is not None}
-    places = {} if len(found) == len(keys(graph)) else positions(graph)
-    return with_places(graph, {key: spot for key, spot in places.items() if key not in found})
+def pinned(graph: Graph, before: Graph | None = None) -> Graph:
+    """A graph where every element has a saved place, so that later edits move none.
+
+    There is nothing to do for one that has the layout and elements of a graph `before` that was pinned.
+    """
+    known = keys(graph)
+    if before is not None and graph.ui is before.ui and known == keys(before):
+        return graph
+    missing = [key for key in known if place(graph, key) is None]
+    places = positions(graph) if missing else {}
+    return with_places(graph, {key: places[key] for key in missing})
 
 
 def laid_out(graph: Graph, wanted: Collection[str], sizes: Sizes | None = None) -> dict[str, Place]:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 from ...errors import GraphError
 from ...graph import Graph, Port
-from .elements import Place, entries, fresh_id, place, with_places, with_sections, without_entries
+from .elements import Place, entries, fresh_id, owner, place, with_places, with_sections, without_entries
 
 Route = tuple[str, ...]
 
@@ -23,6 +23,14 @@ def routes(graph: Graph) -> dict[str, Route]:
 def route(graph: Graph, target: Port) -> Route:
     """The dots that the link to `target` passes."""
     return routes(graph).get(str(target), ())
+
+
+def inner(graph: Graph, ids: Collection[str]) -> tuple[str, ...]:
+    """Keys of the dots that only links between some elements pass."""
+    ends = {str(end): owner(end) in ids and owner(start) in ids for end, start in graph.links.items()}
+    passed = [(dot, ends.get(target, False)) for target, dots in routes(graph).items() for dot in dots]
+    others = {dot for dot, inside in passed if not inside}
+    return tuple(dict.fromkeys(f"dots.{dot}" for dot, inside in passed if inside and dot not in others))
 
 
 def with_routes(graph: Graph, changed: Mapping[Port, Iterable[str]]) -> Graph:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from ....nodes import Node, Pointwise, Socket, Value
 from ...errors import GraphError
-from ...graph import Graph, Item, Port, conversion, signature
+from ...graph import Graph, Group, Item, Port, conversion, signature
 from ...graph.values import coerced, value_fault
 from ...graph.walk import loop_sentence, route
 from .elements import place
@@ -66,29 +66,55 @@ def linked(graph: Graph, id: str, port: Port, output: bool) -> Graph:
 
 def fitting(graph: Graph, port: Port, output: bool, types: Types) -> tuple[str, ...]:
     """Ids of node types that could be linked with `port`, a source if `output`, in the order of `types`."""
+    start, end = (graph.source(port), None) if output else (None, graph.target(port))
+    return tuple(
+        id for id, kind in types.items()
+        if (_feeds(start, _ends(kind)) if output else _fed(end, [one.socket for one in kind.outputs.values()]))
+    )
+
+
+def fits(graph: Graph, port: Port, output: bool, group: Group) -> bool:
+    """True if a group could be linked with `port`, a source if `output`."""
+    face = signature(group)
     if output:
-        start = graph.source(port)
-        return tuple(id for id, kind in types.items() if any(
-            start is None or conversion(start, end) is None for end in _ends(kind)
-        ))
-    end = graph.target(port)
-    return tuple(id for id, kind in types.items() if any(
-        end is None or conversion(output.socket, end) is None for output in kind.outputs.values()
-    ))
+        values = [value for value in face.values.values() if value.wireable]
+        return _feeds(graph.source(port), [*face.inputs.values(), *(values if face.pointwise else ())])
+    return _fed(graph.target(port), [*face.outputs.values()])
 
 
 def inserted(graph: Graph, id: str, target: Port) -> Graph:
     """A graph where node `id` stands in the link that feeds `target`; dots left of it stay before it."""
+    return _put_between(graph, id, id, target)
+
+
+def spliced(graph: Graph, ids: Collection[str], target: Port) -> Graph:
+    """A graph where a chain of nodes stands in the link that feeds `target`. Raises GraphError if they are no chain."""
+    for end, start in graph.links.items():
+        if (end.node in ids) != (start.node in ids):
+            inner = end.node if end.node in ids else start.node
+            raise GraphError(f"node '{inner}' is linked with others: extract the selection to put it into a link")
+    inner = [(start.node, end.node) for end, start in graph.links.items() if end.node in ids]
+    fed, feeding = {end for _, end in inner}, {start for start, _ in inner}
+    last = [id for id in graph.nodes if id in ids and id not in feeding]
+    first = [id for id in graph.nodes if id in ids and id not in fed and targets(graph.nodes[id], id)]
+    if len(last) != 1 or len(first) != 1:
+        raise GraphError("these nodes are no chain: only one that begins and ends with one node fits into a link")
+    return _put_between(graph, first[0], last[0], target)
+
+
+def _put_between(graph: Graph, first: str, last: str, target: Port) -> Graph:
+    """A graph where a chain from node `first` to node `last` stands in the link that feeds `target`."""
     source = graph.links.get(target)
     if source is None:
         raise GraphError(f"nothing is linked to '{target}': a node can only be put into a link")
-    if id in (source.node, target.node):
-        raise GraphError(f"node '{id}' is an end of that link already")
+    for id in (first, last):
+        if id in (source.node, target.node):
+            raise GraphError(f"node '{id}' is an end of that link already")
     dots = dots_of(graph, target)
-    entrance = first_target(graph.disconnect(target), source, id, values=False)
+    entrance = first_target(graph.disconnect(target), source, first, values=False)
     after = graph.disconnect(target).connect(source, entrance)
-    after = after.connect(first_source(after, id, target), target)
-    spot = place(graph, id)
+    after = after.connect(first_source(after, last, target), target)
+    spot = place(graph, first)
     left, right = split(graph, dots, spot[0]) if spot else (dots, ())
     return with_routes(after, {entrance: left, target: right})
 
@@ -158,6 +184,16 @@ def replaced(graph: Graph, id: str, kind: type[Node]) -> Graph:
             if now is not None and value_fault(value, now) is None:
                 values[name] = now
     return graph.replace(id, kind(**values))
+
+
+def _feeds(start: Socket | None, ends: Iterable[Socket | Value]) -> bool:
+    """True if what leaves at `start` (None: nobody knows what) fits any end."""
+    return any(start is None or conversion(start, end) is None for end in ends)
+
+
+def _fed(end: Socket | Value | None, starts: Iterable[Socket]) -> bool:
+    """True if any start fits what enters at `end` (None: nobody knows what)."""
+    return any(end is None or conversion(start, end) is None for start in starts)
 
 
 def _ends(kind: type[Node]) -> list[Socket | Value]:

@@ -8,7 +8,9 @@ from imgui_bundle import imgui
 
 from ....nodes import Plain, Value
 from ..theme.style import mix, u32
-from .drawing import background, place, write
+from ..toolkit.fields import background, draw_arrow
+from ..toolkit.places import place
+from ..toolkit.words import write
 from .fields import Edit, Fields
 from .number_field import NO_VALUE
 
@@ -42,7 +44,7 @@ def choose(
         write((inner[0] + used + pad, inner[1], inner[2], inner[3]), text, palette.text, align=1.0)
     else:
         write(inner, text, palette.text if mixed or now in choices else palette.error)
-    draw_arrow(rect, palette.dim)
+    draw_arrow(palette, rect)
     if pressed:
         fields.filter = ""
         imgui.open_popup(f"choices {id}")
@@ -101,15 +103,6 @@ def _typed_ahead(word: str) -> str:
     letters = "abcdefghijklmnopqrstuvwxyz"
     pressed = [letter for letter in letters if imgui.is_key_pressed(getattr(imgui.Key, letter), False)]
     return word + "".join(pressed) if not imgui.get_io().key_ctrl else word
-
-
-def draw_arrow(rect: tuple[float, float, float, float], color: tuple[float, float, float]) -> None:
-    """The sign at the right of a field that opens a list."""
-    size = (rect[3] - rect[1]) * 0.14
-    x, y = rect[2] - imgui.get_style().frame_padding.x - size * 1.5, (rect[1] + rect[3]) * 0.5
-    imgui.get_window_draw_list().add_triangle_filled(
-        (x - size * 1.4, y - size * 0.7), (x + size * 1.4, y - size * 0.7), (x, y + size), u32(color)
-    )
 
 
 def toggle_field(

@@ -11,10 +11,13 @@ from ....nodes import Plain, Value
 from ...errors import UsageError
 from ..theme.palette import RGB
 from ..theme.style import u32
+from ..toolkit.buttons import quiet
+from ..toolkit.fields import background
+from ..toolkit.places import Rect, place
+from ..toolkit.words import dim, write
 from .colors import RGBA, brightened, dimmed, from_hexadecimal, hexadecimal, intensity, picked, swatch
-from .drawing import Rect, place, write
 from .fields import Edit, Fields
-from .number_field import number_field, row_of_numbers
+from .number_field import NO_VALUE, number_field, row_of_numbers
 from .text_field import text_field
 
 _LIGHT = Value("light", "color", (0.0,) * 4, 4, low=0.0, high=1.0)
@@ -33,10 +36,14 @@ def color_field(
     """A swatch that opens the picker; the numbers beside it where there is room. All numbers are scene-linear."""
     color = _rgba(value)
     numbers = not label and width > imgui.get_font_size() * 12.0
-    side = imgui.get_frame_height() * 1.2 if numbers else width
-    rect = place(side)
+    side = imgui.get_frame_height() * 1.2
+    rect = place(side if numbers else width)
     pressed = imgui.invisible_button(f"##{id}", (rect[2] - rect[0], rect[3] - rect[1]))
-    draw_swatch(fields, rect, color, imgui.is_item_hovered())
+    hovered = imgui.is_item_hovered()
+    if label or numbers:
+        draw_swatch(fields, rect, color, hovered)
+    else:
+        _in_short(fields, rect, side, color, mixed, hovered)
     if label:
         _name_on(fields, rect, color, label)
     if pressed:
@@ -70,12 +77,12 @@ def color_picker(fields: Fields, id: str, color: RGBA, eyedropper: bool = True) 
     fields.part(f"{id} light", owner, lambda edit: edit)
     fields.part(f"{id} hex", owner, from_hex)
     found = _wheel(fields, id, color, width)
-    _label("Intensity", side)
+    _label(fields, "Intensity", side)
     if edit := number_field(fields, f"{id} stops", stops, _STOPS, width - side):
         found = from_stops(edit)
         fields.stops = float(edit.value) if isinstance(edit.value, int | float) else stops
     numbers = row_of_numbers(fields, f"{id} light", color, _LIGHT, width, _NAMES)
-    _label("sRGB hex", side)
+    _label(fields, "sRGB hex", side)
     room = width - side - (3 if eyedropper else 2) * (imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x)
     text = text_field(fields, f"{id} hex", hexadecimal(color), _TEXT, room)
     fresh = numbers or (from_hex(text) if text else None) or _buttons(fields, id, color, eyedropper)
@@ -124,24 +131,19 @@ def _wheel(fields: Fields, id: str, color: RGBA, width: float) -> Edit | None:
 
 
 def _buttons(fields: Fields, id: str, color: RGBA, eyedropper: bool) -> Edit | None:
-    found, side = None, imgui.get_frame_height()
+    found = None
     gap = imgui.get_style().item_inner_spacing.x
-    imgui.push_style_var(imgui.StyleVar_.frame_padding, (0.0, imgui.get_style().frame_padding.y))
     imgui.same_line(0.0, gap)
-    if imgui.button(f"{icons.ICON_FA_COPY}##{id}", (side, side)):
+    if quiet(fields, icons.ICON_FA_COPY, f"button copy {id}", "Copy the four linear numbers"):
         imgui.set_clipboard_text(" ".join(f"{part:g}" for part in color))
-    imgui.set_item_tooltip("Copy the four linear numbers")
     imgui.same_line(0.0, gap)
-    if imgui.button(f"{icons.ICON_FA_PASTE}##{id}", (side, side)):
+    if quiet(fields, icons.ICON_FA_PASTE, f"button paste {id}", "Paste linear numbers, or hexadecimal digits"):
         found = _from_text(imgui.get_clipboard_text(), color)
-    imgui.set_item_tooltip("Paste linear numbers, or hexadecimal digits")
     if eyedropper:
         imgui.same_line(0.0, gap)
-        if imgui.button(f"{icons.ICON_FA_EYE_DROPPER}##{id}", (side, side)):
+        if quiet(fields, icons.ICON_FA_EYE_DROPPER, f"button pick {id}", "Pick the color from the viewer"):
             fields.eyedropper = id.removesuffix(" picker")
             imgui.close_current_popup()
-        imgui.set_item_tooltip("Pick the color from the viewer")
-    imgui.pop_style_var()
     return found
 
 
@@ -162,10 +164,10 @@ def _from_text(text: str, color: RGBA) -> Edit | None:
     return Edit(made)
 
 
-def _label(text: str, side: float) -> None:
+def _label(fields: Fields, text: str, side: float) -> None:
     left = imgui.get_cursor_pos_x()
     imgui.align_text_to_frame_padding()
-    imgui.text_disabled(text)
+    dim(fields, text)
     imgui.same_line(left + side)
 
 
@@ -176,6 +178,15 @@ def _inside(rect: Rect) -> tuple[float, float]:
     height = imgui.get_font_size() * (WIDTH - 1.5) + 4 * imgui.get_frame_height_with_spacing() + 2 * pad.y
     x = max(min(rect[0], view.pos.x + view.size.x - width), view.pos.x)
     return x, max(min(rect[3], view.pos.y + view.size.y - height), view.pos.y)
+
+
+def _in_short(fields: Fields, rect: Rect, side: float, color: RGBA, mixed: bool, hovered: bool) -> None:
+    """A swatch, and the numbers in few digits where there is no room to edit them."""
+    background(fields.palette, rect, hovered=hovered)
+    draw_swatch(fields, (rect[0], rect[1], rect[0] + side, rect[3]), color, hovered)
+    text = NO_VALUE if mixed else " ".join(f"{part:.2g}" for part in color)
+    pad = imgui.get_style().frame_padding.x * 0.75
+    write((rect[0] + side + pad, rect[1], rect[2] - pad, rect[3]), text, fields.palette.text)
 
 
 def _name_on(fields: Fields, rect: Rect, color: RGBA, label: str) -> None:

@@ -9,7 +9,8 @@ from imgui_bundle import imgui
 
 from ....nodes import Plain, Value
 from ..theme.style import mix, u32, ui_scale
-from .drawing import Rect, background, place
+from ..toolkit.fields import background
+from ..toolkit.places import Rect, place
 from .fields import Edit, Fields
 from .number_field import row_of_numbers
 from .points import CURVES, added, changed, curve_line, inverted, nearest, removed, scaled, split

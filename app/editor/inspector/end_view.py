@@ -11,6 +11,7 @@ from imgui_bundle import imgui
 from ....nodes import Kind, Plain, Value
 from ...graph import INPUTS, Input, Output, Port
 from ...media import views
+from ..toolkit.words import tip
 from .choice_field import choose
 from .color_field import color_field
 from .fields import Edit, Fields
@@ -59,11 +60,11 @@ class EndView:
         session = editor.session
         bound = session.bindings.get(name, "") if not session.place else ""
         if bound:
-            rows.name(f"{key} bound", "bound to", tip="A file that was given for this window only; it is not saved")
-            tip = f"{bound}\nClick to use the file below"
-            if rows.chip(bound, f"{key} bound", rows.field(), rows.palette.good, tip):
+            rows.name(f"{key} bound", "bound to", doc="A file that was given for this window only; it is not saved")
+            doc = f"{bound}\nClick to use the file below"
+            if rows.chip(bound, f"{key} bound", rows.field(), rows.palette.good, doc):
                 rows.act(lambda: session.bind(name, None))
-        rows.name(f"{key} file", "file", tip="What comes in unless something else is linked or bound")
+        rows.name(f"{key} file", "file", doc="What comes in unless something else is linked or bound")
         edit = self._files.path(
             rows, f"{key} file", end.file, rows.field(), lambda path: session.set_input(name, file=path)
         )
@@ -71,11 +72,11 @@ class EndView:
             rows.act(lambda: session.set_input(name, file=str(edit.value)))
         if not bound:
             self._files.about(rows, end.file, end.layer)
-        rows.name(f"{key} layer", "layer", tip="The layer of that file")
+        rows.name(f"{key} layer", "layer", doc="The layer of that file")
         layer = self._files.layer(rows, f"{key} layer", end.file, end.layer, rows.field())
         if layer:
             rows.act(lambda: session.set_input(name, layer=str(layer.value)))
-        rows.name(f"{key} default", "default", tip="What comes in where nothing else does")
+        rows.name(f"{key} default", "default", doc="What comes in where nothing else does")
         found = self._default(rows, f"{key} default", end, rows.field())
         if found:
             rows.act(lambda: session.set_input(name, default=found.value, merge=found.merge))
@@ -89,7 +90,7 @@ class EndView:
             if imgui.button(f"None##{key}", (width, 0.0)):
                 start: Plain = 0.0 if channels == 1 else (0.0,) * channels
                 rows.act(lambda: session.set_input(name, default=start))
-            rows.tooltip("Without a default something must be linked, bound or read; click to set one")
+            tip("Without a default something must be linked, bound or read; click to set one")
             return None
         side = imgui.get_frame_height()
         color = end.kind in (Kind.IMAGE, Kind.COLOR)
@@ -108,7 +109,7 @@ class EndView:
     def _output(self, rows: Rows, port: Port, end: Output) -> None:
         editor, name, key = rows.editor, port.socket, str(port)
         session = editor.session
-        rows.name(key, "from", tip="What leaves the graph here", color=rows.palette.kinds[end.kind])
+        rows.name(key, "from", doc="What leaves the graph here", color=rows.palette.kinds[end.kind])
         source, width = session.linked(port), rows.field()
         if source is not None:
             link_chip(rows, port, source, width)
@@ -120,7 +121,7 @@ class EndView:
             "What it is called in a file of several layers", hint=name,
         )
         if end.kind is Kind.IMAGE:
-            rows.name(f"{key} view", "view", tip="How to show it unless someone chooses")
+            rows.name(f"{key} view", "view", doc="How to show it unless someone chooses")
             known = ("", *views())
             index = choose(
                 self._fields, f"{key} view", end.view or DEFAULT_VIEW, (DEFAULT_VIEW, *known[1:]), rows.field()
@@ -129,16 +130,16 @@ class EndView:
             if index is not None:
                 rows.act(lambda: session.set_output(name, view=known[index]))
 
-    def _text(self, rows: Rows, key: str, label: str, text: str, then: Then, tip: str, hint: str = "") -> None:
-        draw_text(rows, self._fields, key, label, text, then, tip, hint)
+    def _text(self, rows: Rows, key: str, label: str, text: str, then: Then, doc: str, hint: str = "") -> None:
+        draw_text(rows, self._fields, key, label, text, then, doc, hint)
 
 
 def draw_text(
-    rows: Rows, fields: Fields, key: str, label: str, text: str, then: Then, tip: str = "", hint: str = "",
+    rows: Rows, fields: Fields, key: str, label: str, text: str, then: Then, doc: str = "", hint: str = "",
     lines: int = 0,
 ) -> None:
     """A row with a text."""
-    rows.name(key, label, tip=tip)
+    rows.name(key, label, doc=doc)
     edit = text_field(fields, key, text, _TEXT, rows.field(), hint=hint, lines=lines)
     rows.record(key)
     if edit:

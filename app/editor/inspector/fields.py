@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from ....nodes import Plain, Value
 from ...errors import UsageError
 from ..theme.palette import Palette
 from .numbers import Drag, typed
+
+if TYPE_CHECKING:
+    from ..editor import Rectangle
 
 
 @dataclass(frozen=True)
@@ -62,6 +66,8 @@ class Fields:
     """The fields of one panel: at most one is dragged and at most one typed in."""
 
     palette: Palette
+    places: dict[str, Rectangle] = field(default_factory=dict[str, "Rectangle"])
+    """The editor's: where things were drawn."""
     typing: Typing | None = None
     drag: Drag | None = None
     drag_id: str = ""

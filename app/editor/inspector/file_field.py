@@ -12,12 +12,12 @@ from imgui_bundle import imgui
 from ....nodes import Value
 from ...media import ImageInfo
 from ..dialogs import Browse
-from ..panels.textures import Textures
-from .choice_field import draw_arrow
-from .drawing import item_rect, place, write
+from ..toolkit.fields import draw_arrow
+from ..toolkit.places import item_rect, place, union
+from ..toolkit.textures import Textures
+from ..toolkit.words import tip, write
 from .fields import Edit, Fields
 from .layers import HEIGHT, WIDTH, Layers, described
-from .rows import union
 from .text_field import text_field
 
 if TYPE_CHECKING:
@@ -49,7 +49,7 @@ class FileField:
             elide_left=True,
         )
         first = item_rect()
-        rows.tooltip(str(self._full(rows, value)) if value else "")
+        tip(str(self._full(rows, value)) if value else "")
         imgui.same_line(0.0, rows.gap * 0.5)
         if rows.icon(icons.ICON_FA_FOLDER_OPEN, f"browse {key}", "Choose a file"):
             editor = rows.editor
@@ -87,7 +87,7 @@ class FileField:
         opened = imgui.begin_combo(f"##{key}", value or FIRST, flags)
         imgui.pop_style_color()
         first = item_rect()
-        draw_arrow(first, rows.palette.dim)
+        draw_arrow(rows.palette, first)
         if opened:
             if imgui.selectable(FIRST, not value)[0]:
                 found = Edit("")

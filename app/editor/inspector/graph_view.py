@@ -10,9 +10,10 @@ from ...graph import Port, Unknown, signature
 from ...graph.names import fresh_name
 from ..edits.elements import entry
 from ..theme.style import ui_scale
+from ..toolkit.places import item_rect
+from ..toolkit.words import tip
 from .color_field import color_field
 from .colors import decode, encode
-from .drawing import item_rect
 from .end_view import draw_text
 from .fields import Fields
 from .heading import faults, heading
@@ -84,13 +85,13 @@ class GraphView:
     def _size(self, rows: Rows) -> None:
         session = rows.editor.session
         size = session.graph.settings.size
-        rows.name("size", "canvas", tip="The size of what is made from nothing; automatic is that of the first picture")
+        rows.name("size", "canvas", doc="The size of what is made from nothing; automatic is that of the first picture")
         width, side = rows.field(), imgui.get_frame_height()
         if size is None:
             if imgui.button("Automatic##size", (width, 0.0)):
                 rows.act(lambda: session.set_size(FULL_HD))
             rows.record("size")
-            rows.tooltip("The size of the first picture that is read; click to set one")
+            tip("The size of the first picture that is read; click to set one")
             return
         imgui.begin_group()
         edit = row_of_numbers(
@@ -159,7 +160,7 @@ class GraphView:
             imgui.push_style_color(imgui.Col_.text, imgui.get_color_u32((*rows.palette.dim, 1.0)))
             opened = imgui.tree_node(f"{target}##{key}")
             imgui.pop_style_color()
-            rows.tooltip("Name, label and description of the control")
+            tip("Name, label and description of the control")
             rows.editor.places[f"more {key}"] = item_rect()
             if opened:
                 inner = rows.inset()

@@ -13,9 +13,9 @@ from ....nodes import Node, Value
 from ...graph import Group, Item
 from ..theme.palette import RGB
 from ..theme.style import EM, u32, ui_scale
-from .drawing import item_rect, place, write
+from ..toolkit.places import item_rect, place
+from ..toolkit.words import font, tip, write
 from .fields import Fields
-from .rows import font
 from .text_field import text_field
 
 if TYPE_CHECKING:
@@ -42,9 +42,9 @@ def heading(rows: Rows, kind: str, color: RGB, buttons: Callable[[], object] | N
         imgui.pop_style_var()
 
 
-def name_field(rows: Rows, fields: Fields, key: str, name: str, then: Callable[[str], object], tip: str = "") -> None:
+def name_field(rows: Rows, fields: Fields, key: str, name: str, then: Callable[[str], object], doc: str = "") -> None:
     """The editable name of an element."""
-    rows.name(f"{key} name", "name", tip=tip)
+    rows.name(f"{key} name", "name", doc=doc)
     edit = text_field(fields, f"{key} name", name, _NAME, rows.field())
     rows.record(f"{key} name")
     if edit:
@@ -59,7 +59,7 @@ def explanation(rows: Rows, doc: str, open: bool) -> bool:
     text = doc if open else f"{first} {icons.ICON_FA_ELLIPSIS}" if rest.strip() else first
     rows.note(_flowing(text))
     if rest.strip():
-        rows.tooltip("" if open else _flowing(doc))
+        tip("" if open else _flowing(doc))
         if imgui.is_item_hovered():
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
         if imgui.is_item_clicked():
@@ -72,12 +72,13 @@ def faults(rows: Rows, key: str) -> None:
     """What is wrong with an element: what the graph says, and what happened while rendering."""
     editor = rows.editor
     path = "/".join((*editor.session.place, key))
-    sentences = [*editor.session.problems.get(key, ())]
+    known = editor.session.problems.get(key, ())
+    for problem in known:
+        color = rows.palette.error if problem.severity == "error" else rows.palette.warning
+        rows.note(problem.sentence, color, icon=icons.ICON_FA_TRIANGLE_EXCLAMATION)
     rendered = editor.preview.faults.get(path, "")
-    if rendered and rendered not in sentences:
-        sentences.append(rendered)
-    for sentence in sentences:
-        rows.note(sentence, rows.palette.error, icon=icons.ICON_FA_TRIANGLE_EXCLAMATION)
+    if rendered and all(rendered != problem.sentence for problem in known):
+        rows.note(rendered, rows.palette.error, icon=icons.ICON_FA_TRIANGLE_EXCLAMATION)
 
 
 def title_of(item: Item) -> str:

@@ -11,8 +11,9 @@ from imgui_bundle import imgui
 
 from ....nodes import Socket
 from ...graph import Group, Item, Port, Unknown, signature
+from ..toolkit.places import item_rect
+from ..toolkit.words import tip
 from .applying import common
-from .drawing import item_rect
 from .fields import Fields
 from .heading import doc_of, explanation, faults, heading, name_field, title_of
 from .value_rows import ValueRows, link_chip
@@ -89,36 +90,36 @@ class NodeView:
     def _mute(self, rows: Rows, ids: tuple[str, ...]) -> None:
         session = rows.editor.session
         muted = session.graph.muted.issuperset(ids)
-        tip = "Muted: it passes its first input through. Click to let it work again" if muted else "Mute"
+        doc = "Muted: it passes its first input through. Click to let it work again" if muted else "Mute"
         glyph = icons.ICON_FA_EYE_SLASH if muted else icons.ICON_FA_POWER_OFF
-        if rows.icon(glyph, f"mute {ids[0]}", tip, lit=muted):
+        if rows.icon(glyph, f"mute {ids[0]}", doc, lit=muted):
             rows.act(session.mute)
 
     def _group(self, rows: Rows, id: str, item: Group) -> None:
         editor, half = rows.editor, (rows.width - rows.gap) / 2
         if item.path:
-            rows.name(f"{id} path", "file", tip="The graph file that this group comes from")
+            rows.name(f"{id} path", "file", doc="The graph file that this group comes from")
             rows.chip(PurePath(item.path).name, f"{id} path", rows.field(), rows.palette.good, item.path)
         local = f"{icons.ICON_FA_HOUSE}  Make Local"
         beside = imgui.calc_text_size(local).x + 2 * imgui.get_style().frame_padding.x <= half
         width = half if item.path and beside else rows.width
         if imgui.button(f"{icons.ICON_FA_RIGHT_TO_BRACKET}  Enter##{id}", (width, 0.0)):
             rows.act(lambda: editor.session.enter(id))
-        rows.tooltip("Show what is in the group")
+        tip("Show what is in the group")
         editor.places[f"button enter {id}"] = item_rect()
         if item.path:
             if beside:
                 imgui.same_line(0.0, rows.gap)
             if imgui.button(f"{local}##{id}", (width, 0.0)):
                 rows.act(lambda: editor.session.make_local(id))
-            rows.tooltip("Make it part of this document, so that it can be changed here")
+            tip("Make it part of this document, so that it can be changed here")
             editor.places[f"button local {id}"] = item_rect()
 
 
 def _input(rows: Rows, port: Port, socket: Socket) -> None:
     """A socket: what is linked to it, or what it does without a link."""
-    tip = "\n".join(part for part in (socket.doc, f"{socket.kind}, {socket.channels} channels") if part)
-    rows.name(str(port), port.socket, tip=tip, color=rows.palette.kinds[socket.kind])
+    doc = "\n".join(part for part in (socket.doc, f"{socket.kind}, {socket.channels} channels") if part)
+    rows.name(str(port), port.socket, doc=doc, color=rows.palette.kinds[socket.kind])
     source = rows.editor.session.linked(port)
     width = rows.field()
     if source is not None:

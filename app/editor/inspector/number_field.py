@@ -8,7 +8,9 @@ from imgui_bundle import imgui
 
 from ....nodes import Plain, Value
 from ..theme.style import mix, u32, ui_scale
-from .drawing import Rect, background, place, write
+from ..toolkit.fields import background
+from ..toolkit.places import Rect, place
+from ..toolkit.words import write
 from .fields import Edit, Fields
 from .numbers import SUFFIX, Drag, bar, editable, limited, shortened, shown, step
 from .text_entry import text_entry
@@ -89,7 +91,7 @@ def _draw(
     filled = None if mixed else bar(value, declaration)
     if filled and filled[1] > filled[0]:
         left, right = (rect[0] + (rect[2] - rect[0]) * part for part in filled)
-        color = mix(palette.field, palette.accent, 0.6 if active else 0.45 if hovered else 0.35)
+        color = mix(palette.fill, palette.accent, 0.5 if active else 0.25 if hovered else 0.0)
         lines.push_clip_rect((left, rect[1]), (max(right, left + 1.0), rect[3]), True)
         lines.add_rect_filled(rect[:2], rect[2:], u32(color), rounding)
         lines.pop_clip_rect()

@@ -9,9 +9,9 @@ from imgui_bundle import imgui
 
 from ....nodes import Plain, Value
 from ..theme.style import u32, ui_scale
+from ..toolkit.places import Rect, place
 from .color_field import color_field
 from .colors import swatch
-from .drawing import Rect, place
 from .fields import Edit, Fields
 from .number_field import number_field
 from .points import RAMPS, added, changed, inverted, nearest, ramp_color, removed, split

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
-from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ..theme.palette import RGB
-from ..theme.style import EM, mix, u32, ui_scale, vec4
-from .drawing import Rect, item_rect, place, write
+from ..theme.style import mix, u32, ui_scale
+from ..toolkit.buttons import quiet
+from ..toolkit.places import item_rect, place
+from ..toolkit.words import SMALL, font, tip, wrapped, write
 
 if TYPE_CHECKING:
     from ..editor import Editor
@@ -52,7 +52,7 @@ class Rows:
         self.name_width = min(wanted, self.width * 0.48, 170.0 * scale)
         self.field_width = max(self.width - self.name_width - self.gap, 1.0)
 
-    def name(self, key: str, label: str, *, tip: str = "", changed: bool = False, color: RGB | None = None) -> None:
+    def name(self, key: str, label: str, *, doc: str = "", changed: bool = False, color: RGB | None = None) -> None:
         """The name of a row, as the last item; the field comes next, on the same line."""
         rect = place(self.name_width)
         imgui.invisible_button(f"##name {key}", (self.name_width, rect[3] - rect[1]))
@@ -62,12 +62,12 @@ class Rows:
             center = rect[0] + 3.0 * scale, (rect[1] + rect[3]) * 0.5
             imgui.get_window_draw_list().add_circle_filled(center, 2.5 * scale, u32(palette.accent))
         ink = palette.text if changed or hovered else palette.dim
-        box = (rect[0] + 9.0 * scale, rect[1], rect[2], rect[3])
-        width = write(box, label.replace("_", " "), ink, align=1.0)
+        right = rect[2] - 14.0 * scale if color else rect[2]
+        write((rect[0] + 9.0 * scale, rect[1], right, rect[3]), label.replace("_", " "), ink, align=1.0)
         if color:
-            dot = max(rect[2] - width - 9.0 * scale, rect[0] + 4.0 * scale)
-            imgui.get_window_draw_list().add_circle_filled((dot, (rect[1] + rect[3]) * 0.5), 4.0 * scale, u32(color))
-        self.tooltip(tip)
+            dot = rect[2] - 5.0 * scale, (rect[1] + rect[3]) * 0.5
+            imgui.get_window_draw_list().add_circle_filled(dot, 4.0 * scale, u32(color))
+        tip(doc)
 
     def field(self) -> float:
         """Go on to the field of the row; its width."""
@@ -82,18 +82,10 @@ class Rows:
         """Note where the field of a row is: the last item."""
         self.editor.places[f"field {key}"] = item_rect()
 
-    def tooltip(self, text: str) -> None:
-        """A tooltip of the last item, as many lines as it needs."""
-        if text and imgui.begin_item_tooltip():
-            imgui.push_text_wrap_pos(imgui.get_font_size() * 22)
-            imgui.text_unformatted(text)
-            imgui.pop_text_wrap_pos()
-            imgui.end_tooltip()
-
     def heading(self, text: str) -> None:
         """The title of a section."""
         imgui.spacing()
-        with font(self.editor, "bold", EM * 0.86):
+        with font(self.editor, "bold", SMALL):
             rect = place(self.width, imgui.get_text_line_height() * 1.3)
             imgui.dummy((self.width, rect[3] - rect[1]))
             used = write(rect, text, mix(self.palette.dim, self.palette.text, 0.35))
@@ -104,34 +96,19 @@ class Rows:
 
     def note(self, text: str, color: RGB | None = None, *, icon: str = "") -> None:
         """A sentence over the whole width."""
-        imgui.push_style_color(imgui.Col_.text, vec4(color or self.palette.dim))
-        imgui.text_wrapped(f"{icon}  {text}" if icon else text)
-        imgui.pop_style_color()
+        wrapped(color or self.palette.dim, f"{icon}  {text}" if icon else text)
 
     def field_note(self, text: str, color: RGB | None = None) -> None:
         """A sentence below a field."""
         self.indent()
-        with font(self.editor, "text", EM * 0.86):
-            imgui.push_text_wrap_pos(0.0)
-            imgui.text_colored(vec4(color or self.palette.dim), text)
-            imgui.pop_text_wrap_pos()
+        with font(self.editor, "text", SMALL):
+            wrapped(color or self.palette.dim, text)
 
-    def icon(self, glyph: str, key: str, tip: str, *, lit: bool = False, enabled: bool = True) -> bool:
+    def icon(self, glyph: str, key: str, doc: str, *, lit: bool = False, enabled: bool = True) -> bool:
         """A quiet square button."""
-        side = imgui.get_frame_height()
-        imgui.push_style_color(imgui.Col_.button, vec4(self.palette.accent, 0.2 if lit else 0.0))
-        imgui.push_style_color(imgui.Col_.text, vec4(self.palette.accent if lit else self.palette.text))
-        imgui.push_style_var(imgui.StyleVar_.frame_padding, (0.0, imgui.get_style().frame_padding.y))
-        imgui.begin_disabled(not enabled)
-        pressed = imgui.button(f"{glyph}##{key}", (side, side))
-        imgui.end_disabled()
-        imgui.pop_style_var()
-        imgui.pop_style_color(2)
-        self.editor.places[f"button {key}"] = item_rect()
-        self.tooltip(tip)
-        return pressed
+        return quiet(self.editor, glyph, f"button {key}", doc, lit=lit, enabled=enabled)
 
-    def chip(self, text: str, key: str, width: float, color: RGB, tip: str) -> bool:
+    def chip(self, text: str, key: str, width: float, color: RGB, doc: str) -> bool:
         """A link or the like, as a button cut to a width."""
         rect = place(width)
         pressed = imgui.invisible_button(f"##chip {key}", (rect[2] - rect[0], rect[3] - rect[1]))
@@ -140,30 +117,12 @@ class Rows:
         lines.add_rect_filled(rect[:2], rect[2:], u32(fill), imgui.get_style().frame_rounding)
         write((rect[0] + pad, rect[1], rect[2] - pad, rect[3]), text, self.palette.text)
         self.editor.places[f"chip {key}"] = rect
-        self.tooltip(tip)
+        tip(doc)
         return pressed
 
-    def wide_button(self, label: str, key: str, tip: str = "") -> bool:
+    def wide_button(self, label: str, key: str, doc: str = "") -> bool:
         """A button over the whole width."""
         pressed = imgui.button(f"{label}##{key}", (self.width, 0.0))
         self.editor.places[f"button {key}"] = item_rect()
-        self.tooltip(tip)
+        tip(doc)
         return pressed
-
-
-@contextmanager
-def font(editor: Editor, name: str, size: float = EM) -> Iterator[None]:
-    """Text in another font; `size` in pixels at scale 1."""
-    imgui.push_font(getattr(editor.fonts, name, None), size)
-    try:
-        yield
-    finally:
-        imgui.pop_font()
-
-
-ARROW = icons.ICON_FA_ARROW_LEFT
-
-
-def union(first: Rect, second: Rect) -> Rect:
-    """The rectangle around two."""
-    return min(first[0], second[0]), min(first[1], second[1]), max(first[2], second[2]), max(first[3], second[3])

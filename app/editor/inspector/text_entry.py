@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
-from .drawing import item_rect, note_below
+from ..toolkit.places import item_rect
+from ..toolkit.words import note_below
 from .fields import Edit, Fields, Typing
 from .numbers import shown, stepped
 

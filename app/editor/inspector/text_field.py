@@ -5,7 +5,9 @@ from __future__ import annotations
 from imgui_bundle import imgui
 
 from ....nodes import Plain, Value
-from .drawing import background, place, write
+from ..toolkit.fields import background
+from ..toolkit.places import place
+from ..toolkit.words import write
 from .fields import Edit, Fields
 from .number_field import NO_VALUE
 from .text_entry import text_entry

@@ -11,8 +11,8 @@ from imgui_bundle import imgui
 
 from ....nodes import Plain, Value
 from ...graph import INPUTS, Graph, Port, signature
+from ..toolkit.places import item_rect
 from .applying import Ports, apply, as_text, default_of, from_text, reset
-from .drawing import item_rect
 from .fields import Edit, Fields
 from .file_field import FileField
 from .numbers import described, shown
@@ -42,7 +42,7 @@ class ValueRows:
         value, source = graph.value(port), session.linked(port)
         changed = any(graph.value(one) != default_of(graph, one) for one in ports)
         control = session.control_of(port) if len(ports) == 1 else None
-        rows.name(key, label or port.socket, tip=_tip(declaration, control), changed=changed)
+        rows.name(key, label or port.socket, doc=_tip(declaration, control), changed=changed)
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left):
             rows.act(lambda: reset(session, ports))
         menu = imgui.is_item_hovered() and imgui.is_mouse_released(imgui.MouseButton_.right)

@@ -10,7 +10,9 @@ from imgui_bundle import imgui
 
 from ..editor import Editor
 from ..theme.style import ui_scale
-from .drawing import backdrop, dialog, dim, escaped, font, icon_button, main_button, wrapped
+from ..toolkit.buttons import main_button, quiet
+from ..toolkit.dialogs import backdrop, dialog, escaped
+from ..toolkit.words import dim, font, wrapped
 
 _LIBRARIES = ("moderngl", "imgui-bundle", "OpenImageIO", "opencolorio", "numpy")
 
@@ -23,7 +25,7 @@ class About:
         if "about" not in editor.dialogs.open:
             return
         close = backdrop(editor, "about")
-        with dialog(editor, "About", (440, 0), bare=True):
+        with dialog(editor, "About", (440, 0)):
             with font(editor, "bold", 26.0):
                 imgui.text_unformatted("Halation")
             wrapped(editor.palette.dim, metadata.metadata("halation")["Summary"])
@@ -40,7 +42,7 @@ class About:
                     imgui.text_wrapped(version)
                 imgui.end_table()
             imgui.dummy((0, 6 * ui_scale()))
-            if icon_button(editor, icons.ICON_FA_COPY, "copy versions", "Copy for a report", label="Copy"):
+            if quiet(editor, f"{icons.ICON_FA_COPY}  Copy", "copy versions", "Copy for a report"):
                 editor.clipboard.put("\n".join(f"{name}: {version}" for name, version in lines))
             imgui.same_line()
             width = 96 * ui_scale()

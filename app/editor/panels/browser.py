@@ -10,20 +10,11 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ..dialogs import Question
 from ..editor import Editor
 from ..theme.style import ui_scale
+from ..toolkit.buttons import main_button, quiet, right_aligned
+from ..toolkit.dialogs import backdrop, dialog, escaped
+from ..toolkit.places import record
+from ..toolkit.words import dim, elided, font, tip, wrapped
 from .browsing import Browsing, begun
-from .drawing import (
-    backdrop,
-    dialog,
-    dim,
-    elided,
-    escaped,
-    font,
-    icon_button,
-    main_button,
-    record,
-    right_aligned,
-    wrapped,
-)
 from .file_list import FileGrid, FileTable
 from .listing import make_folder
 from .places import PlaceKind, completed
@@ -63,7 +54,7 @@ class FileBrowser:
         now = self._now
         now.poll()
         backdrop(editor, "files")
-        with dialog(editor, "Files", (940, 620), bare=True):
+        with dialog(editor, "Files", (940, 620)):
             self._top(editor, now)
             foot = 2 * imgui.get_frame_height_with_spacing() + 4 * ui_scale()
             height = imgui.get_content_region_avail().y - foot
@@ -80,7 +71,7 @@ class FileBrowser:
     def _top(self, editor: Editor, now: Browsing) -> None:
         with font(editor, "bold", 18.0):
             imgui.text_unformatted(now.browse.title)
-        if icon_button(editor, icons.ICON_FA_ARROW_UP, "folder up", "The folder around this one (Backspace)"):
+        if quiet(editor, icons.ICON_FA_ARROW_UP, "folder up", "The folder around this one (Backspace)"):
             self._go(now, now.folder.parent)
         imgui.same_line()
         shown = (icons.ICON_FA_FOLDER_PLUS, icons.ICON_FA_EYE, icons.ICON_FA_LIST)
@@ -92,15 +83,15 @@ class FileBrowser:
         if entered:
             self._typed(now)
         imgui.same_line()
-        if icon_button(editor, icons.ICON_FA_FOLDER_PLUS, "new folder", "New folder"):
+        if quiet(editor, icons.ICON_FA_FOLDER_PLUS, "new folder", "New folder"):
             self._naming, self._new, self._focus = True, "", "folder"
         imgui.same_line()
         eye = icons.ICON_FA_EYE if now.hidden else icons.ICON_FA_EYE_SLASH
-        if icon_button(editor, eye, "hidden files", "Hide hidden files" if now.hidden else "Show hidden files"):
+        if quiet(editor, eye, "hidden files", "Hide hidden files" if now.hidden else "Show hidden files"):
             now.hidden = not now.hidden
         imgui.same_line()
         other = icons.ICON_FA_LIST if self._as_grid else icons.ICON_FA_TABLE_CELLS_LARGE
-        if icon_button(editor, other, "list or grid", "As a list" if self._as_grid else "As pictures"):
+        if quiet(editor, other, "list or grid", "As a list" if self._as_grid else "As pictures"):
             self._as_grid = not self._as_grid
 
     def _typed(self, now: Browsing) -> None:
@@ -123,7 +114,7 @@ class FileBrowser:
             label = f"{PLACE_ICONS[place.kind]}  {elided(place.title, room)}##{index}"
             if imgui.selectable(label, place.path == now.folder)[0]:
                 self._go(now, place.path)
-            imgui.set_item_tooltip(str(place.path))
+            tip(str(place.path))
             record(editor, f"place {place.title}")
         imgui.end_child()
 

@@ -8,7 +8,9 @@ from ..action import Action
 from ..editor import Editor
 from ..keys import shown
 from ..theme.style import u32, ui_scale, vec4
-from .drawing import backdrop, dialog, dim, escaped, font, main_button
+from ..toolkit.buttons import main_button
+from ..toolkit.dialogs import backdrop, dialog, escaped
+from ..toolkit.words import dim, font
 from .shortcut_groups import MOUSE, columns, condensed, groups
 
 _WIDTH = 1340.0
@@ -22,7 +24,7 @@ class CheatSheet:
         if "shortcuts" not in editor.dialogs.open:
             return
         close = backdrop(editor, "shortcuts")
-        with dialog(editor, "Shortcuts", (_WIDTH, 0), bare=True):
+        with dialog(editor, "Shortcuts", (_WIDTH, 0)):
             with font(editor, "bold", 20.0):
                 imgui.text_unformatted("Shortcuts")
             blocks = [*((title, _lines(editor, actions)) for title, actions in groups(editor)), ("Mouse", MOUSE)]

@@ -9,8 +9,10 @@ from imgui_bundle import ImVec2, imgui
 from ..editor import Editor
 from ..keys import shown
 from ..theme.style import ui_scale, vec4
+from ..toolkit.dialogs import backdrop, dialog, escaped
+from ..toolkit.places import record
+from ..toolkit.words import dim, font
 from .commands import Command, commands, ranked
-from .drawing import backdrop, dialog, dim, escaped, font, record
 from .fuzzy import Match, runs
 
 _ROWS = 12
@@ -36,7 +38,7 @@ class CommandPalette:
         found = ranked(self._query, self._offered, self._recent)
         close = backdrop(editor, "palette", 0.3)
         done: Command | None = None
-        with dialog(editor, "Command palette", (620, 0), top=0.18, bare=True):
+        with dialog(editor, "Command palette", (620, 0), top=0.18):
             self._field(editor)
             moved = self._steer(len(found))
             entered = any(imgui.is_key_pressed(key, False) for key in (imgui.Key.enter, imgui.Key.keypad_enter))

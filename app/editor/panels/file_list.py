@@ -9,11 +9,13 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from ..editor import Editor
 from ..theme.style import u32, ui_scale
+from ..toolkit.buttons import outline
+from ..toolkit.places import record
+from ..toolkit.textures import Textures, fitted
+from ..toolkit.words import dim, elided, tip
 from .browsing import Browsing, size_text, time_text
-from .drawing import dim, elided, outline, record
 from .listing import Item, Order
 from .pictures import Pictures
-from .textures import Textures, fitted
 
 _ORDERS: tuple[Order, ...] = ("name", "size", "time")
 _CELL, _PICTURE = (168.0, 128.0), (152.0, 88.0)
@@ -118,9 +120,9 @@ class FileGrid:
         flags = int(imgui.SelectableFlags_.allow_double_click)
         clicked, _ = imgui.selectable("##cell", chosen, flags, size)
         record(editor, f"file {item.name}")
-        imgui.set_item_tooltip(f"{item.name}\n{size_text(item.size)}, {time_text(item.time)}")
+        tip(f"{item.name}\n{size_text(item.size)}, {time_text(item.time)}")
         if chosen:
-            outline(editor, palette.accent)
+            outline(palette.accent)
             if self.reveal:
                 imgui.internal.scroll_to_item()
                 self.reveal = False

@@ -28,9 +28,9 @@ def findings(editor: Editor) -> tuple[Finding, ...]:
 def _found(editor: Editor) -> Iterator[Finding]:
     """What the preview says about a node that the graph itself has a problem with is the same thing in other words."""
     inside = "/".join(editor.session.place)
-    for node, sentences in editor.session.problems.items():
-        for sentence in sentences:
-            yield Finding("error", "/".join(filter(None, (inside, node))), sentence)
+    for node, problems in editor.session.problems.items():
+        for problem in problems:
+            yield Finding(problem.severity, "/".join(filter(None, (inside, node))), problem.sentence)
     known = {"/".join(filter(None, (inside, node))) for node in editor.session.problems}
     for where, sentence in editor.preview.faults.items():
         if where not in known:

@@ -8,7 +8,8 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ..editor import Editor
 from ..theme.palette import RGB
 from ..theme.style import mix, u32, ui_scale, vec4
-from .drawing import nothing_here, record
+from ..toolkit.places import record
+from ..toolkit.words import nothing_here
 
 
 class HistoryPanel:

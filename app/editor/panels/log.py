@@ -10,7 +10,9 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ..editor import Editor
 from ..log import Entry, Level
 from ..theme.style import ui_scale, vec4
-from .drawing import ICONS, dim, font, icon_button, level_color, nothing_here, record, right_aligned, wrapped
+from ..toolkit.buttons import quiet, right_aligned
+from ..toolkit.places import record
+from ..toolkit.words import ICONS, dim, font, level_color, nothing_here, wrapped
 
 _LEVELS: tuple[tuple[Level, str], ...] = (("info", "All"), ("warning", "Warnings"), ("error", "Errors"))
 _ORDER: tuple[Level, ...] = ("info", "warning", "error")
@@ -55,11 +57,11 @@ class LogPanel:
             record(editor, f"log {level}")
             imgui.same_line(0, 2 * ui_scale())
         right_aligned(icons.ICON_FA_COPY, icons.ICON_FA_TRASH)
-        if icon_button(editor, icons.ICON_FA_COPY, "copy log", "Copy what is listed", enabled=bool(entries)):
+        if quiet(editor, icons.ICON_FA_COPY, "copy log", "Copy what is listed", enabled=bool(entries)):
             editor.clipboard.put("\n".join(_text(entry) for entry in entries))
         imgui.same_line()
         some = bool(editor.log.entries)
-        if icon_button(editor, icons.ICON_FA_TRASH, "clear log", "Forget all messages", enabled=some):
+        if quiet(editor, icons.ICON_FA_TRASH, "clear log", "Forget all messages", enabled=some):
             editor.log.entries.clear()
 
 
@@ -68,7 +70,7 @@ def _row(editor: Editor, index: int, entry: Entry) -> None:
     with font(editor, "mono", 14.0):
         dim(editor, strftime("%H:%M:%S", localtime(entry.at)))
     imgui.same_line(0, 8 * scale)
-    imgui.text_colored(vec4(level_color(editor, entry.level)), ICONS[entry.level])
+    imgui.text_colored(vec4(level_color(editor.palette, entry.level)), ICONS[entry.level])
     imgui.same_line(0, 6 * scale)
     imgui.begin_group()
     wrapped(editor.palette.text, entry.sentence)

@@ -10,7 +10,10 @@ from ..editor import Editor
 from ..services.preferences import MAX_SCALE, MIN_SCALE, Preferences
 from ..services.recovery import LONGEST
 from ..theme.style import ui_scale, vec4
-from .drawing import backdrop, dialog, dim, escaped, font, main_button, record, wrapped
+from ..toolkit.buttons import main_button
+from ..toolkit.dialogs import backdrop, dialog, escaped
+from ..toolkit.places import record
+from ..toolkit.words import dim, font, wrapped
 from .shortcut_editor import ShortcutEditor
 
 _SCALES = (0.0, 1.0, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0)
@@ -33,7 +36,7 @@ class PreferencesDialog:
             return
         listening = self._shortcuts.listening
         close = backdrop(editor, "preferences") and not listening
-        with dialog(editor, "Preferences", (720, 500), bare=True):
+        with dialog(editor, "Preferences", (720, 500)):
             height = imgui.get_content_region_avail().y - imgui.get_frame_height_with_spacing() - 6 * ui_scale()
             self._pages(editor, height)
             imgui.same_line(0, 16 * ui_scale())

@@ -7,7 +7,9 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from ..editor import Editor
 from ..theme.style import ui_scale, vec4
-from .drawing import ICONS, dim, font, icon_button, level_color, nothing_here, record, right_aligned, wrapped
+from ..toolkit.buttons import quiet, right_aligned
+from ..toolkit.places import record
+from ..toolkit.words import ICONS, dim, font, level_color, nothing_here, tip, wrapped
 from .findings import Finding, findings, show
 
 _COPY = f"{icons.ICON_FA_COPY} Copy"
@@ -27,7 +29,7 @@ class Problems:
         imgui.align_text_to_frame_padding()
         dim(editor, "1 problem" if len(found) == 1 else f"{len(found)} problems")
         right_aligned(_COPY)
-        if icon_button(editor, icons.ICON_FA_COPY, "copy problems", "Copy all as text", label="Copy"):
+        if quiet(editor, f"{icons.ICON_FA_COPY}  Copy", "copy problems", "Copy all as text"):
             editor.clipboard.put("\n".join(_text(finding) for finding in found))
         if imgui.begin_child("problems"):
             for index, finding in enumerate(found):
@@ -48,14 +50,14 @@ class Problems:
             editor.attempt(lambda: show(editor, finding.where))
         record(editor, f"problem {index}")
         if finding.where:
-            imgui.set_item_tooltip("Click to show the node")
+            tip("Click to show the node")
         if imgui.begin_popup_context_item("menu"):
             if imgui.menu_item(_COPY, "", False)[0]:
                 editor.clipboard.put(_text(finding))
             imgui.end_popup()
         after = imgui.get_cursor_pos()
         imgui.set_cursor_pos(ImVec2(start.x + 4 * scale, start.y + style.frame_padding.y))
-        imgui.text_colored(vec4(level_color(editor, finding.level)), ICONS[finding.level])
+        imgui.text_colored(vec4(level_color(editor.palette, finding.level)), ICONS[finding.level])
         imgui.set_cursor_pos(ImVec2(start.x + indent, start.y + style.frame_padding.y))
         imgui.begin_group()
         imgui.push_text_wrap_pos(start.x + indent + room)
@@ -77,7 +79,7 @@ def _detail(editor: Editor, detail: str, name: str) -> None:
     record(editor, name)
     if not opened:
         return
-    if icon_button(editor, icons.ICON_FA_COPY, f"copy {name}", "Copy the details", label="Copy"):
+    if quiet(editor, f"{icons.ICON_FA_COPY}  Copy", f"copy {name}", "Copy the details"):
         editor.clipboard.put(detail)
     with font(editor, "mono", 13.0):
         wrapped(editor.palette.dim, detail.rstrip())

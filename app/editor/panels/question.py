@@ -7,7 +7,10 @@ from imgui_bundle import imgui
 from ..dialogs import Question
 from ..editor import Editor
 from ..theme.style import ui_scale
-from .drawing import backdrop, dialog, escaped, font, main_button, record
+from ..toolkit.buttons import main_button
+from ..toolkit.dialogs import backdrop, dialog, escaped
+from ..toolkit.places import record
+from ..toolkit.words import font
 
 
 class QuestionDialog:
@@ -20,7 +23,7 @@ class QuestionDialog:
             return
         backdrop(editor, "question")
         chosen: int | None = None
-        with dialog(editor, "Question", (460, 0), bare=True, top=0.4):
+        with dialog(editor, "Question", (460, 0), top=0.4):
             with font(editor, "bold", 18.0):
                 imgui.text_unformatted(question.title)
             imgui.dummy((0, 2 * ui_scale()))

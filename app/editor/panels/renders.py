@@ -13,7 +13,9 @@ from ..dialogs import Browse
 from ..editor import Editor
 from ..services.exporting import Export
 from ..theme.style import ui_scale, vec4
-from .drawing import dim, elided, font, icon_button, main_button, nothing_here, record, right_aligned, wrapped
+from ..toolkit.buttons import main_button, quiet, right_aligned
+from ..toolkit.places import record
+from ..toolkit.words import dim, elided, font, nothing_here, tip, wrapped
 from .export_form import DEPTHS, FORMATS, VIEWED, Form, Sizing, state_text, title
 from .opening_folders import show_folder
 
@@ -62,10 +64,10 @@ class Renders:
             edited, path = imgui.input_text("##file", path)
             if edited:
                 form.files[name] = path
-            imgui.set_item_tooltip(path)
+            tip(path)
             record(editor, f"render file {name}")
             imgui.same_line(0, 4 * ui_scale())
-            if icon_button(editor, icons.ICON_FA_FOLDER_OPEN, f"choose {name}", "Choose where to write"):
+            if quiet(editor, icons.ICON_FA_FOLDER_OPEN, f"choose {name}", "Choose where to write"):
                 chosen = partial(self._chosen, name)
                 file = form.file(editor, name)
                 editor.dialogs.browse = Browse(f"Render {name} to", "export", chosen, saving=True, name=file.name)
@@ -111,8 +113,8 @@ class Renders:
         imgui.align_text_to_frame_padding()
         dim(editor, f"{len(exports) - ended} running, {ended} ended")
         right_aligned(f"{icons.ICON_FA_TRASH} Clear")
-        tip = "Forget what has ended"
-        if icon_button(editor, icons.ICON_FA_TRASH, "clear renders", tip, enabled=ended > 0, label="Clear"):
+        doc = "Forget what has ended"
+        if quiet(editor, f"{icons.ICON_FA_TRASH}  Clear", "clear renders", doc, enabled=ended > 0):
             editor.exports.clear()
         for index, export in enumerate(reversed(editor.exports.all)):
             imgui.push_id(index)
@@ -126,16 +128,16 @@ def _export_row(editor: Editor, index: int, export: Export) -> None:
     imgui.align_text_to_frame_padding()
     with font(editor, "bold"):
         imgui.text_unformatted(elided(title(export), imgui.get_content_region_avail().x - 76 * ui_scale()))
-    imgui.set_item_tooltip("\n".join(str(path) for _, path in export.destinations))
+    tip("\n".join(str(path) for _, path in export.destinations))
     right_aligned(*buttons)
     if export.state == "running":
-        if icon_button(editor, icons.ICON_FA_XMARK, f"cancel {index}", "Cancel"):
+        if quiet(editor, icons.ICON_FA_XMARK, f"cancel {index}", "Cancel"):
             export.cancel()
     else:
-        if icon_button(editor, icons.ICON_FA_COPY, f"copy path {index}", "Copy the path"):
+        if quiet(editor, icons.ICON_FA_COPY, f"copy path {index}", "Copy the path"):
             editor.clipboard.put(str(export.destinations[0][1]))
         imgui.same_line()
-        if icon_button(editor, icons.ICON_FA_FOLDER_OPEN, f"open folder {index}", f"Show {folder}"):
+        if quiet(editor, icons.ICON_FA_FOLDER_OPEN, f"open folder {index}", f"Show {folder}"):
             _open(editor, folder)
     if export.state == "running":
         fraction = export.done / export.total if export.total else 0.0

@@ -9,7 +9,9 @@ from ..action import Action
 from ..editor import Editor
 from ..keys import pressed, shown
 from ..theme.style import ui_scale, vec4
-from .drawing import dim, icon_button, record, right_aligned, wrapped
+from ..toolkit.buttons import quiet, right_aligned
+from ..toolkit.places import record
+from ..toolkit.words import dim, tip, wrapped
 from .fuzzy import match
 from .shortcut_groups import groups
 from .taking_over import assigned, reset, taken_over
@@ -37,7 +39,7 @@ class ShortcutEditor:
         record(editor, "shortcut search")
         right_aligned(label)
         own, icon = bool(editor.store.now.shortcuts), icons.ICON_FA_ROTATE_LEFT
-        if icon_button(editor, icon, "reset shortcuts", "As it came", enabled=own, label="Reset all"):
+        if quiet(editor, f"{icon}  Reset all", "reset shortcuts", "As it came", enabled=own):
             editor.attempt(lambda: editor.store.change(shortcuts={}))
         self._listen(editor)
         self._ask(editor)
@@ -62,7 +64,7 @@ class ShortcutEditor:
         imgui.align_text_to_frame_padding()
         imgui.text_unformatted(action.label.removesuffix("..."))
         if action.doc:
-            imgui.set_item_tooltip(action.doc)
+            tip(action.doc)
         width = 170 * scale
         imgui.same_line(left + room - width - 34 * scale)
         waiting = self._waiting == action.id
@@ -76,7 +78,7 @@ class ShortcutEditor:
         record(editor, f"shortcut {action.id}")
         if changed:
             imgui.same_line(0, 4 * scale)
-            if icon_button(editor, icons.ICON_FA_ROTATE_LEFT, f"reset {action.id}", "As it came"):
+            if quiet(editor, icons.ICON_FA_ROTATE_LEFT, f"reset {action.id}", "As it came"):
                 editor.attempt(lambda: reset(editor, action.id))
 
     def _listen(self, editor: Editor) -> None:

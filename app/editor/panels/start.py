@@ -16,8 +16,11 @@ from ..keys import chord
 from ..services.preferences import Recent
 from ..services.recovery import Recovered
 from ..theme.style import mix, u32, ui_scale, vec4
-from .drawing import backdrop, dialog, dim, elided, escaped, font, icon_button, main_button, outline, record, wrapped
-from .textures import Textures
+from ..toolkit.buttons import main_button, outline, quiet
+from ..toolkit.dialogs import backdrop, dialog, escaped
+from ..toolkit.places import record
+from ..toolkit.textures import Textures
+from ..toolkit.words import dim, elided, font, tip, wrapped
 
 _CARD, _PICTURE_HEIGHT = 200.0, 112.0
 
@@ -53,7 +56,7 @@ class StartScreen:
             self._there = {recent.path: recent.exists for recent in editor.store.now.recent}
         covered = editor.dialogs.browse is not None or editor.dialogs.question is not None
         close = backdrop(editor, "start") and not covered
-        with dialog(editor, "Start", (1180, 560), bare=True):
+        with dialog(editor, "Start", (1180, 560)):
             height = imgui.get_content_region_avail().y
             imgui.begin_child("left", ImVec2(290 * ui_scale(), height), imgui.ChildFlags_.nav_flattened.value)
             self._begin(editor)
@@ -97,7 +100,7 @@ class StartScreen:
             imgui.text_unformatted("First time here?")
         for line in HINTS:
             wrapped(editor.palette.dim, line)
-        if icon_button(editor, icons.ICON_FA_CHECK, "hint seen", "Show this no more", label="Got it"):
+        if quiet(editor, f"{icons.ICON_FA_CHECK}  Got it", "hint seen", "Show this no more"):
             editor.attempt(lambda: editor.store.change(hint_seen=True))
 
     def _recent(self, editor: Editor) -> None:
@@ -119,7 +122,7 @@ class StartScreen:
         imgui.set_next_item_allow_overlap()
         clicked, _ = imgui.selectable("##recent", False, 0, ImVec2(0, 2 * line + 4 * scale))
         record(editor, f"recent {index}")
-        imgui.set_item_tooltip(str(path) if there else f"{path}\nThis file is not there any more.")
+        tip(str(path) if there else f"{path}\nThis file is not there any more.")
         over = imgui.is_mouse_hovering_rect(imgui.get_item_rect_min(), imgui.get_item_rect_max())
         after = imgui.get_cursor_pos()
         imgui.set_cursor_pos(ImVec2(start.x + 4 * scale, start.y + scale))
@@ -129,7 +132,7 @@ class StartScreen:
         imgui.text_colored(vec4(editor.palette.dim if there else faint), elided(str(path.parent), room))
         if over:
             imgui.set_cursor_pos(ImVec2(start.x + room + 2 * scale, start.y + 4 * scale))
-            if icon_button(editor, icons.ICON_FA_XMARK, f"forget {index}", "Take it off this list"):
+            if quiet(editor, icons.ICON_FA_XMARK, f"forget {index}", "Take it off this list"):
                 editor.store.forget(recent.path)
                 clicked = False
         imgui.set_cursor_pos(after)
@@ -157,7 +160,7 @@ class StartScreen:
             record(editor, f"discard {index}")
             imgui.same_line()
             imgui.text_unformatted(elided(one.title, 200 * ui_scale()))
-            imgui.set_item_tooltip(str(one.path or "never saved"))
+            tip(str(one.path or "never saved"))
             imgui.same_line()
             dim(editor, elided(one.fault or f"{when}, {nodes}", imgui.get_content_region_avail().x))
         imgui.dummy(ImVec2(0, 6 * ui_scale()))
@@ -188,6 +191,6 @@ class StartScreen:
             lines.add_image_rounded(texture, low, corner, ImVec2(0, 0), ImVec2(1, 1), 0xFFFFFFFF, rounding)
         lines.add_text(ImVec2(low.x + 8 * scale, corner.y + 5 * scale), u32(palette.text), name)
         if imgui.is_item_hovered():
-            outline(editor, palette.accent)
+            outline(palette.accent)
         if clicked:
             open_preset(editor, path)

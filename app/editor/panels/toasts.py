@@ -9,7 +9,8 @@ from imgui_bundle import ImVec2, imgui
 from ..editor import Editor
 from ..log import TOAST_SECONDS, Entry
 from ..theme.style import ui_scale, vec4
-from .drawing import FIXED, ICONS, level_color, wrapped
+from ..toolkit.dialogs import FIXED
+from ..toolkit.words import ICONS, level_color, wrapped
 
 _WIDTH, _GAP, _BELOW, _MOST, _FADE = 360.0, 8.0, 34.0, 5, 0.6
 _TOAST = (
@@ -41,10 +42,11 @@ class Toasts:
         imgui.set_next_window_pos(corner, imgui.Cond_.always.value, ImVec2(1, 1))
         imgui.set_next_window_size_constraints(ImVec2(_WIDTH * scale, 0), ImVec2(_WIDTH * scale, 400 * scale))
         imgui.push_style_var(imgui.StyleVar_.alpha, opacity)
+        imgui.push_style_var(imgui.StyleVar_.window_rounding, 6.0 * scale)
         imgui.push_style_color(imgui.Col_.window_bg, vec4(editor.palette.raised))
         imgui.begin(f"##toast {entry.at}", None, _TOAST)
         imgui.internal.bring_window_to_display_front(imgui.internal.get_current_window())
-        imgui.text_colored(vec4(level_color(editor, entry.level)), ICONS[entry.level])
+        imgui.text_colored(vec4(level_color(editor.palette, entry.level)), ICONS[entry.level])
         imgui.same_line()
         imgui.push_text_wrap_pos((_WIDTH - 12) * scale)
         wrapped(editor.palette.text, entry.sentence)
@@ -57,5 +59,5 @@ class Toasts:
         editor.places[f"toast {index}"] = (low.x, low.y, low.x + extent.x, low.y + extent.y)
         imgui.end()
         imgui.pop_style_color()
-        imgui.pop_style_var()
+        imgui.pop_style_var(2)
         return extent.y

@@ -125,6 +125,7 @@ class Preview:
             if before.equals(wish):
                 return
             wish.world = before.world + (not before.same_world(wish))
+            wish.known = before.known
         self._wish, self._seen = wish, graph
         for name in self._pictures.keys() - wish.ports.keys():
             self._pictures.pop(name).lease.close()
@@ -187,7 +188,12 @@ class Preview:
 
     def thumbnail(self, path: str) -> tuple[Handle, bool] | None:
         """The last small picture of a node, and whether it is what the node shows now."""
-        return self._thumbnails.find(path, self._wish and self._wish.mark(path))
+        return self._thumbnails.find(path, self._wish.mark) if self._wish else None
+
+    @property
+    def thumbnails(self) -> frozenset[str]:
+        """Paths of all nodes and inputs that have a small picture; the same object until that changes."""
+        return self._thumbnails.paths
 
     @property
     def busy(self) -> bool:

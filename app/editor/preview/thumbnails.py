@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -51,6 +51,8 @@ class Thumbnails:
         self._probe = Probe(renderer.device)
         self._drawn: dict[str, _Drawn] = {}
         self._waiting: dict[str, Subject] = {}
+        self.paths: frozenset[str] = frozenset()
+        """Who has a picture; the same object until that changes."""
 
     @property
     def waiting(self) -> bool:
@@ -80,11 +82,13 @@ class Thumbnails:
         look = self._look(subject, source.texture, max(size[0] / width, size[1] / height))
         drawn = self._display.draw(f"thumbnail {subject.path}", size, source, None, look)
         self._drawn[subject.path] = _Drawn(drawn, subject.key, subject.mark)
+        if subject.path not in self.paths:
+            self.paths |= {subject.path}
 
-    def find(self, path: str, mark: object) -> tuple[Handle, bool] | None:
-        """The last picture of a node, and whether it is what the node shows now."""
+    def find(self, path: str, mark: Callable[[str], object]) -> tuple[Handle, bool] | None:
+        """The last picture of a node, and whether it is what the node shows now, which its `mark` says."""
         drawn = self._drawn.get(path)
-        return drawn and (drawn.texture, drawn.mark == mark)
+        return drawn and (drawn.texture, drawn.mark == mark(path))
 
     def clear(self) -> None:
         """Forget all of them."""
@@ -92,6 +96,7 @@ class Thumbnails:
             self._display.drop(f"thumbnail {path}")
         self._drawn.clear()
         self._waiting.clear()
+        self.paths = frozenset()
 
     def close(self) -> None:
         """Give everything back."""

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from ....nodes import Kind, Size
-from ...compiler import upstream_hashes
+from ...compiler import Upstream
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Port
 
@@ -28,6 +27,8 @@ class Wish:
     frame: int
     size: Size | None
     world: int = 0
+    known: Upstream | None = None
+    """What each node depends on, in this graph or in an earlier one."""
 
     def equals(self, other: Wish) -> bool:
         """True where the same pixels are wanted; layout does not matter."""
@@ -44,11 +45,9 @@ class Wish:
 
     def mark(self, path: str) -> object:
         """Something that changes when anything upstream of a node does."""
-        return self._hashes.get(path), self.world
-
-    @cached_property
-    def _hashes(self) -> Mapping[str, str]:
-        return upstream_hashes(self.graph)
+        if self.known is None or self.known.graph is not self.graph:
+            self.known = Upstream(self.graph, self.known)
+        return self.known.hashes.get(path), self.world
 
 
 def _logic(graph: Graph) -> tuple[Any, ...]:

@@ -134,7 +134,10 @@ class Store:
             with locked(self.file.with_suffix(".lock")):
                 self.now = self._together()
                 write_text(self.file, json.dumps(_tree(self.now), indent=2, sort_keys=True) + "\n")
-        except (OSError, OutputError) as fault:
+        except OSError as fault:
+            self._report(f"preferences cannot be kept in {self.file.parent} ({fault.strerror})")
+            return False
+        except OutputError as fault:
             self._report(f"preferences cannot be kept: {fault}")
             return False
         self._written = self.now
@@ -154,7 +157,7 @@ class Store:
             tree = json.loads(self.file.read_bytes())
             if not isinstance(tree, dict):
                 raise ValueError("it holds no object")
-        except FileNotFoundError:
+        except (FileNotFoundError, NotADirectoryError):
             return fallback
         except OSError as fault:
             self._report(f"{self.file}: the preferences cannot be read ({fault.strerror})")

@@ -114,6 +114,15 @@ class Watcher:
                 if not self._is_ours(key[1], one.content)
             )
 
+    def differs(self, path: Path) -> bool:
+        """True if the graph file holds something that nobody here has read, been told of, or written."""
+        key: _Key = ("graph", path)
+        with self._lock:
+            known, now = self._known.get(key), _content(key, _stamp(path))
+            if known is None or not now or now in self._expected.get(path, ()):
+                return False
+            return now != known.content or key in self._news
+
     def expect(self, path: Path) -> None:
         """What the file holds now is our own doing, and no news."""
         with self._lock:

@@ -73,6 +73,13 @@ class History:
             self._steps = [*self._steps, step][-MOST:]
         self.position = len(self._steps)
 
+    def abandon(self, merge: str) -> Snapshot | None:
+        """Forget the last step if it is that unfinished one; returns the document before it."""
+        if not merge or not self.can_undo or self.can_redo or self._steps[-1].merge != merge:
+            return None
+        self.position -= 1
+        return self._steps.pop().before
+
     def seal(self) -> None:
         """End merging; a step that came back to where it began is forgotten."""
         if not self.can_undo or self.can_redo or not self._steps[-1].merge:

@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 from ....nodes import Node, catalogue
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Problem, problems
+from ...graph.problems import rechecked
 from ..edits import elements, folding, layout, routes
 from ..edits.elements import Place
 from .history import History, Snapshot, Step
@@ -62,18 +63,18 @@ class State:
     @property
     def graph(self) -> Graph:
         """The graph at `place`, with the values that groups set; every element of it has a place on the canvas."""
-        made = (self.root, self.place)
-        return self._kept("graph", made, lambda: layout.pinned(folding.inside(*made)))
+        made, before = (self.root, self.place), self._cache.get("graph", ((), None))[1]
+        return self._kept("graph", made, lambda: layout.pinned(folding.inside(*made), before))
 
     @property
     def positions(self) -> Mapping[str, Place]:
         """Where every element of `graph` lies."""
-        return self._kept("positions", (self.graph,), lambda: layout.positions(self.graph))
+        return self._kept("positions", (self.graph.ui, self.elements), lambda: layout.positions(self.graph))
 
     @property
     def elements(self) -> tuple[str, ...]:
         """Keys of all elements of `graph`."""
-        return self._kept("elements", (self.graph,), lambda: elements.keys(self.graph))
+        return self._kept("elements", (self.graph,), self._elements)
 
     @property
     def folder(self) -> Path:
@@ -94,12 +95,13 @@ class State:
     @property
     def all_problems(self) -> tuple[Problem, ...]:
         """Everything that is wrong with the document, groups included."""
-        return self._kept("all problems", _logic(self.root, self.types), lambda: problems(self.root, self.types))
+        return self._checked("all problems", self.root)
 
     @property
-    def problems(self) -> Mapping[str, tuple[str, ...]]:
-        """What is wrong with `graph`: sentences by element; what belongs to none is under ""."""
-        return self._kept("problems", (*_logic(self.graph, self.types), self.place), self._problems)
+    def problems(self) -> Mapping[str, tuple[Problem, ...]]:
+        """What is wrong with `graph`, by element; what belongs to none is under ""."""
+        found = self._checked("problems", self.graph) if self.place else self.all_problems
+        return self._kept("problems by element", (found, self.elements), lambda: _by_element(found, self.elements))
 
     @property
     def bindings(self) -> Mapping[str, str]:
@@ -130,7 +132,7 @@ class State:
             if select is not None:
                 self._select(select, self.active)
             return
-        graph = layout.pinned(routes.tidied(graph))
+        graph = layout.pinned(routes.tidied(graph), self.graph)
         root = folding.folded(self.root, self.place, graph, moves)
         folding.check_depth(root)
         known = set(elements.keys(graph))
@@ -142,6 +144,12 @@ class State:
     def seal(self) -> None:
         """End merging: the next edit is a step of its own."""
         self.history.seal()
+
+    def abandon(self, merge: str) -> None:
+        """Take an unfinished step back as if it had never been, as when a drag is cancelled."""
+        before = self.history.abandon(merge)
+        if before is not None:
+            self._set(before)
 
     def undo(self) -> None:
         """Take the last step back."""
@@ -219,13 +227,18 @@ class State:
             self._cache[name] = (of, found)
         return found
 
-    def _problems(self) -> Mapping[str, tuple[str, ...]]:
-        found: dict[str, list[str]] = {}
-        for problem in problems(self.graph, self.types) if self.place else self.all_problems:
-            node = problem.node.partition("/")[0]
-            key = f"{node}.{problem.socket}" if node in (INPUTS, OUTPUTS) else node if node in self.graph.nodes else ""
-            found.setdefault(key, []).append(problem.sentence)
-        return {key: tuple(sentences) for key, sentences in found.items()}
+    def _elements(self) -> tuple[str, ...]:
+        """The same tuple as before where the keys are the same, so that what is made of it stays."""
+        found, before = elements.keys(self.graph), self._cache.get("elements", ((), None))[1]
+        return before if found == before else found
+
+    def _checked(self, name: str, graph: Graph) -> tuple[Problem, ...]:
+        """The problems of a graph, starting from those that were found last under that name."""
+        (before, types), found = self._cache.get(name, ((None, None), ()))
+        return self._kept(name, (graph, self.types), lambda: (
+            rechecked(graph, before, found, self.types) if before and types is self.types
+            else problems(graph, self.types)
+        ))
 
     def _ordered_selection(self) -> list[str]:
         """What is selected, the active element last."""
@@ -239,6 +252,12 @@ class State:
         return tuple(id for id in self.graph.nodes if id in self.selection)
 
 
-def _logic(graph: Graph, types: object) -> tuple[object, ...]:
-    """What problems depend on: layout is not part of it."""
-    return graph.nodes, graph.links, graph.inputs, graph.outputs, graph.controls, graph.extra, types
+def _by_element(found: tuple[Problem, ...], known: tuple[str, ...]) -> Mapping[str, tuple[Problem, ...]]:
+    """Problems by the key of the element that shows them, in the order in which they were found."""
+    by_key: dict[str, tuple[Problem, ...]] = {}
+    for problem in found:
+        node = problem.node.partition("/")[0]
+        key = f"{node}.{problem.socket}" if node in (INPUTS, OUTPUTS) else node
+        key = key if key in known else ""
+        by_key[key] = (*by_key.get(key, ()), problem)
+    return by_key

@@ -10,8 +10,8 @@ from ....nodes import Node
 from ...document import load
 from ...errors import GraphError
 from ...graph import Graph, Group, Item, Port, did_you_mean
-from ..edits import deleting, elements, naming, paths, wiring
-from ..edits.elements import Place
+from ..edits import deleting, elements, naming, paths, room, routes, wiring
+from ..edits.elements import Place, Sizes
 from ..edits.ends import without_samples
 from .state import State
 
@@ -33,8 +33,11 @@ class Wiring(State):
         """A graph file as a node; returns its id."""
         return self._add(naming.stem(path), self._group(path), at, link, output)
 
-    def insert(self, node: str, target: Port, at: Place | None = None) -> str:
-        """Put a node into the link that feeds `target`: an existing one by id, else a new one of that type."""
+    def insert(self, node: str, target: Port, at: Place | None = None, sizes: Sizes | None = None) -> str:
+        """Put a node into the link that feeds `target`: an existing one by id, else a new one of that type.
+
+        What depends on it is pushed aside where it is in the way.
+        """
         if node in self.graph.nodes:
             graph, id = self.graph, node
             if at is not None:
@@ -42,12 +45,32 @@ class Wiring(State):
         else:
             id = self.graph.fresh_id(node)
             graph = elements.with_places(self.graph.add(id, self._new(node)), {id: at or self._middle(target)})
-        self.edit(f"Insert {id}", wiring.inserted(graph, id, target), (id,))
+        self.edit(f"Insert {id}", room.roomy(wiring.inserted(graph, id, target), (id,), target, sizes), (id,))
         return id
+
+    def splice(
+        self, ids: Collection[str], target: Port, by: Place = (0.0, 0.0), sizes: Sizes | None = None, merge: str = ""
+    ) -> None:
+        """Put a chain of nodes, moved by a distance with the dots in it, into the link that feeds `target`.
+
+        What depends on it is pushed aside where it is in the way.
+        """
+        graph = self.graph
+        some = {id for id in ids if id in graph.nodes}
+        moved = {key: self.position(key) for key in (*some, *routes.inner(graph, some))}
+        graph = elements.with_places(graph, {key: (x + by[0], y + by[1]) for key, (x, y) in moved.items()})
+        graph = room.roomy(wiring.spliced(graph, some, target), some, target, sizes)
+        self.edit(f"Insert {naming.spoken(some)}", graph, merge=merge)
 
     def fitting(self, port: Port, is_output: bool) -> tuple[str, ...]:
         """Ids of the node types that could be linked with `port`, a source if `is_output`."""
         return wiring.fitting(self.graph, port, is_output, self.types)
+
+    def fitting_files(self, files: Sequence[Path], port: Port, is_output: bool) -> tuple[Path, ...]:
+        """Those of some graph files that could, as groups, be linked with `port`, a source if `is_output`."""
+        groups = {file: Group(load(file, self.types)) for file in files if file not in self._groups}
+        self._groups |= groups
+        return tuple(file for file in files if wiring.fits(self.graph, port, is_output, self._groups[file]))
 
     def refusal(self, source: Port, target: Port) -> str | None:
         """Why that link cannot be, or None."""
@@ -87,9 +110,10 @@ class Wiring(State):
             raise GraphError("nothing is selected: select what to delete")
         self.edit(f"Delete {naming.spoken(self.selection)}", deleting.deleted(self.graph, self.selection, heal), ())
 
-    def extract(self) -> None:
+    def extract(self, merge: str = "") -> None:
         """Take the selected nodes out of their chains; the links there are healed."""
-        self.edit(f"Extract {naming.spoken(self.selection)}", wiring.extracted(self.graph, self._some_nodes("extract")))
+        after = wiring.extracted(self.graph, self._some_nodes("extract"))
+        self.edit(f"Extract {naming.spoken(self.selection)}", after, merge=merge)
 
     def replace(self, id: str, type_id: str) -> None:
         """Give a node another type; links and values stay where they fit."""

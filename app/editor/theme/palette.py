@@ -26,6 +26,8 @@ class Palette:
     panel: RGB
     field: RGB
     """Where something can be typed or dragged."""
+    fill: RGB
+    """The part of a slider up to its value."""
     raised: RGB
     """Buttons, tabs, headers."""
     hover: RGB
@@ -65,8 +67,8 @@ _KINDS_LIGHT = MappingProxyType({
 })
 
 DARK = Palette(
-    "dark", window=_hex("141416"), panel=_hex("1d1d20"), field=_hex("2a2a2e"), raised=_hex("333338"),
-    hover=_hex("404047"), border=_hex("0d0d0f"), text=_hex("e4e4e7"), dim=_hex("9a9aa3"), accent=_hex("e8833a"),
+    "dark", window=_hex("141416"), panel=_hex("1d1d20"), field=_hex("2a2a2e"), fill=_hex("46464f"),
+    raised=_hex("333338"), hover=_hex("404047"), border=_hex("0d0d0f"), text=_hex("e4e4e7"), dim=_hex("9a9aa3"), accent=_hex("e8833a"),
     on_accent=_hex("1a1108"), good=_hex("5fb878"), warning=_hex("e6b450"), error=_hex("ef6b6b"),
     canvas=_hex("18181b"), grid=_hex("232327"), node=_hex("2b2b30"), shadow=_hex("000000"), surround=_hex("161616"),
     kinds=_KINDS,
@@ -79,8 +81,8 @@ DARK = Palette(
 )
 
 LIGHT = Palette(
-    "light", window=_hex("c9c9ce"), panel=_hex("ececef"), field=_hex("ffffff"), raised=_hex("d8d8de"),
-    hover=_hex("c6c6ce"), border=_hex("b3b3ba"), text=_hex("1b1b1f"), dim=_hex("5c5c66"), accent=_hex("c75f12"),
+    "light", window=_hex("c9c9ce"), panel=_hex("ececef"), field=_hex("ffffff"), fill=_hex("cbced9"),
+    raised=_hex("d8d8de"), hover=_hex("c6c6ce"), border=_hex("b3b3ba"), text=_hex("1b1b1f"), dim=_hex("5c5c66"), accent=_hex("c75f12"),
     on_accent=_hex("ffffff"), good=_hex("1f7a3d"), warning=_hex("8f6200"), error=_hex("c02626"),
     canvas=_hex("dcdce1"), grid=_hex("cfcfd5"), node=_hex("f6f6f8"), shadow=_hex("6a6a70"), surround=_hex("b8b8b8"),
     kinds=_KINDS_LIGHT,

@@ -43,7 +43,7 @@ def apply(palette: Palette, scale: float) -> None:
     style.indent_spacing = 14
     style.scrollbar_size = 12
     style.grab_min_size = 10
-    style.window_rounding = 6
+    style.window_rounding = 0
     style.child_rounding = 4
     style.frame_rounding = 4
     style.popup_rounding = 6
@@ -85,7 +85,7 @@ def _colors(p: Palette) -> list[tuple[str, RGB, float]]:
         ("title_bg", p.window, 1), ("title_bg_active", p.window, 1), ("title_bg_collapsed", p.window, 1),
         ("menu_bar_bg", p.window, 1), ("scrollbar_bg", p.panel, 0), ("scrollbar_grab", p.raised, 1),
         ("scrollbar_grab_hovered", p.hover, 1), ("scrollbar_grab_active", p.accent, 1), ("check_mark", p.accent, 1),
-        ("slider_grab", p.accent, 1), ("slider_grab_active", p.accent, 1), ("button", p.raised, 1),
+        ("slider_grab", p.fill, 1), ("slider_grab_active", mix(p.fill, p.accent, 0.5), 1), ("button", p.raised, 1),
         ("button_hovered", p.hover, 1), ("button_active", mix(p.hover, p.accent, 0.5), 1), ("header", p.raised, 1),
         ("header_hovered", p.hover, 1), ("header_active", mix(p.hover, p.accent, 0.4), 1), ("separator", p.raised, 1),
         ("separator_hovered", p.accent, 0.7), ("separator_active", p.accent, 1), ("resize_grip", p.raised, 0.4),

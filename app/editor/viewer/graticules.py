@@ -12,6 +12,18 @@ from . import scopes
 
 Box = tuple[float, float, float, float]
 _LEVELS = (0.0, 0.25, 0.5, 0.75, 1.0)
+_SMALL = 0.78
+"""Size of words, as a part of that of all other text."""
+
+
+def is_dark(palette: Palette) -> bool:
+    """True if traces glow on black, False if they are ink on white."""
+    return sum(palette.panel) < 1.5
+
+
+def back(palette: Palette) -> RGB:
+    """What scopes are drawn on."""
+    return palette.border if is_dark(palette) else palette.field
 
 
 def level_lines(lines: imgui.ImDrawList, palette: Palette, box: Box, low: float, high: float) -> None:
@@ -22,7 +34,8 @@ def level_lines(lines: imgui.ImDrawList, palette: Palette, box: Box, low: float,
         strong = level in (0.0, 1.0)
         lines.add_line((left, y), (right, y), u32(palette.text, 0.35 if strong else 0.12))
         if strong or bottom - top > 120 * ui_scale():
-            _word(lines, palette, (left + 3, y + (1 if level == 1.0 else -imgui.get_font_size())), f"{level:g}")
+            below = y + 2 * ui_scale() if level == 1.0 else y - imgui.get_font_size() * 0.95
+            _word(lines, palette, (left + 4 * ui_scale(), below), f"{level:g}")
 
 
 def chroma_lines(lines: imgui.ImDrawList, palette: Palette, box: Box) -> None:
@@ -57,14 +70,17 @@ def range_lines(lines: imgui.ImDrawList, palette: Palette, box: Box, low: float,
         lines.add_line((x, top), (x, bottom), u32(palette.text, 0.35 if strong else 0.12))
 
 
-def hint(lines: imgui.ImDrawList, color: RGB, box: Box, text: str) -> None:
-    """A few words in the upper right corner of a scope."""
-    size = imgui.get_font_size() * 0.8
-    width = imgui.calc_text_size(text).x * 0.8
-    if width < (box[2] - box[0]) * 0.6:
-        lines.add_text(imgui.get_font(), size, (box[2] - width - 4, box[1] + 2), u32(color), text)
+def hint(lines: imgui.ImDrawList, palette: Palette, box: Box, text: str) -> None:
+    """A few words in the upper right corner of a scope, if there is room."""
+    width = imgui.calc_text_size(text).x * _SMALL
+    if width < (box[2] - box[0]) * 0.7:
+        _word(lines, palette, (box[2] - width - 5 * ui_scale(), box[1] + 3 * ui_scale()), text)
 
 
 def _word(lines: imgui.ImDrawList, palette: Palette, at: tuple[float, float], text: str) -> None:
-    size = imgui.get_font_size() * 0.75
-    lines.add_text(imgui.get_font(), size, at, u32(palette.text, 0.6), text)
+    """Small text on a plate, so that traces do not cross it."""
+    size, pad = imgui.get_font_size() * _SMALL, 2 * ui_scale()
+    width = imgui.calc_text_size(text).x * _SMALL
+    plate = (at[0] - pad, at[1]), (at[0] + width + pad, at[1] + size)
+    lines.add_rect_filled(*plate, u32(back(palette), 0.75), pad)
+    lines.add_text(imgui.get_font(), size, (round(at[0]), round(at[1])), u32(palette.dim), text)

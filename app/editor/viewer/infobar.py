@@ -12,6 +12,7 @@ from ....nodes import Kind
 from ...renderer.look import Look
 from ..theme.palette import RGB
 from ..theme.style import mix, u32, ui_scale
+from ..toolkit.words import font
 from .geometry import Pixels, Sight
 from .looking import displayed
 from .measuring import hsv, written
@@ -60,7 +61,7 @@ def about(editor: Editor, side: str, shown: Shown | None, sight: Sight, seconds:
     elif preview.busy:
         done, total = preview.progress
         words.append(Word(f"{done}/{total}", palette.accent))
-    elif seconds > 0.0:
+    elif seconds > 0.0 and shown is not None:
         words.append(Word(f"{seconds * 1000:.0f} ms" if seconds < 1.0 else f"{seconds:.1f} s", palette.dim))
     return words
 
@@ -104,20 +105,17 @@ def draw_line(editor: Editor, name: str, words: list[Word]) -> None:
     height, scale = row_height(), ui_scale()
     lines.add_rect_filled((left, top), (right, top + height), u32(editor.palette.panel))
     x, y, end = left + 8 * scale, round(top + 3 * scale), right - 4 * scale
-    if editor.fonts is not None:
-        imgui.push_font(editor.fonts.mono, 0.0)
-    for number, word in enumerate(words):
-        x += word.gap * imgui.get_font_size() if number else 0.0
-        width = imgui.calc_text_size(word.text).x if word.text else height - 8 * scale
-        if x + width > end:
-            break
-        if word.text:
-            lines.add_text((round(x), y), u32(word.color), word.text)
-        else:
-            lines.add_rect_filled((x, top + 4 * scale), (x + width, top + height - 4 * scale), u32(word.color))
-        x += width
-    if editor.fonts is not None:
-        imgui.pop_font()
+    with font(editor, "mono"):
+        for number, word in enumerate(words):
+            x += word.gap * imgui.get_font_size() if number else 0.0
+            width = imgui.calc_text_size(word.text).x if word.text else height - 8 * scale
+            if x + width > end:
+                break
+            if word.text:
+                lines.add_text((round(x), y), u32(word.color), word.text)
+            else:
+                lines.add_rect_filled((x, top + 4 * scale), (x + width, top + height - 4 * scale), u32(word.color))
+            x += width
     imgui.set_cursor_screen_pos((left, top))
     imgui.dummy((right - left, height))
     editor.places[name] = left, top, right, top + height

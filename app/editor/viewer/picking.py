@@ -9,7 +9,7 @@ from imgui_bundle import imgui
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Port, signature
 from ..theme.style import u32, ui_scale
-from .controls import button, last_rectangle
+from ..toolkit.buttons import dropdown
 
 if TYPE_CHECKING:
     from ...graph import Graph
@@ -35,26 +35,19 @@ def title(graph: Graph, port: Port) -> str:
     return port.node if len(signature(graph.nodes[port.node]).outputs) == 1 else f"{port.node}.{port.socket}"
 
 
-def pick_port(editor: Editor, side: str, label: str, in_menu: bool) -> None:
+def pick_port(editor: Editor, side: str, label: str) -> None:
     """A button that says what is shown, and a list to choose from."""
-    palette = editor.palette
-    id = f"show {side}"
-    if button(editor, f"{label}##{id}"):
-        imgui.open_popup(id)
-    left, _, right, bottom = editor.places[f"button viewer {side}"] = last_rectangle()
-    color = palette.accent if side == "A" else palette.good
+    name = f"button viewer {side}"
+    doc = f"What {side} shows. Keys 1 to 9 recall what Ctrl+1 to Ctrl+9 kept."
+    dropdown(editor, label, name, doc, lambda: list_ports(editor, side))
+    left, _, right, bottom = editor.places[name]
+    color = editor.palette.accent if side == "A" else editor.palette.good
     line = 2.0 * ui_scale()
-    if not in_menu:
-        imgui.get_window_draw_list().add_rect_filled((left, bottom - line), (right, bottom), u32(color), line / 2)
-    imgui.set_item_tooltip(f"What {side} shows. Keys 1 to 9 recall what Ctrl+1 to Ctrl+9 kept.")
-    imgui.set_next_window_pos((left, bottom + 2), imgui.Cond_.appearing)
-    imgui.set_next_window_size_constraints((0, 0), (1e6, imgui.get_font_size() * 26))
-    if imgui.begin_popup(id):
-        _list(editor, side)
-        imgui.end_popup()
+    imgui.get_window_draw_list().add_rect_filled((left, bottom - line), (right, bottom), u32(color), line / 2)
 
 
-def _list(editor: Editor, side: str) -> None:
+def list_ports(editor: Editor, side: str) -> None:
+    """Everything that a side can show, as entries of the menu that is open."""
     session = editor.session
     chosen = session.viewed("A" if side == "A" else "B")
     numbers = {port: number for number, port in session.viewers.items()}

@@ -59,12 +59,13 @@ def _traces(counts: Array, dark: bool) -> Array:
     light = scopes.glow(counts)
     color = light @ _CHANNELS
     hue = color / np.maximum(color.max(axis=2, keepdims=True), 1e-6)
-    return _image(hue if dark else _ink(hue), light.max(axis=2))
+    cover = light.max(axis=2)
+    return _image(hue, cover) if dark else _image(_ink(hue), cover**0.6)
 
 
 def _ink(color: Array) -> Array:
     """A color that can be seen on a light background."""
-    return color / np.maximum(color.max(axis=2, keepdims=True), 1e-6) * 0.72
+    return color / np.maximum(color.max(axis=2, keepdims=True), 1e-6) * 0.58
 
 
 def _image(color: Array, cover: Array) -> Array:

@@ -11,9 +11,10 @@ from imgui_bundle import imgui
 
 from ....nodes import Kind
 from ...renderer.plates import Plate
-from ..theme.style import u32, ui_scale, vec4
+from ..theme.style import u32, ui_scale
+from ..toolkit.buttons import quiet, room_for, tool
+from ..toolkit.words import nothing_here
 from . import graticules, scope_images
-from .controls import button, tool
 from .geometry import Box, Sight, texels
 from .looking import asked_view, displayed, look_of, meaning_of, range_of
 from .reading import Reader
@@ -53,11 +54,14 @@ class Scopes:
         shown = editor.preview.shown(A)
         self._draw_tools(editor)
         names = [name for name in SCOPES if name in editor.viewer.scopes]
-        if shown is None or not names:
-            imgui.text_colored(vec4(editor.palette.dim), "Nothing to measure yet." if names else "Choose a scope.")
+        if not names:
+            nothing_here(editor, icons.ICON_FA_CHART_AREA, "No scope is chosen", "The buttons above turn them on.")
+            return
+        if shown is None:
+            nothing_here(editor, icons.ICON_FA_CHART_AREA, "Nothing to measure yet", "Scopes measure what A shows.")
             return
         if shown.kind in (Kind.NUMBER, Kind.COLOR):
-            imgui.text_colored(vec4(editor.palette.dim), "One value for the whole picture.")
+            nothing_here(editor, icons.ICON_FA_CHART_AREA, "Nothing to measure", "A shows one value, not a picture.")
             return
         self._refresh(editor, shown, names)
         room, gap = imgui.get_content_region_avail(), 6.0 * ui_scale()
@@ -80,15 +84,15 @@ class Scopes:
         for icon, name in zip(_ICONS, SCOPES, strict=True):
             tool(editor, icon, f"scopes.{name}")
             imgui.same_line(0.0, gap)
-        _wrap("log")
-        if button(editor, "log##logarithmic", viewer.scopes_logarithmic):
+        _wrap("Log")
+        if quiet(editor, "Log", "button logarithmic", "Logarithmic histogram", lit=viewer.scopes_logarithmic):
             viewer.scopes_logarithmic = not viewer.scopes_logarithmic
-        imgui.set_item_tooltip("Logarithmic histogram")
         imgui.same_line(0.0, gap)
-        _wrap("display")
-        if button(editor, "scene" if viewer.scopes_of_scene else "display", viewer.scopes_of_scene):
+        label, lit = ("Scene", True) if viewer.scopes_of_scene else ("Display", False)
+        _wrap(label)
+        doc = "What is measured: scene-linear numbers, or what the display shows"
+        if quiet(editor, label, "button measured", doc, lit=lit):
             viewer.scopes_of_scene = not viewer.scopes_of_scene
-        imgui.set_item_tooltip("What is measured: scene-linear numbers, or what the display shows")
 
     def _refresh(self, editor: Editor, shown: Shown, names: list[str]) -> None:
         """Measure again if the picture, or how it is shown, has changed, but not too often."""
@@ -112,7 +116,7 @@ class Scopes:
 
     def _make(self, editor: Editor, name: str) -> None:
         plate = self._plates.get(name) or self._plates.setdefault(name, Plate(editor.preview.renderer.device))
-        pixels = self._image(name, self._rgb, editor.viewer.scopes_logarithmic, _is_dark(editor))
+        pixels = self._image(name, self._rgb, editor.viewer.scopes_logarithmic, graticules.is_dark(editor.palette))
         self._textures[name] = plate.show(pixels).glo
 
     def _measured(self, editor: Editor, shown: Shown) -> np.ndarray:
@@ -144,7 +148,7 @@ class Scopes:
 
     def _draw_scope(self, editor: Editor, name: str, box: Box) -> None:
         palette, lines = editor.palette, imgui.get_window_draw_list()
-        back = palette.border if _is_dark(editor) else palette.field
+        back = graticules.back(palette)
         lines.add_rect_filled(box[:2], box[2:], u32(back), 3.0 * ui_scale())
         if name == "vectorscope":
             box = _square(box)
@@ -158,7 +162,7 @@ class Scopes:
         elif name == "histogram":
             graticules.range_lines(lines, palette, box, *self._range)
             dark, bright = self._clipped
-            graticules.hint(lines, palette.dim, box, f"black {dark:.1%}  white {bright:.1%}")
+            graticules.hint(lines, palette, box, f"black {dark:.1%}  white {bright:.1%}")
         else:
             graticules.level_lines(lines, palette, box, *self._range)
         lines.pop_clip_rect()
@@ -166,7 +170,7 @@ class Scopes:
 
 def _wrap(label: str) -> None:
     """Begin another line where a button with that label would not fit."""
-    if imgui.calc_text_size(label).x + 2 * imgui.get_style().frame_padding.x > imgui.get_content_region_avail().x:
+    if room_for(label) > imgui.get_content_region_avail().x:
         imgui.new_line()
 
 
@@ -186,7 +190,3 @@ def _square(box: Box) -> Box:
     half = min(right - left, bottom - top) / 2
     x, y = (left + right) / 2, (top + bottom) / 2
     return x - half, y - half, x + half, y + half
-
-
-def _is_dark(editor: Editor) -> bool:
-    return sum(editor.palette.panel) < 1.5

@@ -9,6 +9,7 @@ from imgui_bundle import imgui
 
 from ...errors import HalationError
 from ..theme.style import vec4
+from ..toolkit.words import dim, font
 from .geometry import Pixels
 from .measuring import written
 from .reading import Reader
@@ -22,7 +23,7 @@ _FLAGS = (
     int(imgui.TableFlags_.row_bg) | int(imgui.TableFlags_.scroll_y) | int(imgui.TableFlags_.sizing_fixed_fit)
     | int(imgui.TableFlags_.borders_inner_v)
 )
-_HEADINGS = ("", "x, y", "R  X", "G  Y", "B  Z", "A  W")
+_HEADINGS = ("", "x, y", *(f"{pair:>9}" for pair in ("R / X", "G / Y", "B / Z", "A / W")))
 
 
 def rows_of(editor: Editor, reader: Reader) -> list[tuple[str, str, tuple[float, ...]]]:
@@ -64,19 +65,16 @@ def draw_table(editor: Editor, reader: Reader, height: float) -> None:
     except HalationError as error:
         imgui.text_wrapped(str(error))
         return
-    if editor.fonts is not None:
-        imgui.push_font(editor.fonts.mono, 0.0)
-    if imgui.begin_table("pixel values", len(_HEADINGS), _FLAGS, (0, height)):
-        imgui.table_setup_scroll_freeze(0, 1)
-        for number, heading in enumerate(_HEADINGS):
-            width = imgui.get_font_size() * (6.0, 5.5, 4.6, 4.6, 4.6, 4.6)[number]
-            imgui.table_setup_column(heading, int(imgui.TableColumnFlags_.width_fixed), width)
-        imgui.table_headers_row()
-        for name, place, values in rows:
-            _row(editor, name, place, values)
-        imgui.end_table()
-    if editor.fonts is not None:
-        imgui.pop_font()
+    with font(editor, "mono"):
+        if imgui.begin_table("pixel values", len(_HEADINGS), _FLAGS, (0, height)):
+            imgui.table_setup_scroll_freeze(0, 1)
+            for number, heading in enumerate(_HEADINGS):
+                width = imgui.get_font_size() * (6.0, 5.5, 4.6, 4.6, 4.6, 4.6)[number]
+                imgui.table_setup_column(heading, int(imgui.TableColumnFlags_.width_fixed), width)
+            imgui.table_headers_row()
+            for name, place, values in rows:
+                _row(editor, name, place, values)
+            imgui.end_table()
 
 
 def _row(editor: Editor, name: str, place: str, values: tuple[float, ...]) -> None:
@@ -84,7 +82,7 @@ def _row(editor: Editor, name: str, place: str, values: tuple[float, ...]) -> No
     imgui.table_next_column()
     imgui.text(name)
     imgui.table_next_column()
-    imgui.text_colored(vec4(editor.palette.dim), place)
+    dim(editor, place)
     for value in values:
         imgui.table_next_column()
         color = editor.palette.text if np.isfinite(value) else editor.palette.error

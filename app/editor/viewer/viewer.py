@@ -80,6 +80,7 @@ class Viewer:
             self._draw_panel(editor, now)
         finally:
             imgui.pop_style_var()
+        context_menu(editor)
         editor.attempt(lambda: self._finder.step(editor))
 
     # --- parts -------------------------------------------------------------------------------------------------------
@@ -122,7 +123,6 @@ class Viewer:
             editor.places["viewer image"] = sight().rectangle((0.0, 0.0, 1.0, 1.0))
         else:
             viewer.hovered = imgui.is_item_hovered()
-        context_menu(editor)
         return sight()
 
     def _draw_picture(self, editor: Editor, now: _Now, sight: Sight) -> Look:

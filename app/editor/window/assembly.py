@@ -37,13 +37,10 @@ def assemble(device: Device, state: Path | None = None) -> Editor:
     store = Store(folder)
     renderer = Renderer(device, budget=store.now.memory_budget * 2**20)
     display = Display(device)
-    editor = Editor(
+    return Editor(
         Session(), Preview(renderer, display), store, Actions(table(), lambda: store.now.shortcuts), Exports(),
         Recovery(folder, store.now.autosave), Watcher(), SystemClipboard(), display, Probe(device),
     )
-    for sentence in store.faults:
-        editor.log.add(sentence, "warning")
-    return editor
 
 
 def open_first(editor: Editor, path: Path | None, bindings: Mapping[str, str]) -> None:

@@ -25,6 +25,7 @@ class Heartbeat:
     nodes: NodeFiles = field(default_factory=NodeFiles)
     _watched: tuple[object, ...] = ()
     _flushed: float = 0.0
+    _told: set[str] = field(default_factory=set[str])
 
     def beat(self, editor: Editor) -> None:
         """One frame."""
@@ -35,7 +36,15 @@ class Heartbeat:
         if time.monotonic() - self._flushed > 1.0:
             self._flushed = time.monotonic()
             editor.store.flush()
+            self._tell(editor)
         self._compute(editor)
+
+    def _tell(self, editor: Editor) -> None:
+        """What services cannot do is said once; Problems shows it for as long as it lasts."""
+        now = {editor.recovery.fault, editor.watcher.fault, *editor.store.faults} - {""}
+        for sentence in sorted(now - self._told):
+            editor.log.add(sentence, "warning")
+        self._told = now
 
     def _compute(self, editor: Editor) -> None:
         preview, likes = editor.preview, editor.store.now

@@ -9,7 +9,7 @@ from imgui_bundle import imgui
 from ..action import Action
 from ..actions import MENUS
 from ..editor import Editor
-from ..keys import shown
+from ..toolkit.buttons import entry
 
 
 @dataclass
@@ -33,17 +33,6 @@ def draw_menus(editor: Editor, panels: dict[str, bool]) -> None:
             imgui.end_menu()
 
 
-def action_item(editor: Editor, action: Action) -> None:
-    """A menu entry that does `action`."""
-    checked = action.checked is not None and action.checked(editor)
-    shortcut = shown(editor.actions.shortcut(action.id))
-    clicked, _ = imgui.menu_item(action.label, shortcut, checked, action.enabled(editor))
-    if action.doc:
-        imgui.set_item_tooltip(action.doc)
-    if clicked:
-        editor.actions.run(action.id, editor)
-
-
 def _menus(actions: tuple[Action, ...]) -> dict[str, _Menu]:
     found = {name: _Menu() for name in MENUS}
     for action in actions:
@@ -60,15 +49,15 @@ def _menus(actions: tuple[Action, ...]) -> dict[str, _Menu]:
 
 
 def _draw(editor: Editor, menu: _Menu) -> None:
-    for name, entry in menu.entries.items():
-        if isinstance(entry, _Menu):
-            first = next(iter(entry.entries.values()), None)
+    for name, one in menu.entries.items():
+        if isinstance(one, _Menu):
+            first = next(iter(one.entries.values()), None)
             if isinstance(first, Action) and first.separated:
                 imgui.separator()
             if imgui.begin_menu(name):
-                _draw(editor, entry)
+                _draw(editor, one)
                 imgui.end_menu()
             continue
-        if entry.separated and name != next(iter(menu.entries)):
+        if one.separated and name != next(iter(menu.entries)):
             imgui.separator()
-        action_item(editor, entry)
+        entry(editor, one)

@@ -30,6 +30,9 @@ def run(window: Window) -> None:
     """Run a window until it is closed. Raises why it could not begin, and what failed outside of all panels."""
     try:
         immapp.run(window.params, immapp.AddOnsParams())
+    except RuntimeError:
+        if window.fault is None:  # else the library only complains that nothing was drawn
+            raise
     finally:
         window.close()
     if window.fault is not None:

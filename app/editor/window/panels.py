@@ -2,45 +2,27 @@
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
+from ..canvas.canvas import Canvas
 from ..editor import Editor
-
-
-def _load(module: str, name: str) -> Any:
-    """TEMPORARY while panels are being written."""
-    try:
-        return getattr(importlib.import_module(module, __package__), name)
-    except Exception as error:
-        why = f"{type(error).__name__}: {error}"
-
-        class Missing:
-            def draw(self, editor: Any) -> None:
-                from imgui_bundle import imgui
-                if module.startswith(("..canvas", "..viewer", "..inspector")):
-                    imgui.text_wrapped(f"{name} is not there yet: {why}")
-        return Missing
-
-
-Canvas = _load("..canvas.canvas", "Canvas")
-Inspector = _load("..inspector.inspector", "Inspector")
-About = _load("..panels.about", "About")
-FileBrowser = _load("..panels.browser", "FileBrowser")
-CheatSheet = _load("..panels.cheat_sheet", "CheatSheet")
-CommandPalette = _load("..panels.command_palette", "CommandPalette")
-HistoryPanel = _load("..panels.history", "HistoryPanel")
-LogPanel = _load("..panels.log", "LogPanel")
-PreferencesDialog = _load("..panels.preferences", "PreferencesDialog")
-Problems = _load("..panels.problems", "Problems")
-QuestionDialog = _load("..panels.question", "QuestionDialog")
-Renders = _load("..panels.renders", "Renders")
-StartScreen = _load("..panels.start", "StartScreen")
-Toasts = _load("..panels.toasts", "Toasts")
-Scopes = _load("..viewer.scopes_panel", "Scopes")
-Viewer = _load("..viewer.viewer", "Viewer")
+from ..inspector.inspector import Inspector
+from ..panels.about import About
+from ..panels.browser import FileBrowser
+from ..panels.cheat_sheet import CheatSheet
+from ..panels.command_palette import CommandPalette
+from ..panels.history import HistoryPanel
+from ..panels.log import LogPanel
+from ..panels.preferences import PreferencesDialog
+from ..panels.problems import Problems
+from ..panels.question import QuestionDialog
+from ..panels.renders import Renders
+from ..panels.start import StartScreen
+from ..panels.toasts import Toasts
+from ..viewer.scopes_panel import Scopes
+from ..viewer.viewer import Viewer
 
 
 class Panel(Protocol):
@@ -62,12 +44,12 @@ class Docked:
 DOCKED = (
     Docked("Viewer", "MainDockSpace", Viewer, bare=True),
     Docked("Graph", "Lower", Canvas, bare=True),
+    Docked("Problems", "Lower", Problems),
+    Docked("Renders", "Lower", Renders),
+    Docked("Log", "Lower", LogPanel),
     Docked("Inspector", "Right", Inspector),
     Docked("Scopes", "RightLower", Scopes),
     Docked("History", "RightLower", HistoryPanel),
-    Docked("Problems", "RightLower", Problems),
-    Docked("Renders", "RightLower", Renders),
-    Docked("Log", "RightLower", LogPanel),
 )
 
 OVERLAYS: tuple[tuple[str, Callable[[], Panel]], ...] = (

@@ -1,25 +1,66 @@
-"""The line at the bottom of the window: what is going on, and what things cost."""
+"""The line at the bottom of the window: what was said, or else what the mouse does, and what things cost."""
 
 from __future__ import annotations
+
+from time import time
 
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ..editor import Editor
-from ..theme.style import vec4
+from ..theme.style import EM, vec4
+from ..toolkit.places import record
+from ..toolkit.words import dim, fitted, font, level_color
+from .hints import hints
+from .panels import DOCKED
+
+SECONDS = 8.0
+"""How long a sentence stays."""
 
 
 def draw_status(editor: Editor) -> None:
-    """What was said last on the left, figures on the right."""
-    palette = editor.palette
-    newest = editor.log.entries[-1] if editor.log.entries else None
-    if newest:
-        color = {"info": palette.dim, "warning": palette.warning, "error": palette.error}[newest.level]
-        imgui.text_colored(vec4(color), newest.sentence.splitlines()[0])
+    """Words on the left, figures on the right."""
     figures = _figures(editor)
-    width = imgui.calc_text_size(figures).x
-    imgui.same_line(max(imgui.get_window_width() - width - imgui.get_font_size(), 0))
-    imgui.text_colored(vec4(palette.dim), figures)
+    end = imgui.get_window_width() - imgui.get_style().window_padding.x
+    left = max(end - imgui.calc_text_size(figures).x, 0.0)
+    newest = editor.log.entries[-1] if editor.log.entries else None
+    imgui.set_cursor_pos_x(imgui.get_style().window_padding.x)
+    if newest and time() - newest.at < SECONDS:
+        text = fitted(newest.sentence.splitlines()[0], left - 2 * EM)
+        imgui.text_colored(vec4(level_color(editor.palette, newest.level)), text)
+    else:
+        _draw_hints(editor, left)
+    imgui.same_line(left)
+    dim(editor, figures)
+    record(editor, "status figures")
+
+
+def _draw_hints(editor: Editor, end: float) -> None:
+    """As many as fit."""
+    imgui.text_unformatted("")
+    gap = imgui.get_font_size()
+    for keys, does in hints(editor, _panel_below(editor)):
+        with font(editor, "bold"):
+            width = imgui.calc_text_size(keys).x
+        imgui.same_line(0.0, gap * 0.9)
+        if imgui.get_cursor_pos_x() + width + imgui.calc_text_size(does).x + gap > end:
+            break
+        with font(editor, "bold"):
+            dim(editor, keys)
+        imgui.same_line(0.0, gap * 0.4)
+        dim(editor, does)
+
+
+def _panel_below(editor: Editor) -> str:
+    """The title of the panel that the mouse is over."""
+    if editor.dialogs.any:
+        return ""
+    mouse = imgui.get_mouse_pos()
+    for docked in DOCKED:
+        left, top, right, bottom = editor.places.get(docked.title, (0.0, 0.0, 0.0, 0.0))
+        if left <= mouse.x < right and top <= mouse.y < bottom:
+            return docked.title
+    return ""
 
 
 def _figures(editor: Editor) -> str:

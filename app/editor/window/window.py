@@ -19,7 +19,7 @@ from ..theme import fonts, style
 from ..theme.palette import Palette
 from .arriving import arrived
 from .assembly import assemble, open_first, take_apart
-from .guard import failed, guarded
+from .guard import failed, forgive, guarded
 from .heartbeat import Heartbeat
 from .menus import draw_menus
 from .panels import DOCKED, OVERLAYS, Docked, Panel
@@ -30,6 +30,7 @@ from .status import draw_status
 SIZE = (1600, 1000)
 _NODE = int(imgui.internal.DockNodeFlagsPrivate_.no_close_button.value)
 """Tabs can be closed, not whole docks."""
+_BARE = int(imgui.WindowFlags_.no_scrollbar) | int(imgui.WindowFlags_.no_scroll_with_mouse)
 
 
 class Window:
@@ -73,8 +74,8 @@ class Window:
         window.remember_theme = window.remember_status_bar_settings = False
         params.docking_params.docking_splits = [
             hello_imgui.DockingSplit("MainDockSpace", "Right", imgui.Dir.right, 0.25, _NODE),
-            hello_imgui.DockingSplit("Right", "RightLower", imgui.Dir.down, 0.38, _NODE),
-            hello_imgui.DockingSplit("MainDockSpace", "Lower", imgui.Dir.down, 0.5, _NODE),
+            hello_imgui.DockingSplit("Right", "RightLower", imgui.Dir.down, 0.36, _NODE),
+            hello_imgui.DockingSplit("MainDockSpace", "Lower", imgui.Dir.down, 0.44, _NODE),
         ]
         params.docking_params.main_dock_space_node_flags |= _NODE
         params.docking_params.dockable_windows = [self._dockable(docked) for docked in DOCKED]
@@ -91,12 +92,8 @@ class Window:
         return params
 
     def _dockable(self, docked: Docked) -> hello_imgui.DockableWindow:
-        found = hello_imgui.DockableWindow(docked.title, docked.dock, partial(self._draw_panel, docked.title))
-        found.include_in_view_menu = False
-        if docked.bare:
-            found.imgui_window_flags = int(imgui.WindowFlags_.no_scrollbar) | int(
-                imgui.WindowFlags_.no_scroll_with_mouse
-            )
+        found = hello_imgui.DockableWindow(docked.title, docked.dock, partial(self._draw_panel, docked))
+        found.include_in_view_menu = found.call_begin_end = False
         return found
 
     # --- from opening to closing -------------------------------------------------------------------------------------
@@ -110,6 +107,7 @@ class Window:
             self.params.app_shall_exit = True
 
     def _prepare(self) -> None:
+        forgive()
         self.device = adopt()
         self.editor = assemble(self.device, self._state)
         open_first(self.editor, self._path, self._bindings)
@@ -174,7 +172,18 @@ class Window:
     def _draw_status(self) -> None:
         guarded(self.editor, "Status", lambda: draw_status(self.editor))
 
-    def _draw_panel(self, title: str) -> None:
+    def _draw_panel(self, docked: Docked) -> None:
+        host = self.params.docking_params.dockable_window_of_name(docked.title)
+        if docked.bare:
+            imgui.push_style_var(imgui.StyleVar_.window_padding, (0.0, 0.0))
+        seen, host.is_visible = imgui.begin(docked.title, host.is_visible, _BARE if docked.bare else 0)
+        if docked.bare:
+            imgui.pop_style_var()
+        if seen:
+            self._draw_inside(docked.title)
+        imgui.end()
+
+    def _draw_inside(self, title: str) -> None:
         corner, size = imgui.get_window_pos(), imgui.get_window_size()
         self.editor.places[title] = (corner.x, corner.y, corner.x + size.x, corner.y + size.y)
         if title in self.editor.faults:
@@ -184,8 +193,9 @@ class Window:
 
     def _draw_overlays(self) -> None:
         for name, overlay in self._overlays.items():
-            if name not in self.editor.faults:
-                guarded(self.editor, name, lambda overlay=overlay: overlay.draw(self.editor))
+            failed_before = name in self.editor.faults
+            if not guarded(self.editor, name, lambda overlay=overlay: overlay.draw(self.editor)) and not failed_before:
+                self.editor.dialogs.close()  # one that nobody can see would keep all keys for itself
         run_shortcuts(self.editor)
 
     def _after_panels(self) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.editor.canvas.entries import PRESETS, found, graph_entries, narrowed, node_entries
+from halation.app.editor.canvas.entries import GROUP, found, graph_entries, narrowed, node_entries
 from halation.app.editor.canvas.gestures import (
     Link,
     Move,
@@ -30,7 +30,7 @@ from gui_canvas import chain  # isort: skip
 P = Port.parse
 
 
-def staged(graph: Graph, stage: Stage | None = None, pictures: bool = False, open: str = "") -> Scene:
+def staged(graph: Graph, stage: Stage | None = None, pictures: frozenset[str] = frozenset(), open: str = "") -> Scene:
     return (stage or Stage()).build(graph, positions(pinned(graph)).__getitem__, (), pictures, open)
 
 
@@ -53,7 +53,7 @@ def test_hits_pins_fields_titles_and_links() -> None:
 
 def test_what_is_drawn_last_is_hit_first() -> None:
     graph = chain("exposure", "bloom")
-    scene = Stage().build(graph, lambda key: (0.0, 0.0), ["exposure"], False)
+    scene = Stage().build(graph, lambda key: (0.0, 0.0), ["exposure"])
     assert scene.hit(60.0, 12.0, 1.0).key == "exposure"
 
 
@@ -72,6 +72,37 @@ def test_layouts_are_built_again_only_where_something_changed() -> None:
     second = staged(graph.set(P("exposure.stops"), 2.0), stage)
     assert second.boxes["bloom"].layout is first.boxes["bloom"].layout
     assert second.boxes["exposure"].layout is not first.boxes["exposure"].layout
+
+
+def test_a_changed_value_leaves_all_boxes_and_links_but_its_own_node() -> None:
+    stage, graph = Stage(), pinned(chain("exposure", "bloom"))
+    first = staged(graph, stage)
+    second = staged(graph.set(P("exposure.stops"), 2.0), stage)
+    assert second.net is first.net
+    assert [key for key, box in second.boxes.items() if box is not first.boxes[key]] == ["exposure"]
+    assert second == staged(graph.set(P("exposure.stops"), 2.0))
+
+
+@pytest.mark.parametrize("change", [
+    lambda graph: graph.mute("bloom"), lambda graph: graph.disconnect(P("bloom.image")),
+    lambda graph: graph.replace("bloom", catalogue()["noise"]()), lambda graph: graph.add("b", catalogue()["clip"]()),
+    lambda graph: graph.add_input("more", Input()), lambda graph: graph.rename("bloom", "glow"),
+])
+def test_what_is_staged_again_is_what_is_staged_anew(change) -> None:
+    stage, graph = Stage(), pinned(chain("exposure", "bloom"))
+    staged(graph, stage)
+    assert staged(pinned(change(graph)), stage) == staged(pinned(change(graph)))
+
+
+def test_a_first_picture_moves_no_pin_and_no_field() -> None:
+    graph = chain("exposure", "tone_map")
+    before, after = staged(graph), staged(graph, pictures=frozenset({"exposure", "tone_map", "inputs.beauty"}))
+    assert before.net.wires == after.net.wires
+    for key in ("exposure", "tone_map"):
+        old, new = before.boxes[key].layout, after.boxes[key].layout
+        assert (new.rows, new.ins, new.outs, new.more) == (old.rows, old.ins, old.outs, old.more)
+        assert new.height > old.height + 90.0 and new.picture[3] <= new.height and new.picture[1] >= old.foot
+    assert after.boxes["outputs.image"] == before.boxes["outputs.image"]
 
 
 def test_a_node_shows_few_values_until_asked_for_all_and_linked_ones_always() -> None:
@@ -157,7 +188,7 @@ def test_without_letters_the_recent_come_first_and_all_are_listed_by_category() 
     sections = found(entries, "", ["bloom", "gone"])
     assert [entry.id for entry in sections[0].entries] == ["bloom"]
     assert sum(len(section.entries) for section in sections[1:]) == len(entries)
-    assert PRESETS not in {section.title for section in sections}
+    assert GROUP not in {section.title for section in sections}
     assert [entry.id for entry in narrowed(entries, ["bloom", "clip"])] == ["clip", "bloom"]
 
 

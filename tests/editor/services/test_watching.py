@@ -90,6 +90,22 @@ def test_our_own_saves_are_no_news(watcher, path):
     assert news(watcher) == [Change("graph", path)]
 
 
+def test_before_a_save_one_can_ask_whether_somebody_else_was_quicker(watcher, path):
+    assert not watcher.differs(path), "nobody has read it"
+    watcher.watch(path)
+    assert not watcher.differs(path)
+    save(path, 1)
+    assert watcher.differs(path), "at once, before it is told"
+    news(watcher)
+    assert not watcher.differs(path), "it was told"
+    save(path, 2)
+    watcher.expect(path)
+    assert not watcher.differs(path)
+    assert quiet(watcher, path) and not watcher.differs(path)
+    path.unlink()
+    assert not watcher.differs(path), "there is nothing to lose"
+
+
 def test_what_was_touched_but_not_changed_is_no_news(watcher, path):
     watcher.watch(path)
     os.utime(path, (1, 1))

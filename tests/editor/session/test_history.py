@@ -121,7 +121,7 @@ def test_the_revision_grows_with_every_change(session):
 def test_problems_by_element(session):
     assert session.problems == {}
     session.disconnect(Port("n1", "image"))
-    assert set(session.problems) == {"n1"} and "n1.image" in session.problems["n1"][0]
+    assert set(session.problems) == {"n1"} and "n1.image" in session.problems["n1"][0].sentence
     session.disconnect(Port("outputs", "image"))
     assert set(session.problems) == {"n1", "outputs.image"}
     known = session.problems

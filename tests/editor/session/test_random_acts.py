@@ -13,7 +13,7 @@ from halation.app.editor.edits.align import Side
 from halation.app.editor.edits.elements import keys, place
 from halation.app.editor.session import Session
 from halation.app.errors import HalationError
-from halation.app.graph import Graph, Group, Port, signature
+from halation.app.graph import Graph, Group, Port, problems, signature
 from halation.nodes import Kind
 from toy_nodes import TOYS, random_graph, random_value
 
@@ -95,6 +95,8 @@ ACTS: dict[str, Act] = {
         r.choice([*TOYS]), spot(r), r.choice([None, any_source(s, r), any_target(s, r)]), r.random() < 0.5
     ),
     "insert": lambda s, r: s.insert(r.choice([*TOYS, any_node(s, r)]), any_target(s, r), r.choice([None, spot(r)])),
+    "splice": lambda s, r: s.splice(some_keys(s, r), any_target(s, r), spot(r), None, r.choice(["", "drag"])),
+    "abandon": lambda s, r: s.abandon(r.choice(["", "drag"])),
     "connect": lambda s, r: s.connect(any_source(s, r), any_target(s, r)),
     "disconnect": lambda s, r: s.disconnect(any_target(s, r)),
     "disconnect_all": lambda s, r: s.disconnect_all(any_key(s, r)),
@@ -102,7 +104,7 @@ ACTS: dict[str, Act] = {
     "move_link": lambda s, r: s.move_link(any_target(s, r), any_target(s, r)),
     "swap_inputs": lambda s, r: s.swap_inputs(any_node(s, r)),
     "delete": lambda s, r: s.delete(r.random() < 0.7),
-    "extract": lambda s, r: s.extract(),
+    "extract": lambda s, r: s.extract(r.choice(["", "drag"])),
     "replace": lambda s, r: s.replace(any_node(s, r), r.choice([*TOYS])),
     "rename": lambda s, r: s.rename(any_node(s, r), r.choice(["a", "b", "blur", "frames", "inputs", "a.b", "x/y"])),
     "mute": lambda s, r: s.mute(),
@@ -162,7 +164,7 @@ OTHERS = {
 """What needs files or graphs, and what all the others call: tested by name elsewhere."""
 
 QUESTIONS = {
-    "value", "is_default", "linked", "control_of", "fitting", "refusal", "relative", "position", "frame_members",
+    "value", "is_default", "linked", "control_of", "fitting", "fitting_files", "refusal", "relative", "position", "frame_members",
     "copy", "viewed", "viewed_in_root",
 }
 
@@ -179,7 +181,10 @@ def check(session: Session) -> None:
     assert session.active in session.selection or not session.active
     assert all(place(session.graph, key) is not None for key in known)
     assert session.positions.keys() == known
-    assert "".join(session.problems) is not None
+    found = [problem for some in session.problems.values() for problem in some]
+    assert sorted(map(str, found)) == sorted(map(str, problems(session.graph, session.types)))
+    assert session.problems.keys() <= known | {""}
+    assert set(session.all_problems) == set(problems(session.root, session.types))
     dots = {key for key in known if key.startswith("dots.")}
     passed = session.graph.ui.get("routes", {})
     assert {str(end) for end in session.graph.links} >= passed.keys()

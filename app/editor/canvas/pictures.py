@@ -1,0 +1,31 @@
+"""Which elements have a place for a picture."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ..editor import Editor
+
+
+@dataclass
+class Pictures:
+    """Those that had a picture once: its place stays, and what it shows is dimmed while it is out of date.
+
+    No picture is ever computed for its own sake, so nodes that became part of a larger step never have one; they look
+    whole without.
+    """
+
+    _of: tuple[object, ...] = ()
+    _paths: frozenset[str] = frozenset()
+    _keys: frozenset[str] = frozenset()
+
+    def of(self, editor: Editor) -> frozenset[str]:
+        """Keys of those at the session's place; the same object while they stay the same."""
+        wanted, paths = editor.store.now.thumbnails, editor.preview.thumbnails
+        place = editor.session.place
+        if self._of != (wanted, place) or self._paths is not paths:
+            self._of, self._paths = (wanted, place), paths
+            prefix = "".join(f"{id}/" for id in place)
+            inside = (path.removeprefix(prefix) for path in paths if path.startswith(prefix))
+            self._keys = frozenset(key for key in inside if "/" not in key) if wanted else frozenset()
+        return self._keys

@@ -1,0 +1,72 @@
+"""Room for nodes that were put into a link."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+from ...graph import Graph, Port
+from ...graph.walk import reach
+from .decor import boxed, frame_members
+from .elements import Place, Sizes, entries, owner, with_places
+from .layout import bounds, element_links, positions
+from .routes import inner
+from .sizes import size
+
+MARGIN = 40.0
+"""Room between boxes that were in each other's way."""
+
+Box = tuple[float, float, float, float]
+
+
+def roomy(graph: Graph, ids: Collection[str], target: Port, sizes: Sizes | None = None) -> Graph:
+    """A graph where nodes that were put into the link to `target` cover neither what feeds them nor what they feed.
+
+    They move right of what feeds them, and everything that depends on them moves right by as much as is needed; what
+    is not in the way stays. Frames go along with what is in them, or grow.
+    """
+    places = positions(graph, sizes)
+    links = element_links(graph)
+    feeders = {start for start, end in links if end in ids and start not in ids}
+    ahead = _overlap(graph, feeders, ids, places, sizes)
+    if ahead > 0.0:
+        graph = with_places(graph, {id: (places[id][0] + ahead, places[id][1]) for id in ids})
+        places = positions(graph, sizes)
+    after: dict[str, list[str]] = {}
+    for start, end in links:
+        after.setdefault(start, []).append(end)
+    behind = {owner(target), *reach(owner(target), after)} - {*ids}
+    by = _overlap(graph, ids, behind, places, sizes)
+    return _pushed(graph, behind, by, places, sizes) if by > 0.0 else graph
+
+
+def _overlap(
+    graph: Graph, left: Collection[str], right: Collection[str], places: dict[str, Place], sizes: Sizes | None
+) -> float:
+    """How far the elements at the right must move so that none is in the way of those at the left."""
+    found = 0.0
+    for one in left:
+        a = _box(graph, one, places, sizes)
+        for other in right:
+            b = _box(graph, other, places, sizes)
+            if b[0] < a[2] and a[0] < b[2] and b[1] < a[3] and a[1] < b[3]:
+                found = max(found, a[2] + MARGIN - b[0])
+    return found
+
+
+def _pushed(graph: Graph, some: Collection[str], by: float, places: dict[str, Place], sizes: Sizes | None) -> Graph:
+    """A graph where elements lie further right, with the dots between them, and the frames that they fill."""
+    moved = {*some, *inner(graph, some)}
+    after = with_places(graph, {key: (places[key][0] + by, places[key][1]) for key in moved})
+    for id in entries(graph, "frames"):
+        members = {key for key in frame_members(graph, id, places, sizes) if not key.startswith("frames.")}
+        if members & moved:
+            left, top, right, bottom = bounds(graph, [f"frames.{id}"], places, sizes)
+            if members <= moved:
+                left += by
+            after = boxed(after, f"frames.{id}", left, top, right + by - left, bottom - top)
+    return after
+
+
+def _box(graph: Graph, key: str, places: dict[str, Place], sizes: Sizes | None) -> Box:
+    (x, y), (width, height) = places[key], size(graph, key, sizes)
+    return x, y, x + width, y + height

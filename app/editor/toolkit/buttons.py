@@ -1,0 +1,138 @@
+"""Buttons, and what runs actions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from imgui_bundle import ImVec2, imgui
+
+from ..keys import shown
+from ..theme.palette import RGB
+from ..theme.style import mix, u32, ui_scale, vec4
+from .places import Surface, item_rect, record
+from .words import tip
+
+if TYPE_CHECKING:
+    from ..action import Action
+    from ..editor import Editor
+
+
+def quiet(surface: Surface, label: str, name: str, doc: str, *, lit: bool = False, enabled: bool = True) -> bool:
+    """A button without a background, a square one if `label` is an icon; `name` is its place, `doc` its tooltip."""
+    palette, square = surface.palette, len(label) == 1
+    imgui.push_style_color(imgui.Col_.button, vec4(palette.accent, 0.18 if lit else 0.0))
+    imgui.push_style_color(imgui.Col_.text, vec4(palette.accent if lit else palette.text))
+    padding = imgui.get_style().frame_padding
+    imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0.0 if square else padding.x, padding.y))
+    imgui.begin_disabled(not enabled)
+    clicked = imgui.button(f"{label}##{name}", ImVec2(imgui.get_frame_height() if square else 0.0, 0.0))
+    imgui.end_disabled()
+    imgui.pop_style_var()
+    imgui.pop_style_color(2)
+    record(surface, name)
+    tip(doc)
+    return clicked
+
+
+def room_for(*labels: str, gap: float | None = None) -> float:
+    """Width of quiet buttons of these labels side by side."""
+    style = imgui.get_style()
+    between = style.item_spacing.x if gap is None else gap
+    widths = (
+        imgui.get_frame_height() if len(label) == 1 else imgui.calc_text_size(label).x + 2 * style.frame_padding.x
+        for label in labels
+    )
+    return sum(widths) + between * (len(labels) - 1)
+
+
+def right_aligned(*labels: str) -> None:
+    """Move to where buttons of these labels end at the right border: on the same line, if they fit there."""
+    width = room_for(*labels)
+    imgui.same_line()
+    if imgui.get_content_region_avail().x < width:
+        imgui.new_line()
+    room = max(imgui.get_content_region_avail().x - width, 0.0)
+    imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + room)
+
+
+def main_button(surface: Surface, label: str, name: str, *, width: float = 0.0, enabled: bool = True) -> bool:
+    """The button that most people want."""
+    palette = surface.palette
+    for color, lit in ((imgui.Col_.button, 0.0), (imgui.Col_.button_hovered, 0.12), (imgui.Col_.button_active, 0.25)):
+        imgui.push_style_color(color, vec4(mix(palette.accent, palette.text, lit)))
+    imgui.push_style_color(imgui.Col_.text, vec4(palette.on_accent))
+    imgui.begin_disabled(not enabled)
+    clicked = imgui.button(f"{label}##{name}", ImVec2(width, 0))
+    imgui.end_disabled()
+    imgui.pop_style_color(4)
+    record(surface, name)
+    return clicked
+
+
+def close_button(surface: Surface, name: str) -> bool:
+    """The button at the lower right that ends a dialog."""
+    width = 96 * ui_scale()
+    imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x - width)
+    clicked = main_button(surface, "Close", name, width=width)
+    imgui.set_item_default_focus()
+    return clicked
+
+
+def outline(color: RGB, thickness: float = 2.0) -> None:
+    """Draw a border around the last widget."""
+    left, top, right, bottom = item_rect()
+    radius = imgui.get_style().frame_rounding
+    imgui.get_window_draw_list().add_rect((left, top), (right, bottom), u32(color), radius, thickness * ui_scale())
+
+
+def dropdown(
+    surface: Surface, label: str, name: str, doc: str, fill: Callable[[], object], *, lit: bool = False
+) -> None:
+    """A quiet button that opens a menu below it."""
+    if quiet(surface, label, name, doc, lit=lit):
+        imgui.open_popup(name)
+    left, _, _, bottom = surface.places[name]
+    imgui.set_next_window_pos((left, bottom + 2), imgui.Cond_.appearing)
+    imgui.set_next_window_size_constraints((0, 0), (1e6, imgui.get_font_size() * 28))
+    if imgui.begin_popup(name):
+        fill()
+        imgui.end_popup()
+
+
+# --- actions ---------------------------------------------------------------------------------------------------------
+
+
+def tip_of(editor: Editor, action: Action) -> str:
+    """What the tooltip of an action says."""
+    shortcut = editor.actions.shortcut(action.id)
+    title = action.label.removesuffix("...")
+    title = f"{title} ({shown(shortcut)})" if shortcut else title
+    return f"{title}\n{action.doc}" if action.doc else title
+
+
+def tool(editor: Editor, icon: str, id: str) -> None:
+    """A quiet button that runs an action, lit while the action is checked."""
+    action = editor.actions[id]
+    lit = action.checked is not None and action.checked(editor)
+    if quiet(editor, icon, f"button {id}", tip_of(editor, action), lit=lit, enabled=action.enabled(editor)):
+        editor.actions.run(id, editor)
+
+
+def entry(editor: Editor, action: Action, icon: str = "") -> None:
+    """An action as an entry of the menu that is open."""
+    checked = action.checked is not None and action.checked(editor)
+    label = f"{icon}  {action.label}" if icon else action.label
+    shortcut = shown(editor.actions.shortcut(action.id))
+    clicked, _ = imgui.menu_item(f"{label}##{action.id}", shortcut, checked, action.enabled(editor))
+    record(editor, f"menu {action.id}")
+    tip(action.doc)
+    if clicked:
+        editor.actions.run(action.id, editor)
+
+
+def entries(editor: Editor, menu: str) -> None:
+    """The actions of a menu of the menu bar, as entries of the menu that is open."""
+    for action in editor.actions.all:
+        if action.menu == menu:
+            entry(editor, action)

@@ -1,0 +1,82 @@
+"""Windows over everything."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from imgui_bundle import ImVec2, imgui
+
+from ..theme.style import ui_scale, vec4
+
+if TYPE_CHECKING:
+    from ..editor import Editor
+
+FIXED = (
+    int(imgui.WindowFlags_.no_docking) | int(imgui.WindowFlags_.no_saved_settings) | int(imgui.WindowFlags_.no_move)
+    | int(imgui.WindowFlags_.no_collapse) | int(imgui.WindowFlags_.no_resize)
+)
+
+
+def backdrop(editor: Editor, name: str, opacity: float = 0.45) -> bool:
+    """Cover everything below a dialog, so that nothing else can be clicked; True if it was clicked itself."""
+    view = imgui.get_main_viewport()
+    imgui.set_next_window_pos(view.pos)
+    imgui.set_next_window_size(view.size)
+    imgui.push_style_color(imgui.Col_.window_bg, vec4(editor.palette.shadow, opacity))
+    imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
+    still = int(imgui.WindowFlags_.no_decoration) | int(imgui.WindowFlags_.no_nav)
+    imgui.begin(f"##behind {name}", None, FIXED | still | int(imgui.WindowFlags_.no_bring_to_front_on_focus))
+    _to_front()
+    clicked = imgui.is_window_hovered() and imgui.is_mouse_clicked(imgui.MouseButton_.left)
+    imgui.end()
+    imgui.pop_style_var()
+    imgui.pop_style_color()
+    return clicked
+
+
+@contextmanager
+def dialog(
+    editor: Editor, title: str, size: tuple[float, float], *, top: float = 0.5, bare: bool = False, flags: int = 0,
+) -> Iterator[None]:
+    """A window over everything; `size` in pixels at scale 1, a height of 0 is what it needs.
+
+    It is centered, `top` says how far down, and never larger than the main window.
+    """
+    view, scale = imgui.get_main_viewport(), ui_scale()
+    width = min(size[0] * scale, view.size.x - 16 * scale)
+    height = min(size[1] * scale, view.size.y - 16 * scale)
+    imgui.set_next_window_pos(
+        ImVec2(view.pos.x + view.size.x / 2, view.pos.y + view.size.y * top), imgui.Cond_.always.value, ImVec2(0.5, top)
+    )
+    if height:
+        imgui.set_next_window_size(ImVec2(width, height))
+    else:
+        limit = ImVec2(width, view.size.y - 16 * scale)
+        imgui.set_next_window_size_constraints(ImVec2(width, 0), limit)
+        flags |= int(imgui.WindowFlags_.always_auto_resize)
+    if bare:
+        flags |= int(imgui.WindowFlags_.no_title_bar)
+    imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(16 * scale, 14 * scale))
+    imgui.push_style_var(imgui.StyleVar_.window_rounding, 8.0 * scale)
+    imgui.begin(f"{title}###{title}", None, FIXED | flags)
+    imgui.pop_style_var(2)
+    if imgui.is_window_appearing():
+        imgui.set_window_focus()
+    _to_front()
+    yield
+    corner, extent = imgui.get_window_pos(), imgui.get_window_size()
+    editor.places[f"dialog {title}"] = (corner.x, corner.y, corner.x + extent.x, corner.y + extent.y)
+    imgui.end()
+
+
+def escaped() -> bool:
+    """True if Escape was pressed in this dialog, with nothing else open in it."""
+    inside = imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows.value)
+    return inside and imgui.is_key_pressed(imgui.Key.escape, False)
+
+
+def _to_front() -> None:
+    if not imgui.is_popup_open("", int(imgui.PopupFlags_.any_popup)):
+        imgui.internal.bring_window_to_display_front(imgui.internal.get_current_window())

@@ -1,0 +1,44 @@
+"""Where things are on the screen."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from imgui_bundle import imgui
+
+from ..theme.palette import Palette
+
+Rect = tuple[float, float, float, float]
+"""Left, top, right, bottom in screen pixels."""
+
+
+class Surface(Protocol):
+    """What widgets are drawn on, such as the editor: it knows their colors, and keeps where they are."""
+
+    @property
+    def palette(self) -> Palette: ...
+
+    @property
+    def places(self) -> dict[str, Rect]: ...
+
+
+def item_rect() -> Rect:
+    """Where the last widget is."""
+    low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+    return low.x, low.y, high.x, high.y
+
+
+def record(surface: Surface, name: str) -> None:
+    """Note where the last widget is."""
+    surface.places[name] = item_rect()
+
+
+def place(width: float, height: float = 0.0) -> Rect:
+    """The rectangle at the cursor; a field is as high as any framed widget."""
+    start = imgui.get_cursor_screen_pos()
+    return start.x, start.y, start.x + max(width, 1.0), start.y + (height or imgui.get_frame_height())
+
+
+def union(first: Rect, second: Rect) -> Rect:
+    """The rectangle around two."""
+    return min(first[0], second[0]), min(first[1], second[1]), max(first[2], second[2]), max(first[3], second[3])

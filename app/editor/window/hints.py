@@ -1,0 +1,48 @@
+"""What the mouse does in the panel below it, in a few words."""
+
+from __future__ import annotations
+
+from ..editor import Editor
+from ..keys import shown
+
+Hint = tuple[str, str]
+"""Keys or a button, and what they do."""
+
+
+def hints(editor: Editor, panel: str) -> tuple[Hint, ...]:
+    """For the panel of that title; what is most needed first."""
+    viewer, canvas = editor.viewer, editor.canvas
+    if panel == "Viewer":
+        if viewer.picking:
+            return ("Click", "take it from the picture"), ("Right click", "leave it")
+        if viewer.drawing_region:
+            return (("Drag", "the region"),)
+    if panel == "Graph" and getattr(canvas, "tool", ""):
+        return ("Drag", "across links"), ("Escape", "leave it")
+    return tuple((_key(editor, keys), does) for keys, does in _HINTS.get(panel, _ANYWHERE) if _key(editor, keys))
+
+
+def _key(editor: Editor, keys: str) -> str:
+    """`keys`, or the shortcut in force if they name an action."""
+    return shown(editor.actions.shortcut(keys)) if "." in keys else keys
+
+
+_HINTS: dict[str, tuple[Hint, ...]] = {
+    "Graph": (
+        ("node.add", "add a node"), ("Drag a pin", "link"), ("Middle drag", "move the view"), ("Wheel", "zoom"),
+        ("Right click", "menu"), ("Ctrl+Right drag", "cut links"),
+    ),
+    "Viewer": (
+        ("Wheel", "zoom"), ("Middle drag", "move the picture"), ("viewer.fit", "fit"), ("viewer.wipe", "wipe"),
+        ("Ctrl+drag", "measure"), ("Ctrl+click", "marker"), ("Right click", "menu"),
+    ),
+    "Inspector": (
+        ("Drag", "change (Shift: finely)"), ("Click", "type, also +1 or *2"), ("Double click a name", "reset"),
+        ("Right click", "more"),
+    ),
+    "Scopes": (("viewer.region", "measure a part of the picture"),),
+    "History": (("Click", "go back or forth to a step"),),
+    "Problems": (("Click", "show the node"), ("Right click", "copy")),
+    "Log": (("Right click", "copy"),),
+}
+_ANYWHERE = (("help.palette", "find any command"), ("help.shortcuts", "all shortcuts"))

@@ -1,0 +1,31 @@
+from typing import Annotated
+
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider
+
+
+class DirectionalBlur(Filter):
+    """Blur along a straight line, as if the camera had moved during the exposure.
+
+    The mean along the line, sampled at every pixel or closer (bilinear). The cost grows with the length.
+    """
+
+    image = Image()
+    angle: Annotated[float, Slider(
+        -180.0, 180.0, unit="deg", doc="Where the line points: 0 is right, 90 is up."
+    )] = 0.0
+    length: Annotated[float, Slider(
+        0.0, 200.0, unit="px", minimum=0.0, maximum=2000.0, doc="From one end of the line to the other."
+    )] = 40.0
+    shift: Annotated[float, Slider(
+        -0.5, 0.5, unit="ratio", minimum=-16.0, maximum=16.0,
+        doc="0 spreads to both sides, 0.5 only where the line points, -0.5 only to the other side.",
+    )] = 0.0
+    edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
+
+    def identity(self) -> str | None:
+        return "image" if self.length == 0.0 else None
+
+    def passes(self, draw: Draw) -> Drawn:
+        return draw(
+            "directional_blur", self.image, edge=self.edge, angle=self.angle, spread=self.length, shift=self.shift
+        )

@@ -1,0 +1,32 @@
+from typing import Annotated, Literal
+
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
+
+
+class RadialBlur(Filter):
+    """Blur around a point, as if the camera had turned (spin) or zoomed during the exposure.
+
+    The mean along an arc, or along the line through the center: sampled at every pixel or closer (bilinear), up to 512
+    times.
+    """
+
+    image = Image()
+    kind: Annotated[Literal["zoom", "spin"], Doc("Zoom blurs away from the center, spin around it.")] = "zoom"
+    zoom: Annotated[float, Slider(
+        0.0, 1.0, unit="ratio", minimum=0.0, maximum=2.0,
+        doc="For zoom: how far a pixel spreads, as a part of its distance from the center.",
+    )] = 0.15
+    angle: Annotated[float, Slider(
+        0.0, 90.0, unit="deg", minimum=0.0, maximum=360.0, doc="For spin: how far a pixel turns in all."
+    )] = 10.0
+    center: Annotated[Position, Doc("The point that stays sharp.")] = (0.5, 0.5)
+    edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
+
+    def identity(self) -> str | None:
+        return "image" if (self.zoom if self.kind == "zoom" else self.angle) == 0.0 else None
+
+    def passes(self, draw: Draw) -> Drawn:
+        return draw(
+            "radial_blur", self.image, edge=self.edge,
+            kind=self.kind, zoom=self.zoom, angle=self.angle, center=self.center,
+        )

@@ -1,0 +1,21 @@
+from typing import Annotated, Literal
+
+from .._declare import Doc, Fraction, Image, Pointwise, Slider
+
+
+class Invert(Pointwise):
+    """Turn a picture into its negative.
+
+    `display` is 1 - c of sRGB codes (IEC 61966-2-1), the negative that the eye expects; `linear` is 1 - c of light, for
+    masks and data; `stops` mirrors brightness about middle gray, 0.18^2 / c, within eight stops of it. Each undoes
+    itself. Works on the color without its alpha; alpha stays.
+    """
+
+    image = Image()
+    space: Annotated[Literal["display", "linear", "stops"], Doc("In what the picture is mirrored.")] = "display"
+    amount: Annotated[Fraction, Slider(
+        0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="Mix with the input; link a mask here."
+    )] = 1.0
+
+    def identity(self) -> str | None:
+        return "image" if self.amount == 0.0 else None

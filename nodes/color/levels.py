@@ -1,0 +1,28 @@
+from typing import Annotated, Literal
+
+from .._declare import Doc, Image, Pointwise, Slider
+
+
+class Levels(Pointwise):
+    """Stretch the light between a black and a white point, and bend the midtones between them.
+
+    `out = low + (high - low) * ((in - black) / (white - black)) ^ (1 / gamma)` per channel. What lies below the black
+    point skips the gamma and goes on straight. Works on the color without its alpha; alpha stays.
+    """
+
+    image = Image()
+    space: Annotated[Literal["linear", "display"], Doc(
+        "What the points count: scene light, or sRGB codes as in paint programs."
+    )] = "linear"
+    black: Annotated[float, Slider(0.0, 1.0, unit="scene", doc="What becomes black.")] = 0.0
+    white: Annotated[float, Slider(0.0, 4.0, unit="scene", doc="What becomes white.")] = 1.0
+    gamma: Annotated[float, Slider(
+        0.2, 5.0, unit="ratio", minimum=0.01, maximum=100.0, doc="Above 1 brightens the midtones, below 1 darkens them."
+    )] = 1.0
+    low: Annotated[float, Slider(0.0, 1.0, unit="scene", doc="What black comes out as.")] = 0.0
+    high: Annotated[float, Slider(0.0, 4.0, unit="scene", doc="What white comes out as.")] = 1.0
+    clip: Annotated[bool, Doc("Keep what lies beyond the two points at them.")] = False
+
+    def identity(self) -> str | None:
+        neutral = (self.black, self.white) == (self.low, self.high) and self.gamma == 1.0 and self.black != self.white
+        return "image" if neutral and not self.clip else None

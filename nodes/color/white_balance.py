@@ -1,0 +1,30 @@
+from typing import Annotated, Literal
+
+from .._declare import Doc, Image, Pointwise, Slider
+
+_DAYLIGHT = 6504.0
+
+
+class WhiteBalance(Pointwise):
+    """Make the light of the scene white: say what color it had, and gray things turn gray.
+
+    Above 6504 kelvin (the working white, D65) the picture gets warmer, below colder, as in raw converters. The light
+    lies on the Planckian locus (Krystek 1985), moved to pass through D65; tint moves it across, 3000 for a distance of
+    1 in CIE 1960 uv. The eye adapts by Bradford (Lam 1985) or CAT16 (Li et al. 2017). Linear: alpha does not matter.
+    """
+
+    image = Image()
+    temperature: Annotated[float, Slider(
+        2000.0, 12000.0, unit="scene", minimum=1667.0, maximum=15000.0,
+        doc="Color temperature of the light in kelvin: candle 1850, bulb 2850, noon 5500, shade 8000.",
+    )] = _DAYLIGHT
+    tint: Annotated[float, Slider(
+        -100.0, 100.0, unit="ratio", minimum=-100.0, maximum=100.0,
+        doc="Above 0 the light was green (fluorescent) and the picture gets more magenta; below 0 greener.",
+    )] = 0.0
+    method: Annotated[Literal["bradford", "cat16"], Doc(
+        "How the eye adapts. Bradford is that of ICC profiles; CAT16 treats saturated blues better."
+    )] = "bradford"
+
+    def identity(self) -> str | None:
+        return "image" if self.temperature == _DAYLIGHT and self.tint == 0.0 else None

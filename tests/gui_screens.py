@@ -1,0 +1,364 @@
+"""Every panel and dialog of the editor in every state that looks different: each function yields names of pictures."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from gui_driver import Ui
+from halation import presets
+from halation.app.document import save
+from halation.app.editor.dialogs import Browse, Question
+from halation.app.editor.editor import Editor
+from halation.app.editor.services.recovery import Recovery
+from halation.app.graph import Control, Graph, Input, Output, Port, Settings
+from halation.nodes import Kind, catalogue
+from toy_nodes import Tint
+
+SAMPLES = presets.paths()[0].parent / "samples"
+Screens = Iterator[str]
+
+
+def made(folder: Path) -> Path:
+    """A graph file with nodes of many kinds, a group, a file with layers, and something of everything that is drawn."""
+    shutil.copytree(SAMPLES, folder / "samples", dirs_exist_ok=True)
+    node = catalogue()
+    graph = Graph(settings=Settings((320, 180)))
+    graph = graph.add_input("beauty", Input(Kind.IMAGE, 4, file="samples/studio.exr", doc="The picture to work on"))
+    graph = graph.add_input("amount", Input(Kind.NUMBER, 1, default=0.5))
+    graph = graph.add_output("image", Output(Kind.IMAGE, 4)).add_output("lights", Output(Kind.FIELD, 1))
+    for id in ("grade", "noise", "bloom", "vignette", "tone_map", "convolve3x3", "luminance"):
+        graph = graph.add(id, node[id]())
+    graph = graph.add("plate", node["read_image"](path="samples/neon.exr"))
+    for source, target in (
+        ("inputs.beauty", "grade.image"), ("grade.out", "bloom.image"), ("bloom.out", "vignette.image"),
+        ("vignette.out", "tone_map.image"), ("tone_map.out", "outputs.image"), ("inputs.amount", "vignette.amount"),
+        ("tone_map.out", "luminance.image"), ("luminance.out", "outputs.lights"), ("noise.out", "convolve3x3.image"),
+    ):
+        graph = graph.connect(Port.parse(source), Port.parse(target))
+    graph = graph.add_control("glow", Control(Port("bloom", "intensity")))
+    path = folder / "many_things.json"
+    save(graph, path)
+    return path
+
+
+# --- the main window -------------------------------------------------------------------------------------------------
+
+
+def window(ui: Ui) -> Screens:
+    """All panels at once, with a node selected."""
+    ui.session.arrange(ui.editor.canvas.sizes or {})
+    ui.editor.canvas.fit()
+    ui.session.select(["bloom"])
+    ui.settled()
+    yield "window"
+
+
+def inspector(ui: Ui) -> Screens:
+    """What can be selected."""
+    ui.session.edit("Add", ui.session.graph.add("curves", Tint()))
+    for id in ("grade", "noise", "bloom", "vignette", "tone_map", "convolve3x3", "plate", "curves"):
+        ui.session.select([id])
+        ui.wait(3)
+        yield f"inspector_{id}"
+    for name, keys in (
+        ("input", ["inputs.beauty"]), ("input_number", ["inputs.amount"]), ("output", ["outputs.image"]),
+        ("several", ["grade", "vignette"]), ("nothing", []),
+    ):
+        ui.session.select(keys)
+        ui.wait(3)
+        yield f"inspector_{name}"
+    ui.session.bind("beauty", str(SAMPLES / "neon.exr"))
+    ui.session.select(["inputs.beauty"])
+    ui.wait(3)
+    yield "inspector_bound"
+    ui.session.bind("beauty", None)
+    ui.session.select(["grade", "bloom"])
+    frame = ui.session.add_frame("Look", sizes=ui.editor.canvas.sizes or {})
+    ui.session.select([f"frames.{frame}"])
+    ui.wait(3)
+    yield "inspector_frame"
+    comment = ui.session.add_comment((40.0, -160.0), "Check the highlights\nwith the client.")
+    ui.session.select([f"comments.{comment}"])
+    ui.wait(3)
+    yield "inspector_comment"
+    ui.session.select(["grade", "bloom"])
+    ui.session.make_group("look")
+    ui.wait(3)
+    yield "inspector_group"
+    for _ in range(3):
+        ui.session.undo()
+
+
+def fields(ui: Ui) -> Screens:
+    """What fields open."""
+    ui.session.select(["grade"])
+    ui.wait(3)
+    ui.click("field grade.gain", fraction=(0.03, 0.5))
+    yield "color_picker"
+    ui.keys("Escape")
+    ui.session.select(["tone_map"])
+    ui.wait(3)
+    ui.click("field tone_map.operator")
+    yield "choice"
+    ui.keys("Escape")
+    ui.click("name tone_map.exposure", button=1)
+    yield "value_menu"
+    ui.keys("Escape")
+    ui.click("field tone_map.exposure")
+    ui.type("1.5*2", enter=False)
+    yield "number_typed"
+    ui.keys("Escape")
+    ui.move("name tone_map.bias")
+    ui.ctx.sleep_no_skip(1.0, 0.1)
+    yield "tooltip"
+    ui.move((3.0, 3.0))
+    ui.session.select(["plate"])
+    ui.wait(3)
+    ui.click("field plate.layer")
+    ui.wait(10)
+    yield "layers"
+    ui.keys("Escape")
+
+
+# --- the viewer ------------------------------------------------------------------------------------------------------
+
+
+def viewer(ui: Ui) -> Screens:
+    """Channels, comparing, warnings and what lies over the picture."""
+    seen = ui.editor.viewer
+    ui.session.view(Port("outputs", "image"))
+    ui.session.select([])
+    ui.settled()
+    for channels in ("red", "alpha", "luminance", "false color"):
+        seen.show(channels)
+        ui.wait(2)
+        yield f"viewer_{channels.replace(' ', '_')}"
+    seen.show("false color")
+    ui.session.view(Port("grade", "out"), "B")
+    for mode in ("wipe", "difference", "toggle"):
+        seen.comparing(mode)
+        ui.settled()
+        yield f"viewer_{mode}"
+    seen.compare = "off"
+    seen.warn_clipping, seen.exposure = True, 2.0
+    ui.wait(3)
+    yield "viewer_clipping"
+    seen.warn_clipping, seen.exposure = False, 0.0
+    seen.table, seen.region, seen.measured = True, (0.2, 0.2, 0.6, 0.7), (0.3, 0.3, 0.5, 0.5)
+    seen.markers = ((0.25, 0.5), (0.75, 0.25))
+    ui.move("viewer image")
+    ui.wait(4)
+    yield "viewer_table"
+    ui.click("viewer image", button=1)
+    yield "viewer_menu"
+    ui.keys("Escape")
+    seen.table, seen.region, seen.measured, seen.markers = False, None, None, ()
+    ui.session.select(["vignette"])
+    ui.session.view(Port("outputs", "lights"))
+    ui.settled()
+    yield "viewer_field"
+    ui.session.view(Port("bloom", "out"))
+    ui.settled()
+    ui.click("button view" if "button view" in ui.editor.places else "button more tools")
+    yield "viewer_views"
+    ui.keys("Escape")
+    ui.keys("Escape")
+    seen.paused = True
+    ui.wait(2)
+    yield "viewer_paused"
+    seen.paused = False
+    ui.session.view(Port("outputs", "image"))
+
+
+def scopes(ui: Ui) -> Screens:
+    """All four, and one."""
+    ui.editor.viewer.scopes = {"histogram", "waveform", "parade", "vectorscope"}
+    show(ui, "Scopes")
+    ui.settled()
+    ui.wait(15)
+    yield "scopes_all"
+    ui.editor.viewer.scopes = {"waveform"}
+    ui.wait(15)
+    yield "scopes_waveform"
+    ui.editor.viewer.scopes = set()
+    ui.wait(2)
+    yield "scopes_none"
+    ui.editor.viewer.scopes = {"histogram", "waveform"}
+
+
+# --- panels ----------------------------------------------------------------------------------------------------------
+
+
+def show(ui: Ui, title: str) -> None:
+    """Bring a docked panel to the front."""
+    ui.ctx.window_focus(f"//{title}")
+    ui.wait(4)
+
+
+def panels(ui: Ui) -> Screens:
+    """Problems, log, history."""
+    show(ui, "Problems")
+    yield "problems_none"
+    ui.session.disconnect(Port("bloom", "image"))
+    ui.editor.faults["Nowhere"] = "Traceback (most recent call last):\n  the details"
+    ui.wait(4)
+    yield "problems"
+    ui.editor.faults.clear()
+    show(ui, "Graph")
+    yield "problems_on_the_canvas"
+    ui.session.undo()
+    show(ui, "History")
+    yield "history"
+    ui.editor.log.add("opened many_things.json")
+    ui.editor.log.add("the picture beauty.exr has changed on disk and was read again", "warning")
+    ui.editor.log.add("'grade.out' (Image) cannot go into 'vignette.amount' (Number)", "error", "the\ndetails")
+    show(ui, "Log")
+    yield "log"
+    ui.editor.log.dismiss()
+    show(ui, "Graph")
+
+
+@dataclass
+class Ended:
+    """What the panel reads of a render to files."""
+
+    destinations: tuple[tuple[str, Path], ...]
+    state: str
+    done: int = 0
+    total: int = 0
+    sentence: str = ""
+    notes: tuple[str, ...] = ()
+
+    def wait(self) -> bool:
+        """It has ended."""
+        return True
+
+
+def renders(ui: Ui) -> Screens:
+    """The form, and renders in every state."""
+    show(ui, "Renders")
+    yield "renders_form"
+    folder = Path("/pictures/shots/0120")
+    ui.editor.exports.all = (  # type: ignore[assignment]
+        Ended((("image", folder / "comp_v012.exr"),), "done", 9, 9, notes=("image: clipped to 16 bit",)),
+        Ended((("image", folder / "comp_v013.png"),), "failed", 3, 9, "/pictures/shots/0120: no such folder"),
+        Ended((("image", folder / "a_very_long_name_of_a_picture_v014.exr"),), "cancelled"),
+        Ended((("image", folder / "comp_v015.exr"), ("lights", folder / "lights_v015.exr")), "running", 4, 9),
+    )
+    ui.wait(3)
+    yield "renders"
+    ui.editor.exports.all = ()
+    show(ui, "Graph")
+
+
+# --- over everything -------------------------------------------------------------------------------------------------
+
+
+def files(ui: Ui) -> Screens:
+    """The file browser as pictures and as a list, opening and saving."""
+    for purpose, saving in (("image", False), ("graph", False), ("export", True)):
+        ui.editor.store.used(purpose, (SAMPLES if purpose == "image" else SAMPLES.parent) / "x")
+        ui.editor.dialogs.browse = Browse(f"Choose: {purpose}", purpose, lambda path: None, saving, "halation.png")
+        ui.wait(25)
+        yield f"files_{purpose}"
+        if purpose == "image":
+            ui.click("list or grid")
+            ui.wait(3)
+            yield "files_list"
+            ui.click("list or grid")
+        ui.editor.dialogs.browse = None
+        ui.wait(2)
+
+
+def dialogs(ui: Ui) -> Screens:
+    """Everything that lies on top."""
+    for name in ("shortcuts", "about", "palette", "preferences"):
+        ui.editor.dialogs.open.add(name)
+        ui.wait(4)
+        yield name
+        if name == "palette":
+            ui.type("light", enter=False)
+            yield "palette_typed"
+        if name == "preferences":
+            ui.click("page System")
+            yield "preferences_system"
+            ui.click("page Shortcuts")
+            yield "preferences_shortcuts"
+            ui.click("shortcut file.new")
+            ui.keys("Ctrl+O")
+            yield "preferences_conflict"
+        ui.editor.dialogs.open.clear()
+        ui.wait(2)
+    ui.editor.dialogs.question = Question(
+        "Save the changes?", "'many_things' was changed since it was saved.",
+        (("Save", lambda: None), ("Do not save", lambda: None), ("Cancel", lambda: None)),
+    )
+    ui.wait(3)
+    yield "question"
+    ui.editor.dialogs.question = None
+    ui.editor.log.add("saved many_things.json")
+    ui.editor.log.add("the graphics card is short of memory: results are kept for less long", "warning")
+    ui.editor.log.add("cannot connect 'noise.out' to 'vignette.amount': an Image is no Number", "error")
+    ui.wait(4)
+    yield "toasts"
+    ui.editor.log.dismiss()
+
+
+def canvas(ui: Ui) -> Screens:
+    """What the graph opens: search, context menus, the menu bar."""
+    ui.move("Graph")
+    ui.wait(2)
+    ui.keys("Tab")
+    ui.type("bl", enter=False)
+    yield "search"
+    ui.keys("Escape")
+    ui.keys("Escape")
+    ui.click("title bloom", button=1)
+    yield "node_menu"
+    ui.keys("Escape")
+    ui.ctx.menu_click("//##MainMenuBar/Viewer")
+    ui.wait(3)
+    yield "menu"
+    ui.keys("Escape")
+    ui.keys("Escape")
+
+
+def start(ui: Ui) -> Screens:
+    """The start screen at the first start, and later with files and unsaved work."""
+    ui.session.new()
+    ui.wait(3)
+    yield "empty"
+    for title in ("Scopes", "History", "Renders"):
+        show(ui, title)
+        yield f"empty_{title.lower()}"
+    ui.editor.log.entries.clear()
+    show(ui, "Log")
+    yield "empty_log"
+    show(ui, "Graph")
+    _open_start(ui.editor)
+    ui.wait(6)
+    yield "start_first"
+    ui.editor.dialogs.open.clear()
+    ui.wait(2)
+    lost = Recovery(ui.editor.store.file.parent, 0.05)
+    lost.note(Graph().add("noise", catalogue()["noise"]()), Path("/pictures/lost_look.json"), True)
+    lost.close(keep=True)
+    for path in (*presets.paths()[:4], Path("/pictures/a/long/way/down/gone_with_the_wind.json")):
+        ui.editor.store.opened(path)
+    _open_start(ui.editor)
+    ui.wait(6)
+    yield "start_later"
+    ui.editor.dialogs.open.clear()
+    ui.wait(2)
+
+
+def _open_start(editor: Editor) -> None:
+    editor.dialogs.open.add("start")
+
+
+SCREENS: tuple[Callable[[Ui], Screens], ...] = (
+    window, inspector, fields, viewer, scopes, panels, renders, files, dialogs, canvas, start,
+)
