@@ -19,6 +19,18 @@ def chain(*types: str) -> Graph:
     return with_places(graph.connect(last, Port("outputs", "image")), places)
 
 
+def row(count: int) -> Graph:
+    """Many nodes `n0`, `n1`, ... that feed each other, in lines of twenty, and an output."""
+    graph, places = Graph().add_output("image", Output()), dict[str, tuple[float, float]]()
+    for number in range(count):
+        id = f"n{number}"
+        graph = graph.add(id, catalogue()["exposure"]())
+        if number:
+            graph = graph.connect(Port(f"n{number - 1}", "out"), Port(id, "image"))
+        places[id] = (number % 20 * 240.0, number // 20 * 160.0)
+    return with_places(graph.connect(Port(f"n{count - 1}", "out"), Port("outputs", "image")), places)
+
+
 def show(ui, graph: Graph, zoom: float | None = 0.8) -> None:
     """Put a graph on the canvas, without pictures."""
     ui.editor.dialogs.open.clear()

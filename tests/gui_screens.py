@@ -178,10 +178,10 @@ def scopes(ui: Ui) -> Screens:
     ui.editor.viewer.scopes = {"histogram", "waveform", "parade", "vectorscope"}
     show(ui, "Scopes")
     ui.settled()
-    ui.wait(15)
+    ui.wait(8)
     yield "scopes_all"
     ui.editor.viewer.scopes = {"waveform"}
-    ui.wait(15)
+    ui.wait(8)
     yield "scopes_waveform"
     ui.editor.viewer.scopes = set()
     ui.wait(2)
@@ -217,7 +217,7 @@ def panels(ui: Ui) -> Screens:
     ui.editor.log.add("'grade.out' (Image) cannot go into 'vignette.amount' (Number)", "error", "the\ndetails")
     show(ui, "Log")
     yield "log"
-    ui.editor.log.dismiss()
+    ui.editor.log.entries.clear()
     show(ui, "Graph")
 
 
@@ -262,7 +262,7 @@ def files(ui: Ui) -> Screens:
     for purpose, saving in (("image", False), ("graph", False), ("export", True)):
         ui.editor.store.used(purpose, (SAMPLES if purpose == "image" else SAMPLES.parent) / "x")
         ui.editor.dialogs.browse = Browse(f"Choose: {purpose}", purpose, lambda path: None, saving, "halation.png")
-        ui.wait(25)
+        ui.wait(12)
         yield f"files_{purpose}"
         if purpose == "image":
             ui.click("list or grid")

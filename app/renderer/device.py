@@ -85,11 +85,11 @@ def open_device(form: Form | None = None) -> Device:
     return Device(context, describe(context, form))
 
 
-def adopt() -> Device:
+def adopt(form: Form | None = None) -> Device:
     """The device of the OpenGL context that is current on this thread, a window's. Raises DeviceError if it is old."""
     moderngl.init_context()
     context = moderngl.get_context()
-    return Device(context, describe(context), shared=True)
+    return Device(context, describe(context, form), shared=True)
 
 
 def describe(context: moderngl.Context, form: Form | None = None) -> Target:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 
 import pytest
@@ -11,7 +12,7 @@ from halation.app.renderer import Display, Renderer, open_device
 
 @pytest.fixture
 def engine() -> Iterator[Renderer]:
-    made = Renderer(open_device())
+    made = Renderer(open_device(os.environ.get("HALATION_TEST_FORM")))
     yield made
     made.close()
 

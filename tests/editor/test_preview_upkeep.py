@@ -104,3 +104,13 @@ def test_a_thumbnail_of_depth_shows_its_range(preview, engine):
     with engine.device.current():
         drawn = np.frombuffer(preview.thumbnail("inputs.depth")[0].read(), np.uint8).reshape(23, 37, 4)
     assert drawn[0, 0, 0] == 0 and drawn[-1, -1, 0] == 255 and 100 < drawn[11, 18, 0] < 155
+
+
+def test_the_sky_does_not_make_a_thumbnail_of_depth_black(preview, engine):
+    depth = np.linspace(2.0, 9.0, 37 * 23, dtype=np.float32).reshape(23, 37, 1)
+    depth[:5] = 1e10
+    want(preview, Graph(inputs={"depth": Input(Kind.FIELD)}), {"A": Port("inputs", "depth")}, bindings={"depth": depth})
+    settle(preview)
+    with engine.device.current():
+        drawn = np.frombuffer(preview.thumbnail("inputs.depth")[0].read(), np.uint8).reshape(23, 37, 4)
+    assert drawn[2, 3, 0] == 255 and drawn[5, 0, 0] < 10 and 100 < drawn[14, 18, 0] < 155

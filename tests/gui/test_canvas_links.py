@@ -6,7 +6,7 @@ import dataclasses
 
 from gui_canvas import chain, empty, show
 from halation.app.editor.edits.elements import with_places
-from halation.app.graph import Port
+from halation.app.graph import Group, Port
 from halation.nodes import catalogue
 
 
@@ -138,5 +138,91 @@ def test_a_faulty_link_and_an_unlinked_node_are_marked(gui) -> None:
         ui.shot("canvas_faulty.png")
         assert ui.session.problems["exposure"]
         assert "link exposure.image" in ui.editor.places
+
+    gui(body)
+
+
+def test_presets_that_fit_are_offered_as_groups_and_linked(gui) -> None:
+    def body(ui) -> None:
+        show(ui, chain("exposure"))
+        ui.drag("pin out inputs.beauty", empty(ui))
+        ui.until(lambda: "search field" in ui.editor.places)
+        ui.ctx.key_chars("neon")
+        ui.until(lambda: "search neon edges" in ui.editor.places)
+        ui.shot("canvas_search_presets.png")
+        ui.keys("Enter")
+        ui.until(lambda: "neon_edges" in ui.session.graph.nodes)
+        assert isinstance(ui.session.graph.nodes["neon_edges"], Group)
+        assert Port("inputs", "beauty") in [
+            source for target, source in ui.session.graph.links.items() if target.node == "neon_edges"
+        ]
+
+    gui(body)
+
+
+def test_a_chain_dropped_on_a_link_is_inserted_and_what_follows_makes_room(gui) -> None:
+    def body(ui) -> None:
+        graph = with_node(with_node(chain("exposure", "bloom"), "vignette", (400.0, 200.0)), "clip", (640.0, 200.0))
+        show(ui, graph.connect(Port("vignette", "out"), Port("clip", "image")), 0.6)
+        session, steps = ui.session, ui.session.history.position
+        before = dict(session.positions)
+        session.select(("vignette", "clip"))
+        ui.wait(3)
+        ui.drag(ui.at("title vignette", (0.5, 0.5)), "link bloom.image", release=False)
+        ui.wait(2)
+        ui.shot("canvas_chain_over_link.png")
+        ui.ctx.mouse_up(0)
+        ui.wait(3)
+        links = session.graph.links
+        assert links[Port("vignette", "image")] == Port("exposure", "out")
+        assert links[Port("bloom", "image")] == Port("clip", "out")
+        assert session.history.position == steps + 1
+        right = session.positions["clip"][0] + ui.editor.canvas.sizes["clip"][0]
+        assert session.positions["bloom"][0] > right
+        assert session.positions["outputs.image"][0] > before["outputs.image"][0]
+        assert session.positions["exposure"] == before["exposure"]
+        ui.keys("Ctrl+Z")
+        assert dict(session.positions) == before
+
+    gui(body)
+
+
+def test_alt_takes_a_node_out_of_its_chain_while_it_is_dragged(gui) -> None:
+    def body(ui) -> None:
+        show(ui, chain("exposure", "bloom"))
+        session, before, steps = ui.session, ui.session.graph, ui.session.history.position
+        x, y = ui.at("title bloom", (0.3, 0.5))
+        ui.drag((x, y), (x, y + 150), keys="Alt", release=False)
+        assert session.graph.links[Port("outputs", "image")] == Port("exposure", "out")
+        ui.keys("Escape")
+        ui.ctx.mouse_up(0)
+        ui.wait(3)
+        assert session.graph == before and session.history.position == steps and not session.history.can_redo
+        ui.drag((x, y), (x, y + 150), keys="Alt")
+        assert Port("bloom", "image") not in session.graph.links
+        assert session.position("bloom")[1] > 100 and session.history.position == steps + 1
+        ui.keys("Ctrl+Z")
+        assert session.graph == before
+
+    gui(body)
+
+
+def test_copies_and_pastes_between_places(gui) -> None:
+    def body(ui) -> None:
+        show(ui, chain("exposure", "bloom"))
+        session = ui.session
+        ui.click("title exposure", fraction=(0.3, 0.5))
+        ui.click("title bloom", fraction=(0.3, 0.5), keys="Shift")
+        ui.keys("Ctrl+C")
+        ui.move(empty(ui))
+        ui.wait(2)
+        ui.keys("Ctrl+V")
+        ui.until(lambda: len(session.graph.nodes) == 4)
+        first, second = sorted(session.selection)
+        assert Port(first, "image") in session.graph.links or Port(second, "image") in session.graph.links
+        assert session.selection.isdisjoint({"exposure", "bloom"})
+        at = ui.editor.canvas.pointer
+        left = min(session.position(key)[0] for key in session.selection)
+        assert abs(left - at[0]) < 2
 
     gui(body)

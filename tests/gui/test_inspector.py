@@ -10,7 +10,6 @@ from halation.app import document
 from halation.app.graph import Graph, Group, Output, Port, Settings
 from halation.app.media import write
 from halation.nodes import Kind, catalogue
-from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 from toy_nodes import Tint
 
@@ -166,8 +165,7 @@ def test_colors(gui, file) -> None:
         ui.type("2")
         assert value(ui, "grade.gain") == (4.0, 0.0, 0.0, 1.0)
         assert len(ui.session.history.steps) == steps + 2
-        ui.ctx.item_click(f"//$FOCUSED/{icons.ICON_FA_EYE_DROPPER}##grade.gain picker")
-        ui.wait(3)
+        ui.click("button pick grade.gain picker")
         assert ui.editor.viewer.picking == "grade.gain"
 
     gui(body, file)

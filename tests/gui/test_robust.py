@@ -144,3 +144,18 @@ def test_a_fault_fails_a_test(gui) -> None:
 
     with pytest.raises(AssertionError, match="the panel Inspector failed"):
         gui(body, LOOK)
+
+
+def test_opengl_as_on_a_mac_will_do(gui, monkeypatch) -> None:
+    monkeypatch.setenv("HALATION_TEST_FORM", "fragment")
+
+    def body(ui) -> None:
+        ui.settled()
+        assert ui.window.device.target.form == "fragment"
+        assert not ui.editor.preview.faults and ui.editor.preview.shown("A") is not None
+        ui.session.set(STOPS, 1.5)
+        ui.settled()
+        left, top, right, bottom = map(int, ui.editor.places["viewer image"])
+        assert ui.pixels()[top:bottom, left:right].std() > 20.0
+
+    gui(body, LOOK)

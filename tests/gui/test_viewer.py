@@ -343,7 +343,7 @@ def test_everything_that_is_hidden_in_a_narrow_panel_is_in_its_menu(gui) -> None
         ui.settled()
         assert "button viewer.save" not in ui.editor.places
         ui.click("button more tools")
-        ui.click("button viewer.table")
+        ui.click("menu viewer.table")
         assert ui.editor.viewer.table
 
     gui(body, PRESET, size=(600, 600))

@@ -171,7 +171,7 @@ def neutral_off(node: type[Node]) -> dict[str, object]:
         for choice in value.choices:
             if node(**{value.name: choice}).identity() is None:
                 return {value.name: choice}
-        if value.type == "color":
+        if value.type in ("color", "vector"):
             return {value.name: tuple(part + 0.1 for part in value.default)}
     raise AssertionError(f"{node.id} is neutral whatever its values are")
 

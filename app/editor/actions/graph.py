@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from ...graph import Group
 from ..action import Act, Action
+from ..canvas.pictures import with_room
 from ..canvas.view import Tool
 from ..dialogs import Browse
 from .documents import open_graph
@@ -125,7 +126,7 @@ GRAPH: tuple[Action, ...] = (
            contexts=frozenset({"node", "canvas"}), separated=True),
     Action("comment.add", "Comment", lambda e: e.session.add_comment(e.canvas.pointer, ""), "Graph", "Shift+C", "graph",
            contexts=frozenset({"canvas"})),
-    Action("layout.arrange", "Arrange", lambda e: e.session.arrange(e.canvas.sizes or {}), "Graph", "L", "graph",
+    Action("layout.arrange", "Arrange", lambda e: e.session.arrange(with_room(e)), "Graph", "L", "graph",
            contexts=frozenset({"canvas"}), doc="Lay out the selection, or everything, from left to right.",
            separated=True),
     *(_align(side, label) for side, label in _SIDES),

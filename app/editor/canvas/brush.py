@@ -13,6 +13,7 @@ from ..theme.fonts import Fonts
 from ..theme.palette import PALETTES, RGB, Palette
 from ..theme.style import mix, u32
 from .geometry import Point, Rect, Transform
+from .layout import HEADER
 
 TEXT, SMALL, TITLE = 13.5, 12.0, 14.0
 """Sizes of letters in canvas units."""
@@ -169,6 +170,11 @@ class Brush:
             (to.x + (rect[2] + grow) * s, to.y + (rect[3] + grow) * s),
         )
 
+    def on_screen(self, rect: Rect) -> Rect:
+        """A rectangle in pixels of the screen."""
+        low, high = self.corners(rect)
+        return *low, *high
+
     def fill(self, rect: Rect, color: int, rounding: float = 0.0, grow: float = 0.0, flags: int = 0) -> None:
         """A filled rectangle."""
         low, high = self.corners(rect, grow)
@@ -185,6 +191,11 @@ class Brush:
     def title(self) -> float:
         """The size of titles in canvas units: it grows where they could not be read otherwise."""
         return max(TITLE, READABLE / self.zoom)
+
+    @property
+    def header(self) -> float:
+        """The height of headers, which have room for their titles."""
+        return max(HEADER, self.title * 1.45)
 
     @property
     def line(self) -> float:

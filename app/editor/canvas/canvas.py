@@ -12,6 +12,7 @@ from ..edits.elements import entry
 from ..theme.style import ui_scale
 from .brush import Brush, Texts, ink
 from .crumbs import draw_crumbs
+from .frame import Frame
 from .geometry import Point, Rect, bounds, curve, fitted, holds, overlap, transform
 from .gestures import Band, Draw, Idle, Link, Move, Resize, band_rect
 from .legend import Legend
@@ -19,7 +20,7 @@ from .live import Live, drawn_live
 from .looks import Moment, moment
 from .menus import Menus
 from .minimap import Minimap
-from .mouse import Frame, Mouse
+from .mouse import Mouse
 from .naming import Naming
 from .paint_decor import (
     paint_band,
@@ -218,7 +219,10 @@ class Canvas:
             return
         live = box.key == hot and brush.zoom >= 0.45 and box.sort == "node" and not layout.collapsed
         names = frozenset(row.value.name for row in layout.rows if live and row.value and drawn_live(row))
-        paint_node(brush, box, layout, now.look(box.key, names))
+        look = now.look(box.key, names)
+        paint_node(brush, box, layout, look)
+        if look.overlay:
+            now.editor.places[f"cost {box.key}"] = brush.on_screen((box.x, box.y - 20.0, box.x + box.w, box.y))
         if live:
             self._live.draw(brush, box, layout.rows)
 
@@ -326,7 +330,7 @@ class Canvas:
 def _whole_window() -> Rect:
     """The window up to its borders, below its tab."""
     low, pos, size = imgui.get_cursor_screen_pos(), imgui.get_window_pos(), imgui.get_window_size()
-    return pos.x, low.y - imgui.get_style().window_padding.y, pos.x + size.x, pos.y + size.y
+    return low.x, low.y, pos.x + size.x, pos.y + size.y
 
 
 def _grown(rect: Rect, by: float) -> Rect:

@@ -73,8 +73,9 @@ def fitted(around: Rect, size: Point, most: float = 1.0) -> tuple[Point, float]:
     """Center and zoom that show a rectangle with a margin in a panel of `size` (pixels at UI scale 1)."""
     left, top, right, bottom = around
     across, down = max(right - left, 1.0), max(bottom - top, 1.0)
-    room = max(size[0] - 2 * _MARGIN, 16.0) / across, max(size[1] - 2 * _MARGIN, 16.0) / down
-    return ((left + right) / 2, (top + bottom) / 2), min(max(min(*room, most), MIN_ZOOM), MAX_ZOOM)
+    room = [max(side - 2 * min(_MARGIN, side * 0.1), 16.0) for side in size]
+    zoom = min(room[0] / across, room[1] / down, most)
+    return ((left + right) / 2, (top + bottom) / 2), min(max(zoom, MIN_ZOOM), MAX_ZOOM)
 
 
 def holds(rect: Rect, x: float, y: float, margin: float = 0.0) -> bool:

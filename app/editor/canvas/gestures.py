@@ -186,7 +186,7 @@ def insertable(graph: Graph, scene: Scene, keys: Collection[str], at: Point, rea
     if any(wire.leaves(keys) for wire in scene.wires):
         return None
     spots = [(box.x + box.w / 2, box.y + min(box.h / 2, 24.0)) for box in map(scene.boxes.__getitem__, ids)]
-    wire = next((found for spot in (*spots, at) if (found := scene.net.at(*spot, reach, keys))), None)
+    wire = next((found for spot in (at, *spots) if (found := scene.net.at(*spot, reach, keys))), None)
     if wire is None:
         return None
     try:

@@ -58,6 +58,7 @@ class Live:
         palette = on_nodes(editor.palette.name)
         if self.fields is None or self.fields.palette is not palette:
             self.fields = Fields(palette)
+        self.fields.places = editor.places
         self.fields.begin(imgui.is_mouse_down(imgui.MouseButton_.left))
         self._dragged = self.fields.dragging
 
@@ -148,16 +149,18 @@ class Live:
                 self._edits.append((port, edit))
             imgui.end_popup()
         elif value.type == "choice" and imgui.begin_popup(_CHOICES):
-            self._choices(port, value, plain)
+            self._choices(editor, port, value, plain)
             imgui.end_popup()
         elif not opening:
             self.open = None
 
-    def _choices(self, port: Port, value: Value, plain: Plain) -> None:
+    def _choices(self, editor: Editor, port: Port, value: Value, plain: Plain) -> None:
         appearing = imgui.is_window_appearing()
         for choice in value.choices:
             if imgui.selectable(choice or " ", choice == plain)[0]:
                 self._edits.append((port, Edit(choice)))
+            low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
+            editor.places[f"choice {choice}"] = low.x, low.y, high.x, high.y
             if choice == plain and appearing:
                 imgui.set_scroll_here_y()
                 imgui.set_item_default_focus()

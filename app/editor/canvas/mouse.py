@@ -9,7 +9,8 @@ from imgui_bundle import imgui
 
 from ...graph import Group, Port
 from ..editor import Editor
-from .geometry import Point, Rect, Transform, drift, holds, zoomed
+from .frame import Frame, pan_at_border, turn_wheel
+from .geometry import Point, holds
 from .gestures import (
     IDLE,
     Band,
@@ -33,37 +34,11 @@ from .gestures import (
     touched,
     with_members,
 )
-from .layout import ROW
 from .scene import EMPTY, Hit, Scene
 
 LEFT, RIGHT, MIDDLE = imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.MouseButton_.middle
 
-CLICK = 4.0
-"""Pixels (at UI scale 1) that the mouse may move within a click."""
-
-_BORDER, _SPEED = 28.0, 900.0
 _SNAP = 30.0
-
-
-@dataclass
-class Frame:
-    """What is known of the mouse and the canvas in one frame. `scene` has no gesture in it yet."""
-
-    editor: Editor
-    scene: Scene
-    to: Transform
-    panel: Rect
-    scale: float
-    """Pixels per unit of the interface."""
-    over: bool
-    """True if nothing lies between the mouse and the canvas."""
-    at: Point = (0.0, 0.0)
-    screen: Point = (0.0, 0.0)
-
-    @property
-    def reach(self) -> float:
-        """How far off pins and links can be hit, in canvas units: always as many pixels."""
-        return min(9.0 * self.scale / self.to.scale, ROW)
 
 
 @dataclass
@@ -87,22 +62,31 @@ class Mouse:
     _pressed: tuple[Hit, Point] | None = None
     """Where the right button went down."""
     _moves: int = 0
+    _hit: tuple[Scene, Point, float, Hit] = field(default_factory=lambda: (Scene({}), (0.0, 0.0), 0.0, EMPTY))
+    """What was under the pointer last, and where and in what that was."""
 
     def update(self, frame: Frame) -> None:
         """Go on with the gesture, or begin one."""
         self.asked = Asked()
         io = imgui.get_io()
-        self.hit = frame.scene.hit(*frame.at, frame.reach) if frame.over and isinstance(self.gesture, Idle) else EMPTY
+        self.hit = self._found(frame) if frame.over and isinstance(self.gesture, Idle) else EMPTY
         if frame.over or not isinstance(self.gesture, Idle):
-            self._wheel(frame, io)
+            turn_wheel(frame, io, on_field=self.hit.part == "field")
         if isinstance(self.gesture, Idle):
             if frame.over:
                 self._begin(frame, io)
         else:
             if not isinstance(self.gesture, Pan):
-                _auto_pan(frame, io)
+                pan_at_border(frame, io)
             self._go_on(frame, io)
         self._show(frame)
+
+    def _found(self, frame: Frame) -> Hit:
+        """What is under the pointer; looked for again only when something has moved."""
+        of = frame.scene, frame.at, frame.reach
+        if self._hit[0] is not frame.scene or self._hit[1:3] != of[1:]:
+            self._hit = *of, frame.scene.hit(*frame.at, frame.reach)
+        return self._hit[3]
 
     # --- beginning ---------------------------------------------------------------------------------------------------
 
@@ -114,7 +98,7 @@ class Mouse:
             if io.key_ctrl or io.key_shift:
                 self.gesture = Draw(frame.at, dots=io.key_shift)
             else:
-                self._pressed = hit, frame.screen
+                self._pressed = hit, frame.at
         elif imgui.is_mouse_double_clicked(LEFT):
             self._double(frame, hit)
         elif imgui.is_mouse_clicked(LEFT):
@@ -125,7 +109,7 @@ class Mouse:
                 self._press(frame, io, hit)
         if self._pressed and imgui.is_mouse_released(RIGHT):
             (hit, start), self._pressed = self._pressed, None
-            if not _far(start, frame):
+            if not frame.is_far(start):
                 self._menu(editor, hit)
 
     def _press(self, frame: Frame, io: imgui.IO, hit: Hit) -> None:
@@ -230,7 +214,7 @@ class Mouse:
     def _moving(self, frame: Frame, move: Move, snap: bool, extract: bool) -> Move:
         session = frame.editor.session
         if not move.going:
-            if not _far(frame.to.to_screen(*move.start), frame):
+            if not frame.is_far(move.start):
                 return move
             members = [
                 session.frame_members(key.removeprefix("frames."), frame.scene.sizes)
@@ -264,7 +248,7 @@ class Mouse:
 
     def _banded(self, frame: Frame, band: Band) -> None:
         editor = frame.editor
-        if not _far(frame.to.to_screen(*band.start), frame):
+        if not frame.is_far(band.start):
             hit = frame.scene.hit(*band.start, frame.reach)
             wire = frame.scene.by_target.get(hit.port) if hit.part == "link" and hit.port else None
             keys = {wire.stops[0], wire.stops[-1]} if wire else ()
@@ -287,7 +271,7 @@ class Mouse:
                 editor.attempt(lambda: session.move_link(detached, target))
             else:
                 editor.attempt(lambda: session.connect(source, target))
-        elif not _far(frame.to.to_screen(*self._start(frame, link)), frame):
+        elif not frame.is_far(self._start(frame, link)):
             if link.output and link.detached is None:
                 editor.attempt(lambda: session.view(link.port))
         elif refused(frame.scene, link, frame.at, frame.reach) is None and not frame.scene.node_at(*frame.at):
@@ -324,33 +308,6 @@ class Mouse:
                     self.dragged.snap = None
             case _:
                 pass
-
-    def _wheel(self, frame: Frame, io: imgui.IO) -> None:
-        view = frame.editor.canvas
-        across, down = io.mouse_wheel_h, io.mouse_wheel
-        if not (across or down) or (io.key_ctrl and self.hit.part == "field"):
-            return
-        if io.key_shift or across:
-            if io.key_shift and not across:
-                across, down = down, 0.0
-            step = 60.0 * frame.scale / frame.to.scale
-            view.center = view.center[0] - across * step, view.center[1] - down * step
-        else:
-            view.center, view.zoom = zoomed(view.center, view.zoom, frame.at, 1.15**down)
-
-
-def _far(start: Point, frame: Frame) -> bool:
-    """True once the mouse has left the place of a click."""
-    gap = max(abs(start[0] - frame.screen[0]), abs(start[1] - frame.screen[1]))
-    return gap > CLICK * frame.scale
-
-
-def _auto_pan(frame: Frame, io: imgui.IO) -> None:
-    x, y = drift(frame.panel, *frame.screen, _BORDER * frame.scale)
-    if x or y:
-        view = frame.editor.canvas
-        step = _SPEED * frame.scale * min(io.delta_time, 0.05) / frame.to.scale
-        view.center = view.center[0] + x * step, view.center[1] + y * step
 
 
 def _resize(editor: Editor, resize: Resize) -> None:

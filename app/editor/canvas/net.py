@@ -39,7 +39,7 @@ class Wire:
 
 @dataclass(frozen=True)
 class Net:
-    """All links. What is costly to find out about them is found out once; it stays while elements only look different."""
+    """All links. What is costly to find out about them is kept while elements look different but stay in place."""
 
     wires: tuple[Wire, ...] = ()
 

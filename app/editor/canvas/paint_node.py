@@ -56,7 +56,7 @@ def paint_node(brush: Brush, box: Box, layout: Layout, look: Look) -> None:
     if look.selected:
         brush.frame(rect, ink.accent, rounding, 2.0, 1.5)
     brush.fill(rect, ink.node_muted if look.muted else ink.node, rounding)
-    top = max(HEADER, brush.title * 1.45)
+    top = brush.header
     whole = layout.collapsed or (is_end and not layout.picture)
     if whole and top > box.h:  # nothing but a title: it grows to both sides
         rect = rect[0], rect[1] - (top - box.h) / 2, rect[2], rect[3] + (top - box.h) / 2

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..editor import Editor
+from ..edits.elements import Sizes
+from .layout import HEADER, PAD, PICTURE
 
 
 @dataclass
@@ -29,3 +31,15 @@ class Pictures:
             inside = (path.removeprefix(prefix) for path in paths if path.startswith(prefix))
             self._keys = frozenset(key for key in inside if "/" not in key) if wanted else frozenset()
         return self._keys
+
+
+def with_room(editor: Editor) -> Sizes:
+    """The sizes of all elements as if every open node had its picture: room for those that come later."""
+    sizes = editor.canvas.sizes or {}
+    if not editor.store.now.thumbnails:
+        return sizes
+    known, nodes = Pictures().of(editor), editor.session.graph.nodes
+    return {
+        key: (width, height + PICTURE + PAD / 2) if key in nodes and key not in known and height > HEADER
+        else (width, height) for key, (width, height) in sizes.items()
+    }

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from ..editor import Editor
 from .brush import WIDGETS_FROM, Brush
 from .geometry import Rect, Transform, overlap
-from .layout import HEADER
 from .net import Net, Wire
 from .scene import Box, Scene
 
@@ -53,7 +52,7 @@ def _of_box(box: Box, brush: Brush) -> Found:
     left, top = to.to_screen(box.x, box.y)
     places: Found = {
         f"node {key}": (left, top, left + box.w * s, top + box.h * s),
-        f"title {key}": (left, top, left + box.w * s, top + min(HEADER, box.h) * s),
+        f"title {key}": (left, top, left + box.w * s, top + min(brush.header, box.h) * s),
     }
     if box.layout is None:
         return places

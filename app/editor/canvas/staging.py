@@ -20,6 +20,9 @@ from .scene import DOT, Box, Scene, routed
 _LETTER = 6.6, 17.0
 """Width of a letter, and height of a line, in comments."""
 
+Shown = tuple[Collection[str], str, frozenset[str]]
+"""How elements are shown: those with pictures, the one that is open for now, those that are open."""
+
 FRAME_SIZE, COMMENT_SIZE = (320.0, 200.0), (200.0, 64.0)
 
 
@@ -32,7 +35,7 @@ class Stage:
     _links: object = None
     _linked: tuple[dict[str, set[str]], dict[str, set[str]]] = field(default_factory=lambda: ({}, {}))
     _faults: dict[tuple[Port, Port], tuple[Any, str]] = field(default_factory=dict[tuple[Port, Port], tuple[Any, str]])
-    _last: tuple[Graph, tuple[object, ...], dict[str, Box], Net] | None = None
+    _last: tuple[Graph, Shown, dict[str, Box], Net] | None = None
 
     def build(
         self, graph: Graph, position: Callable[[str], Point], top: Collection[str],
@@ -50,8 +53,8 @@ class Stage:
             boxes = {key: box for key, box in boxes.items() if key not in raised} | {key: boxes[key] for key in raised}
         return Scene(boxes, net)
 
-    def _changed(self, graph: Graph, shown: tuple[Any, ...]) -> tuple[dict[str, Box], Net] | None:
-        """The last boxes and links, with new boxes of changed nodes, where that is all: so it is while values change."""
+    def _changed(self, graph: Graph, shown: Shown) -> tuple[dict[str, Box], Net] | None:
+        """The last boxes and links, with new boxes of changed nodes; None where more differs than values."""
         if self._last is None or self._last[1] != shown:
             return None
         last, (pictures, open, _), boxes, net = self._last

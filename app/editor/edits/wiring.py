@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from ....nodes import Node, Pointwise, Socket, Value
 from ...errors import GraphError
-from ...graph import Graph, Group, Item, Port, conversion, signature
+from ...graph import Graph, Item, Port, conversion, signature
 from ...graph.values import coerced, value_fault
 from ...graph.walk import loop_sentence, route
 from .elements import place
@@ -66,20 +66,25 @@ def linked(graph: Graph, id: str, port: Port, output: bool) -> Graph:
 
 def fitting(graph: Graph, port: Port, output: bool, types: Types) -> tuple[str, ...]:
     """Ids of node types that could be linked with `port`, a source if `output`, in the order of `types`."""
-    start, end = (graph.source(port), None) if output else (None, graph.target(port))
-    return tuple(
-        id for id, kind in types.items()
-        if (_feeds(start, _ends(kind)) if output else _fed(end, [one.socket for one in kind.outputs.values()]))
-    )
-
-
-def fits(graph: Graph, port: Port, output: bool, group: Group) -> bool:
-    """True if a group could be linked with `port`, a source if `output`."""
-    face = signature(group)
     if output:
-        values = [value for value in face.values.values() if value.wireable]
-        return _feeds(graph.source(port), [*face.inputs.values(), *(values if face.pointwise else ())])
-    return _fed(graph.target(port), [*face.outputs.values()])
+        start = graph.source(port)
+        return tuple(id for id, kind in types.items() if any(
+            start is None or conversion(start, end) is None for end in _ends(kind)
+        ))
+    end = graph.target(port)
+    return tuple(id for id, kind in types.items() if any(
+        end is None or conversion(output.socket, end) is None for output in kind.outputs.values()
+    ))
+
+
+def fits(graph: Graph, port: Port, output: bool, item: Item) -> bool:
+    """True if a node or group could be linked with `port`, a source if `output`."""
+    id = graph.fresh_id("new")
+    try:
+        linked(graph.add(id, item), id, port, output)
+    except GraphError:
+        return False
+    return True
 
 
 def inserted(graph: Graph, id: str, target: Port) -> Graph:
@@ -184,16 +189,6 @@ def replaced(graph: Graph, id: str, kind: type[Node]) -> Graph:
             if now is not None and value_fault(value, now) is None:
                 values[name] = now
     return graph.replace(id, kind(**values))
-
-
-def _feeds(start: Socket | None, ends: Iterable[Socket | Value]) -> bool:
-    """True if what leaves at `start` (None: nobody knows what) fits any end."""
-    return any(start is None or conversion(start, end) is None for end in ends)
-
-
-def _fed(end: Socket | Value | None, starts: Iterable[Socket]) -> bool:
-    """True if any start fits what enters at `end` (None: nobody knows what)."""
-    return any(end is None or conversion(start, end) is None for start in starts)
 
 
 def _ends(kind: type[Node]) -> list[Socket | Value]:

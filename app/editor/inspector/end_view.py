@@ -22,6 +22,7 @@ from .text_field import text_field
 from .value_rows import link_chip
 
 if TYPE_CHECKING:
+    from ..session import Session
     from .rows import Rows
 
 Then = Callable[[str], object]
@@ -30,6 +31,14 @@ _TEXT = Value("text", "text", "")
 _NUMBER = Value("default", "float", 0.0, low=0.0, high=1.0)
 _AXES = ("x", "y", "z", "w")
 DEFAULT_VIEW = "viewer's choice"
+
+
+def bound_to(session: Session, name: str) -> str:
+    """What was given for an input of the graph in this window: a path, or that it is no file; "" if nothing was."""
+    if session.place or name not in session.bindings:
+        return ""
+    found: object = session.bindings[name]
+    return found if isinstance(found, str) else "a picture in memory"
 
 
 class EndView:
@@ -58,7 +67,7 @@ class EndView:
     def _input(self, rows: Rows, port: Port, end: Input) -> None:
         editor, name, key = rows.editor, port.socket, str(port)
         session = editor.session
-        bound = session.bindings.get(name, "") if not session.place else ""
+        bound = bound_to(session, name)
         if bound:
             rows.name(f"{key} bound", "bound to", doc="A file that was given for this window only; it is not saved")
             doc = f"{bound}\nClick to use the file below"
@@ -80,7 +89,9 @@ class EndView:
         found = self._default(rows, f"{key} default", end, rows.field())
         if found:
             rows.act(lambda: session.set_input(name, default=found.value, merge=found.merge))
-        self._text(rows, f"{key} doc", "doc", end.doc, lambda doc: session.set_input(name, doc=doc), "What it is for")
+        self._text(
+            rows, f"{key} doc", "description", end.doc, lambda doc: session.set_input(name, doc=doc), "What it is for"
+        )
 
     def _default(self, rows: Rows, key: str, end: Input, width: float) -> Edit | None:
         """The default, with a button that takes it away; or a button that makes one."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import PurePath
+
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
@@ -9,12 +11,13 @@ from ....nodes import Kind, Value
 from ...graph import Port, Unknown, signature
 from ...graph.names import fresh_name
 from ..edits.elements import entry
+from ..theme.palette import RGB
 from ..theme.style import ui_scale
 from ..toolkit.places import item_rect
 from ..toolkit.words import tip
 from .color_field import color_field
 from .colors import decode, encode
-from .end_view import draw_text
+from .end_view import bound_to, draw_text
 from .fields import Fields
 from .heading import faults, heading
 from .number_field import row_of_numbers
@@ -127,6 +130,9 @@ class GraphView:
             imgui.same_line(0.0, 0.0)
             if rows.icon(icons.ICON_FA_XMARK, f"remove {key}", "Remove it and its links"):
                 rows.act(lambda key=key: session.remove_end(key))
+            if side == "inputs":
+                text, color = _comes_in(rows, name)
+                rows.field_note(text, color)
         word = side[:-1]
         if rows.wide_button(f"{icons.ICON_FA_PLUS}  Add {word.title()}", f"add {word}"):
             imgui.open_popup(f"kinds {side}")
@@ -168,7 +174,7 @@ class GraphView:
                           lambda new, name=name: session.rename_control(name, new))
                 draw_text(inner, self._fields, f"{key} label", "label", control.label,
                           lambda label, name=name: session.set_control_doc(name, label=label), hint=name)
-                draw_text(inner, self._fields, f"{key} doc", "doc", control.doc,
+                draw_text(inner, self._fields, f"{key} doc", "description", control.doc,
                           lambda doc, name=name: session.set_control_doc(name, doc=doc),
                           hint=declaration.doc if declaration else "")
                 if imgui.small_button(f"{icons.ICON_FA_ARROW_RIGHT}  Go to Node##{key}"):
@@ -203,3 +209,17 @@ class GraphView:
         if not found:
             imgui.text_disabled("No value is left to expose")
 
+
+def _comes_in(rows: Rows, name: str) -> tuple[str, RGB]:
+    """What an input of the graph brings in as things are, and the color to say it in."""
+    session, palette = rows.editor.session, rows.palette
+    end = session.graph.inputs[name]
+    bound = bound_to(session, name)
+    if bound:
+        return f"bound to {PurePath(bound).name}", palette.good
+    if end.file:
+        return f"reads {PurePath(end.file).name}", palette.dim
+    if end.default is not None:
+        parts = end.default if isinstance(end.default, tuple) else (end.default,)
+        return f"default {' '.join(f'{part:g}' for part in parts)}", palette.dim
+    return ("linked where the group is used", palette.dim) if session.place else ("nothing comes in", palette.warning)

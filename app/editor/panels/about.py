@@ -10,7 +10,7 @@ from imgui_bundle import imgui
 
 from ..editor import Editor
 from ..theme.style import ui_scale
-from ..toolkit.buttons import main_button, quiet
+from ..toolkit.buttons import close_button, quiet
 from ..toolkit.dialogs import backdrop, dialog, escaped
 from ..toolkit.words import dim, font, wrapped
 
@@ -45,9 +45,7 @@ class About:
             if quiet(editor, f"{icons.ICON_FA_COPY}  Copy", "copy versions", "Copy for a report"):
                 editor.clipboard.put("\n".join(f"{name}: {version}" for name, version in lines))
             imgui.same_line()
-            width = 96 * ui_scale()
-            imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x - width)
-            close = main_button(editor, "Close", "close about", width=width) or close or escaped()
+            close = close_button(editor, "close about") or close or escaped()
         if close:
             editor.dialogs.open.discard("about")
 

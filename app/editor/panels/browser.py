@@ -10,7 +10,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from ..dialogs import Question
 from ..editor import Editor
 from ..theme.style import ui_scale
-from ..toolkit.buttons import main_button, quiet, right_aligned
+from ..toolkit.buttons import main_button, quiet, right_aligned, room_for
 from ..toolkit.dialogs import backdrop, dialog, escaped
 from ..toolkit.places import record
 from ..toolkit.words import dim, elided, font, tip, wrapped
@@ -75,8 +75,8 @@ class FileBrowser:
             self._go(now, now.folder.parent)
         imgui.same_line()
         shown = (icons.ICON_FA_FOLDER_PLUS, icons.ICON_FA_EYE, icons.ICON_FA_LIST)
-        width = sum(imgui.calc_text_size(icon).x + 2 * imgui.get_style().frame_padding.x for icon in shown)
-        imgui.set_next_item_width(imgui.get_content_region_avail().x - width - 3 * imgui.get_style().item_spacing.x)
+        buttons = room_for(*shown) + imgui.get_style().item_spacing.x
+        imgui.set_next_item_width(imgui.get_content_region_avail().x - buttons)
         entered, self._path = imgui.input_text("##path", self._path, int(imgui.InputTextFlags_.enter_returns_true))
         record(editor, "path field")
         self._elsewhere = imgui.is_item_active() or imgui.is_item_deactivated()

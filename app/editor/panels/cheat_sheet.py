@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from imgui_bundle import ImVec2, imgui
 
 from ..action import Action
 from ..editor import Editor
 from ..keys import shown
 from ..theme.style import u32, ui_scale, vec4
-from ..toolkit.buttons import main_button
+from ..toolkit.buttons import close_button
 from ..toolkit.dialogs import backdrop, dialog, escaped
 from ..toolkit.words import dim, font
 from .shortcut_groups import MOUSE, columns, condensed, groups
+
+Blocks = Sequence[tuple[str, tuple[tuple[str, str], ...]]]
+"""Titles, and lines of keys and what they do."""
 
 _WIDTH = 1340.0
 
@@ -31,23 +36,30 @@ class CheatSheet:
             room = imgui.get_content_region_avail().x
             count = max(int(room / (310 * ui_scale())), 1)
             made = columns(tuple(len(lines) + 2 for _, lines in blocks), count)
-            if imgui.begin_table("sheet", len(made), int(imgui.TableFlags_.sizing_stretch_same)):
-                for indices in made:
-                    imgui.table_next_column()
-                    for index in indices:
-                        _block(editor, *blocks[index])
-                imgui.end_table()
-            imgui.dummy(ImVec2(0, 2 * ui_scale()))
+            _sheet(editor, blocks, made)
             if imgui.button("Change shortcuts"):
                 editor.dialogs.open.add("preferences")
                 close = True
             imgui.same_line()
-            width = 96 * ui_scale()
-            imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x - width)
-            close = main_button(editor, "Close", "close shortcuts", width=width) or close or escaped()
+            close = close_button(editor, "close shortcuts") or close or escaped()
             close = close or (imgui.is_key_pressed(imgui.Key.f1, False) and not imgui.is_window_appearing())
         if close:
             editor.dialogs.open.discard("shortcuts")
+
+
+def _sheet(editor: Editor, blocks: Blocks, made: Sequence[Sequence[int]]) -> None:
+    """The columns; they scroll where they are longer than the window."""
+    line = imgui.get_text_line_height_with_spacing()
+    longest = max(sum(len(blocks[index][1]) + 2 for index in indices) for indices in made) * line
+    height = min(longest, imgui.get_main_viewport().size.y - 130 * ui_scale())
+    flags = int(imgui.TableFlags_.sizing_stretch_same)
+    if imgui.begin_child("columns", ImVec2(0, height)) and imgui.begin_table("sheet", len(made), flags):
+        for indices in made:
+            imgui.table_next_column()
+            for index in indices:
+                _block(editor, *blocks[index])
+        imgui.end_table()
+    imgui.end_child()
 
 
 def _lines(editor: Editor, actions: tuple[Action, ...]) -> tuple[tuple[str, str], ...]:

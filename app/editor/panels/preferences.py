@@ -10,14 +10,16 @@ from ..editor import Editor
 from ..services.preferences import MAX_SCALE, MIN_SCALE, Preferences
 from ..services.recovery import LONGEST
 from ..theme.style import ui_scale, vec4
-from ..toolkit.buttons import main_button
+from ..toolkit.buttons import close_button
 from ..toolkit.dialogs import backdrop, dialog, escaped
+from ..toolkit.fields import combo, label
 from ..toolkit.places import record
 from ..toolkit.words import dim, font, wrapped
 from .shortcut_editor import ShortcutEditor
 
 _SCALES = (0.0, 1.0, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0)
 _FLAT = imgui.ChildFlags_.nav_flattened.value
+_LABELS = 120.0
 _PAGES = ("Interface", "Shortcuts", "System")
 
 
@@ -44,9 +46,7 @@ class PreferencesDialog:
             pages = (self._interface, self._shortcuts.draw, self._system)
             pages[_PAGES.index(self._page)](editor)
             imgui.end_child()
-            width = 96 * ui_scale()
-            imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x - width)
-            close = main_button(editor, "Close", "close preferences", width=width) or close
+            close = close_button(editor, "close preferences") or close
             close = close or (escaped() and not listening)
         if close:
             editor.dialogs.open.discard("preferences")
@@ -66,21 +66,17 @@ class PreferencesDialog:
     def _interface(self, editor: Editor) -> None:
         now = editor.store.now
         _heading(editor, "Appearance")
-        _label("Theme")
+        label("Theme", _LABELS)
         for theme in ("dark", "light"):
             if imgui.radio_button(theme.capitalize(), now.theme == theme):
                 _change(editor, theme=theme)
             record(editor, f"theme {theme}")
             imgui.same_line()
         imgui.new_line()
-        _label("Scale")
-        imgui.set_next_item_width(160 * ui_scale())
-        if imgui.begin_combo("##scale", _scale(now.ui_scale)):
-            for scale in _SCALES:
-                if imgui.selectable(_scale(scale), scale == now.ui_scale)[0]:
-                    _change(editor, ui_scale=scale)
-            imgui.end_combo()
-        record(editor, "ui scale")
+        label("Scale", _LABELS)
+        names = {_scale(scale): scale for scale in _SCALES}
+        if chosen := combo(editor, "ui scale", _scale(now.ui_scale), tuple(names), 160 * ui_scale()):
+            _change(editor, ui_scale=names[chosen])
         if now.ui_scale not in _SCALES or not MIN_SCALE <= (now.ui_scale or 1.0) <= MAX_SCALE:
             imgui.same_line()
             dim(editor, "own")
@@ -93,11 +89,11 @@ class PreferencesDialog:
 
     def _system(self, editor: Editor) -> None:
         _heading(editor, "Recovery")
-        _label("Autosave every")
+        label("Autosave every", _LABELS)
         self._number(editor, "autosave", "%.1f s", 0.5, 10.0)
         wrapped(editor.palette.dim, "Unsaved work is kept apart from your files and offered again after a crash.")
         _heading(editor, "Memory")
-        _label("For pictures")
+        label("For pictures", _LABELS)
         self._number(editor, "memory_budget", "%.0f MiB", 64.0, 16384.0, logarithmic=True)
         wrapped(editor.palette.dim, "On the graphics card. More keeps more results; it holds from the next start on.")
         _heading(editor, "Files")
@@ -140,15 +136,8 @@ def _heading(editor: Editor, title: str) -> None:
         imgui.text_colored(vec4(editor.palette.accent), title)
 
 
-def _label(text: str) -> None:
-    left = imgui.get_cursor_pos_x()
-    imgui.align_text_to_frame_padding()
-    imgui.text_unformatted(text)
-    imgui.same_line(left + 120 * ui_scale())
-
-
-def _switch(editor: Editor, name: str, label: str) -> None:
-    changed, value = imgui.checkbox(label, getattr(editor.store.now, name))
+def _switch(editor: Editor, name: str, title: str) -> None:
+    changed, value = imgui.checkbox(title, getattr(editor.store.now, name))
     record(editor, f"preference {name}")
     if changed:
         _change(editor, **{name: value})

@@ -13,11 +13,15 @@ from ..dialogs import Browse
 from ..editor import Editor
 from ..services.exporting import Export
 from ..theme.style import ui_scale, vec4
-from ..toolkit.buttons import main_button, quiet, right_aligned
+from ..toolkit.buttons import main_button, quiet, right_aligned, room_for
+from ..toolkit.fields import combo, label
 from ..toolkit.places import record
-from ..toolkit.words import dim, elided, font, nothing_here, tip, wrapped
+from ..toolkit.words import dim, elided, fitted, font, nothing_here, tip, wrapped
 from .export_form import DEPTHS, FORMATS, VIEWED, Form, Sizing, state_text, title
 from .opening_folders import show_folder
+
+_LABELS, _FORM, _WIDE = 80.0, 420.0, 760.0
+"""Widths of labels and of the form, and from which width on the renders are beside it."""
 
 _SIZINGS: tuple[Sizing, ...] = ("as it is", "scale", "size")
 _COLORS = {"done": "good", "failed": "error", "cancelled": "dim", "running": "text"}
@@ -38,27 +42,42 @@ class Renders:
             sentence = "Add a graph output and link a node to it."
             nothing_here(editor, icons.ICON_FA_FILM, "There is nothing to render", sentence)
             return
+        room, scale = imgui.get_content_region_avail(), ui_scale()
+        if room.x < _WIDE * scale:
+            self._draw_form(editor)
+            imgui.separator()
+            self._queue(editor)
+            return
+        imgui.begin_child("form", ImVec2(_FORM * scale, room.y))
+        self._draw_form(editor)
+        imgui.end_child()
+        imgui.same_line(0, 20 * scale)
+        imgui.begin_child("queue", ImVec2(0, room.y))
+        self._queue(editor)
+        imgui.end_child()
+
+    def _draw_form(self, editor: Editor) -> None:
         self._files(editor)
         self._options(editor)
         wanted = self._form.wanted(editor)
-        label = f"{icons.ICON_FA_FILM}  Render"
-        if main_button(editor, label, "render", enabled=bool(wanted), width=imgui.get_content_region_avail().x):
+        title = f"{icons.ICON_FA_FILM}  Render"
+        if main_button(editor, title, "render", enabled=bool(wanted), width=imgui.get_content_region_avail().x):
             editor.attempt(lambda: self._form.start(editor))
-        self._queue(editor)
 
     def _files(self, editor: Editor) -> None:
         form, wanted = self._form, self._form.wanted(editor)
-        button = imgui.calc_text_size(icons.ICON_FA_FOLDER_OPEN).x + 2 * imgui.get_style().frame_padding.x
+        button = room_for(icons.ICON_FA_FOLDER_OPEN)
         for name in editor.session.root.outputs:
             imgui.push_id(name)
-            changed, on = imgui.checkbox(name, name in wanted)
+            left, column = imgui.get_cursor_pos_x(), _LABELS * ui_scale()
+            shown = fitted(name, column - imgui.get_frame_height() - imgui.get_style().item_spacing.x)
+            changed, on = imgui.checkbox(f"{shown}##on", name in wanted)
             record(editor, f"render {name}")
+            tip(name)
             if changed:
                 form.chosen[name] = on
             imgui.begin_disabled(name not in wanted)
-            imgui.same_line(0, 8 * ui_scale())
-            if imgui.get_content_region_avail().x < 150 * ui_scale():
-                imgui.new_line()
+            imgui.same_line(left + column)
             imgui.set_next_item_width(imgui.get_content_region_avail().x - button - 4 * ui_scale())
             path = str(form.file(editor, name))
             edited, path = imgui.input_text("##file", path)
@@ -81,33 +100,32 @@ class Renders:
         form = self._form
         kinds = {form.file(editor, name).suffix.lower() for name in form.wanted(editor)}
         now = kinds.pop() if len(kinds) == 1 else "mixed"
-        if chosen := _combo(editor, "Format", now, FORMATS):
+        if chosen := _choice(editor, "Format", now, FORMATS):
             form.reform(chosen)
-        if chosen := _combo(editor, "Size", form.sizing, _SIZINGS):
+        if chosen := _choice(editor, "Size", form.sizing, _SIZINGS):
             form.sizing = next(one for one in _SIZINGS if one == chosen)
         if form.sizing == "scale":
-            _label("")
+            label("", _LABELS)
             imgui.set_next_item_width(-1)
             form.scale = imgui.slider_float("##scale", form.scale, 0.05, 2.0, "x %.2f")[1]
         elif form.sizing == "size":
-            _label("")
+            label("", _LABELS)
             imgui.set_next_item_width(-1)
             width, height = imgui.input_int2("##size", list(form.size))[1]
             form.size = (min(max(width, 1), 16384), min(max(height, 1), 16384))
         depth = dict(DEPTHS)
-        if chosen := _combo(editor, "Precision", depth[form.precision], tuple(depth.values())):
+        if chosen := _choice(editor, "Precision", depth[form.precision], tuple(depth.values())):
             form.precision = next(name for name, text in DEPTHS if text == chosen)
         if now in VIEWED or now == "mixed":
             own = "as the output says"
-            if chosen := _combo(editor, "View", form.view or own, (own, *views())):
+            if chosen := _choice(editor, "View", form.view or own, (own, *views())):
                 form.view = "" if chosen == own else chosen
 
     def _queue(self, editor: Editor) -> None:
-        imgui.dummy(ImVec2(0, 2 * ui_scale()))
-        imgui.separator()
         exports = editor.exports.all
         if not exports:
-            wrapped(editor.palette.dim, "Renders appear here; you can go on working meanwhile.")
+            sentence = "They appear here; you can go on working meanwhile."
+            nothing_here(editor, icons.ICON_FA_FILM, "No renders yet", sentence)
             return
         ended = len(exports) - len(editor.exports.running)
         imgui.align_text_to_frame_padding()
@@ -127,7 +145,8 @@ def _export_row(editor: Editor, index: int, export: Export) -> None:
     buttons = (icons.ICON_FA_XMARK,) if export.state == "running" else (icons.ICON_FA_COPY, icons.ICON_FA_FOLDER_OPEN)
     imgui.align_text_to_frame_padding()
     with font(editor, "bold"):
-        imgui.text_unformatted(elided(title(export), imgui.get_content_region_avail().x - 76 * ui_scale()))
+        room = imgui.get_content_region_avail().x - room_for(*buttons) - 12 * ui_scale()
+        imgui.text_unformatted(elided(title(export), room))
     tip("\n".join(str(path) for _, path in export.destinations))
     right_aligned(*buttons)
     if export.state == "running":
@@ -159,23 +178,7 @@ def _open(editor: Editor, folder: Path) -> None:
         editor.say(f"no program here shows folders; the path is on the clipboard: {folder}")
 
 
-def _label(text: str) -> None:
-    left = imgui.get_cursor_pos_x()
-    imgui.align_text_to_frame_padding()
-    imgui.text_unformatted(text)
-    imgui.same_line(left + 80 * ui_scale())
-
-
-def _combo(editor: Editor, label: str, now: str, choices: tuple[str, ...]) -> str:
+def _choice(editor: Editor, title: str, now: str, choices: tuple[str, ...]) -> str:
     """A labelled choice; what was chosen in this frame, or ""."""
-    _label(label)
-    imgui.set_next_item_width(-1)
-    chosen = ""
-    if imgui.begin_combo(f"##{label}", now):
-        for choice in choices:
-            if imgui.selectable(choice, choice == now)[0]:
-                chosen = choice
-            record(editor, f"{label} {choice}")
-        imgui.end_combo()
-    record(editor, label)
-    return chosen
+    label(title, _LABELS)
+    return combo(editor, title, now, choices)

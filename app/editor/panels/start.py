@@ -170,22 +170,25 @@ class StartScreen:
         with font(editor, "bold"):
             imgui.text_unformatted("Presets")
         gap = imgui.get_style().item_spacing.x
-        count = max(int((imgui.get_content_region_avail().x + gap) / (_CARD * scale + gap)), 1)
+        room = imgui.get_content_region_avail().x
+        count = max(int((room + gap) / (_CARD * scale + gap)), 1)
+        width = (room - gap * (count - 1)) / count
         for index, path in enumerate(paths()):
             if index % count:
                 imgui.same_line()
-            self._card(editor, path)
+            self._card(editor, path, width)
 
-    def _card(self, editor: Editor, path: Path) -> None:
+    def _card(self, editor: Editor, path: Path, width: float) -> None:
         scale, palette = ui_scale(), editor.palette
         name = path.stem.replace("_", " ")
-        size = ImVec2(_CARD * scale, (_PICTURE_HEIGHT + 26) * scale)
+        picture_height = width * _PICTURE_HEIGHT / _CARD
+        size = ImVec2(width, picture_height + 26 * scale)
         clicked = imgui.invisible_button(f"##{path.stem}", size)
         record(editor, f"preset {path.stem}")
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
         lines, rounding = imgui.get_window_draw_list(), imgui.get_style().frame_rounding
         lines.add_rect_filled(low, high, u32(palette.hover if imgui.is_item_hovered() else palette.raised), rounding)
-        corner = ImVec2(high.x, low.y + _PICTURE_HEIGHT * scale)
+        corner = ImVec2(high.x, low.y + picture_height)
         if self._pictured[path]:
             texture = self._textures.get(path, lambda: load_thumbnail(picture(path)))
             lines.add_image_rounded(texture, low, corner, ImVec2(0, 0), ImVec2(1, 1), 0xFFFFFFFF, rounding)

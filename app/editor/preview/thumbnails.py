@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
 from ....nodes import Kind
 from ...renderer import Display, Handle, Look, Probe, Renderer
+from .data import are_normals, balanced, data_range
 
 LARGEST = (160, 90)
 RANGE_WIDTH = 64
@@ -106,11 +105,12 @@ class Thumbnails:
     def _look(self, subject: Subject, texture: Handle, zoom: float) -> Look:
         if subject.kind is Kind.IMAGE:
             return Look(zoom=zoom, view="none")
-        if subject.kind is Kind.VECTOR and subject.channels == 3:
-            return Look(zoom=zoom, meaning="normal")
         pixels = self._probe.small(texture, RANGE_WIDTH)[..., : subject.channels]
-        known = pixels[np.isfinite(pixels)]
-        low, high = np.percentile(known, (1.0, 99.0)) if known.size else (0.0, 1.0)
-        if low >= 0.0 and high <= 1.0:  # a mask, say: black and white mean something
+        if are_normals(pixels):
+            return Look(zoom=zoom, meaning="normal")
+        low, high = data_range(pixels)
+        if subject.channels > 1:
+            low, high = balanced(low, high)
+        elif low >= 0.0 and high <= 1.0:  # a mask, say: black and white mean something
             low, high = 0.0, 1.0
-        return Look(zoom=zoom, meaning="field" if subject.channels == 1 else "vector", low=float(low), high=float(high))
+        return Look(zoom=zoom, meaning="field" if subject.channels == 1 else "vector", low=low, high=high)

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from ....nodes import Node, catalogue
 from ...errors import GraphError
-from ...graph import INPUTS, OUTPUTS, Graph, Problem, problems
+from ...graph import INPUTS, OUTPUTS, Graph, Group, Problem, problems
 from ...graph.problems import rechecked
 from ..edits import elements, folding, layout, routes
 from ..edits.elements import Place
@@ -32,6 +32,7 @@ class State:
         self._saved: Graph | None = self._now.root
         self._bound: dict[str, str] = {}
         self._cache: dict[str, tuple[tuple[object, ...], Any]] = {}
+        self._offered: dict[Path, Group] = {}
 
     # --- questions -------------------------------------------------------------------------------------------------
 
@@ -236,7 +237,7 @@ class State:
         """The problems of a graph, starting from those that were found last under that name."""
         (before, types), found = self._cache.get(name, ((None, None), ()))
         return self._kept(name, (graph, self.types), lambda: (
-            rechecked(graph, before, found, self.types) if before and types is self.types
+            rechecked(graph, before, found, self.types) if isinstance(before, Graph) and types is self.types
             else problems(graph, self.types)
         ))
 

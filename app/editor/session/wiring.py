@@ -57,7 +57,7 @@ class Wiring(State):
         """
         graph = self.graph
         some = {id for id in ids if id in graph.nodes}
-        moved = {key: self.position(key) for key in (*some, *routes.inner(graph, some))}
+        moved = {key: self.positions[key] for key in (*some, *routes.inner(graph, some))}
         graph = elements.with_places(graph, {key: (x + by[0], y + by[1]) for key, (x, y) in moved.items()})
         graph = room.roomy(wiring.spliced(graph, some, target), some, target, sizes)
         self.edit(f"Insert {naming.spoken(some)}", graph, merge=merge)
@@ -68,9 +68,8 @@ class Wiring(State):
 
     def fitting_files(self, files: Sequence[Path], port: Port, is_output: bool) -> tuple[Path, ...]:
         """Those of some graph files that could, as groups, be linked with `port`, a source if `is_output`."""
-        groups = {file: Group(load(file, self.types)) for file in files if file not in self._groups}
-        self._groups |= groups
-        return tuple(file for file in files if wiring.fits(self.graph, port, is_output, self._groups[file]))
+        self._offered |= {file: Group(load(file, self.types)) for file in files if file not in self._offered}
+        return tuple(file for file in files if wiring.fits(self.graph, port, is_output, self._offered[file]))
 
     def refusal(self, source: Port, target: Port) -> str | None:
         """Why that link cannot be, or None."""

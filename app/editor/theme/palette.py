@@ -62,18 +62,18 @@ _KINDS = MappingProxyType({
 })
 
 _KINDS_LIGHT = MappingProxyType({
-    Kind.IMAGE: _hex("b98500"), Kind.FIELD: _hex("5f6772"), Kind.VECTOR: _hex("6152d9"),
+    Kind.IMAGE: _hex("ad7c00"), Kind.FIELD: _hex("5f6772"), Kind.VECTOR: _hex("6152d9"),
     Kind.NUMBER: _hex("0f8273"), Kind.COLOR: _hex("c23d70"),
 })
 
 DARK = Palette(
-    "dark", window=_hex("141416"), panel=_hex("1d1d20"), field=_hex("2a2a2e"), fill=_hex("46464f"),
-    raised=_hex("333338"), hover=_hex("404047"), border=_hex("0d0d0f"), text=_hex("e4e4e7"), dim=_hex("9a9aa3"), accent=_hex("e8833a"),
-    on_accent=_hex("1a1108"), good=_hex("5fb878"), warning=_hex("e6b450"), error=_hex("ef6b6b"),
+    "dark", window=_hex("141416"), panel=_hex("1d1d20"), field=_hex("2a2a2e"), fill=_hex("42424a"),
+    raised=_hex("333338"), hover=_hex("404047"), border=_hex("0d0d0f"), text=_hex("e4e4e7"), dim=_hex("9a9aa3"),
+    accent=_hex("e8833a"), on_accent=_hex("1a1108"), good=_hex("5fb878"), warning=_hex("e6b450"), error=_hex("ef6b6b"),
     canvas=_hex("18181b"), grid=_hex("232327"), node=_hex("2b2b30"), shadow=_hex("000000"), surround=_hex("161616"),
     kinds=_KINDS,
     categories=MappingProxyType({
-        "": _hex("4a4a52"), "input": _hex("7a4a3a"), "output": _hex("7a4a3a"), "color": _hex("7a6a2e"),
+        "": _hex("4a4a52"), "input": _hex("7a4a3a"), "output": _hex("7a4a3a"), "color": _hex("73642a"),
         "tone": _hex("7a5a2e"), "blur": _hex("3f5f7f"), "filter": _hex("3f5f7f"), "glow": _hex("8a4f2a"),
         "distort": _hex("4a6b4a"), "edge": _hex("2f6b6b"), "merge": _hex("5a4a7a"), "channel": _hex("4f5560"),
         "measure": _hex("2f6258"), "noise": _hex("6b3f5f"), "stylize": _hex("6b3f5f"), "group": _hex("3a6a48"),
@@ -82,8 +82,8 @@ DARK = Palette(
 
 LIGHT = Palette(
     "light", window=_hex("c9c9ce"), panel=_hex("ececef"), field=_hex("ffffff"), fill=_hex("cbced9"),
-    raised=_hex("d8d8de"), hover=_hex("c6c6ce"), border=_hex("b3b3ba"), text=_hex("1b1b1f"), dim=_hex("5c5c66"), accent=_hex("c75f12"),
-    on_accent=_hex("ffffff"), good=_hex("1f7a3d"), warning=_hex("8f6200"), error=_hex("c02626"),
+    raised=_hex("d8d8de"), hover=_hex("c6c6ce"), border=_hex("b3b3ba"), text=_hex("1b1b1f"), dim=_hex("52525c"),
+    accent=_hex("ab4f0a"), on_accent=_hex("ffffff"), good=_hex("1c7037"), warning=_hex("825900"), error=_hex("b32020"),
     canvas=_hex("dcdce1"), grid=_hex("cfcfd5"), node=_hex("f6f6f8"), shadow=_hex("6a6a70"), surround=_hex("b8b8b8"),
     kinds=_KINDS_LIGHT,
     categories=MappingProxyType({

@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from ..editor import Editor
 
 
-def quiet(surface: Surface, label: str, name: str, doc: str, *, lit: bool = False, enabled: bool = True) -> bool:
+def quiet(
+    surface: Surface, label: str, name: str, doc: str, *, lit: bool = False, enabled: bool = True, width: float = 0.0
+) -> bool:
     """A button without a background, a square one if `label` is an icon; `name` is its place, `doc` its tooltip."""
     palette, square = surface.palette, len(label) == 1
     imgui.push_style_color(imgui.Col_.button, vec4(palette.accent, 0.18 if lit else 0.0))
@@ -26,7 +28,7 @@ def quiet(surface: Surface, label: str, name: str, doc: str, *, lit: bool = Fals
     padding = imgui.get_style().frame_padding
     imgui.push_style_var(imgui.StyleVar_.frame_padding, ImVec2(0.0 if square else padding.x, padding.y))
     imgui.begin_disabled(not enabled)
-    clicked = imgui.button(f"{label}##{name}", ImVec2(imgui.get_frame_height() if square else 0.0, 0.0))
+    clicked = imgui.button(f"{label}##{name}", ImVec2(width or (imgui.get_frame_height() if square else 0.0), 0.0))
     imgui.end_disabled()
     imgui.pop_style_var()
     imgui.pop_style_color(2)
@@ -87,10 +89,11 @@ def outline(color: RGB, thickness: float = 2.0) -> None:
 
 
 def dropdown(
-    surface: Surface, label: str, name: str, doc: str, fill: Callable[[], object], *, lit: bool = False
+    surface: Surface, label: str, name: str, doc: str, fill: Callable[[], object], *, lit: bool = False,
+    width: float = 0.0,
 ) -> None:
     """A quiet button that opens a menu below it."""
-    if quiet(surface, label, name, doc, lit=lit):
+    if quiet(surface, label, name, doc, lit=lit, width=width):
         imgui.open_popup(name)
     left, _, _, bottom = surface.places[name]
     imgui.set_next_window_pos((left, bottom + 2), imgui.Cond_.appearing)

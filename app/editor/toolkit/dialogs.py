@@ -38,13 +38,13 @@ def backdrop(editor: Editor, name: str, opacity: float = 0.45) -> bool:
 
 @contextmanager
 def dialog(
-    editor: Editor, title: str, size: tuple[float, float], *, top: float = 0.5, bare: bool = False, flags: int = 0,
+    editor: Editor, title: str, size: tuple[float, float], *, top: float = 0.5,
 ) -> Iterator[None]:
     """A window over everything; `size` in pixels at scale 1, a height of 0 is what it needs.
 
     It is centered, `top` says how far down, and never larger than the main window.
     """
-    view, scale = imgui.get_main_viewport(), ui_scale()
+    view, scale, flags = imgui.get_main_viewport(), ui_scale(), int(imgui.WindowFlags_.no_title_bar)
     width = min(size[0] * scale, view.size.x - 16 * scale)
     height = min(size[1] * scale, view.size.y - 16 * scale)
     imgui.set_next_window_pos(
@@ -56,8 +56,6 @@ def dialog(
         limit = ImVec2(width, view.size.y - 16 * scale)
         imgui.set_next_window_size_constraints(ImVec2(width, 0), limit)
         flags |= int(imgui.WindowFlags_.always_auto_resize)
-    if bare:
-        flags |= int(imgui.WindowFlags_.no_title_bar)
     imgui.push_style_var(imgui.StyleVar_.window_padding, ImVec2(16 * scale, 14 * scale))
     imgui.push_style_var(imgui.StyleVar_.window_rounding, 8.0 * scale)
     imgui.begin(f"{title}###{title}", None, FIXED | flags)

@@ -13,8 +13,8 @@ from ....nodes import Kind
 from ...graph import OUTPUTS, Graph, Port
 from ...media import to_display
 from ...renderer.look import Look
+from ..preview.data import Array, are_normals, balanced, data_range
 from .geometry import Sight, ordered
-from .measuring import Array, are_normals, balanced, data_range
 from .scopes import rgb_of
 from .state import Background, Meaning, ViewerState
 

@@ -1,4 +1,4 @@
-"""Numbers about pixels: statistics, ranges, and how they are written."""
+"""Numbers about pixels: statistics, and how they are written."""
 
 from __future__ import annotations
 
@@ -8,13 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 Array = np.ndarray
-
-FAR = 1e8
-"""Renderers write larger depths where there is nothing."""
-
-HALF_MAX = 65504.0
-"""What infinity becomes in files and nodes."""
-
 
 @dataclass(frozen=True)
 class Statistics:
@@ -39,36 +32,6 @@ def statistics(pixels: Array) -> Statistics:
         high.append(float(kept.max()) if kept.size else 0.0)
     wrong = int((~finite.all(axis=1)).sum())
     return Statistics(tuple(low), tuple(mean), tuple(high), wrong, len(flat))
-
-
-def data_range(pixels: Array) -> tuple[float, float]:
-    """From where to where data [h, w, channels] is worth showing: without stray extremes, and what stands for far."""
-    finite = pixels[np.isfinite(pixels)]
-    near = finite[(np.abs(finite) < FAR) & (np.abs(finite) != HALF_MAX)]
-    finite = near if near.size else finite
-    if not finite.size:
-        return 0.0, 1.0
-    low, high = (float(part) for part in np.percentile(finite, (0.5, 99.5)))
-    if high <= low:
-        low, high = float(finite.min()), float(finite.max())
-    if high <= low:
-        return (low, low + 1.0) if low else (0.0, 1.0)
-    return low, high
-
-
-def balanced(low: float, high: float) -> tuple[float, float]:
-    """The same range with zero in its middle, where both signs occur: directions, motion."""
-    reach = max(abs(low), abs(high))
-    return (-reach, reach) if low < 0.0 < high else (low, high)
-
-
-def are_normals(pixels: Array) -> bool:
-    """True if vectors [h, w, 3 or 4] are unit length wherever there is anything."""
-    if pixels.shape[2] < 3:
-        return False
-    length = np.linalg.norm(pixels[..., :3].reshape(-1, 3).astype(np.float64), axis=1)
-    there = length[np.isfinite(length) & (length > 1e-4)]
-    return bool(there.size) and float((np.abs(there - 1.0) < 0.05).mean()) > 0.95
 
 
 def written(number: float) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 from imgui_bundle import imgui
 
 from ...errors import HalationError
-from ..theme.style import vec4
+from ..theme.style import ui_scale, vec4
 from ..toolkit.words import dim, font
 from .geometry import Pixels
 from .measuring import written
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _FLAGS = (
     int(imgui.TableFlags_.row_bg) | int(imgui.TableFlags_.scroll_y) | int(imgui.TableFlags_.sizing_fixed_fit)
-    | int(imgui.TableFlags_.borders_inner_v)
+    | int(imgui.TableFlags_.borders_inner_v) | int(imgui.TableFlags_.pad_outer_x)
 )
 _HEADINGS = ("", "x, y", *(f"{pair:>9}" for pair in ("R / X", "G / Y", "B / Z", "A / W")))
 
@@ -66,6 +66,7 @@ def draw_table(editor: Editor, reader: Reader, height: float) -> None:
         imgui.text_wrapped(str(error))
         return
     with font(editor, "mono"):
+        imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + 2 * ui_scale())
         if imgui.begin_table("pixel values", len(_HEADINGS), _FLAGS, (0, height)):
             imgui.table_setup_scroll_freeze(0, 1)
             for number, heading in enumerate(_HEADINGS):

@@ -84,8 +84,10 @@ def _tools(editor: Editor, asked_view: str, is_data: bool) -> list[_Tool]:
         found.append(_port(editor, B))
     if is_data:
         found += _range(editor)
-    short, lit = _SHORT[viewer.channels], viewer.channels != "color"
-    found.append(_menu(editor, short, "channels", "Channels", lit=lit, apart=True))
+    lit, widest = viewer.channels != "color", max(map(room_for, _SHORT.values()))
+    found.append(
+        _menu(editor, _SHORT[viewer.channels], "channels", "Channels", lit=lit, apart=True, width=widest)
+    )
     if not is_data or viewer.meaning == "image":  # other data is shown as it is
         found += _brightness(editor)
     found += [
@@ -112,19 +114,23 @@ def _action(editor: Editor, icon: str, id: str, apart: bool = False) -> _Tool:
     )
 
 
-def _dropdown(editor: Editor, label: str, name: str, doc: str, fill: Draw, lit: bool, apart: bool = False) -> _Tool:
+def _dropdown(
+    editor: Editor, label: str, name: str, doc: str, fill: Draw, lit: bool, apart: bool = False, width: float = 0.0,
+) -> _Tool:
     def listed() -> None:
         if imgui.begin_menu(f"{doc}##{name}"):
             fill()
             imgui.end_menu()
 
-    return _Tool(
-        room_for(label), lambda: dropdown(editor, label, f"button {name}", doc, fill, lit=lit), listed, apart
-    )
+    def draw() -> None:
+        dropdown(editor, label, f"button {name}", doc, fill, lit=lit, width=width)
+
+    return _Tool(width or room_for(label), draw, listed, apart)
 
 
 def _menu(
     editor: Editor, label: str, name: str, doc: str, *, lit: bool, apart: bool = False, more: Draw | None = None,
+    width: float = 0.0,
 ) -> _Tool:
     """A menu of the menu bar."""
 
@@ -134,7 +140,7 @@ def _menu(
             imgui.separator()
             more()
 
-    return _dropdown(editor, label, name, doc, fill, lit, apart)
+    return _dropdown(editor, label, name, doc, fill, lit, apart, width)
 
 
 def _port(editor: Editor, side: str) -> _Tool:
@@ -171,10 +177,8 @@ def _brightness(editor: Editor) -> list[_Tool]:
             "Gamma in the viewer: drag, or click and type; right click for 1", neutral=1.0, low=0.1, high=5.0,
         )
 
-    found = [_number(font * 4.6, exposure), _number(font * 3.6, gamma)]
-    if viewer.exposure != 0.0 or viewer.gamma != 1.0:
-        found.append(_action(editor, icons.ICON_FA_ROTATE_LEFT, "viewer.neutral"))
-    return found
+    reset = _action(editor, icons.ICON_FA_ROTATE_LEFT, "viewer.neutral")
+    return [_number(font * 4.6, exposure), _number(font * 3.6, gamma), reset]
 
 
 def _range(editor: Editor) -> list[_Tool]:

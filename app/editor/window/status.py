@@ -37,13 +37,14 @@ def draw_status(editor: Editor) -> None:
 
 def _draw_hints(editor: Editor, end: float) -> None:
     """As many as fit."""
-    imgui.text_unformatted("")
     gap = imgui.get_font_size()
-    for keys, does in hints(editor, _panel_below(editor)):
+    for index, (keys, does) in enumerate(hints(editor, _panel_below(editor))):
         with font(editor, "bold"):
             width = imgui.calc_text_size(keys).x
-        imgui.same_line(0.0, gap * 0.9)
+        if index:
+            imgui.same_line(0.0, gap * 1.4)
         if imgui.get_cursor_pos_x() + width + imgui.calc_text_size(does).x + gap > end:
+            imgui.text_unformatted("")
             break
         with font(editor, "bold"):
             dim(editor, keys)

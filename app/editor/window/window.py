@@ -11,6 +11,7 @@ from imgui_bundle import glfw_utils, hello_imgui, imgui
 
 import glfw  # isort: skip
 
+from ...compiler import Form
 from ...renderer.device import adopt
 from ..actions.documents import ask_to_close
 from ..dialogs import Browse
@@ -38,9 +39,9 @@ class Window:
 
     def __init__(
         self, path: Path | None, bindings: Mapping[str, str], *, version: tuple[int, int] = (4, 5),
-        state: Path | None = None, size: tuple[int, int] = SIZE,
+        state: Path | None = None, size: tuple[int, int] = SIZE, form: Form | None = None,
     ) -> None:
-        self._path, self._bindings, self._state = path, dict(bindings), state
+        self._path, self._bindings, self._state, self._form = path, dict(bindings), state, form
         self.editor: Editor
         self._panels: dict[str, Panel] = {}
         self._overlays: dict[str, Panel] = {}
@@ -108,7 +109,7 @@ class Window:
 
     def _prepare(self) -> None:
         forgive()
-        self.device = adopt()
+        self.device = adopt(self._form)
         self.editor = assemble(self.device, self._state)
         open_first(self.editor, self._path, self._bindings)
         self._panels = {docked.title: docked.make() for docked in DOCKED}
@@ -176,7 +177,8 @@ class Window:
         host = self.params.docking_params.dockable_window_of_name(docked.title)
         if docked.bare:
             imgui.push_style_var(imgui.StyleVar_.window_padding, (0.0, 0.0))
-        seen, host.is_visible = imgui.begin(docked.title, host.is_visible, _BARE if docked.bare else 0)
+        seen, stays = imgui.begin(docked.title, host.is_visible, _BARE if docked.bare else 0)
+        host.is_visible = bool(stays)
         if docked.bare:
             imgui.pop_style_var()
         if seen:

@@ -144,6 +144,11 @@ def test_a_free_node_on_a_link_can_be_put_into_it() -> None:
     assert insertable(graph, there, {"clip"}, (x, y), 9.0) == P("bloom.image")
     assert insertable(graph, there, {"exposure"}, (x, y), 9.0) is None
     assert insertable(graph, there, {"clip", "bloom"}, (x, y), 9.0) is None
+    pair = graph.add("vignette", catalogue()["vignette"]()).connect(P("clip.out"), P("vignette.image"))
+    scene = staged(pair)
+    there = scene.moved({"clip", "vignette"}, x - scene.boxes["clip"].x - 90.0, y - scene.boxes["clip"].y - 24.0)
+    assert insertable(pair, there, {"clip", "vignette"}, (x, y), 9.0) == P("bloom.image")
+    assert insertable(pair, there, {"clip"}, (x, y), 9.0) is None, "it is linked with what stays"
 
 
 def test_links_of_one_source_share_the_dot_that_a_line_makes() -> None:

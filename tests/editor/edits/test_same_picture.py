@@ -10,6 +10,7 @@ from halation.app.document import dumps, loads
 from halation.app.editor.edits import clipboard, paths, wiring
 from halation.app.editor.edits.grouping import grouped
 from halation.app.editor.edits.layout import pinned, positions
+from halation.app.editor.edits.room import roomy
 from halation.app.editor.edits.ungrouping import ungrouped
 from halation.app.errors import GraphError
 from halation.app.graph import Control, Graph, Group, Port, signature
@@ -119,6 +120,32 @@ def test_a_node_put_into_a_link_and_taken_out(seed):
         assert after.links[target].node == "fresh"
         assert wiring.removed(after, "fresh").links == graph.links
         assert keys(wiring.extracted(after, ["fresh"])) == keys(graph)
+        break
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_chain_put_into_a_link_is_as_wired_by_hand(seed):
+    graph, rng = made(seed)
+    target = rng.choice(sorted(graph.links))
+    needs = {name: sum(not one.optional for one in kind.inputs.values()) for name, kind in sorted(catalogue().items())}
+    filters = [name for name, count in needs.items() if count == 1]
+    for _ in range(6):
+        before, ids = graph, [f"fresh{number}" for number in range(rng.randint(2, 4))]
+        try:
+            for number, id in enumerate(ids):
+                before = before.add(id, catalogue()[rng.choice(filters)]())
+                if number:
+                    before = wiring.linked(before, id, Port(ids[number - 1], next(iter(
+                        signature(before.nodes[ids[number - 1]]).outputs
+                    ))), True)
+            after = wiring.spliced(before, set(ids), target)
+        except GraphError:
+            continue
+        by_hand = before.disconnect(target)
+        by_hand = by_hand.connect(graph.links[target], wiring.first_target(by_hand, graph.links[target], ids[0], False))
+        by_hand = by_hand.connect(wiring.first_source(by_hand, ids[-1], target), target)
+        assert by_hand.links == after.links
+        assert keys(roomy(pinned(after), ids, target)) == keys(by_hand)
         break
 
 

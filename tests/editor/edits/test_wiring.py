@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import pytest
 from halation.app.editor.edits import routes, wiring
-from halation.app.editor.edits.elements import with_places
-from halation.app.editor.edits.layout import pinned
+from halation.app.editor.edits.decor import add_frame
+from halation.app.editor.edits.elements import keys, with_places
+from halation.app.editor.edits.layout import pinned, positions
+from halation.app.editor.edits.room import MARGIN, roomy
 from halation.app.errors import GraphError
 from halation.app.graph import Graph, Input, Output, Port, Unknown
 from halation.nodes import Kind
@@ -81,6 +83,46 @@ def test_a_node_is_not_put_into_its_own_link_or_into_none():
     for id, target, said in (("n0", "n1.image", "an end of that link"), ("n0", "n0.gain", "nothing is linked")):
         with pytest.raises(GraphError, match=said):
             wiring.inserted(chain(2), id, port(target))
+
+
+def test_a_chain_is_put_into_a_link_as_a_whole():
+    graph = chain(2).add("a", Soften()).add("b", Blend()).add("photo", Photo())
+    graph = graph.connect(port("a.out"), port("b.first")).connect(port("photo.out"), port("b.second"))
+    after = wiring.spliced(graph, ["photo", "b", "a"], port("n1.image"))
+    by_hand = graph.connect(port("n0.out"), port("a.image")).connect(port("b.out"), port("n1.image"))
+    assert links(after) == links(by_hand)
+    for ids, said in ((["a"], "extract the selection"), (["photo", "n0"], "extract the selection")):
+        with pytest.raises(GraphError, match=said):
+            wiring.spliced(graph, ids, port("n1.image"))
+    loose = chain(2).add("a", Soften()).add("b", Soften())
+    with pytest.raises(GraphError, match="no chain"):
+        wiring.spliced(loose, ["a", "b"], port("n1.image"))
+
+
+def test_only_what_would_be_covered_is_pushed_aside_and_what_follows_it():
+    graph = with_places(pinned(chain(3)), {
+        "inputs.beauty": (0.0, 0.0), "n0": (200.0, 0.0), "n1": (450.0, 0.0), "n2": (700.0, 0.0),
+        "outputs.image": (950.0, 0.0),
+    })
+    graph, dot = routes.add_dot(graph, port("n2.image"), (660.0, 0.0))
+    graph, frame = add_frame(graph, ["n2", "outputs.image"], positions(graph))
+    sizes = {key: (180.0, 100.0) for key in keys(graph) if "." not in key or key.startswith(("inputs", "outputs"))}
+    fresh = with_places(graph.add("soften", Soften()), {"soften": (400.0, 20.0)})
+    sizes["soften"] = (180.0, 100.0)
+    after = roomy(wiring.inserted(fresh, "soften", port("n1.image")), ["soften"], port("n1.image"), sizes)
+    by = 400.0 + 180.0 + MARGIN - 450.0
+    moved = {key: spot[0] - positions(graph)[key][0] for key, spot in positions(after).items() if key in keys(graph)}
+    assert moved == {
+        "inputs.beauty": 0.0, "n0": 0.0, "n1": by, "n2": by, "outputs.image": by, f"dots.{dot}": by,
+        f"frames.{frame}": by,
+    }
+    assert positions(after)["soften"] == (400.0, 20.0)
+    below = with_places(fresh, {"soften": (400.0, 300.0)})
+    left = wiring.inserted(below, "soften", port("n1.image"))
+    assert roomy(left, ["soften"], port("n1.image"), sizes) is left, "nothing is in the way"
+    early = wiring.inserted(with_places(fresh, {"soften": (210.0, 20.0)}), "soften", port("n1.image"))
+    after = roomy(early, ["soften"], port("n1.image"), sizes)
+    assert positions(after)["soften"] == (200.0 + 180.0 + MARGIN, 20.0)
 
 
 def test_extracted_nodes_keep_the_links_among_themselves():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from halation import presets
 from halation.app.document import load
 from halation.app.editor.session import Session
 from halation.app.errors import GraphError
@@ -268,3 +269,33 @@ def test_cut_copy_and_paste(session):
     other = Session(TOYS)
     assert other.paste(text, (50.0, 60.0)) == ("n1",) and other.position("n1") == (50.0, 60.0)
     assert isinstance(other.root, Graph)
+
+
+def test_a_chain_is_inserted_in_one_step_and_a_cancelled_drag_leaves_no_trace(session):
+    before, steps = session.root, session.history.position
+    session.select(["n1"])
+    session.extract("drag")
+    assert links(session)["n2.image"] == "n0.out"
+    session.move(["n1"], 0.0, 300.0, "drag")
+    session.abandon("drag")
+    assert session.root == before and session.history.steps == session.history.steps[:steps]
+    assert not session.history.can_redo
+    session.abandon("drag")
+    assert session.root == before, "there is nothing unfinished"
+    session.extract("drag")
+    session.splice(["n1"], port("outputs.image"), (900.0, 0.0), merge="drag")
+    session.seal()
+    assert session.history.position == steps + 1
+    assert links(session)["n1.image"] == "n2.out" and links(session)["outputs.image"] == "n1.out"
+    session.undo()
+    assert session.root == before
+
+
+def test_presets_that_fit_a_port():
+    session, files = Session(), presets.paths()
+    session.add_node("gaussian_blur")
+    some = session.fitting_files(files, port("gaussian_blur.out"), True)
+    assert some and set(some) <= set(files)
+    id = session.add_group(some[0], link=port("gaussian_blur.out"))
+    assert [str(end.node) for end, start in session.graph.links.items() if str(start) == "gaussian_blur.out"] == [id]
+    assert session.fitting_files(files, port("gaussian_blur.image"), False) == files, "all of them make a picture"

@@ -164,8 +164,8 @@ OTHERS = {
 """What needs files or graphs, and what all the others call: tested by name elsewhere."""
 
 QUESTIONS = {
-    "value", "is_default", "linked", "control_of", "fitting", "fitting_files", "refusal", "relative", "position", "frame_members",
-    "copy", "viewed", "viewed_in_root",
+    "value", "is_default", "linked", "control_of", "fitting", "fitting_files", "refusal", "relative", "position",
+    "frame_members", "copy", "viewed", "viewed_in_root",
 }
 
 

@@ -1,0 +1,30 @@
+from typing import Annotated, Literal
+
+from .._declare import Doc, Draw, Drawn, Filter, Image, Slider
+
+
+class Sanitize(Filter):
+    """Repair pixels that are no numbers, infinite, too bright or negative, before they spread.
+
+    `neighbors` gives a broken channel the average of the sound ones among the 3 x 3 pixels around, or 0 where there is
+    none, as OpenImageIO's fixNonFinite; sound channels of the same pixel stay.
+    """
+
+    image = Image()
+    repair: Annotated[
+        Literal["neighbors", "black"], Doc("What a broken channel (NaN, infinity) becomes.")
+    ] = "neighbors"
+    negative: Annotated[Literal["keep", "clip", "mirror"], Doc(
+        "What becomes of light below 0: kept, black, or as much light above 0. Negative alpha always becomes 0."
+    )] = "clip"
+    maximum: Annotated[float, Slider(
+        1.0, 65504.0, unit="scene", minimum=0.0, maximum=65504.0,
+        doc="Nothing is brighter; 65504 is the largest half float.",
+    )] = 65504.0
+    limit_alpha: Annotated[bool, Doc("Keep alpha within 0..1.")] = True
+
+    def passes(self, draw: Draw) -> Drawn:
+        return draw(
+            "sanitize", self.image, repair=self.repair, negative=self.negative, maximum=self.maximum,
+            limit_alpha=self.limit_alpha,
+        )

@@ -1,0 +1,28 @@
+from typing import Annotated
+
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
+
+
+class Bulge(Filter):
+    """Blow a part of the picture up, as through a magnifying glass, or pinch it.
+
+    At the center a strength of 0.5 magnifies two times, -1 shrinks two times; toward the radius it fades without a
+    border: the image is read at center + distance * (1 - strength (1 - (distance / radius)^2)^2).
+    """
+
+    image = Image()
+    strength: Annotated[float, Slider(
+        -1.0, 0.9, unit="ratio", minimum=-8.0, maximum=0.99, doc="Above 0 bulges, below 0 pinches."
+    )] = 0.5
+    radius: Annotated[float, Slider(
+        0.0, 1.0, unit="height", minimum=0.0, doc="Where the picture is itself again."
+    )] = 0.4
+    center: Annotated[Position, Doc("The point that stays.")] = (0.5, 0.5)
+    edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
+
+    def identity(self) -> str | None:
+        return "image" if self.strength == 0.0 or self.radius == 0.0 else None
+
+    def passes(self, draw: Draw) -> Drawn:
+        center = (self.center[0] * draw.size[0], self.center[1] * draw.size[1])
+        return draw("bulge", self.image, edge=self.edge, strength=self.strength, radius=self.radius, center=center)

@@ -1,0 +1,50 @@
+from collections.abc import Mapping
+from typing import Annotated
+
+from .._declare import Doc, Draw, Drawn, Filter, Image, Position, Size, Slider
+
+
+class Crop(Filter):
+    """Keep a rectangle of the picture.
+
+    Corners are fractions of the picture, rounded to whole pixels; what lies outside it is not kept. At least one pixel
+    remains.
+    """
+
+    image = Image()
+    top_left: Annotated[Position, Doc("One corner of what is kept.")] = (0.0, 0.0)
+    bottom_right: Annotated[Position, Doc("The corner across.")] = (1.0, 1.0)
+    resize: Annotated[bool, Doc("Make the picture as small as the rectangle; off leaves it empty around.")] = True
+    softness: Annotated[float, Slider(
+        0.0, 200.0, unit="px", minimum=0.0, doc="Fade to nothing over this many pixels inside the rectangle."
+    )] = 0.0
+
+    def box(self, size: Size) -> tuple[int, int, int, int]:
+        """Left, top, right and bottom in whole pixels of a picture of this size."""
+        left, right = _span(self.top_left[0], self.bottom_right[0], size[0])
+        top, bottom = _span(self.top_left[1], self.bottom_right[1], size[1])
+        return left, top, right, bottom
+
+    def identity(self) -> str | None:
+        corners = ((0.0, 0.0), (1.0, 1.0))
+        return "image" if (self.top_left, self.bottom_right) == corners and self.softness == 0.0 else None
+
+    def output_size(self, inputs: Mapping[str, Size], canvas: Size) -> Size:
+        size = super().output_size(inputs, canvas)
+        left, top, right, bottom = self.box(size)
+        return (right - left, bottom - top) if self.resize else size
+
+    def passes(self, draw: Draw) -> Drawn:
+        left, top, right, bottom = self.box(draw.size_of(self.image))
+        start = (float(left), float(top)) if self.resize else (0.0, 0.0)
+        return draw(
+            "crop", self.image, start=start, box=(float(left), float(top), float(right), float(bottom)),
+            softness=self.softness,
+        )
+
+
+def _span(one: float, other: float, length: int) -> tuple[int, int]:
+    """Between two fractions of a length, in whole pixels, at least one of them."""
+    low, high = (round(min(max(end, 0.0), 1.0) * length) for end in sorted((one, other)))
+    low = min(low, length - 1)
+    return low, max(high, low + 1)

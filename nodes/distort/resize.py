@@ -1,0 +1,40 @@
+from collections.abc import Mapping
+from typing import Annotated, Literal
+
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Size, Slider
+
+
+class Resize(Filter):
+    """Make the picture larger or smaller in pixels.
+
+    The filter spans source pixels when enlarging and result pixels when shrinking, so that nothing aliases. Catmull-Rom
+    and Mitchell: Mitchell and Netravali 1988. The size is rounded to whole pixels, at least one.
+    """
+
+    image = Image()
+    scale: Annotated[tuple[float, float], Slider(
+        0.1, 4.0, unit="ratio", minimum=0.001, maximum=64.0, doc="Factor on the width and on the height."
+    )] = (1.0, 1.0)
+    kernel: Annotated[Literal["box", "triangle", "catmull-rom", "mitchell", "lanczos"], Doc(
+        "Box averages the very area that a pixel covers and keeps hard pixels, triangle is soft; Catmull-Rom and "
+        "Lanczos (3 lobes) are sharp and may ring around lights, Mitchell is between."
+    )] = "mitchell"
+    edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
+
+    def identity(self) -> str | None:
+        return "image" if self.scale == (1.0, 1.0) else None
+
+    def output_size(self, inputs: Mapping[str, Size], canvas: Size) -> Size:
+        width, height = super().output_size(inputs, canvas)
+        return (max(round(width * self.scale[0]), 1), max(round(height * self.scale[1]), 1))
+
+    def passes(self, draw: Draw) -> Drawn:
+        before, after = draw.size_of(self.image), draw.size
+        wide = draw(
+            "resize", self.image, size=(after[0], before[1]), edge=self.edge,
+            axis=0, shrink=before[0] / after[0], kernel=self.kernel,
+        )
+        return draw(
+            "resize", image=wide, size=after, edge=self.edge,
+            axis=1, shrink=before[1] / after[1], kernel=self.kernel,
+        )

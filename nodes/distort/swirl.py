@@ -1,0 +1,26 @@
+from typing import Annotated
+
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
+
+
+class Swirl(Filter):
+    """Stir the picture around a point.
+
+    The turn fades from the middle as a Gaussian, angle * exp(-(distance / radius)^2), so that nothing shows a border.
+    The opposite angle with the same radius takes it back.
+    """
+
+    image = Image()
+    angle: Annotated[float, Slider(-720.0, 720.0, unit="deg", doc="How far the middle turns, clockwise.")] = 180.0
+    radius: Annotated[float, Slider(
+        0.0, 1.0, unit="height", minimum=0.0, doc="Where the turn has fallen to 37 percent."
+    )] = 0.25
+    center: Annotated[Position, Doc("The point that stays.")] = (0.5, 0.5)
+    edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
+
+    def identity(self) -> str | None:
+        return "image" if self.angle == 0.0 or self.radius == 0.0 else None
+
+    def passes(self, draw: Draw) -> Drawn:
+        center = (self.center[0] * draw.size[0], self.center[1] * draw.size[1])
+        return draw("swirl", self.image, edge=self.edge, angle=self.angle, radius=self.radius, center=center)

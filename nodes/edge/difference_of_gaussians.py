@@ -1,0 +1,44 @@
+from collections.abc import Mapping
+from typing import Annotated, Literal
+
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Output, Slider
+
+
+class DifferenceOfGaussians(Filter):
+    """Draw the picture in ink, or find its fine detail: the difference of two blurs of its tone.
+
+    XDoG (Winnemöller et al. 2012): `S = (1 + p) G(sigma) - p G(ratio sigma)`, white where S is at least epsilon, else
+    `1 + tanh(phi (S - epsilon))`. DoG (Marr and Hildreth 1980): `strength * (G(sigma) - G(ratio sigma))`, which may be
+    negative. Both work on the luminance as a display shows it (sRGB, 0..1). Alpha is kept.
+    """
+
+    image = Image()
+    kind: Annotated[Literal["xdog", "dog"], Doc("XDoG draws black on white, DoG shows the bare difference.")] = "xdog"
+    sigma: Annotated[float, Slider(
+        0.3, 6.0, unit="px", minimum=0.05, maximum=500.0, doc="Width of the lines."
+    )] = 1.0
+    ratio: Annotated[float, Slider(
+        1.1, 4.0, unit="ratio", minimum=1.0, maximum=16.0, doc="How much wider the second blur is: 1.6 is usual."
+    )] = 1.6
+    strength: Annotated[float, Slider(
+        0.0, 50.0, unit="ratio", minimum=0.0, doc="p of XDoG: how much lines stand out. The factor on DoG."
+    )] = 20.0
+    epsilon: Annotated[float, Slider(
+        0.0, 1.0, unit="ratio", doc="For XDoG: tones below this become ink."
+    )] = 0.4
+    phi: Annotated[float, Slider(
+        0.5, 50.0, unit="ratio", minimum=0.0, doc="For XDoG: how hard ink and paper part; low values keep grays."
+    )] = 6.0
+    edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
+
+    out = Output()
+    value = Output(Field(doc="The same as one number, before it becomes a gray."))
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        tone = draw.point("difference_of_gaussians_tone", self.image, result=Field())
+        value = draw.point(
+            "difference_of_gaussians_value", result=Field(), fine=draw.blur(tone, self.sigma, self.edge),
+            coarse=draw.blur(tone, self.sigma * self.ratio, self.edge), kind=self.kind,
+            strength=self.strength, epsilon=self.epsilon, phi=self.phi,
+        )
+        return {"out": draw.point("difference_of_gaussians", self.image, value=value, kind=self.kind), "value": value}

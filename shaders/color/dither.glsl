@@ -1,0 +1,43 @@
+#include "lib/alpha.glsl"
+#include "lib/blue_noise.glsl"
+#include "lib/color.glsl"
+#include "lib/finite.glsl"
+#include "lib/hash.glsl"
+
+// Where the pattern of a channel or frame starts: the R2 sequence (Roberts 2018) in 64ths, far from those before.
+ivec2 dither_start(int number) { return ivec2(number) * ivec2(48, 36); }
+
+// Bayer's matrix by its bits: x ^ y and y in turn, the lowest ones counting most.
+float dither_bayer(ivec2 cell) {
+    int rank = 0;
+    for (int bit = 0; bit < 3; ++bit) {
+        int x = (cell.x >> bit) & 1, y = (cell.y >> bit) & 1;
+        rank = 4 * rank + 2 * (x ^ y) + y;
+    }
+    return (float(rank) + 0.5) / 64.0;
+}
+
+float dither_threshold(int pattern, ivec2 cell, int channel) {
+    if (pattern == PATTERN_WHITE) return hash3(ivec3(cell, channel), uvec3(0u)).x;
+    cell += dither_start(channel);
+    return pattern == PATTERN_BAYER ? dither_bayer(cell) : blue_noise(cell);
+}
+
+float dither_level(float light, int space, float steps, float threshold) {
+    float code = (space == SPACE_DISPLAY ? srgb_encode(light) : light) * steps;
+    // A code that is whole but for rounding is a level already.
+    if (abs(code - round(code)) < 1e-3) code = round(code);
+    code = ceil(code - threshold) / steps;
+    return finite(space == SPACE_DISPLAY ? srgb_decode(code) : code);
+}
+
+vec4 dither(vec4 image, int pattern, float levels, int space, float size, bool colored, bool animate) {
+    vec4 color = straight(finite(image));
+    float steps = max(finite(levels), 2.0) - 1.0;
+    ivec2 cell = ivec2((vec2(pixel) + 0.5) / max(finite(size), 1.0)) + (animate ? dither_start(3 * frame) : ivec2(0));
+    for (int channel = 0; channel < 3; ++channel) {
+        float threshold = dither_threshold(pattern, cell, colored ? channel : 0);
+        color[channel] = dither_level(color[channel], space, steps, threshold);
+    }
+    return finite(premultiplied(color));
+}

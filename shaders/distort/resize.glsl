@@ -1,0 +1,29 @@
+#include "lib/resampling.glsl"
+
+float resize_radius(int kernel) { return kernel == KERNEL_TRIANGLE ? 1.0 : kernel == KERNEL_LANCZOS ? 3.0 : 2.0; }
+
+float resize_weight(float x, int kernel) {
+    if (kernel == KERNEL_TRIANGLE) return triangle_weight(x);
+    if (kernel == KERNEL_LANCZOS) return lanczos_weight(x, 3.0);
+    return kernel == KERNEL_MITCHELL ? cubic_weight(x, 1.0 / 3.0, 1.0 / 3.0) : cubic_weight(x, 0.0, 0.5);
+}
+
+// Along one axis; `shrink` is how many pixels of the image a result pixel spans.
+vec4 resize(int axis, float shrink, int kernel) {
+    bool box = kernel == KERNEL_BOX;
+    float center = (float(pixel[axis]) + 0.5) * shrink, width = max(shrink, 1.0);
+    float reach = box ? 0.5 * shrink : resize_radius(kernel) * width;
+    float low = center - reach, high = center + reach;
+    ivec2 at = pixel;
+    vec4 sum = vec4(0.0);
+    float total = 0.0;
+    for (int i = int(floor(low)); i < int(ceil(high)); ++i) {
+        at[axis] = i;
+        // A box counts each pixel by how much of it lies within.
+        float weight = box ? min(float(i) + 1.0, high) - max(float(i), low)
+                           : resize_weight((float(i) + 0.5 - center) / width, kernel);
+        sum += weight * image_at(at);
+        total += weight;
+    }
+    return sum / total;
+}

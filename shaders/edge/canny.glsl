@@ -1,0 +1,58 @@
+#include "lib/display.glsl"
+
+const float canny_none = 0.0, canny_weak = 0.5, canny_strong = 1.0;
+const float canny_tan22 = 0.41421356;  // half of 45 degrees: between two of the four directions
+
+float canny_tone(vec4 image) { return display_tone(image); }
+
+// Sobel, scaled so that a step of 1 along a row or column reads 1.
+vec2 canny_gradient() {
+    float falling = tone_at(pixel + ivec2(1, 1)) - tone_at(pixel - ivec2(1, 1));
+    float rising = tone_at(pixel + ivec2(1, -1)) - tone_at(pixel + ivec2(-1, 1));
+    return vec2(
+        2.0 * (tone_at(pixel + ivec2(1, 0)) - tone_at(pixel - ivec2(1, 0))) + falling + rising,
+        2.0 * (tone_at(pixel + ivec2(0, 1)) - tone_at(pixel - ivec2(0, 1))) + falling - rising
+    ) / 4.0;
+}
+
+// A pixel is on a ridge if both neighbors across the edge are weaker. Of two alike, along rows and columns, one stays.
+float canny_ridge(float low, float high) {
+    vec2 here = gradient_at(pixel), size = abs(here);
+    float strength = length(here);
+    if (strength <= low) return canny_none;
+    ivec2 across = ivec2(here.x * here.y < 0.0 ? -1 : 1, 1);
+    if (size.y < canny_tan22 * size.x) across = ivec2(1, 0);
+    else if (size.x < canny_tan22 * size.y) across = ivec2(0, 1);
+    float before = length(gradient_at(pixel - across)), after = length(gradient_at(pixel + across));
+    bool diagonal = across.x * across.y != 0;
+    if (strength <= before || strength < after || (diagonal && strength == after)) return canny_none;
+    return strength > high ? canny_strong : canny_weak;
+}
+
+// Weak pixels that a strong one reaches over at most three others become strong. Rows of the 7 x 7 window are bits.
+float canny_follow() {
+    float here = state_at(pixel);
+    if (here != canny_weak) return here;
+    uint lines[7], strong[7];
+    for (int y = 0; y < 7; ++y) {
+        lines[y] = strong[y] = 0u;
+        for (int x = 0; x < 7; ++x) {
+            float state = state_at(pixel + ivec2(x, y) - 3);
+            if (state != canny_none) lines[y] |= 1u << uint(x);
+            if (state == canny_strong) strong[y] |= 1u << uint(x);
+        }
+    }
+    for (int i = 0; i < 3; ++i)
+        for (int y = 0; y < 7; ++y) {
+            uint near = strong[y] | strong[max(y - 1, 0)] | strong[min(y + 1, 6)];
+            strong[y] |= (near | near << 1u | near >> 1u) & lines[y];
+        }
+    return (strong[3] >> 3u & 1u) == 1u ? canny_strong : canny_weak;
+}
+
+float canny_lines(float state) { return state == canny_strong ? 1.0 : 0.0; }
+
+vec4 canny(vec4 image, float lines) {
+    float alpha = finite(image.a);
+    return vec4(vec3(lines * alpha), alpha);
+}

@@ -1,0 +1,17 @@
+// The tones that a display is sent (sRGB), where steps look alike from dark to bright. Light above 1 goes on.
+#include "lib/alpha.glsl"
+#include "lib/color.glsl"
+#include "lib/finite.glsl"
+
+// How bright a pixel looks, whatever it covers.
+float display_tone(vec4 c) { return srgb_encode(max(luminance(straight(finite(c)).rgb), 0.0)); }
+
+vec4 to_display(vec4 c) {
+    c = straight(finite(c));
+    return premultiplied(vec4(srgb_encode(c.rgb), c.a));
+}
+
+vec4 from_display(vec4 c) {
+    c = straight(finite(c));
+    return finite(premultiplied(vec4(srgb_decode(c.rgb), c.a)));
+}
