@@ -128,9 +128,12 @@ class Ui:
         self.wait(2)
 
     def keys(self, text: str) -> None:
-        """Press a shortcut such as "Ctrl+Z"."""
+        """Press a shortcut such as "Ctrl+Z" once, however long a busy machine needs until it is let go."""
+        io = imgui.get_io()
+        usual, io.key_repeat_delay = io.key_repeat_delay, 60.0
         self.ctx.key_press(chord(text))
         self.wait(3)
+        io.key_repeat_delay = usual
 
     def type(self, text: str, enter: bool = True) -> None:
         """Replace the text of the field that is being edited."""

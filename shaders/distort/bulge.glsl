@@ -1,3 +1,4 @@
+#include "lib/finite.glsl"
 #include "lib/footprint.glsl"
 
 vec2 bulge_source(vec2 at, float strength, float radius, vec2 center) {
@@ -14,5 +15,5 @@ vec4 bulge(float strength, float radius, vec2 center) {
     );
     vec4 sum = vec4(0.0);
     for (int i = 0; i < n * n; ++i) sum += image_near(bulge_source(at + footprint_at(i, n), strength, radius, center));
-    return sum / float(n * n);
+    return finite(sum / float(n * n));
 }

@@ -1,3 +1,4 @@
+#include "lib/finite.glsl"
 #include "lib/resampling.glsl"
 
 float resize_radius(int kernel) { return kernel == KERNEL_TRIANGLE ? 1.0 : kernel == KERNEL_LANCZOS ? 3.0 : 2.0; }
@@ -25,5 +26,5 @@ vec4 resize(int axis, float shrink, int kernel) {
         sum += weight * image_at(at);
         total += weight;
     }
-    return sum / total;
+    return finite(sum / total);
 }

@@ -1,3 +1,4 @@
+#include "lib/finite.glsl"
 #include "lib/footprint.glsl"
 
 // A wave is its amplitude, wavelength, phase and reach.
@@ -24,5 +25,5 @@ vec4 ripple(int shape, int motion, float angle, vec2 center, vec4 wave) {
     vec4 sum = vec4(0.0);
     for (int i = 0; i < n * n; ++i)
         sum += image_near(ripple_source(at + footprint_at(i, n), shape, motion, angle, center, wave));
-    return sum / float(n * n);
+    return finite(sum / float(n * n));
 }

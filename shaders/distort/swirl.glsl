@@ -1,3 +1,4 @@
+#include "lib/finite.glsl"
 #include "lib/footprint.glsl"
 
 // Turned back to where the light comes from.
@@ -15,5 +16,5 @@ vec4 swirl(float angle, float radius, vec2 center) {
     );
     vec4 sum = vec4(0.0);
     for (int i = 0; i < n * n; ++i) sum += image_near(swirl_source(at + footprint_at(i, n), angle, radius, center));
-    return sum / float(n * n);
+    return finite(sum / float(n * n));
 }

@@ -1,3 +1,4 @@
+#include "lib/finite.glsl"
 #include "lib/resampling.glsl"
 
 const float transform_widest = 32.0;  // pixels of the image per pixel; where it shrinks more, it may alias
@@ -30,5 +31,5 @@ vec4 transform(vec2 across, vec2 down, vec2 start, int kernel) {
             total += weight;
         }
     }
-    return sum / total;
+    return finite(sum / total);
 }

@@ -1,28 +1,30 @@
+#include "lib/contour.glsl"
 #include "lib/finite.glsl"
-#include "lib/jump_flood.glsl"
 
-vec4 distance_field_seeds(float mask) { return jump_seeds(finite(mask), vec2(pixel)); }
+vec2 distance_field_seeds(float mask) { return contour_seeds(finite(mask), float(pixel.y)); }
 
-vec4 distance_field_jump(int reach) {
-    vec4 nearest = seeds_at(pixel);
-    for (int i = 0; i < 9; ++i)
-        if (i != 4) nearest = jump_nearer(nearest, seeds_at(pixel + reach * (ivec2(i % 3, i / 3) - 1)), vec2(pixel));
-    return nearest;
+vec2 distance_field_columns(int reach) {
+    vec2 above = seeds_at(pixel - ivec2(0, reach)), below = seeds_at(pixel + ivec2(0, reach));
+    return contour_nearer(contour_nearer(seeds_at(pixel), above, float(pixel.y)), below, float(pixel.y));
 }
 
-float distance_field_covered(vec2 at) { return clamp(mask_at(ivec2(at)), 0.0, 1.0); }
-
+// Of what the columns found, the nearest: ever farther along the row, until no column can hold anything nearer.
 float distance_field() {
-    vec4 nearest = seeds_at(pixel);
-    bool inside_it = nearest.xy == vec2(pixel);
-    vec2 seed = inside_it ? nearest.zw : nearest.xy;
-    float far = length(vec2(extent));
-    if (seed.x >= 0.0) {
-        vec4 there = seeds_at(ivec2(seed));
-        float inner = distance_field_covered(there.xy), outer = distance_field_covered(there.zw);
-        float apart = distance(there.xy, there.zw);
-        far = distance(seed, vec2(pixel));
-        far -= inside_it ? jump_beyond(1.0 - outer, apart, 1.0 - inner) : jump_beyond(inner, apart, outer);
-    }
-    return (inside_it ? -far : far) / proxy;
+    bool mine = columns_at(pixel).x == float(pixel.y);
+    float nearest = dot(vec2(extent), vec2(extent));
+    ivec2 seed = ivec2(-1);
+    for (int away = 0; away < extent.x && float(away * away) < nearest; ++away)
+        for (int side = -1; side <= 1; side += 2) {
+            int x = pixel.x + side * away;
+            if (x < 0 || x >= extent.x) continue;
+            vec2 rows = columns_at(ivec2(x, pixel.y));
+            float row = mine ? rows.y : rows.x, up = row - float(pixel.y), found = float(away * away) + up * up;
+            if (row >= 0.0 && found < nearest) nearest = found, seed = ivec2(x, row);
+        }
+    float far = sqrt(nearest);
+    if (seed.x >= 0)
+        far -= contour_before(
+            contour_covered(mask_at(seed), !mine), contour_covered(mask_at(seed + contour_step(pixel - seed)), !mine)
+        );
+    return (mine ? -far : far) / proxy;
 }

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from gui_canvas import chain, empty, row, show
+from halation.app.document import dumps, save
 from halation.app.graph import Port
 
 
@@ -18,7 +19,7 @@ class Record:
 
     def state(self) -> tuple:
         session = self.ui.session
-        return session.root, session.place, session.selection, session.active
+        return dumps(session.root), session.place, session.selection, session.active
 
     def act(self, name: str, do) -> None:
         """Do something that is one step."""
@@ -28,6 +29,11 @@ class Record:
         self.ui.wait(3)
         assert self.ui.session.history.position == steps + 1, name
         self.acts.append((name, before, self.state()))
+
+
+def _same(found: tuple, wanted: tuple, what: str) -> None:
+    assert found[1:] == wanted[1:], what
+    assert found[0].splitlines() == wanted[0].splitlines(), what
 
 
 def test_a_long_series_of_acts_is_undone_and_done_again(gui) -> None:
@@ -56,7 +62,6 @@ def test_a_long_series_of_acts_is_undone_and_done_again(gui) -> None:
 
         def named(text: str) -> None:
             ui.keys("F2")
-            ui.until(lambda: ui.ctx is not None and ui.editor.canvas.renaming == "")
             ui.wait(3)
             ui.type(text)
 
@@ -78,7 +83,6 @@ def test_a_long_series_of_acts_is_undone_and_done_again(gui) -> None:
         press("expand", "H")
         press("viewer", "Ctrl+3")
         press("frame", "Shift+F")
-        (frame,) = session.selection
         record.act("frame title", lambda: named("Light"))
         ui.move(empty(ui))
         ui.wait(2)
@@ -112,7 +116,6 @@ def test_a_long_series_of_acts_is_undone_and_done_again(gui) -> None:
         assert pasted not in session.graph.nodes
         title("bloom")
         press("group", "Ctrl+G")
-        (group,) = session.selection
         record.act("rename", lambda: named("glow"))
         ui.keys("Ctrl+Enter")
         ui.until(lambda: session.place == ("glow",))
@@ -134,20 +137,18 @@ def test_a_long_series_of_acts_is_undone_and_done_again(gui) -> None:
 
         for name, before, _ in reversed(record.acts):
             ui.keys("Ctrl+Z")
-            assert record.state() == before, f"undo of {name}"
+            _same(record.state(), before, f"undo of {name}")
         assert session.history.position == first
         for name, _, after in record.acts:
             ui.keys("Ctrl+Shift+Z")
-            assert record.state() == after, f"redo of {name}"
+            _same(record.state(), after, f"redo of {name}")
 
     gui(body, size=(1600, 1100))
 
 
 def test_three_hundred_nodes_are_opened_selected_moved_deleted_and_brought_back(gui, tmp_path) -> None:
-    from halation.app import document
-
     path = tmp_path / "many.json"
-    document.save(row(300), path)
+    save(row(300), path)
 
     def body(ui) -> None:
         session = ui.session

@@ -73,7 +73,8 @@ def test_costs_are_written_above_nodes_while_they_are_measured(gui) -> None:
         ui.ask(ui.editor.preview.clear)
         ui.settled()
         measured = ui.editor.preview.timings.keys() & ui.session.graph.nodes.keys()
-        assert measured == {name.removeprefix("cost ") for name in ui.editor.places if name.startswith("cost ")} != set()
+        assert measured
+        assert measured == {name.removeprefix("cost ") for name in ui.editor.places if name.startswith("cost ")}
         ui.shot("canvas_costs.png")
 
     gui(body, _preset("neon_edges"))
@@ -130,7 +131,7 @@ def test_titles_stay_readable_however_far_away(gui) -> None:
     def body(ui) -> None:
         show(ui, chain("exposure", "bloom"), 0.2)
         assert READABLE >= 11.0
-        left, top, right, bottom = ui.editor.places["title exposure"]
+        _, top, _, bottom = ui.editor.places["title exposure"]
         assert bottom - top > READABLE * 1.3, "the header grows with its title"
         ui.shot("canvas_far.png")
         ui.click("title exposure")

@@ -1,4 +1,4 @@
-"""The whole editor, killed at any moment: the last save is whole, and unsaved work is offered again, as new as promised.
+"""The whole editor, killed at any moment: the last save is whole, unsaved work is offered again, as new as promised.
 
 HALATION_KILLS=500 kills it so often; a few times will do otherwise.
 """

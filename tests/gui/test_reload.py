@@ -29,7 +29,8 @@ nodes, shaders, path = here / "halation" / "nodes", here / "halation" / "shaders
 known = catalogue()
 graph = Graph(settings=Settings((64, 36)), outputs={"image": Output(Kind.IMAGE)})
 graph = graph.add("fill", known["constant"]()).add("light", known["exposure"](stops=1.0))
-graph = graph.connect(Port("fill", "out"), Port("light", "image")).connect(Port("light", "out"), Port("outputs", "image"))
+graph = graph.connect(Port("fill", "out"), Port("light", "image"))
+graph = graph.connect(Port("light", "out"), Port("outputs", "image"))
 document.save(graph, path)
 
 def brightness(ui):

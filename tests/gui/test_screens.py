@@ -55,19 +55,19 @@ def test_screens(gui, tmp_path: Path, look, screens) -> None:
 @pytest.mark.parametrize("theme", ["dark", "light"])
 def test_pictures_of_the_editor(gui, theme: str) -> None:
     def body(ui) -> None:
-        ui.editor.viewer.scopes = {"waveform", "vectorscope"}
+        ui.editor.viewer.scopes = {"histogram", "vectorscope"}
         (beauty,) = ui.session.graph.inputs
         ui.session.view(Port("outputs", "image"))
         ui.session.view(Port("inputs", beauty), "B")
         ui.editor.viewer.comparing("wipe")
-        ui.session.select(["halation" if "halation" in ui.session.graph.nodes else list(ui.session.graph.nodes)[-1]])
+        ui.session.select(["halo"])
         ui.settled()
         ui.editor.canvas.fit()
         ui.wait(20)
         if theme == "light":
-            ui.move("Graph", (0.3, 0.55))
+            ui.move("Graph", (0.5, 0.15))
             ui.keys("Tab")
-            ui.type("gl", enter=False)
+            ui.type("blur", enter=False)
         ui.editor.log.entries.clear()
         ui.wait(10)
         keep(ui.shot(f"editor_{theme}.png"), IMAGES / ("editor.png" if theme == "dark" else "editor_light.png"))

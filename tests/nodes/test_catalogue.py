@@ -87,7 +87,11 @@ def face(function) -> tuple[str, tuple[str, ...]]:
     return function.name, tuple(glsl for glsl, _ in (*function.parameters, *function.outputs))
 
 
-@pytest.mark.parametrize("name", sorted(installed().texts))
+SHADERS = sorted(name for name in installed().texts if not name.startswith("viewer/"))
+"""What passes are made of. The viewer's are whole programs, which never meet a node's."""
+
+
+@pytest.mark.parametrize("name", SHADERS)
 def test_shader_names_do_not_clash(name):
     """Nothing is called like a GLSL word, and a node's helpers start with its id, so that any two nodes can fuse."""
     text = installed().texts[name]
@@ -101,10 +105,10 @@ def test_shader_names_do_not_clash(name):
             assert re.match(rf"{name.rpartition('/')[2]}(_|$)", function.name), function.name
 
 
-@pytest.mark.parametrize("name", sorted(installed().texts))
+@pytest.mark.parametrize("name", SHADERS)
 def test_every_shader_belongs_to_a_node(name):
     folder, _, id = name.partition("/")
-    assert folder in ("lib", "primitive", "viewer") or (id in catalogue() and catalogue()[id].category == folder)
+    assert folder in ("lib", "primitive") or (id in catalogue() and catalogue()[id].category == folder)
     source = re.sub(r"//[^\n]*", "", (ROOT / "shaders" / f"{name}.glsl").read_text(encoding="utf-8"))
     for word in ("#version", "void main", "uniform ", "texture(", "imageLoad"):
         assert word not in source

@@ -143,6 +143,14 @@ class Brush:
     texts: Texts
     seen: Rect
     """The part of the canvas that is visible."""
+    title: float = field(init=False)
+    """The size of titles in canvas units: it grows where they could not be read otherwise."""
+    header: float = field(init=False)
+    """The height of headers, which have room for their titles."""
+
+    def __post_init__(self) -> None:
+        self.title = max(TITLE, READABLE / self.zoom)
+        self.header = max(HEADER, self.title * 1.45)
 
     def text(self, x: float, y: float, color: int, text: str, size: float = TEXT, bold: bool = False) -> None:
         """A line whose left end is at `x` and whose middle is at `y` (canvas units)."""
@@ -186,16 +194,6 @@ class Brush:
         """The outline of a rectangle; `thickness` is in pixels at UI scale 1."""
         low, high = self.corners(rect, grow)
         self.draw.add_rect(low, high, color, (rounding + grow) * self.to.scale, thickness * self.line)
-
-    @property
-    def title(self) -> float:
-        """The size of titles in canvas units: it grows where they could not be read otherwise."""
-        return max(TITLE, READABLE / self.zoom)
-
-    @property
-    def header(self) -> float:
-        """The height of headers, which have room for their titles."""
-        return max(HEADER, self.title * 1.45)
 
     @property
     def line(self) -> float:

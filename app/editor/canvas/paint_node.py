@@ -82,7 +82,10 @@ def paint_node(brush: Brush, box: Box, layout: Layout, look: Look) -> None:
         for pin in pins.values():
             _pin_of(brush, box, pin, output, look)
     if look.overlay:
-        brush.text(rect[0] + 4.0, rect[1] - 10.0, look.overlay_color, look.overlay, SMALL)
+        size = max(SMALL, brush.title * 0.9)
+        time, _, _ = look.overlay.partition("   ")
+        text = look.overlay if brush.width(look.overlay, size) <= box.w else brush.short(time, box.w, size)
+        brush.text(rect[0] + 2.0, rect[1] - size * 0.75, look.overlay_color, text, size)
 
 
 def paint_pin(

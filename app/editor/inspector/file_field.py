@@ -84,6 +84,8 @@ class FileField:
         imgui.push_style_color(
             imgui.Col_.text, imgui.get_color_u32((*(rows.palette.text if value else rows.palette.dim), 1.0))
         )
+        least = max(width, imgui.get_font_size() * 15.0)
+        imgui.set_next_window_size_constraints((least, 0.0), (least * 2, imgui.get_main_viewport().size.y * 0.7))
         opened = imgui.begin_combo(f"##{key}", value or FIRST, flags)
         imgui.pop_style_color()
         first = item_rect()

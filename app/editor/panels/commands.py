@@ -65,7 +65,7 @@ def _all(editor: Editor) -> Iterator[Command]:
     for action in editor.actions.all:
         label = action.label.removesuffix("...")
         menu = action.menu.split("/")
-        full = f"{menu[1]} {label}" if len(menu) > 1 else label
+        full = f"{menu[1]} {label}" if len(menu) > 1 and menu[1].lower() not in label.lower() else label
         yield Command(
             action.id, full, menu[0] or "Action", partial(editor.actions.run, action.id, editor),
             editor.actions.shortcut(action.id), action.doc, reason(editor, action),

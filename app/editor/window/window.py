@@ -41,7 +41,8 @@ class Window:
         self, path: Path | None, bindings: Mapping[str, str], *, version: tuple[int, int] = (4, 5),
         state: Path | None = None, size: tuple[int, int] = SIZE, form: Form | None = None,
     ) -> None:
-        self._path, self._bindings, self._state, self._form = path, dict(bindings), state, form
+        self._path, self._bindings, self._state = path, dict(bindings), state
+        self._form: Form | None = form
         self.editor: Editor
         self._panels: dict[str, Panel] = {}
         self._overlays: dict[str, Panel] = {}

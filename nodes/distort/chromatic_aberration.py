@@ -1,0 +1,37 @@
+from typing import Annotated, Literal
+
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
+
+
+class ChromaticAberration(Filter):
+    """Spread light into its colors, as a lens that bends blue more than red.
+
+    The light of a pixel is gathered along a line from its red to its blue end; every step counts for the primaries that
+    its wavelength excites (tents that overlap), each of which sums to 1, so that no light is lost and grays stay gray
+    where the picture is even. Alpha is gathered evenly.
+    """
+
+    image = Image()
+    shape: Annotated[Literal["radial", "straight"], Doc(
+        "Radial grows from the center to the edges, as lenses do; straight is the same everywhere, as a prism."
+    )] = "radial"
+    amount: Annotated[float, Slider(
+        -0.05, 0.05, unit="height",
+        doc="How far red and blue each lie from green: at half the height from the center, or everywhere if straight.",
+    )] = 0.006
+    angle: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="Straight: where red goes, 0 is right.")] = 0.0
+    samples: Annotated[int, Slider(
+        3, 64, unit="count", minimum=3, maximum=256, doc="Steps from red to blue; 3 shows three separate pictures."
+    )] = 16
+    center: Annotated[Position, Doc("The optical axis.")] = (0.5, 0.5)
+    edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
+
+    def identity(self) -> str | None:
+        return "image" if self.amount == 0.0 else None
+
+    def passes(self, draw: Draw) -> Drawn:
+        center = (self.center[0] * draw.size[0], self.center[1] * draw.size[1])
+        return draw(
+            "chromatic_aberration", self.image, edge=self.edge, shape=self.shape, amount=self.amount, angle=self.angle,
+            samples=self.samples, center=center,
+        )

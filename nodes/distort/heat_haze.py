@@ -1,0 +1,38 @@
+from typing import Annotated
+
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Slider
+
+
+class HeatHaze(Filter):
+    """Let the picture shimmer as above a fire or a hot road.
+
+    Two noises (gradient noise, Perlin 2002; two octaves) push every point across and down. They rise, and change with
+    every frame; the same frame always looks the same.
+    """
+
+    image = Image()
+    heat = Field(1.0, doc="Where it is hot: factor on the amount, pixel by pixel.")
+    amount: Annotated[float, Slider(0.0, 0.05, unit="height", doc="How far points move at most.")] = 0.008
+    size: Annotated[float, Slider(0.01, 0.5, unit="height", minimum=1e-4, doc="Size of the swirls.")] = 0.06
+    stretch: Annotated[float, Slider(
+        0.25, 4.0, unit="ratio", minimum=0.01, doc="Above 1 swirls are taller than wide, below flatter."
+    )] = 1.6
+    rise: Annotated[float, Slider(-2.0, 2.0, unit="height", doc="How far swirls rise in a second.")] = 0.25
+    change: Annotated[float, Slider(
+        0.0, 8.0, unit="ratio", doc="How many times in a second swirls become others."
+    )] = 1.5
+    rate: Annotated[float, Slider(
+        12.0, 60.0, unit="ratio", minimum=0.01, doc="Frames per second of the sequence."
+    )] = 24.0
+    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another haze.")] = 0
+    edge: Annotated[Edge, Doc("What lies outside the picture.")] = "mirror"
+
+    def identity(self) -> str | None:
+        return "image" if self.amount == 0.0 else None
+
+    def passes(self, draw: Draw) -> Drawn:
+        return draw(
+            "heat_haze", self.image, self.heat, edge=self.edge, amount=self.amount,
+            swirl=(self.size, self.size * self.stretch), rise=self.rise / self.rate, change=self.change / self.rate,
+            seed=self.seed,
+        )

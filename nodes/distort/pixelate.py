@@ -1,0 +1,28 @@
+import math
+from typing import Annotated, Literal
+
+from .._declare import Doc, Draw, Drawn, Filter, Image, Slider
+
+
+class Pixelate(Filter):
+    """Show the picture in coarse squares, each the average of what it covers.
+
+    A square counts the pixels at its border by how much of them it covers.
+    """
+
+    image = Image()
+    size: Annotated[tuple[float, float], Slider(
+        1.0, 64.0, unit="px", minimum=0.01, doc="Width and height of a square, at least one pixel."
+    )] = (8.0, 8.0)
+    sampling: Annotated[Literal["average", "center"], Doc(
+        "Average keeps the light; center shows the pixel at the middle, as an enlarged small picture that aliases."
+    )] = "average"
+
+    def identity(self) -> str | None:
+        return "image" if max(self.size) <= 1.0 else None
+
+    def passes(self, draw: Draw) -> Drawn:
+        wide, high = (max(side, 1.0) for side in self.size)
+        grid = (math.ceil(draw.size[0] / wide), math.ceil(draw.size[1] / high))
+        squares = draw("pixelate_square", self.image, size=grid, side=(wide, high), sampling=self.sampling)
+        return draw("pixelate", squares=squares, side=(wide, high))

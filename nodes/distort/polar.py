@@ -1,0 +1,36 @@
+from typing import Annotated, Literal
+
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
+
+
+class Polar(Filter):
+    """Bend the picture into a disc, or unroll a disc into a strip.
+
+    Wrap runs the picture's width once around the center, clockwise, with its top at the center and its bottom at the
+    radius; unwrap is the inverse. Effects in between act around and along the radius: blur it sideways and wrap it
+    back for a spin.
+    """
+
+    image = Image()
+    direction: Annotated[Literal["wrap", "unwrap"], Doc("Wrap makes a disc, unwrap opens it.")] = "wrap"
+    radius: Annotated[float, Slider(
+        0.1, 1.5, unit="height", minimum=1e-3, doc="Radius of the disc."
+    )] = 0.5
+    rotation: Annotated[float, Slider(
+        -180.0, 180.0, unit="deg", doc="Where around the center the picture's left side lies; 0 is right."
+    )] = -90.0
+    center: Annotated[Position, Doc("The middle of the disc.")] = (0.5, 0.5)
+    edge: Annotated[Edge, Doc(
+        "What lies outside: of the disc nothing for black, else its rim stretched; of the picture as usual."
+    )] = "clamp"
+
+    def passes(self, draw: Draw) -> Drawn:
+        center = (self.center[0] * draw.size[0], self.center[1] * draw.size[1])
+        if self.direction == "unwrap":
+            return draw(
+                "polar_unwrap", self.image, edge=self.edge, radius=self.radius, rotation=self.rotation, center=center
+            )
+        return draw(
+            "polar_wrap", self.image, edge="wrap", radius=self.radius, rotation=self.rotation, center=center,
+            empty=self.edge == "black",
+        )

@@ -1,0 +1,21 @@
+from typing import Annotated, Literal
+
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Vector
+
+
+class StMap(Filter):
+    """Show what a map points to: every pixel of the map holds a position in the picture, from 0 to 1.
+
+    Maps come from lens calibration and render passes (UV). A pixel whose neighbors point far apart averages what lies
+    between. Where the map is no number, nothing is shown.
+    """
+
+    image = Image()
+    st = Vector(width=2, doc="Where to look: 0 to 1 across the picture, pixel centers at halves.")
+    origin: Annotated[Literal["bottom left", "top left"], Doc(
+        "Where 0, 0 lies: bottom left for renders and most compositors, top left for OpenImageIO and textures."
+    )] = "bottom left"
+    edge: Annotated[Edge, Doc("What lies outside the picture.")] = "black"
+
+    def passes(self, draw: Draw) -> Drawn:
+        return draw("st_map", self.image, self.st, edge=self.edge, origin=self.origin)

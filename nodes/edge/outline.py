@@ -1,0 +1,49 @@
+from collections.abc import Mapping
+from math import ceil, log2
+from typing import Annotated, Literal
+
+from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Image, Output, Pixels, Slider, Vector
+
+
+class Outline(Filter):
+    """Draw a line of any width around what a mask, or the picture's own alpha, shows.
+
+    The line follows the exact distance to the contour, where the mask crosses one half (see Distance Field); the cost
+    grows slowly with its width. Around the picture's own alpha, an outside line lies behind the picture.
+    """
+
+    image = Image()
+    mask = Field(0.0, doc="What is outlined. Without a link, what the picture's alpha covers.")
+    position: Annotated[Literal["outside", "inside", "center"], Doc("On which side of the contour the line lies.")] = (
+        "outside"
+    )
+    width: Annotated[float, Slider(
+        0.0, 50.0, unit="px", minimum=0.0, maximum=1000.0, doc="Width of the line."
+    )] = 4.0
+    softness: Annotated[float, Slider(
+        0.0, 50.0, unit="px", minimum=0.0, maximum=1000.0, doc="Over how many pixels the line's edges fade."
+    )] = 0.0
+    color: Annotated[RGBA, Doc("The line's color; its alpha is how much it covers.")] = (1.0, 1.0, 1.0, 1.0)
+
+    out = Output()
+    line = Output(Field(doc="How much of each pixel the line covers."))
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        mask: Pixels = self.mask if draw.linked(self.mask) else draw.point("outline_alpha", self.image, result=Field())
+        reach = ceil(self.width + 0.5 * self.softness) + 2
+        columns = draw.point("outline_seeds", result=Vector(width=2), mask=mask)
+        for level in reversed(range(ceil(log2(reach + 1)))):
+            columns = draw("outline_columns", seeds=columns, result=Vector(width=2), reach=2**level)
+        contour = draw("outline_distance", mask=mask, columns=columns, result=Field(), reach=reach)
+        behind = self.position == "outside" and not draw.linked(self.mask)
+        first, last = {
+            "outside": (0.0, self.width), "inside": (-self.width, 0.0), "center": (-self.width / 2, self.width / 2)
+        }[self.position]
+        line = draw.point(
+            "outline_line", result=Field(), contour=contour, first=first, last=last, fade=1.0 + self.softness
+        )
+        under = draw.point(
+            "outline_line", result=Field(), contour=contour, first=-1e6, last=last, fade=1.0 + self.softness
+        ) if behind else line
+        out = draw.point("outline", self.image, line=under, color=self.color, behind=behind)
+        return {"out": out, "line": line}

@@ -1,0 +1,22 @@
+from typing import Annotated, Literal
+
+from .._declare import Doc, Image, Pointwise, Slider
+
+
+class Halftone(Pointwise):
+    """Print the picture: dots or lines of ink on white paper, which make tones by the area that they cover.
+
+    Every screen covers exactly the share of the paper that the tone asks for, in linear light, so that from afar the
+    colors are right up to white (Demichel's equation; full gray component replacement). Four inks lie at the
+    printer's angles of 15, 75, 0 and 45 degrees. Each pixel is the mean of nine samples. Alpha is kept.
+    """
+
+    image = Image()
+    inks: Annotated[Literal["cmyk", "black"], Doc("Cyan, magenta, yellow and black ink, or black alone.")] = "cmyk"
+    pattern: Annotated[Literal["dot", "line", "cross"], Doc("Round dots, parallel lines, or a grid of lines.")] = "dot"
+    size: Annotated[float, Slider(
+        2.0, 40.0, unit="px", minimum=0.5, doc="From one dot or line to the next."
+    )] = 6.0
+    angle: Annotated[float, Slider(
+        -90.0, 90.0, unit="deg", doc="Turns all screens, on top of each ink's own angle."
+    )] = 0.0

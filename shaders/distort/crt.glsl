@@ -1,0 +1,34 @@
+#include "lib/color.glsl"
+#include "lib/finite.glsl"
+#include "lib/hash.glsl"
+
+const float crt_circle = 6.28318531;
+
+// The average of a cosine over `width` turns, at this phase in turns; none is left over a whole turn or more.
+float crt_cosine(float phase, float width) {
+    if (width >= 1.0) return 0.0;
+    float half_turn = 0.5 * crt_circle * width;
+    return cos(crt_circle * phase) * (half_turn > 1e-4 ? sin(half_turn) / half_turn : 1.0);
+}
+
+vec4 crt(
+    float barrel, float jitter, float chroma_delay, float lines, float scanlines, int mask, float mask_strength,
+    float triad
+) {
+    vec2 at = vec2(pixel) + 0.5, center = 0.5 * vec2(extent);
+    vec2 away = (at - center) / center.y;
+    vec2 source = center + center.y * away * (1.0 + barrel * dot(away, away));
+    float line = source.y / float(extent.y) * lines;
+    source.x += jitter * (2.0 * hash3(ivec3(int(floor(line)), frame, 0), uvec3(0u)).x - 1.0);
+    vec4 light = image_near(source), late = image_near(source - vec2(chroma_delay, 0.0));
+    vec3 rgb = luminance(light.rgb) + late.rgb - luminance(late.rgb);
+    // Brightest in the middle of a line. The division keeps the average.
+    rgb *= (1.0 - 0.5 * scanlines * (1.0 + crt_cosine(line, lines / float(extent.y)))) / (1.0 - 0.5 * scanlines);
+    if (mask != MASK_NONE) {
+        float stripe = at.x / triad;
+        if (mask == MASK_SHADOW_MASK) stripe += 0.5 * mod(floor(at.y / triad), 2.0);
+        for (int channel = 0; channel < 3; ++channel)
+            rgb[channel] *= 1.0 + mask_strength * crt_cosine(stripe - (float(channel) + 0.5) / 3.0, 1.0 / triad);
+    }
+    return finite(vec4(rgb, light.a));
+}

@@ -1,0 +1,64 @@
+#include "lib/finite.glsl"
+#include "lib/footprint.glsl"
+
+const float lens_distortion_nowhere = 1e6;  // in focal lengths: outside of every picture
+
+// Where the lens shows a point, both in focal lengths from the axis (Brown and Conrady).
+vec2 lens_distortion_bend(vec2 p, vec3 radial, vec2 tangential) {
+    float r2 = dot(p, p);
+    return p * (1.0 + r2 * (radial.x + r2 * (radial.y + r2 * radial.z)))
+         + 2.0 * p.x * p.y * tangential + (r2 + 2.0 * p * p) * tangential.yx;
+}
+
+// How it changes with the point, by columns.
+mat2 lens_distortion_slope(vec2 p, vec3 radial, vec2 tangential) {
+    float r2 = dot(p, p), scale = 1.0 + r2 * (radial.x + r2 * (radial.y + r2 * radial.z));
+    float rise = 2.0 * (radial.x + r2 * (2.0 * radial.y + r2 * 3.0 * radial.z));
+    float mixed = rise * p.x * p.y + 2.0 * dot(p, tangential);
+    return mat2(
+        scale + rise * p.x * p.x + 2.0 * p.y * tangential.x + 6.0 * p.x * tangential.y, mixed,
+        mixed, scale + rise * p.y * p.y + 2.0 * p.x * tangential.y + 6.0 * p.y * tangential.x
+    );
+}
+
+// The inverse by Newton's method, from the middle outward so that it stays on the branch that the lens shows. Beyond
+// where a bend turns back, nothing is seen.
+vec2 lens_distortion_straighten(vec2 seen, vec3 radial, vec2 tangential) {
+    const int steps = 4, refinements = 4;
+    vec2 p = vec2(0.0);
+    for (int i = 0; i < steps + refinements; ++i) {
+        vec2 wanted = seen * min(float(i + 1) / float(steps), 1.0);
+        mat2 slope = lens_distortion_slope(p, radial, tangential);
+        if (determinant(slope) < 1e-3) return vec2(lens_distortion_nowhere);
+        p += inverse(slope) * (wanted - lens_distortion_bend(p, radial, tangential));
+    }
+    float missed = distance(lens_distortion_bend(p, radial, tangential), seen);
+    return missed < 1e-3 && determinant(lens_distortion_slope(p, radial, tangential)) > 1e-3
+         ? p : vec2(lens_distortion_nowhere);
+}
+
+vec2 lens_distortion_source(
+    vec2 at, int direction, vec3 radial, vec2 tangential, float focal, float zoom, vec2 center
+) {
+    vec2 p = (at - center) / (focal * zoom);
+    p = direction == DIRECTION_DISTORT ? lens_distortion_straighten(p, radial, tangential)
+                                       : lens_distortion_bend(p, radial, tangential);
+    return center + p * focal;
+}
+
+vec4 lens_distortion(int direction, vec3 radial, vec2 tangential, float focal, float zoom, vec2 center) {
+    vec2 at = vec2(pixel) + 0.5;
+    vec2 here = lens_distortion_source(at, direction, radial, tangential, focal, zoom, center);
+    // The slope at the point is as good as differences, and the inverse is costly.
+    vec2 p = direction == DIRECTION_DISTORT ? (here - center) / focal : (at - center) / (focal * zoom);
+    mat2 slope = lens_distortion_slope(p, radial, tangential);
+    if (direction == DIRECTION_DISTORT) slope = inverse(slope);
+    int n = footprint_samples(slope[0] / zoom, slope[1] / zoom);
+    if (n == 1) return image_near(here);
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < n * n; ++i) {
+        vec2 from = at + footprint_at(i, n);
+        sum += image_near(lens_distortion_source(from, direction, radial, tangential, focal, zoom, center));
+    }
+    return finite(sum / float(n * n));
+}

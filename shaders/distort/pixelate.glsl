@@ -1,0 +1,18 @@
+#include "lib/finite.glsl"
+
+// What one square covers; squares at the far edges are cut off by the picture.
+vec4 pixelate_square(vec2 side, int sampling) {
+    vec2 first = vec2(pixel) * side, last = min(first + side, vec2(image_size));
+    if (sampling == SAMPLING_CENTER) return image_at(ivec2(floor(0.5 * (first + last))));
+    vec4 sum = vec4(0.0);
+    float total = 0.0;
+    for (int y = int(first.y); y < int(ceil(last.y)); ++y)
+        for (int x = int(first.x); x < int(ceil(last.x)); ++x) {
+            vec2 covered = min(vec2(x, y) + 1.0, last) - max(vec2(x, y), first);
+            sum += covered.x * covered.y * image_at(ivec2(x, y));
+            total += covered.x * covered.y;
+        }
+    return finite(sum / total);
+}
+
+vec4 pixelate(vec2 side) { return squares_at(ivec2((vec2(pixel) + 0.5) / side)); }

@@ -1,0 +1,40 @@
+#include "lib/finite.glsl"
+#include "lib/footprint.glsl"
+
+const float polar_circle = 6.28318531;
+
+// Around and outward, in parts of a turn and of the radius.
+vec2 polar_of(vec2 at, float radius, float rotation, vec2 center) {
+    vec2 away = at - center;
+    float far = length(away), angle = far > 0.0 ? atan(away.y, away.x) - rotation : 0.0;
+    return vec2(fract(angle / polar_circle), far / radius);
+}
+
+// The width joins its other end, the height does not.
+vec4 polar_wrap(float radius, float rotation, vec2 center, bool empty) {
+    vec2 at = vec2(pixel) + 0.5, size = vec2(image_size);
+    float far = max(distance(at, center), 0.5);
+    // A pixel spans this much of a circle and of the radius. Both are known without differences, which the seam breaks.
+    int n = footprint_samples(vec2(size.x / (polar_circle * far), 0.0), vec2(0.0, size.y / radius));
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < n * n; ++i) {
+        vec2 found = polar_of(at + footprint_at(i, n), radius, rotation, center);
+        if (empty && found.y > 1.0) continue;
+        found *= size;
+        sum += image_near(vec2(found.x, clamp(found.y, 0.5, size.y - 0.5)));
+    }
+    return finite(sum / float(n * n));
+}
+
+vec4 polar_unwrap(float radius, float rotation, vec2 center) {
+    vec2 at = vec2(pixel) + 0.5, size = vec2(extent);
+    float turn = polar_circle / size.x, ring = radius / size.y;
+    int n = footprint_samples(vec2(turn * at.y * ring, 0.0), vec2(0.0, ring));
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < n * n; ++i) {
+        vec2 from = at + footprint_at(i, n);
+        float angle = from.x * turn + rotation;
+        sum += image_near(center + from.y * ring * vec2(cos(angle), sin(angle)));
+    }
+    return finite(sum / float(n * n));
+}

@@ -1,0 +1,44 @@
+"""Glitch against the hash of the paper and scipy's interpolation."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from halation.nodes.distort.glitch import Glitch
+from hashes import hash3
+from warps import looked_up
+
+
+def test_the_hash_is_the_papers():
+    assert (hash3((0, 0, 0)) * 2**24).tolist() == [part >> 8 for part in (2611992518, 2833812075, 1058359340)]
+    assert (hash3((1, 2, 3)) * 2**24).tolist() == [part >> 8 for part in (4204755366, 1223881804, 1500469937)]
+
+
+@pytest.mark.parametrize("size", [(33, 26), (3, 2), (1, 1)])
+@pytest.mark.parametrize("hold", [1, 3])
+def test_bands_jump_as_the_hash_says(run, hdr, edge, size, hold):
+    """On frame 1."""
+    picture, height = hdr(*size), size[1]
+    y, x = np.mgrid[: size[1], : size[0]] + 0.5
+    moved, apart = np.zeros(y.shape), np.zeros(y.shape)
+    for level, band in enumerate((0.3 * height, 0.075 * height)):
+        dice = hash3((np.floor(y / band), 1 // hold, level), (5, 0, 0))
+        jumps = dice[0] < 0.6
+        moved += jumps * 0.2 * height * (2 * dice[1] - 1)
+        apart += jumps * 0.05 * height * (2 * dice[2] - 1)
+    red, middle, blue = (looked_up(picture, x + moved + way * apart, y, edge.scipy_map) for way in (1, 0, -1))
+    expected = np.stack([red[..., 0], middle[..., 1], blue[..., 2], middle[..., 3]], -1)
+    node = Glitch(amount=0.6, shift=0.2, colors=0.05, band=0.3, hold=hold, seed=5, edge=edge.name)
+    assert np.abs(run(node, {"image": picture}) - expected).max() < 2e-5 * picture.max()
+
+
+def test_wrapped_bands_lose_no_light(run, hdr):
+    picture = hdr(40, 32)
+    out = run(Glitch(colors=0.0, amount=1.0), {"image": picture})
+    assert np.abs(out.sum(1) / picture.sum(1) - 1.0).max() < 1e-4
+    assert not np.array_equal(out, picture)
+
+
+def test_without_amount_it_vanishes():
+    assert Glitch(amount=0.0).identity() == "image" and Glitch(shift=0.0, colors=0.0).identity() == "image"
+    assert Glitch(shift=0.0).identity() is None

@@ -1,0 +1,111 @@
+"""Kuwahara filters against their formulas in 64 bits."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from halation.nodes.stylize.kuwahara import Kuwahara
+from scipy.ndimage import gaussian_filter, sobel
+
+
+def encoded(light):
+    return np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.maximum(light, 1e-9) ** (1 / 2.4) - 0.055)
+
+
+def decoded(code):
+    return np.where(code <= 0.04045, code / 12.92, ((np.maximum(code, 0) + 0.055) / 1.055) ** 2.4)
+
+
+def tones_of(picture: np.ndarray) -> np.ndarray:
+    """Of an opaque picture; what lies outside of it may be transparent."""
+    tones = encoded(picture.astype(np.float64))
+    tones[..., 3] = 1.0
+    return tones
+
+
+def light_of(tones: np.ndarray) -> np.ndarray:
+    alpha = tones[..., 3:]
+    return np.concatenate([decoded(tones[..., :3] / alpha) * alpha, alpha], axis=-1)
+
+
+def classic(tones: np.ndarray, radius: int, mode: str) -> np.ndarray:
+    wide = np.pad(tones, ((radius, radius), (radius, radius), (0, 0)), mode=mode)
+    windows = np.lib.stride_tricks.sliding_window_view(wide, (radius + 1, radius + 1), (0, 1))
+    means, variances = windows.mean((-2, -1)), windows.var((-2, -1))[..., :3].sum(-1)
+    height, width = tones.shape[:2]
+    corners = [np.s_[y : y + height, x : x + width] for y in (0, radius) for x in (0, radius)]
+    best = np.argmin([variances[corner] for corner in corners], axis=0)
+    return np.choose(best[..., None], [means[corner] for corner in corners])
+
+
+def soft(tones: np.ndarray, radius: float, q: float, smoothing: float | None, mode) -> np.ndarray:
+    height, width = tones.shape[:2]
+    gx, gy = (np.stack([sobel(tones[..., c], axis, mode=mode.scipy) for c in range(3)], axis=-1) for axis in (1, 0))
+    products = [(a * b).sum(-1) for a, b in ((gx, gx), (gx, gy), (gy, gy))]
+    e, f, g = (gaussian_filter(product, smoothing or 1, mode=mode.scipy) for product in products)
+    reach = int(2 * radius) + 1
+    wide = np.pad(tones, ((reach, reach), (reach, reach), (0, 0)), mode=mode.numpy)
+    dy, dx = np.mgrid[-reach : reach + 1, -reach : reach + 1]
+    gamma, zeta = 3 * np.pi / 16, 2.0 / radius
+    eta = (zeta + np.cos(gamma)) / np.sin(gamma) ** 2
+    found = np.zeros_like(tones)
+    for y in range(height):
+        for x in range(width):
+            tensor = np.array([[e[y, x], f[y, x]], [f[y, x], g[y, x]]])
+            low, high = np.linalg.eigvalsh(tensor)
+            a = (high - low) / (high + low) if smoothing else 0.0
+            t = np.linalg.eigh(tensor)[1][:, 0] if smoothing else np.array([1.0, 0.0])
+            u = (dx * t[0] + dy * t[1]) / (radius * (1 + a))
+            v = (-dx * t[1] + dy * t[0]) / (radius / (1 + a))
+            inside = u * u + v * v <= 1.0
+            u, v = u[inside], v[inside]
+            turns = np.arange(8)[:, None] * np.pi / 4
+            across, along = v * np.cos(turns) - u * np.sin(turns), u * np.cos(turns) + v * np.sin(turns)
+            w = np.maximum(along + zeta - eta * across**2, 0.0) ** 2
+            w *= np.exp(-3.125 * (u * u + v * v)) / w.sum(0)
+            colors = wide[y : y + 2 * reach + 1, x : x + 2 * reach + 1][inside]
+            mean = (w @ colors) / w.sum(1, keepdims=True)
+            variance = ((w @ colors**2) / w.sum(1, keepdims=True) - mean**2)[:, :3].sum(-1)
+            calm = 1.0 / (1.0 + np.minimum(255.0 * np.sqrt(np.maximum(variance, 0.0)), 1e3) ** q)
+            found[y, x] = (calm[:, None] * mean).sum(0) / calm.sum()
+    return found
+
+
+@pytest.mark.parametrize("radius", [1, 3, 6])
+@pytest.mark.parametrize("size", [(33, 22), (9, 8)])
+def test_classic_equals_the_definition(run, hdr, edge, radius, size):
+    picture = hdr(*size, opaque=True)
+    found = run(Kuwahara(kind="classic", radius=float(radius), edge=edge.name), {"image": picture})
+    expected = light_of(classic(tones_of(picture), radius, edge.numpy))
+    np.testing.assert_allclose(found, expected, rtol=1e-4, atol=1e-5)
+
+
+@pytest.mark.parametrize("kind", ["generalized", "anisotropic"])
+@pytest.mark.parametrize(("radius", "q"), [(2.6, 8.0), (4.3, 2.0)])
+def test_soft_sectors_equal_the_formula(run, hdr, edge, kind, radius, q):
+    picture = gaussian_filter(np.minimum(hdr(15, 12, opaque=True), 4.0), (0.7, 0.7, 0))
+    node = Kuwahara(kind=kind, radius=radius, sharpness=q, smoothing=1.5, edge=edge.name)
+    expected = light_of(soft(tones_of(picture), radius, q, 1.5 if kind == "anisotropic" else None, edge))
+    found = run(node, {"image": picture})
+    np.testing.assert_allclose(found, expected, rtol=1e-3, atol=1e-4)
+
+
+@pytest.mark.parametrize("kind", ["classic", "generalized", "anisotropic"])
+def test_flat_stays_and_a_step_stays_hard(run, kind):
+    flat = np.full((12, 17, 4), 0.7, np.float32)
+    np.testing.assert_allclose(run(Kuwahara(kind=kind), {"image": flat}), flat, rtol=1e-5)
+    step = np.ones((24, 30, 4), np.float32)
+    step[:, :15, :3] = 0.1
+    found = run(Kuwahara(kind=kind, radius=4.0), {"image": step})
+    assert np.abs(found - step).max() <= 0.05  # of 0.9
+
+
+@pytest.mark.parametrize("kind", ["classic", "generalized", "anisotropic"])
+def test_turning_the_picture_turns_the_strokes(run, hdr, kind):
+    picture = np.minimum(hdr(15, 15, opaque=True), 4.0)
+    still, turned = (run(Kuwahara(kind=kind, radius=3.3), {"image": p.copy()}) for p in (picture, np.rot90(picture)))
+    np.testing.assert_allclose(turned, np.rot90(still), rtol=2e-3, atol=1e-4)
+
+
+def test_no_radius_changes_nothing():
+    assert Kuwahara(radius=0.0).identity() == "image"
