@@ -15,7 +15,7 @@ class Glass(Filter):
     surface = Field(0.0, doc="How high the glass is, 0 to 1. Without a link, random bumps.")
     relief: Annotated[float, Slider(
         0.0, 0.1, unit="height", minimum=0.0, doc="How high a surface of 1 rises above one of 0."
-    )] = 0.02
+    )] = 0.04
     thickness: Annotated[float, Slider(
         0.0, 0.5, unit="height", minimum=0.0, doc="How far the picture lies behind the surface."
     )] = 0.15

@@ -18,7 +18,7 @@ class Resize(Filter):
     kernel: Annotated[Literal["box", "triangle", "catmull-rom", "mitchell", "lanczos"], Doc(
         "Box averages the very area that a pixel covers and keeps hard pixels, triangle is soft; Catmull-Rom and "
         "Lanczos (3 lobes) are sharp and may ring around lights, Mitchell is between."
-    )] = "mitchell"
+    )] = "triangle"
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
     def identity(self) -> str | None:

@@ -27,7 +27,7 @@ class Transform(Filter):
     kernel: Annotated[Literal["nearest", "triangle", "catmull-rom", "mitchell", "lanczos"], Doc(
         "Nearest keeps data as it is, triangle is bilinear; Catmull-Rom and Lanczos (3 lobes) are sharp and may ring "
         "around lights, Mitchell is between."
-    )] = "catmull-rom"
+    )] = "triangle"
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "black"
 
     def identity(self) -> str | None:

@@ -25,10 +25,19 @@ class Record:
         """Do something that is one step."""
         before, steps = self.state(), self.ui.session.history.position
         do()
-        self.ui.until(lambda: self.ui.session.history.position > steps)
+        assert _came(self.ui, steps), f"{name}: {[entry.sentence for entry in self.ui.editor.log.entries]}"
         self.ui.wait(3)
         assert self.ui.session.history.position == steps + 1, name
         self.acts.append((name, before, self.state()))
+
+
+def _came(ui, steps: int) -> bool:
+    """True once there is one more step; False if none comes."""
+    for _ in range(60):
+        if ui.session.history.position > steps:
+            return True
+        ui.wait(1)
+    return False
 
 
 def _same(found: tuple, wanted: tuple, what: str) -> None:

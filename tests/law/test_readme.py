@@ -31,24 +31,24 @@ def test_the_graph_loads_and_has_no_problems() -> None:
 
 
 def test_the_node_is_declared_as_its_shader_says() -> None:
-    module = ModuleType("halation.nodes.color.posterize")
+    module = ModuleType("halation.nodes.color.solarize")
     module.__package__ = "halation.nodes.color"
     sys.modules[module.__name__] = module
     try:
         exec(compile(block("python", "# nodes/"), "README.md", "exec"), vars(module))
     finally:
         del sys.modules[module.__name__]
-    node = module.Posterize
-    assert issubclass(node, Pointwise) and (node.id, node.category) == ("posterize", "color")
+    node = module.Solarize
+    assert issubclass(node, Pointwise) and (node.id, node.category) == ("solarize", "color")
     shader = block("glsl")
     declared = ", ".join(f"{(node.inputs.get(name) or node.values[name]).glsl} {name}" for name in node.order)
-    assert f"vec4 posterize({declared})" in shader
+    assert f"vec4 solarize({declared})" in shader
     assert [field.name for field in fields(node)] == ["levels"]
 
 
 def test_files_and_folders_it_names_exist() -> None:
     names = {*re.findall(r"\b(?:docs|presets|tests|nodes|shaders|app)/[\w/-]+(?:\.\w+)?", README)}
-    missing = {name for name in names if not (ROOT / name).exists() and "posterize" not in name}
+    missing = {name for name in names if not (ROOT / name).exists() and "solarize" not in name}
     assert not missing
     parts = re.findall(r"^  (\w+(?:/|\.py)) ", block("text", "dev "), re.M)
     assert {part.rstrip("/") for part in parts} <= {path.name for path in (ROOT / "app").iterdir()}

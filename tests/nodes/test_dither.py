@@ -7,6 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import graph_of
+from halation.app.graph import Port
+from halation.app.renderer import Wanted
 from halation.nodes.color.dither import Dither
 
 PATTERNS = Dither.values["pattern"].choices
@@ -153,3 +156,17 @@ def test_dots_grow_with_size_and_colors_differ_on_demand(run):
     np.testing.assert_array_equal(small[..., 0], small[..., 1])
     colored = run(Dither(levels=2, space="linear", colored=True), {"image": picture})
     assert (colored[..., 0] != colored[..., 1]).mean() > 0.3
+
+
+def test_frames_differ_on_demand(renderer):
+    picture = gray(0.5)
+    for animate in (False, True):
+        node = Dither(levels=2, space="linear", animate=animate)
+        graph = graph_of(node, {"image": picture})
+        targets = {"out": Port("outputs", "out")}
+        one, same, other = (
+            renderer.render(graph, Wanted({"image": picture}, targets, precision="float", frame=frame))["out"]
+            for frame in (3, 3, 4)
+        )
+        assert np.array_equal(one, same) and np.array_equal(one, other) != animate
+        assert abs(other[..., 0].mean() - 0.5) < 1e-3

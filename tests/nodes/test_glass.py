@@ -33,7 +33,7 @@ def test_it_bends_by_snells_law(run, hdr, edge, size, index, dispersion):
         expected = expected + weight * looked_up(picture, x + right, y + down, edge.scipy_map)
     node = Glass(relief=0.1, thickness=0.2, index=index, dispersion=dispersion, samples=7, edge=edge.name)
     out = run(node, {"image": picture, "surface": surface})
-    assert np.abs(out - expected).max() < 1e-4 * picture.max()
+    assert np.abs(out - expected).max() < 1e-5 * picture.max()
 
 
 def test_a_wedge_moves_everything_alike(run):

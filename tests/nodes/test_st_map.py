@@ -29,7 +29,7 @@ def test_it_looks_up_what_the_map_says(run, hdr, edge, size, origin):
     x = x * 0.9
     map_ = st(x, y, origin)
     out = run(StMap(origin=origin, edge=edge.name), {"image": picture, "st": map_})
-    assert np.abs(out - looked_up(picture, x, y, edge.scipy_map)).max() < 1e-4 * picture.max()
+    assert np.abs(out - looked_up(picture, x, y, edge.scipy_map)).max() < 1e-5 * picture.max()
 
 
 @pytest.mark.parametrize("shift", [0.0, 0.5, 3.0])

@@ -81,7 +81,7 @@ def test_the_eye_adapts_by_the_published_matrices(run, hdr, method, kelvin, tint
     expected = picture[..., :3].astype(np.float64) @ matrix.T
     out = run(WhiteBalance(temperature=kelvin, tint=tint, method=method), {"image": picture})
     scale = np.maximum(np.abs(picture[..., :3]) @ np.abs(matrix).T, 1e-3)
-    assert (np.abs(out[..., :3] - expected) / scale).max() < 1e-4
+    assert (np.abs(out[..., :3] - expected) / scale).max() < 2e-5
     np.testing.assert_array_equal(out[..., 3], picture[..., 3])
 
 

@@ -1,0 +1,32 @@
+from typing import Annotated, Literal
+
+from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Slider
+
+
+class Fxaa(Filter):
+    """Smooth jagged edges of a finished picture, without any other layer: best after tone mapping.
+
+    FXAA 3.11 Quality (Lottes 2009-2011), written from its white paper: where the tone changes, the ends of the edge's
+    step are searched along it, and the pixel is read from as far across the edge as the step has risen there. The tone
+    is the luminance as a display shows it (sRGB), colors are mixed in linear light.
+    """
+
+    image = Image()
+    quality: Annotated[Literal["low", "medium", "high"], Doc(
+        "How far and how finely the ends of an edge are searched: the presets 12, 29 and 39."
+    )] = "medium"
+    subpixel: Annotated[Fraction, Doc("How much single pixels and fine lines are softened.")] = 0.75
+    threshold: Annotated[float, Slider(
+        0.063, 0.333, unit="ratio", minimum=0.0, maximum=1.0,
+        doc="The least contrast of an edge, as a part of the brightest tone around.",
+    )] = 0.166
+    threshold_dark: Annotated[float, Slider(
+        0.0, 0.1, unit="ratio", minimum=0.0, maximum=1.0, doc="The least contrast in the dark, from black to white 1."
+    )] = 0.0833
+
+    def passes(self, draw: Draw) -> Drawn:
+        tone = draw.point("fxaa_tone", self.image, result=Field())
+        return draw(
+            "fxaa", self.image, tone=tone,
+            quality=self.quality, subpixel=self.subpixel, threshold=self.threshold, threshold_dark=self.threshold_dark,
+        )
