@@ -226,3 +226,21 @@ def test_copies_and_pastes_between_places(gui) -> None:
         assert abs(left - at[0]) < 2
 
     gui(body)
+
+
+def test_a_node_is_replaced_and_keeps_its_links(gui) -> None:
+    def body(ui) -> None:
+        show(ui, chain("exposure"))
+        links = dict(ui.session.graph.links)
+        ui.click("title exposure")
+        ui.keys("Shift+S")
+        ui.until(lambda: "search field" in ui.editor.places)
+        ui.ctx.key_chars("saturation")
+        ui.wait(3)
+        ui.keys("Enter")
+        ui.until(lambda: ui.session.graph.nodes["exposure"].id == "saturation")
+        assert dict(ui.session.graph.links) == links
+        ui.keys("Ctrl+Z")
+        ui.until(lambda: ui.session.graph.nodes["exposure"].id == "exposure")
+
+    gui(body)

@@ -43,7 +43,7 @@ def test_the_node_is_declared_as_its_shader_says() -> None:
     shader = block("glsl")
     declared = ", ".join(f"{(node.inputs.get(name) or node.values[name]).glsl} {name}" for name in node.order)
     assert f"vec4 solarize({declared})" in shader
-    assert [field.name for field in fields(node)] == ["levels"]
+    assert [field.name for field in fields(node)] == ["threshold"]
 
 
 def test_files_and_folders_it_names_exist() -> None:

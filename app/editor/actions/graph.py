@@ -58,6 +58,10 @@ def _open_group(editor: Editor) -> None:
     open_graph(editor, Path(editor.session.graph.folder, item.path))
 
 
+def _replace(editor: Editor) -> None:
+    editor.canvas.replacing = editor.session.active
+
+
 def _search(editor: Editor) -> None:
     editor.canvas.searching = True
 
@@ -99,6 +103,8 @@ GRAPH: tuple[Action, ...] = (
            contexts=frozenset({"node"}), doc="Take the selection out of its chain, which closes behind it."),
     Action("node.swap", "Swap Inputs", lambda e: e.session.swap_inputs(e.session.active), "Graph", "Alt+S", "graph",
            _node, contexts=frozenset({"node"})),
+    Action("node.replace", "Replace...", _replace, "Graph", "Shift+S", "graph", _node, contexts=frozenset({"node"}),
+           doc="Another type of node in its place; links stay where they fit."),
     Action("node.reset", "Reset Values", lambda e: e.session.reset_all(e.session.active), "Graph", enabled=_node,
            contexts=frozenset({"node"})),
     Action("node.rename", "Rename...", _rename, "Graph", "F2", "graph", lambda e: bool(e.session.active),

@@ -20,8 +20,8 @@ TEXT, SMALL, TITLE = 13.5, 12.0, 14.0
 
 _MEASURED = 48.0
 
-WIDGETS_FROM, NAMES_FROM = 0.5, 0.45
-"""The zoom below which values, and then names of sockets, are left out: a picture then fills the node."""
+DETAILS_FROM = 0.45
+"""The zoom below which values and names of sockets are left out: a picture then fills the node."""
 
 READABLE = 11.0
 """Titles are no smaller than this, in pixels at UI scale 1, however far the canvas is zoomed out."""

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import dataclass
 
 from imgui_bundle import imgui
 
-from ...graph import Port
+from ...graph import Graph, Port
 from ..editor import Editor
 from ..edits.elements import entry
 from ..theme.style import ui_scale
-from .brush import Brush, Texts, ink
+from .brush import DETAILS_FROM, Brush, Texts, ink
 from .crumbs import draw_crumbs
 from .frame import Frame
 from .geometry import Point, Rect, bounds, curve, fitted, holds, overlap, transform
@@ -46,6 +47,17 @@ _ANY_TIME = int(imgui.HoveredFlags_.allow_when_blocked_by_active_item)
 _BUTTONS = int(imgui.ButtonFlags_.mouse_button_left) | int(imgui.ButtonFlags_.mouse_button_right) | int(
     imgui.ButtonFlags_.mouse_button_middle
 )
+
+
+@dataclass(frozen=True)
+class _Fitted:
+    """What was brought into view last, the view that this gave, and for what."""
+
+    keys: Collection[str] = ()
+    view: tuple[Point, float] = ((0.0, 0.0), 0.0)
+    size: Point = (0.0, 0.0)
+    scene: Scene | None = None
+    graph: Graph | None = None
 
 
 class Canvas:
@@ -148,21 +160,22 @@ class Canvas:
 
     _over: Point = (0.0, 0.0)
 
-    def _fit(self, editor: Editor, scene: Scene, size: tuple[float, float]) -> None:
-        """Bring into view what was asked for; what nobody has moved since stays so when the panel is resized."""
-        view = editor.canvas
+    def _fit(self, editor: Editor, scene: Scene, size: Point) -> None:
+        """Bring into view what was asked for. It stays so until someone moves the view or changes the graph, even when
+        the panel is resized or first pictures make nodes larger."""
+        view, last = editor.canvas, self._fitted
         if view.wanted is None:
-            keys, seen, known = self._fitted
-            if seen != (view.center, view.zoom) or known == size:
+            untouched = last.view == (view.center, view.zoom) and last.graph is editor.session.root
+            if not untouched or (last.size == size and last.scene is scene):
                 return
+            keys = last.keys
         else:
             keys, view.wanted = view.wanted, None
         around = bounds(box.rect for key, box in scene.boxes.items() if not keys or key in keys)
         view.center, view.zoom = fitted(around, size) if around else ((0.0, 0.0), 1.0)
-        self._fitted = keys, (view.center, view.zoom), size
+        self._fitted = _Fitted(keys, (view.center, view.zoom), size, scene, editor.session.root)
 
-    _fitted: tuple[Collection[str], tuple[Point, float], Point] = ((), ((0.0, 0.0), 0.0), (0.0, 0.0))
-    """What was brought into view last, the view that this gave, and the size of the panel."""
+    _fitted = _Fitted()
 
     def _blocked(self, editor: Editor, panel: Rect) -> bool:
         mouse = imgui.get_mouse_pos()
@@ -217,7 +230,7 @@ class Canvas:
         layout = box.layout
         if layout is None:
             return
-        live = box.key == hot and brush.zoom >= 0.45 and box.sort == "node" and not layout.collapsed
+        live = box.key == hot and brush.zoom >= DETAILS_FROM and box.sort == "node" and not layout.collapsed
         names = frozenset(row.value.name for row in layout.rows if live and row.value and drawn_live(row))
         look = now.look(box.key, names)
         paint_node(brush, box, layout, look)
@@ -324,6 +337,9 @@ class Canvas:
         elif view.searching:
             view.searching = False
             self._search.begin(editor, view.pointer)
+        elif view.replacing:
+            self._search.begin_replacing(editor, view.replacing)
+            view.replacing = ""
         self._search.draw(editor)
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ...graph import Port
+from ...graph import Group, Port
 from ..actions import Action
 from ..editor import Editor
 from ..keys import shown
@@ -64,6 +64,9 @@ class Menus:
                 _colors(editor, hit.key)
         for action in editor.actions.context(_context(hit)):
             if action.id != "node.add":
+                _action(editor, action)
+        if isinstance(editor.session.graph.nodes.get(hit.key), Group):
+            for action in editor.actions.context("group"):
                 _action(editor, action)
         imgui.end_popup()
 

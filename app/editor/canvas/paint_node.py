@@ -8,7 +8,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ....nodes import Kind
-from .brush import NAMES_FROM, SMALL, TITLE, WIDGETS_FROM, Brush
+from .brush import DETAILS_FROM, SMALL, TITLE, Brush
 from .geometry import Rect
 from .layout import HEADER, ROW, WIDTH, Layout, Pin, Row, words
 from .paint_field import paint_field
@@ -50,7 +50,7 @@ def paint_node(brush: Brush, box: Box, layout: Layout, look: Look) -> None:
     ink, rect = brush.ink, box.rect
     is_end = box.sort == "end"
     rounding = HEADER / 2 if is_end and not layout.picture else ROUND
-    if brush.zoom >= NAMES_FROM:
+    if brush.zoom >= DETAILS_FROM:
         for grow, color in ink.shadow:
             brush.fill((rect[0], rect[1] + 2.0, rect[2], rect[3] + 2.0), color, rounding, grow)
     if look.selected:
@@ -70,11 +70,11 @@ def paint_node(brush: Brush, box: Box, layout: Layout, look: Look) -> None:
         brush.frame(rect, ink.error if look.fault else ink.category("group"), rounding, 1.5, 3.0)
     _title(brush, box, layout, look, (header[1] + header[3]) / 2)
     if look.picture and layout.picture:
-        place = layout.picture if brush.zoom >= NAMES_FROM else (layout.picture[0], top, *layout.picture[2:])
+        place = layout.picture if brush.zoom >= DETAILS_FROM else (layout.picture[0], top, *layout.picture[2:])
         _picture(brush, box, place, look.picture, look)
-    if brush.zoom >= NAMES_FROM:
+    if brush.zoom >= DETAILS_FROM:
         _rows(brush, box, layout, look)
-        if layout.more and brush.zoom >= WIDGETS_FROM:
+        if layout.more:
             _more(brush, box, layout, look.hot)
     if look.muted:
         _bypass(brush, box, layout)
@@ -139,7 +139,7 @@ def _title(brush: Brush, box: Box, layout: Layout, look: Look, y: float) -> None
     ink, size = brush.ink, brush.title
     color = ink.dim if look.muted else ink.text
     left, right = box.x + _INSET, box.x + box.w - 8.0
-    if brush.zoom < NAMES_FROM:
+    if brush.zoom < DETAILS_FROM:
         room = box.w - _INSET * 2
         title = brush.short(layout.title, room, size)
         if len(title) > 2 or title == layout.title:
@@ -173,22 +173,22 @@ def _title(brush: Brush, box: Box, layout: Layout, look: Look, y: float) -> None
 
 
 def _rows(brush: Brush, box: Box, layout: Layout, look: Look) -> None:
-    of = layout, look.muted, look.live, brush.zoom >= WIDGETS_FROM, brush.ink
+    of = layout, look.muted, look.live, brush.ink
     known = brush.texts.sketches.get(box.key)
     if known is None or known[0][0] is not layout or known[0][1:] != of[1:]:
         sketch = Sketch(brush)
         for row in layout.rows:
-            _row(sketch, row, look, brush.zoom >= WIDGETS_FROM)
+            _row(sketch, row, look)
         known = brush.texts.sketches[box.key] = of, sketch
     known[1].draw(brush, box.x, box.y)
 
 
-def _row(brush: Sketch, row: Row, look: Look, fields: bool) -> None:
+def _row(brush: Sketch, row: Row, look: Look) -> None:
     ink, y = brush.ink, row.y + ROW / 2
     if row.value is not None:
         if row.linked:
             brush.text(_INSET, y, ink.dim, brush.short(row.label, WIDTH - _INSET * 2))
-        elif fields and row.value.name not in look.live:
+        elif row.value.name not in look.live:
             paint_field(brush, row, look.muted)
         return
     color = ink.dim if look.muted else ink.text
@@ -212,7 +212,7 @@ def _more(brush: Brush, box: Box, layout: Layout, hot: bool) -> None:
 
 def _picture(brush: Brush, box: Box, place: Rect, picture: imgui.ImTextureRef, look: Look) -> None:
     area = box.x + place[0], box.y + place[1] + 2.0, box.x + place[2], box.y + place[3]
-    if brush.zoom >= NAMES_FROM:
+    if brush.zoom >= DETAILS_FROM:
         brush.fill(area, brush.ink.picture, 3.0)
     across, down = area[2] - area[0], area[3] - area[1]
     width, height = look.picture_size

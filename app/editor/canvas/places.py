@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from ..editor import Editor
-from .brush import WIDGETS_FROM, Brush
+from .brush import DETAILS_FROM, Brush
 from .geometry import Rect, Transform, overlap
 from .net import Net, Wire
 from .scene import Box, Scene
@@ -65,7 +65,7 @@ def _of_box(box: Box, brush: Brush) -> Found:
             add(f"pin {word} {box.port(pin, output)}", (pin.x - _PIN, pin.y - _PIN, pin.x + _PIN, pin.y + _PIN))
     if box.layout.picture:
         add(f"picture {key}", box.layout.picture)
-    if brush.zoom >= WIDGETS_FROM:
+    if brush.zoom >= DETAILS_FROM:
         for row in box.layout.rows:
             if row.value and row.field:
                 add(f"widget {key}.{row.value.name}", row.field)

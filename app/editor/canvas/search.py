@@ -31,6 +31,8 @@ class Search:
     _marked: int = 0
     _at: Point = (0.0, 0.0)
     _link: tuple[Port, bool] | None = None
+    _replaced: str = ""
+    """The node that gets another type, instead of a new one."""
     _entries: tuple[Entry, ...] = ()
     _recent: list[str] = field(default_factory=list[str])
     _opening: bool = False
@@ -42,6 +44,7 @@ class Search:
     def begin(self, editor: Editor, at: Point, port: Port | None = None, output: bool = True) -> None:
         """Open it for something at a canvas position; with a port, for what can be linked with it."""
         session = editor.session
+        self._replaced = ""
         nodes = node_entries(session.types)
         if port is None:
             self._link, self._entries = None, (*nodes, *self._fixed)
@@ -51,6 +54,14 @@ class Search:
             files = editor.attempt(lambda: session.fitting_files(presets.paths(), port, output), ()) or ()
             self._entries = narrowed((*nodes, *self._fixed), {*fits, *map(str, files)})
         self._at, self._query, self._marked, self._opening = at, "", 0, True
+
+    def begin_replacing(self, editor: Editor, id: str) -> None:
+        """Open it for another type of a node."""
+        now = editor.session.graph.nodes.get(id)
+        others = [type for type in editor.session.types if not isinstance(now, editor.session.types[type])]
+        self._link, self._replaced = None, id
+        self._entries = narrowed(node_entries(editor.session.types), others)
+        self._query, self._marked, self._opening = "", 0, True
 
     def draw(self, editor: Editor) -> None:
         """Draw the popup, if it is open, and add what is chosen."""
@@ -77,6 +88,7 @@ class Search:
     def _contents(self, editor: Editor) -> Entry | None:
         imgui.set_next_item_width(-1)
         hint = f"Search what fits {self._link[0]}" if self._link else "Search nodes, presets, frames ..."
+        hint = f"Replace {self._replaced} by ..." if self._replaced else hint
         before = self._query
         _, self._query = imgui.input_text_with_hint("##search", hint, self._query)
         _record(editor, "search field")
@@ -139,6 +151,9 @@ class Search:
 
     def _add(self, editor: Editor, entry: Entry) -> None:
         session, at = editor.session, self._at
+        if self._replaced:
+            session.replace(self._replaced, entry.id)
+            return
         port, output = self._link or (None, True)
         self._recent = [entry.id, *(id for id in self._recent if id != entry.id)][:_RECENT]
         if port is not None:

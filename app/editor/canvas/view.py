@@ -27,6 +27,8 @@ class CanvasView:
     """True while the mouse is over the canvas."""
     searching: bool = False
     """True asks the canvas to open the search at the pointer."""
+    replacing: str = ""
+    """A node that is to be of another type: the canvas opens the search for it."""
     tool: Tool = ""
     """What the next drag with the left button does instead of selecting: cut links, or put dots on them."""
     renaming: str = ""

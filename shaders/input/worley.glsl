@@ -1,0 +1,30 @@
+#include "lib/finite.glsl"
+#include "lib/noise.glsl"
+
+float worley_distance(vec3 away, int metric) {
+    away = abs(away);
+    if (metric == METRIC_MANHATTAN) return away.x + away.y + away.z;
+    return metric == METRIC_CHEBYSHEV ? max(max(away.x, away.y), away.z) : length(away);
+}
+
+void worley(
+    int feature, int metric, float size, float jitter, int seed, float evolution,
+    out vec4 result, out float value, out vec3 cell
+) {
+    // Farther out than a million cells, floats have no room left for places within one.
+    vec3 p = clamp(vec3((vec2(pixel) + 0.5) / max(finite(size), 1e-3), finite(evolution)), -1e6, 1e6);
+    uvec3 stream = pcg3d(uvec3(uint(seed), 0u, 1u));
+    float nearest = 1e9, second = 1e9;
+    ivec3 middle = lattice_cell(p), winner = middle;
+    for (int i = 0; i < 27; ++i) {
+        ivec3 beside = ivec3(i % 3, i / 3 % 3, i / 9) - 1;
+        vec3 point = 0.5 + clamp(finite(jitter), 0.0, 1.0) * (hash3(middle + beside, stream) - 0.5);
+        float far = worley_distance(vec3(beside) + point - fract(p), metric);
+        if (far < nearest) winner = middle + beside;
+        second = min(second, max(far, nearest));
+        nearest = min(nearest, far);
+    }
+    value = feature == FEATURE_F1 ? nearest : feature == FEATURE_F2 ? second : second - nearest;
+    cell = hash3(winner, pcg3d(uvec3(uint(seed), 0u, 2u)));
+    result = vec4(vec3(value), 1.0);
+}
