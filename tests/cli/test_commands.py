@@ -250,7 +250,7 @@ def test_the_reference_knows_every_flag_and_exit_code(cli):
     for command, text in chapters.items():
         flags = set(re.findall(r"(--[a-z]+)", cli(command, "--help").out)) - {"--help", "--json", "--input"}
         assert flags <= set(re.findall(r"--[a-z]+", text)), command
-    assert set(chapters) == {"render", "check", "explain", "nodes", "fmt", "demo"}
+    assert set(chapters) == {"edit", "render", "check", "explain", "nodes", "fmt", "demo"}
     assert set(re.findall(r"^(\d+)  ", cli("--help").out.replace("\n  ", "\n"), re.M)) <= set(
         re.findall(r"^\| (\d+) \|", page, re.M)
     )
