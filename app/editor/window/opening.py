@@ -19,7 +19,7 @@ def open_window(path: Path | None, bindings: Mapping[str, str]) -> None:
     """Run the editor. Raises DeviceError where no window can be opened, KeyboardInterrupt if it was interrupted."""
     state = state_folder()
     window = Window(path, bindings, version=best_version(), state=state)
-    _keep_layout(window.params, state)
+    keep_layout(window.params, state)
     with _asked_to_end(window) as asked:
         run(window)
     if signal.SIGINT in asked:
@@ -39,7 +39,7 @@ def run(window: Window) -> None:
         raise window.fault
 
 
-def _keep_layout(params: hello_imgui.RunnerParams, state: Path) -> None:
+def keep_layout(params: hello_imgui.RunnerParams, state: Path) -> None:
     """Remember where panels are, if the folder lets us: the library would end the program if not."""
     try:
         state.mkdir(parents=True, exist_ok=True)

@@ -223,6 +223,8 @@ class Window:
         requests, self.editor.requests = self.editor.requests, set()
         if "reset layout" in requests:
             self.params.docking_params.layout_reset = True
+            for docked in DOCKED:
+                self.params.docking_params.dockable_window_of_name(docked.title).is_visible = True
         if "screenshot" in requests:
             self._screenshot()
         for docked in DOCKED:
