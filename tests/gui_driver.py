@@ -17,7 +17,7 @@ from halation.app.editor.editor import Editor
 from halation.app.editor.keys import chord
 from halation.app.editor.window.opengl import needs_no_display
 from halation.app.editor.window.window import Window
-from imgui_bundle import ImVec2, imgui, immapp
+from imgui_bundle import ImVec2, hello_imgui, imgui, immapp
 from imgui_bundle.immapp import testing
 
 T = TypeVar("T")
@@ -182,6 +182,8 @@ def drive(
     def whole(ctx: Any) -> None:
         ui = Ui(window, ctx, folder)
         window.params.callbacks.post_new_frame = lambda: (before_panels(), ui.answer())
+        patience = imgui.test_engine.get_io(hello_imgui.get_imgui_test_engine())
+        patience.config_watchdog_warning = patience.config_watchdog_kill_test = 600.0
         imgui.get_io().config_error_recovery_enable_assert = True  # what a panel leaves open is a fault here
         if likes:
             ui.editor.store.change(**likes)

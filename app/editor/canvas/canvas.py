@@ -194,7 +194,7 @@ class Canvas:
         self._over = frame.at
         hot = self._hot = self._found_hot(frame, scene)
         now = moment(editor, brush.ink, mouse.gesture, hot)
-        if not scene.boxes:
+        if not session.graph.nodes:
             paint_hint(brush, frame.panel, _HINTS)
         visible = [box for box in scene.boxes.values() if overlap(box.rect, _grown(brush.seen, 32.0))]
         for box in visible:

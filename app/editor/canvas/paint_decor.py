@@ -156,9 +156,9 @@ def paint_note(brush: Brush, x: float, y: float, text: str, color: int) -> None:
 
 
 def paint_hint(brush: Brush, panel: Rect, lines: tuple[str, ...]) -> None:
-    """Words in the middle of an empty canvas."""
+    """Words on an empty canvas, above the ends of the graph, which lie in the middle."""
     scale = brush.to.scale / brush.zoom
-    x, y = (panel[0] + panel[2]) / 2, (panel[1] + panel[3]) / 2 - len(lines) * 12.0 * scale
+    x, y = (panel[0] + panel[2]) / 2, panel[1] + (panel[3] - panel[1]) * 0.14
     for index, line in enumerate(lines):
         size = (18.0 if index == 0 else TEXT) * scale
         font = brush.fonts.bold if index == 0 else brush.fonts.text

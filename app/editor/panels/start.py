@@ -26,7 +26,7 @@ _CARD, _PICTURE_HEIGHT = 200.0, 112.0
 
 HINTS = (
     "Tab adds a node; drag from a pin into the open to add one that fits.",
-    "Click a node to see its result; 1 to 9 recall what you kept on keys.",
+    "Double-click a node to see its result; Ctrl+1 keeps it on a key, 1 brings it back.",
     "Drop pictures and graphs on the window.",
     "Ctrl+P finds everything that can be done, F1 shows all shortcuts.",
     "Unsaved work comes back after a crash.",
