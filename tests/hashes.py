@@ -5,19 +5,23 @@ from __future__ import annotations
 import numpy as np
 
 
+def pcg3d(v: np.ndarray) -> np.ndarray:
+    """Hashed uint32 [..., 3] of uint32 [..., 3]."""
+    with np.errstate(over="ignore"):
+        v = v.astype(np.uint32) * np.uint32(1664525) + np.uint32(1013904223)
+        x, y, z = v[..., 0], v[..., 1], v[..., 2]
+        for again in (True, False):
+            x = x + y * z
+            y = y + z * x
+            z = z + x * y
+            if again:
+                x, y, z = (part ^ (part >> np.uint32(16)) for part in (x, y, z))
+    return np.stack([x, y, z], -1)
+
+
 def hash3(cell: tuple[object, object, object], seed: tuple[int, int, int] = (0, 0, 0)) -> np.ndarray:
     """Three uniform numbers for lattice cells, along a new first axis."""
+    parts = np.stack(np.broadcast_arrays(*(np.asarray(part, np.int64) for part in cell)), -1)
     with np.errstate(over="ignore"):
-        x, y, z = (
-            np.asarray(part, np.int64).astype(np.uint32) + np.uint32(start)
-            for part, start in zip(np.broadcast_arrays(*cell), seed, strict=True)
-        )
-        x, y, z = (part * np.uint32(1664525) + np.uint32(1013904223) for part in (x, y, z))
-        x = x + y * z
-        y = y + z * x
-        z = z + x * y
-        x, y, z = (part ^ (part >> np.uint32(16)) for part in (x, y, z))
-        x = x + y * z
-        y = y + z * x
-        z = z + x * y
-    return np.stack([x >> np.uint32(8), y >> np.uint32(8), z >> np.uint32(8)]) / 2.0**24
+        hashed = pcg3d(parts.astype(np.uint32) + np.array(seed, np.int64).astype(np.uint32))
+    return np.moveaxis(hashed >> np.uint32(8), -1, 0) / 2.0**24

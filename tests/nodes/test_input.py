@@ -9,6 +9,7 @@ from halation.nodes.input.checker import Checker
 from halation.nodes.input.constant import Constant
 from halation.nodes.input.noise import Noise
 from halation.nodes.input.ramp import Ramp
+from hashes import pcg3d
 
 RED, BLUE = (1.0, 0.25, 0.0, 1.0), (0.0, 0.5, 4.0, 0.5)
 
@@ -20,20 +21,6 @@ def oiio_canvas(width: int, height: int) -> oiio.ImageBuf:
 def centers(width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
     y, x = np.mgrid[:height, :width] + 0.5
     return x, y
-
-
-def pcg3d(v: np.ndarray) -> np.ndarray:
-    """Jarzynski and Olano 2020, on uint32 [..., 3]."""
-    with np.errstate(over="ignore"):
-        v = v.astype(np.uint32) * np.uint32(1664525) + np.uint32(1013904223)
-        x, y, z = v[..., 0], v[..., 1], v[..., 2]
-        for again in (True, False):
-            x = x + y * z
-            y = y + z * x
-            z = z + x * y
-            if again:
-                x, y, z = (part ^ (part >> np.uint32(16)) for part in (x, y, z))
-    return np.stack([x, y, z], -1)
 
 
 def lattice(cell: np.ndarray, seed: int, octave: int) -> np.ndarray:

@@ -5,20 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from halation.nodes.input.worley import Worley
-
-
-def pcg3d(v: np.ndarray) -> np.ndarray:
-    """Jarzynski and Olano 2020, on uint32 [..., 3]."""
-    with np.errstate(over="ignore"):
-        v = v.astype(np.uint32) * np.uint32(1664525) + np.uint32(1013904223)
-        x, y, z = v[..., 0], v[..., 1], v[..., 2]
-        for again in (True, False):
-            x = x + y * z
-            y = y + z * x
-            z = z + x * y
-            if again:
-                x, y, z = (part ^ (part >> np.uint32(16)) for part in (x, y, z))
-    return np.stack([x, y, z], -1)
+from hashes import pcg3d
 
 
 def random(cell: np.ndarray, seed: int, stream: int) -> np.ndarray:

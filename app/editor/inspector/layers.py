@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from pathlib import Path
-from threading import Condition, Thread
 from time import monotonic
 
 import numpy as np
@@ -13,6 +11,7 @@ from ....nodes import Kind
 from ...errors import HalationError
 from ...media import ImageInfo, find_layer, fingerprint, info, read, to_display
 from ...media.color import NO_VIEW, Array
+from ..services.background import Background
 
 WIDTH, HEIGHT = 96, 54
 _KEPT, _LOOK_AGAIN = 300, 1.0
@@ -25,23 +24,19 @@ class Layers:
     """What is in files: never waits for one. What was asked for last is read first."""
 
     def __init__(self) -> None:
-        self._known: OrderedDict[Key, ImageInfo | Array | str] = OrderedDict()
-        self._wanted: OrderedDict[Key, None] = OrderedDict()
+        self._made: Background[Key, ImageInfo | Array | str] = Background("layers", _made, _KEPT)
         self._versions: dict[str, tuple[float, str, str]] = {}
-        self._changed = Condition()
-        self._thread: Thread | None = None
-        self._closed = False
 
     def header(self, path: Path) -> ImageInfo | str | None:
         """The header, a sentence if there is none, None while it is being read."""
         version, fault = self._version(path)
-        found = fault or self._get((str(path), version, None))
+        found = fault or self._made.get((str(path), version, None))
         return found if isinstance(found, ImageInfo | str) else None
 
     def picture(self, path: Path, layer: str) -> Array | None:
         """A layer as [h, w, 3] of uint8, at most 96 x 54; None while it is being read, or if it cannot be."""
         version, fault = self._version(path)
-        found = None if fault else self._get((str(path), version, layer))
+        found = None if fault else self._made.get((str(path), version, layer))
         return found if isinstance(found, np.ndarray) else None
 
     def version(self, path: Path) -> str:
@@ -51,16 +46,11 @@ class Layers:
     @property
     def busy(self) -> bool:
         """True while something is being read."""
-        return bool(self._wanted)
+        return self._made.busy
 
     def close(self) -> None:
         """End the thread."""
-        with self._changed:
-            self._closed = True
-            self._wanted.clear()
-            self._changed.notify()
-        if self._thread is not None:
-            self._thread.join()
+        self._made.close()
 
     def _version(self, path: Path) -> tuple[str, str]:
         """The version of a file and what is wrong with it, looked up about once a second."""
@@ -73,33 +63,6 @@ class Layers:
                 version, fault = "", str(error)
             self._versions[str(path)] = (now, version, fault)
         return version, fault
-
-    def _get(self, key: Key) -> ImageInfo | Array | str | None:
-        with self._changed:
-            if key in self._known:
-                self._known.move_to_end(key)
-                return self._known[key]
-            self._wanted[key] = None
-            self._wanted.move_to_end(key)
-            self._changed.notify()
-        if self._thread is None:
-            self._thread = Thread(target=self._work, name="layers", daemon=True)
-            self._thread.start()
-        return None
-
-    def _work(self) -> None:
-        while True:
-            with self._changed:
-                self._changed.wait_for(lambda: self._wanted or self._closed)
-                if self._closed:
-                    return
-                key = next(reversed(self._wanted))
-            made = _made(key)
-            with self._changed:
-                self._known[key] = made
-                self._wanted.pop(key, None)
-                while len(self._known) > _KEPT:
-                    self._known.popitem(last=False)
 
 
 def _made(key: Key) -> ImageInfo | Array | str:

@@ -5,12 +5,11 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
-from collections import OrderedDict
 from pathlib import Path
-from threading import Condition, Thread
 from typing import TYPE_CHECKING
 
 from ...errors import HalationError
+from ..services.background import Background
 
 if TYPE_CHECKING:
     from ...media.color import Array
@@ -24,69 +23,34 @@ class Pictures:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._known: OrderedDict[tuple[Path, float], Array | str] = OrderedDict()
-        self._wanted: OrderedDict[tuple[Path, float], None] = OrderedDict()
-        self._changed = Condition()
-        self._thread: Thread | None = None
-        self._closed = False
+        self._decoded: Background[tuple[Path, float], Array | str] = Background(
+            "thumbnails", self._made, _IN_MEMORY, _WAITING, self._tidy
+        )
 
     def get(self, path: Path, time: float) -> Array | str | None:
         """[h, w, 3] of uint8, a sentence if the file is no picture, None if it is not ready; ask again.
 
         `time` is when the file was changed: another time is another picture.
         """
-        key = (path, time)
-        with self._changed:
-            if key in self._known:
-                self._known.move_to_end(key)
-                return self._known[key]
-            self._wanted[key] = None
-            self._wanted.move_to_end(key)
-            while len(self._wanted) > _WAITING:
-                self._wanted.popitem(last=False)
-            self._changed.notify()
-        if self._thread is None:
-            self._thread = Thread(target=self._work, name="thumbnails", daemon=True)
-            self._thread.start()
-        return None
+        return self._decoded.get((path, time))
 
     @property
     def busy(self) -> bool:
         """True while something that was asked for is not ready."""
-        return bool(self._wanted)
+        return self._decoded.busy
 
     def forget(self) -> None:
         """Nothing that was asked for is wanted any more."""
-        with self._changed:
-            self._wanted.clear()
+        self._decoded.forget()
 
     def close(self) -> None:
         """End the thread."""
-        with self._changed:
-            self._closed = True
-            self._wanted.clear()
-            self._changed.notify()
-        if self._thread is not None:
-            self._thread.join()
+        self._decoded.close()
 
-    def _work(self) -> None:
-        self._tidy()
-        while True:
-            with self._changed:
-                self._changed.wait_for(lambda: self._wanted or self._closed)
-                if self._closed:
-                    return
-                key = next(reversed(self._wanted))
-            made = self._made(*key)
-            with self._changed:
-                self._known[key] = made
-                self._wanted.pop(key, None)
-                while len(self._known) > _IN_MEMORY:
-                    self._known.popitem(last=False)
-
-    def _made(self, path: Path, time: float) -> Array | str:
+    def _made(self, key: tuple[Path, float]) -> Array | str:
         from ...media.thumbnail import load_thumbnail, save_thumbnail, thumbnail
 
+        path, time = key
         name = hashlib.sha256(f"{path.absolute()}\n{time}".encode(errors="surrogatepass")).hexdigest()[:32]
         kept = self._folder / f"{name}.png"
         with contextlib.suppress(HalationError):
