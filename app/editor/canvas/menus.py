@@ -13,6 +13,7 @@ from ..actions import Action
 from ..editor import Editor
 from ..keys import shown
 from ..toolkit.buttons import entry
+from ..toolkit.places import record
 from .geometry import Point
 from .scene import EMPTY, Hit
 
@@ -55,7 +56,7 @@ class Menus:
             label = f"{icons.ICON_FA_MAGNIFYING_GLASS}  Search to add ..."
             if imgui.menu_item(label, _key(editor, "node.add"), False)[0]:
                 editor.canvas.searching = True
-            _record(editor, "menu search")
+            record(editor, "menu search")
             imgui.separator()
         if hit.key.startswith(("frames.", "comments.")):
             if imgui.menu_item("Rename ..." if hit.key.startswith("frames") else "Edit text ...", "", False)[0]:
@@ -125,9 +126,4 @@ def _key(editor: Editor, id: str) -> str:
 def _item(editor: Editor, label: str, act: Callable[[], object], enabled: bool = True) -> None:
     if imgui.menu_item(label, "", False, enabled)[0]:
         editor.attempt(act)
-    _record(editor, f"menu {label}")
-
-
-def _record(editor: Editor, name: str) -> None:
-    low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-    editor.places[name] = (low.x, low.y, high.x, high.y)
+    record(editor, f"menu {label}")

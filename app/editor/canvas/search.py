@@ -11,8 +11,10 @@ from imgui_bundle import imgui
 from .... import presets
 from ....nodes import Kind
 from ...graph import Port
+from ...graph.names import fresh_name
 from ..editor import Editor
 from ..theme.style import mix, u32, ui_scale, vec4
+from ..toolkit.places import record
 from .entries import GRAPH, GROUP, Entry, Section, found, graph_entries, narrowed, node_entries, preset_entries
 from .geometry import Point
 
@@ -91,7 +93,7 @@ class Search:
         hint = f"Replace {self._replaced} by ..." if self._replaced else hint
         before = self._query
         _, self._query = imgui.input_text_with_hint("##search", hint, self._query)
-        _record(editor, "search field")
+        record(editor, "search field")
         if self._query != before:
             self._marked = 0
         sections = found(self._entries, self._query, self._recent)
@@ -121,7 +123,7 @@ class Search:
                 marked = index == self._marked
                 if imgui.selectable(f"      {entry.title}##{section.title} {entry.id}", marked)[0]:
                     chosen = entry
-                _record(editor, f"search {entry.title}")
+                record(editor, f"search {entry.title}")
                 if imgui.is_item_hovered() and _mouse_moved():
                     self._marked = index
                 if marked and follow:
@@ -175,10 +177,7 @@ class Search:
 def _add_end(editor: Editor, side: str, kind: Kind, at: Point) -> None:
     session = editor.session
     taken = session.graph.inputs if side == "input" else session.graph.outputs
-    stem, number = kind.lower(), 2
-    name = stem
-    while name in taken:
-        name, number = f"{stem}{number}", number + 1
+    name = fresh_name(kind.lower(), taken)
     if side == "input":
         session.add_input(name, kind, at=at)
     else:
@@ -192,8 +191,3 @@ def _arrows() -> int:
 def _mouse_moved() -> bool:
     delta = imgui.get_io().mouse_delta
     return bool(delta.x or delta.y)
-
-
-def _record(editor: Editor, name: str) -> None:
-    low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-    editor.places[name] = (low.x, low.y, high.x, high.y)
