@@ -13,7 +13,7 @@ from ...nodes import glsl_type
 from . import bodies
 from .fuse import Fused
 from .ir import Call, Convolve, Gather, Op, Program, Reduce, Ref, Shape
-from .library import Library, Text
+from .library import Library, Text, words
 from .names import Names, convert, glsl_channels
 from .plan import LINES_PER_FILE, Shader, Uniform
 from .target import Target
@@ -43,7 +43,7 @@ def emit(program: Program, fused: Fused, library: Library, target: Target, texel
     halves = [texels[ref].endswith("16f") for ref in fused.writes]
     sliding = isinstance(root, Convolve) and root.stride == 1 and target.form == "compute"
     parts = _parts(program, fused, names, library)
-    texts = library.closure(tuple(dict.fromkeys(parts.shaders)), root.owner)
+    texts = _texts(program, fused, parts, library)
     used = frozenset[str]().union(*(text.words for text in texts))
     names.uniform("ivec2", root.size, "grid")
     if "proxy" in used:
@@ -63,10 +63,11 @@ def emit(program: Program, fused: Fused, library: Library, target: Target, texel
         *_textures(names, fused, target, texels), *_targets(names, fused, target, texels),
         "ivec2 pixel = ivec2(0), extent = ivec2(0);", *_half_rounding(target, halves),
     ]
-    for text in (item for item in texts if item.name != parts.reader):
+    # What reads through the accessors, which are functions of the pass, follows them.
+    for text in (item for item in texts if not item.words & parts.accessors):
         lines += _included(text, files, program, fused)
     lines += parts.functions
-    for text in (item for item in texts if item.name == parts.reader):
+    for text in (item for item in texts if item.words & parts.accessors):
         lines += _included(text, files, program, fused)
     return Emitted(
         Shader("\n".join([*lines, *main]) + "\n", target.form, tuple(files), by_image),
@@ -87,16 +88,13 @@ def _preamble(target: Target) -> list[str]:
 
 @dataclass(frozen=True)
 class _Parts:
-    """Text of a pass: shader files; functions; statements of main; what they compute.
-
-    `reader` is the file that reads through the accessors among the functions, so it follows them.
-    """
+    """Text of a pass: shader files; functions, of which `accessors` read pictures; statements of main; results."""
 
     shaders: list[str]
     functions: list[str]
     body: list[str]
     results: list[str]
-    reader: str = ""
+    accessors: frozenset[str] = frozenset()
 
 
 def _parts(program: Program, fused: Fused, names: Names, library: Library) -> _Parts:
@@ -122,7 +120,19 @@ def _parts(program: Program, fused: Fused, names: Names, library: Library) -> _P
     call = f"{root.function}({arguments})"
     returned = library.function(root.shader, root.function, root.owner).result
     result = convert(call, glsl_channels(returned), glsl_type(root.shapes[0].channels))
-    return _Parts(["primitive/edges", root.shader], functions, [], [result], root.shader)
+    accessors = frozenset(f"{item.name}_{way}" for item in root.accessors for way in ("raw", "at", "near", "size"))
+    return _Parts(["primitive/edges", root.shader], functions, [], [result], accessors)
+
+
+def _texts(program: Program, fused: Fused, parts: _Parts, library: Library) -> tuple[Text, ...]:
+    """The shader files of a pass, includes first, with only the functions that it needs."""
+    found: list[Text] = []
+    needed = words(*parts.functions, *parts.body, *parts.results)
+    for text in reversed(library.closure(tuple(dict.fromkeys(parts.shaders)), program.ops[fused.root].owner)):
+        kept = text.only(needed)
+        needed |= kept.words
+        found.append(kept)
+    return tuple(reversed(found))
 
 
 def _calls(program: Program, fused: Fused, names: Names) -> tuple[list[str], dict[Ref, str]]:
@@ -153,14 +163,12 @@ def _calls(program: Program, fused: Fused, names: Names) -> tuple[list[str], dic
 def _included(text: Text, files: list[str], program: Program, fused: Fused) -> list[str]:
     """A shader file, with the macros of its node's choices around it and its own line numbers."""
     ops = [op for op in (program.ops[index] for index in fused.members) if isinstance(op, (Call, Gather))]
-    mine = [op for op in ops if op.shader == text.name]
-    body = text.only(frozenset(op.function for op in mine)) if mine else text.body
-    choices = next((op.choices for op in mine), ())
+    choices = next((op.choices for op in ops if op.shader == text.name), ())
     macros = [(macro(name, one), number) for name, all_ in choices for number, one in enumerate(all_)]
     files.append(f"shaders/{text.name}.glsl")
     return [
         *(f"#define {name} {number}" for name, number in macros),
-        f"#line {LINES_PER_FILE * (len(files) - 1) + 1}", body.rstrip("\n"), "#line 1",
+        f"#line {LINES_PER_FILE * (len(files) - 1) + 1}", text.body.rstrip("\n"), "#line 1",
         *(f"#undef {name}" for name, _ in macros),
     ]
 

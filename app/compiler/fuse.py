@@ -102,7 +102,8 @@ def _uniforms(op: Op) -> int:
         return 0
     constants = [item.operand for item in op.parameters if isinstance(item.operand, Constant)]
     factors = [item for item in op.parameters if item.factor != 1.0]
-    return sum(12 if item.channels == 9 else 4 for item in constants) + 4 * (len(factors) + len(op.shapes))
+    taken = sum(12 if item.channels == 9 else -(-item.channels // 4) * 4 for item in constants)
+    return taken + 4 * (len(factors) + len(op.shapes))
 
 
 def _fits(ops: tuple[Op, ...], op: Op, root: int, count: int, reads: dict[Ref, None], target: Target) -> bool:

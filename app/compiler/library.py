@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib import resources
 from importlib.resources.abc import Traversable
@@ -53,20 +53,21 @@ class Text:
     functions: Mapping[str, Function]
     all_functions: tuple[Function, ...]
     words: frozenset[str]
-    _cuts: dict[frozenset[str], str] = field(default_factory=dict[frozenset[str], str], compare=False, repr=False)
+    _cuts: dict[frozenset[str], Text] = field(default_factory=dict[frozenset[str], "Text"], compare=False, repr=False)
 
-    def only(self, entries: frozenset[str]) -> str:
+    def only(self, entries: frozenset[str]) -> Text:
         """The text without functions that `entries` do not need: another draw may need other accessors.
 
         Their lines stay, empty.
         """
+        entries &= frozenset(self.functions)
         if entries not in self._cuts:
             self._cuts[entries] = self._only(entries)
         return self._cuts[entries]
 
-    def _only(self, entries: frozenset[str]) -> str:
+    def _only(self, entries: frozenset[str]) -> Text:
         needed: set[str] = set()
-        todo = [name for name in entries if name in self.functions]
+        todo = [*entries, *(self._outside() & self.functions.keys())]
         while todo:
             name = todo.pop()
             if name not in needed:
@@ -79,7 +80,14 @@ class Text:
             if one.name not in needed:
                 blank = _BLANK.sub(" ", text[one.start : one.end])
                 text = text[: one.start] + blank + text[one.end :]
-        return text
+        return replace(self, body=text, words=words(text), _cuts={})
+
+    def _outside(self) -> frozenset[str]:
+        """The words that stand in no function: those of constants and macros."""
+        text = self.body
+        for one in reversed(self.all_functions):
+            text = text[: one.start] + text[one.end :]
+        return words(text)
 
 
 def _function(match: re.Match[str], code: str) -> Function:
@@ -112,6 +120,11 @@ def parse(name: str, source: str) -> Text:
     }
     words = frozenset(_WORD.findall(code))
     return Text(name, _INCLUDE.sub(_blanked, code), MappingProxyType(includes), by_name, functions, words)
+
+
+def words(*code: str) -> frozenset[str]:
+    """Every word that stands in pieces of GLSL."""
+    return frozenset(_WORD.findall(" ".join(code)))
 
 
 def _blanked(match: re.Match[str]) -> str:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
-from ...nodes import Filter, Image, Kind, Node, Pointwise, Size, Socket, Value, working_factor
+from ...nodes import Filter, Image, Kind, Node, Pointwise, Size, Socket, Value, curve_knots, ramp_knots, working_factor
 from ..errors import GraphError, HalationError, ShaderError
 from ..graph import INPUTS, OUTPUTS, Graph, Port, did_you_mean
 from . import constants
@@ -251,8 +251,10 @@ class _Lowering:
                 return Parameter(glsl, constants.limited(wire, value, factor))
             return Parameter(glsl, wire, factor, value.minimum, value.maximum)
         now = getattr(node, value.name)
-        operand = Choice(value.choices.index(now)) if value.type == "choice" else Constant(now)
-        return Parameter(glsl, operand)
+        if value.type == "choice":
+            return Parameter(glsl, Choice(value.choices.index(now)))
+        knots = {"curve": curve_knots, "ramp": ramp_knots}.get(value.type)
+        return Parameter(glsl, Constant(knots(now) if knots else now))
 
     def _filter(
         self, path: str, node: Filter, operands: Mapping[str, Operand], linked: frozenset[str], size: Size

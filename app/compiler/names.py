@@ -50,6 +50,8 @@ class Names:
         """A uniform within the range of its type; one of another type is converted like a picture would be."""
         if isinstance(item.value, tuple):
             value = tuple(_float32(part) for part in item.value)
+            if glsl.endswith("]"):
+                return self.uniform(glsl, value)
             if item.channels == 9:
                 return self.uniform("mat3", value)
             return convert(self.uniform(glsl_type(item.channels), value), item.channels, glsl)

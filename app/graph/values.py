@@ -6,7 +6,7 @@ import math
 from itertools import pairwise
 from typing import Any, cast
 
-from ...nodes import Plain, Value
+from ...nodes import MAX_POINTS, Plain, Value
 
 _INT32 = 2**31
 _FLOAT32 = 3.4028234663852886e38
@@ -96,6 +96,8 @@ def _order_fault(value: Value, plain: tuple[float, ...]) -> str | None:
     if value.type not in ("curve", "ramp"):
         return None
     places = plain[:: value.length]
+    if len(places) > MAX_POINTS:
+        return f"{len(places)} points are too many: it takes at most {MAX_POINTS}"
     name = "x" if value.type == "curve" else "t"
     for place in places:
         if not 0.0 <= place <= 1.0:

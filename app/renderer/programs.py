@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 import moderngl
+import numpy as np
 
 from ..compiler import Pass, Shader
 from ..errors import ShaderError
@@ -32,7 +33,11 @@ class Program:
     def set(self, name: str, value: object) -> None:
         """Set a uniform, unless it has that value or the driver found it unused."""
         if self.values.get(name) != value and name in self.handle:
-            self.handle[name] = value
+            member = self.handle[name]
+            if isinstance(member, moderngl.Uniform) and member.array_length > 1:
+                member.write(np.asarray(value, np.float32).tobytes())
+            else:
+                self.handle[name] = value
             self.values[name] = value
 
     def release(self) -> None:

@@ -17,7 +17,7 @@ Values reach `passes` and GLSL in working units (see `Slider.unit`), so no node 
 
 from __future__ import annotations
 
-from .curves import curve_at, ramp_at
+from .curves import MAX_POINTS, curve_at, curve_knots, ramp_at, ramp_knots
 from .draw import Argument, Draw, Drawn, Pixels
 from .node import Filter, Node, Pointwise, Source, Temporal
 from .sockets import Color, Edge, Field, Image, Kind, Number, Output, Size, Socket, Vector, glsl_type
@@ -43,9 +43,9 @@ from .values import (
 )
 
 __all__ = [
-    "RGBA", "Argument", "Color", "Curve", "Doc", "Draw", "Drawn", "Edge", "Field", "File", "FilePath", "Filter",
-    "Fraction", "Handle", "Image", "Kernel3x3", "Kind", "Node", "Number", "Output", "Pixels", "Plain", "Points",
+    "MAX_POINTS", "RGBA", "Argument", "Color", "Curve", "Doc", "Draw", "Drawn", "Edge", "Field", "File", "FilePath",
+    "Filter", "Fraction", "Handle", "Image", "Kernel3x3", "Kind", "Node", "Number", "Output", "Pixels", "Plain", "Points",
     "Pointwise", "Position", "Ramp", "Size", "Slider", "Socket", "Source", "Stops", "Swatch", "Temporal", "Unit",
     "Value", "Vector",
-    "curve_at", "glsl_type", "ramp_at", "working_factor",
+    "curve_at", "curve_knots", "glsl_type", "ramp_at", "ramp_knots", "working_factor",
 ]

@@ -5,6 +5,30 @@ from __future__ import annotations
 from bisect import bisect_right
 from itertools import pairwise
 
+MAX_POINTS = 17
+"""The points that a curve or a ramp has at most: what GLSL is handed is an array of fixed length, of 16 spans."""
+
+_NEVER = 1e30
+"""A place that no number reaches: of the points that GLSL must not find."""
+
+
+def curve_knots(points: tuple[float, ...]) -> tuple[float, ...]:
+    """What `curve_at` in lib/curve.glsl takes: x, y, slope, 0 of every point, and points out of reach to the end."""
+    xs, ys = points[0::2], points[1::2]
+    knots = [part for knot in zip(xs, ys, _slopes(xs, ys), strict=True) for part in (*knot, 0.0)]
+    return (*knots, *(_NEVER, ys[-1], 0.0, 0.0) * (MAX_POINTS - len(xs)))
+
+
+def ramp_knots(stops: tuple[float, ...]) -> tuple[float, ...]:
+    """What `ramp_at` in lib/curve.glsl takes: t, 1 / (next t - t), 0, 0, then the color of every stop, and so on."""
+    ts = stops[0::5]
+    widths = [*(right - left for left, right in pairwise(ts)), 0.0]
+    knots = [
+        part for at, (t, width) in enumerate(zip(ts, widths, strict=True))
+        for part in (t, 1.0 / width if width > 0.0 else 0.0, 0.0, 0.0, *_stop(stops, at))
+    ]
+    return (*knots, *(_NEVER, 0.0, 0.0, 0.0, *_stop(stops, len(ts) - 1)) * (MAX_POINTS - len(ts)))
+
 
 def curve_at(points: tuple[float, ...], x: float) -> float:
     """The height at `x` of the curve through `x0, y0, x1, y1, ...`; level beyond its ends.

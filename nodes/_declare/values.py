@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal, get_args, get_origin
 
+from .curves import MAX_POINTS
 from .sockets import glsl_type
 
 Unit = Literal["px", "height", "deg", "EV", "ratio", "count", "s", "scene"]
@@ -117,7 +118,8 @@ class Value:
             return self.type
         if self.type in ("color", "vector"):
             return glsl_type(self.length)
-        return {"choice": "int", "matrix": "mat3"}.get(self.type)
+        fixed = {"choice": "int", "matrix": "mat3", "curve": f"vec4[{MAX_POINTS}]", "ramp": f"vec4[{2 * MAX_POINTS}]"}
+        return fixed.get(self.type)
 
     @property
     def wireable(self) -> bool:

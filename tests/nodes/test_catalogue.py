@@ -177,6 +177,8 @@ def neutral_off(node: type[Node]) -> dict[str, object]:
                 return {value.name: choice}
         if value.type in ("color", "vector"):
             return {value.name: tuple(part + 0.1 for part in value.default)}
+        if value.type == "curve":
+            return {value.name: (0.0, 0.1, 0.3, 0.6, 1.0, 0.9)}
     raise AssertionError(f"{node.id} is neutral whatever its values are")
 
 

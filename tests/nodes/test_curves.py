@@ -1,107 +1,100 @@
-"""Curves and color ramps as values: how they are declared, checked, saved, and what they are between their points."""
+"""The Curves node against scipy's monotone cubic, and OpenColorIO's transfer functions."""
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import numpy as np
+import PyOpenColorIO as ocio
 import pytest
-from halation.app.document import dumps, loads
-from halation.app.graph import Graph, Port
-from halation.app.graph.values import coerced, value_fault
-from halation.nodes import Curve, Filter, Image, Points, Stops, curve_at, ramp_at
-from hypothesis import given
-from hypothesis import strategies as st
+from halation.nodes.color.curves import Curves
 from scipy.interpolate import PchipInterpolator
-from toy_nodes import TOYS, Tint
 
-RAMP = (0.25, 0.0, 2.0, 0.0, 1.0, 0.75, 1.0, 0.0, 0.5, 0.0)
-
-
-def test_declarations():
-    curve, ramp = Tint.values["curve"], Tint.values["ramp"]
-    assert (curve.type, curve.low, curve.high, curve.length) == ("curve", 0.0, 1.0, 2)
-    assert (ramp.type, ramp.length) == ("ramp", 5)
-    assert (curve.glsl, curve.wireable, ramp.glsl, ramp.wireable) == (None, False, None, False)
+POINTS = (0.1, 0.05, 0.3, 0.2, 0.5, 0.7, 0.55, 0.7, 0.9, 0.95)
+RED = (0.0, 0.1, 1.0, 0.9)
+BLUE = (0.0, 0.0, 0.2, 0.6, 1.0, 0.5)
 
 
-def test_a_list_of_any_length_must_say_what_it_is():
-    with pytest.raises(TypeError, match="Curve or a Ramp"):
-        type("Wrong", (Filter,), {"__annotations__": {"many": tuple[float, ...]}, "many": (0.0,), "image": Image()})
+def pchip(points: tuple[float, ...], x: np.ndarray) -> np.ndarray:
+    """Scipy's curve, going on straight beyond its ends."""
+    xs, ys = points[::2], points[1::2]
+    curve = PchipInterpolator(xs, ys)
+    slope = curve.derivative()
+    inside = curve(x.clip(xs[0], xs[-1]))
+    return inside + slope(xs[0]) * np.minimum(x - xs[0], 0) + slope(xs[-1]) * np.maximum(x - xs[-1], 0)
 
 
-@pytest.mark.parametrize(
-    ("name", "given", "fault"),
-    [
-        ("curve", (0, 0), "does not fit: it takes a list of x, y"),
-        ("curve", (0, 0, 1), "does not fit"),
-        ("curve", (0, 0, 1, float("nan")), "nan is not a finite number"),
-        ("curve", (0, 0, 1.5, 1), "x = 1.5 is outside the range 0 to 1"),
-        ("curve", (0.5, 0, 0.5, 1), "list the points from left to right"),
-        ("curve", (0.0, -7.0, 0.5, 12.0, 0.75, 0.0), None),
-        ("ramp", (0.0, 1.0, 1.0, 1.0, 1.0), "it takes a list of t, red"),
-        ("ramp", (*RAMP[5:], *RAMP[:5]), "t = 0.25 follows 0.75"),
-        ("ramp", (*RAMP, *RAMP[5:]), None),
-    ],
-)
-def test_faults(name, given, fault):
-    found = value_fault(Tint.values[name], given)
-    assert found is None if fault is None else fault in found
+def coded(rgb: np.ndarray, space: str, direction: ocio.TransformDirection) -> np.ndarray:
+    """OpenColorIO's encoding of light, or its inverse, in float32."""
+    if space == "linear":
+        return rgb
+    out = np.ascontiguousarray(rgb, np.float32).reshape(-1, 3)
+    if space == "display":
+        transform = ocio.ExponentWithLinearTransform(
+            gamma=(2.4, 2.4, 2.4, 1.0), offset=(0.055, 0.055, 0.055, 0.0), negativeStyle=ocio.NEGATIVE_MIRROR,
+            direction=ocio.TRANSFORM_DIR_INVERSE if direction == ocio.TRANSFORM_DIR_FORWARD
+            else ocio.TRANSFORM_DIR_FORWARD,
+        )
+        processor = ocio.Config.CreateRaw().getProcessor(transform)
+    else:
+        # Between spaces of the same primaries, so that only the curve is left.
+        names = ("ACEScg", "ACEScct")
+        names = names if direction == ocio.TRANSFORM_DIR_FORWARD else names[::-1]
+        processor = ocio.Config.CreateFromBuiltinConfig("ocio://default").getProcessor(*names)
+    processor.getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS).applyRGB(out)
+    return out.reshape(rgb.shape).astype(np.float64)
 
 
-def test_the_hard_range_of_a_curve_is_that_of_its_heights():
-    class Limited(Filter):
-        image = Image()
-        curve: Annotated[Points, Curve(minimum=0.0, maximum=0.5)] = (0.0, 0.0, 1.0, 0.5)
-
-    value = Limited.values["curve"]
-    assert value_fault(value, (0.0, 0.5, 1.0, 0.0)) is None
-    assert "outside the range 0 to 0.5" in value_fault(value, (0.0, 0.0, 1.0, 1.0))
+def opaque(rgb: np.ndarray) -> np.ndarray:
+    return np.concatenate([rgb, np.ones((*rgb.shape[:2], 1))], -1).astype(np.float32)
 
 
-def test_they_are_saved_and_read():
-    graph = Graph({"tint": Tint()})
-    graph = graph.set(Port("tint", "curve"), [0, 0.5, 0.25, -1, 1, 2]).set(Port("tint", "ramp"), RAMP + RAMP[5:])
-    found = loads(dumps(graph), catalogue=TOYS)
-    assert found == graph
-    assert found.value(Port("tint", "curve")) == (0.0, 0.5, 0.25, -1.0, 1.0, 2.0)
-    assert coerced(Tint.values["ramp"], [0, 0, 0, 0, "1"]) is None
+@pytest.mark.parametrize("space", ["linear", "display", "log"])
+def test_it_is_scipys_curve_in_every_space(run, space):
+    rgb = np.random.default_rng(2).uniform(-0.1, 1.6, (9, 31, 3))
+    out = run(Curves(space=space, master=POINTS, red=RED, blue=BLUE), {"image": opaque(rgb)})
+    code = coded(opaque(rgb)[..., :3].astype(np.float64), space, ocio.TRANSFORM_DIR_FORWARD)
+    bent = pchip(POINTS, code)
+    bent[..., 0], bent[..., 2] = pchip(RED, bent[..., 0]), pchip(BLUE, bent[..., 2])
+    expected = coded(bent, space, ocio.TRANSFORM_DIR_INVERSE)
+    # A curve's error is its slope times that of the encoding; in stops a rounding of 1e-7 is 1.2e-6 of the light.
+    error = np.abs(out[..., :3] - expected) / np.maximum(np.abs(expected), 1.0)
+    assert error.max() < {"linear": 1e-6, "display": 5e-6, "log": 2e-5}[space]
 
 
-points = st.lists(
-    st.tuples(st.integers(0, 64), st.integers(-50, 50)), min_size=2, max_size=9, unique_by=lambda point: point[0]
-).map(lambda found: tuple(part for x, y in sorted(found) for part in (x / 64, y / 10)))
+def test_from_two_points_to_seventeen(run):
+    rng = np.random.default_rng(8)
+    x = np.linspace(-0.5, 1.5, 201)
+    for count in (2, 3, 16, 17):
+        ys = rng.uniform(0, 1, count)
+        points = tuple(float(part) for pair in zip(np.linspace(0, 1, count), ys, strict=True) for part in pair)
+        out = run(Curves(space="linear", master=points), {"image": opaque(np.repeat(x[None, :, None], 3, 2))})
+        expected = pchip(points, x.astype(np.float32).astype(np.float64))
+        assert np.abs(out[0, :, 0] - expected).max() < 1e-5
 
 
-@given(points, st.floats(0.0, 1.0))
-def test_a_curve_is_scipys_and_monotone_between_points(points, x):
-    xs, ys = points[0::2], points[1::2]
-    inside = min(max(x, xs[0]), xs[-1])
-    assert curve_at(points, x) == pytest.approx(float(PchipInterpolator(xs, ys)(inside)), abs=1e-9)
-    right = next((index for index, place in enumerate(xs) if place >= inside), len(xs) - 1)
-    low, high = sorted((ys[max(right - 1, 0)], ys[right]))
-    assert low - 1e-9 <= curve_at(points, inside) <= high + 1e-9
+def test_keeping_the_color_bends_brightness_alone(run, hdr):
+    picture = hdr(17, 9, opaque=True)
+    out = run(Curves(space="linear", keep_color=True, master=POINTS), {"image": picture}).astype(np.float64)
+    weights = np.array([0.2126, 0.7152, 0.0722])
+    light = picture[..., :3].astype(np.float64) @ weights
+    wanted = pchip(POINTS, light)
+    lit = light > 1e-3
+    assert (np.abs(out[..., :3] @ weights - wanted) / np.maximum(wanted, 1.0))[lit].max() < 2e-6
+    ratio = out[..., :3] / np.maximum(picture[..., :3], 1e-9)
+    spread = np.ptp(np.where(picture[..., :3] > 1e-4, ratio, ratio[..., 1:2]), axis=-1)
+    assert (spread / np.abs(ratio[..., 1]))[lit & (picture[..., 1] > 1e-4)].max() < 1e-5
 
 
-def test_a_straight_curve_is_the_identity():
-    assert [curve_at((0.0, 0.0, 0.5, 0.5, 1.0, 1.0), x / 8) for x in range(9)] == [x / 8 for x in range(9)]
+def test_coverage_does_not_change_the_color(run, hdr):
+    picture = hdr(9, 7, opaque=True)
+    node = Curves(master=POINTS)
+    half = run(node, {"image": picture * np.float32(0.5)})
+    assert np.abs(half - run(node, {"image": picture}) * 0.5).max() < 1e-4
+    assert not run(node, {"image": np.zeros((1, 1, 4))}).any()
 
 
-def test_ramps():
-    assert ramp_at(RAMP, -1.0) == ramp_at(RAMP, 0.25) == (0.0, 2.0, 0.0, 1.0)
-    assert ramp_at(RAMP, 0.5) == (0.5, 1.0, 0.25, 0.5)
-    assert ramp_at(RAMP, 0.375, smooth=True) == pytest.approx((0.15625, 2 - 0.3125, 0.078125, 1 - 0.15625))
-    assert ramp_at(RAMP, 1.0) == (1.0, 0.0, 0.5, 0.0)
-
-
-def test_two_stops_at_one_place_are_a_hard_edge():
-    stops = (0.0, 0.0, 0.0, 0.0, 1.0, 0.5, 0.0, 0.0, 0.0, 1.0, 0.5, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0)
-    assert (ramp_at(stops, np.nextafter(0.5, 0))[0], ramp_at(stops, 0.5)[0]) == (0.0, 1.0)
-
-
-def test_stops_are_a_kind_of_value_too():
-    class Colored(Filter):
-        image = Image()
-        ramp: Stops = RAMP
-
-    assert Colored.values["ramp"].default == RAMP
+def test_straight_curves_vanish(run, hdr):
+    assert Curves().identity() == "image"
+    assert Curves(red=(0.0, 0.0, 0.5, 0.6, 1.0, 1.0)).identity() is None
+    picture = hdr(9, 7, opaque=True)
+    straight = Curves(green=(0.0, 0.0, 0.5, 0.5, 1.0, 1.0), space="linear")
+    assert np.abs(run(straight, {"image": picture}) - picture).max() < 2e-6 * max(1.0, picture.max())

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from ....nodes import curve_at, ramp_at
+from ....nodes import MAX_POINTS, curve_at, ramp_at
 
 Numbers = tuple[float, ...]
 
@@ -53,8 +53,13 @@ def changed(numbers: Numbers, width: int, index: int, point: Numbers) -> Numbers
 
 
 def added(numbers: Numbers, width: int, point: Numbers) -> tuple[Numbers, int]:
-    """One more point at its place from left to right, and its index; the index alone where one is already there."""
+    """One more point at its place from left to right, and its index; the index alone where one is already there.
+
+    Where there are as many as there may be, the nearest one's.
+    """
     points = split(numbers, width)
+    if len(points) >= MAX_POINTS:
+        return numbers, min(range(len(points)), key=lambda index: abs(points[index][0] - point[0]))
     for index, other in enumerate(points):
         if width == 2 and abs(other[0] - point[0]) < NEAREST:
             return numbers, index

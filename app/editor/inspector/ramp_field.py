@@ -64,7 +64,7 @@ def _pressed(fields: Fields, id: str, value: tuple[float, ...], rect: Rect, hove
         return None
     made, index = added(value, 5, (t, *ramp_color(value, t)))
     fields.point = (id, index)
-    return Edit(made, merge)
+    return Edit(made, merge) if made != value else None
 
 
 def _pulled(fields: Fields, id: str, value: tuple[float, ...], rect: Rect, active: bool) -> Edit | None:

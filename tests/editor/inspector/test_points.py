@@ -63,6 +63,8 @@ def test_points():
     assert changed(LINE, 2, 1, (7.0, 3.0)) == (0.0, 0.0, 0.999, 3.0, 1.0, 1.0)
     assert added(LINE, 2, (0.25, 2.0)) == ((0.0, 0.0, 0.25, 2.0, 0.5, 0.5, 1.0, 1.0), 1)
     assert added(LINE, 2, (0.5, 2.0)) == (LINE, 1)
+    full = tuple(part for at in range(17) for part in (at / 16, 0.5))
+    assert added(full, 2, (0.27, 2.0)) == (full, 4)
     assert removed(LINE, 2, 0) == (0.5, 0.5, 1.0, 1.0)
     assert removed((0.0, 0.0, 1.0, 1.0), 2, 0) == (0.0, 0.0, 1.0, 1.0)
     assert nearest(LINE, 2, 0.52, 0.47, (0.05, 0.05)) == 1
