@@ -9,7 +9,7 @@ from typing import Literal
 
 from ...nodes import Argument, Drawn, Edge, Filter, Image, Kind, Node, Pixels, Plain, Size, Socket, glsl_type
 from ..errors import ShaderError
-from . import gaussian
+from . import fourier, gaussian
 from .bodies import MAX_TAPS
 from .ir import (
     BLOCK,
@@ -104,22 +104,20 @@ class Recorder:
         axes = [gaussian.plan_axis(max(0.0, one)) for one in sigmas]
         made = self._pixels(image)
         full = made.size
+        firsts = [0, 0]
         for axis, plan in enumerate(axes):
-            total = 1
-            for step in plan.steps:
+            for step, (first, length) in zip(plan.steps, gaussian.spans(plan, full[axis], edge), strict=True):
                 weights, start = gaussian.decimation(step)
-                before = plan.apron if total == 1 else 0
-                total *= step
-                length = -(-(full[axis] + 2 * plan.apron) // total)
-                made = self._convolve(made, axis, weights, step, start - before, edge, length)
+                made = self._convolve(made, axis, weights, step, first * step + start - firsts[axis], edge, length)
+                firsts[axis] = first
         for axis, plan in enumerate(axes):
             if plan.rest > 0.0:
                 weights = gaussian.weights(plan.rest)
-                lies_beyond = edge if plan.factor == 1 else "clamp"
-                made = self._convolve(made, axis, weights, 1, -(len(weights) // 2), lies_beyond, made.size[axis])
+                beyond = edge if plan.factor == 1 or edge == "black" else "clamp"
+                made = self._convolve(made, axis, weights, 1, -(len(weights) // 2), beyond, made.size[axis])
         for axis, plan in reversed(list(enumerate(axes))):
             if plan.factor > 1:
-                made = self._enlarge(made, axis, plan.factor, plan.apron, full[axis])
+                made = self._enlarge(made, axis, plan.factor, -firsts[axis] * plan.factor, full[axis])
         return made
 
     def convolve(
@@ -131,6 +129,24 @@ class Recorder:
             raise ShaderError(self._owner, f"nodes/{self._shader}.py", 1, fault)
         along = 0 if axis == "x" else 1
         return self._convolve(made, along, weights, 1, -(len(weights) // 2), edge, made.size[along])
+
+    def convolve_2d(self, image: Pixels, kernel: Pixels) -> Drawn:
+        picture, spread = self._pixels(image), self._pixels(kernel)
+        width, height = (
+            fourier.padded_length(*lengths) for lengths in zip(picture.size, spread.size, strict=True)
+        )
+        a, b = (
+            self._transformed(self._transformed(made, 0, width), 1, height) for made in (picture, spread)
+        )
+        shape = Shape((width, height), 4, data=True)
+        accessors = (Accessor("image", "vec4", a.ref), Accessor("kernel", "vec4", b.ref))
+        scale = Parameter("float", Constant(1.0 / (width * height)))
+        product = self._made(
+            Gather((shape,), self._owner, "primitive/fourier", "fourier_product", accessors, (scale,))
+        )
+        middle = (spread.size[0] // 2, spread.size[1] // 2)
+        made = self._transformed(product, 1, height, (middle[1], picture.size[1]))
+        return self._transformed(made, 0, width, (middle[0], picture.size[0]))
 
     def reduce(self, image: Pixels, operation: Literal["sum", "max"]) -> Drawn:
         made = self._pixels(image)
@@ -201,6 +217,26 @@ class Recorder:
         size = (length, made.size[1]) if axis == 0 else (made.size[0], length)
         shape = Shape(size, made.shape.channels, made.shape.data)
         return self._made(Convolve((shape,), self._owner, made.ref, axis, weights, stride, origin, edge))
+
+    def _transformed(self, made: Made, axis: int, length: int, wanted: tuple[int, int] | None = None) -> Made:
+        """Transform along an axis; with `wanted` (the first pixel and how many) the other way."""
+        stages = fourier.stages(length)
+        for stage in stages:
+            first, count = wanted if wanted and stage is stages[-1] else (0, length)
+            size = (count, made.size[1]) if axis == 0 else (made.size[0], count)
+            numbers = (axis, stage.radix, stage.span, length, first)
+            parameters = (
+                *(Parameter("int", Constant(number)) for number in numbers),
+                Parameter("float", Constant(1.0 if wanted else -1.0)),
+            )
+            accessor = Accessor("image", "vec4", made.ref)
+            made = self._made(
+                Gather(
+                    (Shape(size, 4, data=True),), self._owner, "primitive/fourier", "fourier_stage", (accessor,),
+                    parameters, "black",
+                )
+            )
+        return made
 
     def _enlarge(self, made: Made, axis: int, factor: int, apron: int, length: int) -> Made:
         size = (length, made.size[1]) if axis == 0 else (made.size[0], length)

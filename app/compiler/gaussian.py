@@ -10,6 +10,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ...nodes import Edge
+
 DIRECT_BELOW = 7.0
 """Up to this sigma the direct convolution is both exact and no slower."""
 
@@ -22,22 +24,17 @@ _REST = 1.8
 
 @dataclass(frozen=True)
 class Axis:
-    """How to blur along one axis: decimate by each step, convolve with `rest`, enlarge by `factor`.
-
-    `apron` is how many full-size pixels the small picture reaches beyond each end, so that the edge mode is
-    applied once, at full size.
-    """
+    """How to blur along one axis: decimate by each step, convolve with `rest`, enlarge by `factor`."""
 
     steps: tuple[int, ...]
     factor: int
     rest: float
-    apron: int
 
 
 def plan_axis(sigma: float) -> Axis:
     """Split `sigma`, in pixels, into decimations and an exact rest."""
     if sigma < DIRECT_BELOW:
-        return Axis((), 1, sigma, 0)
+        return Axis((), 1, sigma)
     steps: list[int] = []
     factor, variance = 1, 0.0
     while True:
@@ -51,9 +48,30 @@ def plan_axis(sigma: float) -> Axis:
                 break
         else:
             break
-    rest = math.sqrt(sigma * sigma - variance - factor**2 / 3.0) / factor
-    apron = factor * (math.ceil(4.0 * rest) + 2)
-    return Axis(tuple(steps), factor, rest, apron)
+    return Axis(tuple(steps), factor, math.sqrt(sigma * sigma - variance - factor**2 / 3.0) / factor)
+
+
+def spans(axis: Axis, length: int, edge: Edge) -> list[tuple[int, int]]:
+    """The first pixel and the length of what each step of a row of `length` pixels makes, in its own pixels.
+
+    A small picture reaches beyond the row, so that the edge mode is applied once, at full size. What is clamped or
+    black comes to an end: it goes that far, and its last pixels stand for all that follow. The other modes never do,
+    so these go as far as is ever read.
+    """
+    found: list[tuple[int, int]] = []
+    if edge in ("clamp", "black"):
+        first, end = 0, length
+        for step in axis.steps:
+            taps, start = decimation(step)
+            first = (first - start - len(taps) + 1) // step
+            end = -((start + 1 - end) // step) + 1
+            found.append((first, end - first))
+        return found
+    apron, total = axis.factor * (math.ceil(4.0 * axis.rest) + 2), 1
+    for step in axis.steps:
+        total *= step
+        found.append((-apron // total, -(-(length + 2 * apron) // total)))
+    return found
 
 
 def weights(sigma: float) -> tuple[float, ...]:

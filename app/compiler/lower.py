@@ -174,12 +174,14 @@ class _Lowering:
         self, path: str, node: Node, operands: dict[str, Operand], wires: dict[str, Operand], size: Size
     ) -> None:
         """Bring every picture to one size: that of the result, or for a filter, which may resize, of the first one."""
-        refs = [operand for operand in (*operands.values(), *wires.values()) if isinstance(operand, Ref)]
+        as_it_is = {name for name, socket in node.inputs.items() if socket.own_size}
+        named = (*operands.items(), *wires.items())
+        refs = [operand for name, operand in named if isinstance(operand, Ref) and name not in as_it_is]
         sizes = [found for found in (self.builder.shape(ref).size for ref in refs) if found != (1, 1)]
         wanted = sizes[0] if sizes and isinstance(node, Filter) else size
         for group in (operands, wires):
             for name, operand in group.items():
-                if isinstance(operand, Ref):
+                if isinstance(operand, Ref) and name not in as_it_is:
                     group[name] = self.pictures.fit(operand, wanted, path)
 
     def _through(

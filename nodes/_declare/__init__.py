@@ -44,8 +44,8 @@ from .values import (
 
 __all__ = [
     "MAX_POINTS", "RGBA", "Argument", "Color", "Curve", "Doc", "Draw", "Drawn", "Edge", "Field", "File", "FilePath",
-    "Filter", "Fraction", "Handle", "Image", "Kernel3x3", "Kind", "Node", "Number", "Output", "Pixels", "Plain", "Points",
-    "Pointwise", "Position", "Ramp", "Size", "Slider", "Socket", "Source", "Stops", "Swatch", "Temporal", "Unit",
-    "Value", "Vector",
+    "Filter", "Fraction", "Handle", "Image", "Kernel3x3", "Kind", "Node", "Number", "Output", "Pixels", "Plain",
+    "Points", "Pointwise", "Position", "Ramp", "Size", "Slider", "Socket", "Source", "Stops", "Swatch", "Temporal",
+    "Unit", "Value", "Vector",
     "curve_at", "curve_knots", "glsl_type", "ramp_at", "ramp_knots", "working_factor",
 ]

@@ -64,6 +64,14 @@ class Draw(Protocol):
         """Correlate along one axis with an odd number of centered weights."""
         ...
 
+    def convolve_2d(self, image: Pixels, kernel: Pixels) -> Drawn:
+        """Convolve every channel with the same channel of another picture of any size; black lies outside.
+
+        The kernel's origin is its middle, pixel `size // 2`; it is not normalized. By fast Fourier transform: exact
+        but for rounding, and the cost hardly depends on what the kernel holds.
+        """
+        ...
+
     def reduce(self, image: Pixels, operation: Literal["sum", "max"]) -> Drawn:
         """Sum or maximum of every channel over all pixels, as 1x1; exact at any size."""
         ...

@@ -32,6 +32,8 @@ class Socket:
     kind: ClassVar[Kind]
     default: float | tuple[float, ...] | None = None
     doc: str = dataclasses.field(default="", kw_only=True)
+    own_size: bool = dataclasses.field(default=False, kw_only=True)
+    """True if a filter takes a picture of any size as it is; all others are fit to the first one."""
     name: str = dataclasses.field(default="", init=False, compare=False)
 
     def __set_name__(self, owner: type, name: str) -> None:

@@ -24,8 +24,8 @@ class GradientMap(Filter):
     )] = "stops"
     low: Annotated[float, Slider(
         0.0, 1.0, unit="scene", minimum=0.0, doc="The luminance where the ramp begins; by stops, at least 0.00001."
-    )] = 0.004
-    high: Annotated[float, Slider(0.1, 16.0, unit="scene", minimum=0.0, doc="The luminance where it ends.")] = 4.0
+    )] = 0.01
+    high: Annotated[float, Slider(0.1, 64.0, unit="scene", minimum=0.0, doc="The luminance where it ends.")] = 16.0
     reverse: Annotated[bool, Doc("Run the ramp the other way round.")] = False
     smooth: Annotated[bool, Doc("Ease in and out of every stop.")] = False
     amount: Annotated[Fraction, Doc("Mix with the input.")] = 1.0
