@@ -86,7 +86,7 @@ def _compiled(graph: Graph) -> Iterator[tuple[int, Problem]]:
         for name, item in graph.inputs.items() if not item.file and item.default is None
     }
     try:
-        compiler.compile_graph(graph, compiler.Request(bindings=bindings), probe)
+        compiler.compile_graph(graph, compiler.Request(bindings=bindings), probe, colors=lazy.recolor)
     except HalationError as fault:
         yield fault.exit_code, Problem("", "", str(fault))
     for fault in unread.values():

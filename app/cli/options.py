@@ -14,7 +14,8 @@ from . import parsing
 from .outcome import note
 
 if TYPE_CHECKING:
-    from ..compiler import Picture, Probed
+    from ...nodes import ColorChange
+    from ..compiler import ColorProgram, Picture, Probed
     from ..graph import Graph
     from ..media.pictures import Pictures
 
@@ -122,3 +123,7 @@ class Lazy:
     def probe(self, picture: Picture) -> Probed:
         """Size and precision of a picture."""
         return self.pictures.probe(picture)
+
+    def recolor(self, change: ColorChange) -> ColorProgram:
+        """The program of a change of color."""
+        return self.pictures.recolor(change)

@@ -11,31 +11,32 @@ from .bodies import MAX_WEIGHTS
 from .explain import as_json, dot, explain
 from .fuse import fuse
 from .ir import Memory, Picture
-from .library import Library, installed
+from .library import Library, installed, parse
 from .lower import lower
-from .plan import Pass, Plan, Shader, Surface, Upload
+from .plan import FIRST_TABLE, Pass, Plan, Shader, Surface, Upload
+from .recolor import ColorProgram, Colors, Table, no_colors
 from .request import Probe, Probed, Request
 from .schedule import schedule
 from .target import NULL, Form, Precision, Target
 from .upstream import Upstream
 
 __all__ = [
-    "MAX_WEIGHTS", "NULL", "Form", "Library", "Memory", "Pass", "Picture", "Plan", "Precision", "Probe", "Probed",
-    "Request", "Shader", "Surface", "Target", "Upload", "Upstream", "as_json", "compile_graph", "dot", "explain",
-    "installed",
+    "FIRST_TABLE", "MAX_WEIGHTS", "NULL", "ColorProgram", "Colors", "Form", "Library", "Memory", "Pass", "Picture",
+    "Plan", "Precision", "Probe", "Probed", "Request", "Shader", "Surface", "Table", "Target", "Upload", "Upstream",
+    "as_json", "compile_graph", "dot", "explain", "installed", "no_colors", "parse",
 ]
 
 
 def compile_graph(
     graph: Graph, request: Request, probe: Probe, *, target: Target = NULL, precision: Precision | None = None,
-    library: Library | None = None, fusion: bool = True,
+    library: Library | None = None, colors: Colors = no_colors, fusion: bool = True,
 ) -> Plan:
     """Compile what `request` wants of `graph` for `target`.
 
-    Raises GraphError for a graph that cannot be rendered, InputError (from `probe`) for a picture that cannot be
-    read, DeviceError for one that is too large, ShaderError for a node and its GLSL that do not agree.
+    Raises GraphError for a graph that cannot be rendered, InputError (from `probe` or `colors`) for a file that cannot
+    be read, DeviceError for one that is too large, ShaderError for a node and its GLSL that do not agree.
     """
     library = library or installed()
-    program = lower(graph, request, library, probe)
+    program = lower(graph, request, library, probe, colors)
     passes = fuse(program, target, enabled=fusion)
     return schedule(program, passes, library, target, precision or target.precision)

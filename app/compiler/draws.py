@@ -7,9 +7,25 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from ...nodes import Argument, Drawn, Edge, Filter, Image, Kind, Node, Pixels, Plain, Size, Socket, glsl_type
+from ...nodes import (
+    Affine,
+    Argument,
+    ColorChange,
+    Drawn,
+    Edge,
+    Filter,
+    Image,
+    Kernel,
+    Kind,
+    Node,
+    Pixels,
+    Plain,
+    Size,
+    Socket,
+    glsl_type,
+)
 from ..errors import ShaderError
-from . import fourier, gaussian
+from . import fourier, gaussian, transforms
 from .bodies import MAX_TAPS
 from .ir import (
     BLOCK,
@@ -29,6 +45,7 @@ from .ir import (
     Shape,
 )
 from .library import Function, Library
+from .recolor import ColorProgram
 
 
 @dataclass(frozen=True)
@@ -43,17 +60,25 @@ class Made:
         return self.shape.size
 
 
+@dataclass(frozen=True)
+class Outside:
+    """What a node may ask of the world: the pixels of a file, and the program of a change of color."""
+
+    read: Callable[[Picture], Ref]
+    recolor: Callable[[ColorChange], ColorProgram]
+
+
 class Recorder:
     """Implements `Draw` for one node: `resolved` holds what its inputs are linked to."""
 
     def __init__(
         self, owner: str, node: Filter, size: Size, resolved: Mapping[str, Ref | Constant], linked: frozenset[str],
-        builder: Builder, library: Library, reader: Callable[[Picture, str], Ref], memory: Memory | None,
+        builder: Builder, library: Library, outside: Outside, memory: Memory | None,
     ) -> None:
         self.size = size
         self._owner, self._node = owner, node
         self._resolved, self._linked = resolved, linked
-        self._builder, self._library, self._reader = builder, library, reader
+        self._builder, self._library, self._outside = builder, library, outside
         self._memory = memory
         self._shader = shader(node)
         self.remembered: Ref | None = None
@@ -105,19 +130,20 @@ class Recorder:
         made = self._pixels(image)
         full = made.size
         firsts = [0, 0]
+        spans = [gaussian.spans(plan, length, edge) for plan, length in zip(axes, full, strict=True)]
         for axis, plan in enumerate(axes):
-            for step, (first, length) in zip(plan.steps, gaussian.spans(plan, full[axis], edge), strict=True):
+            for step, (first, length) in zip(plan.steps, spans[axis][0], strict=True):
                 weights, start = gaussian.decimation(step)
                 made = self._convolve(made, axis, weights, step, first * step + start - firsts[axis], edge, length)
                 firsts[axis] = first
         for axis, plan in enumerate(axes):
             if plan.rest > 0.0:
                 weights = gaussian.weights(plan.rest)
-                beyond = edge if plan.factor == 1 or edge == "black" else "clamp"
-                made = self._convolve(made, axis, weights, 1, -(len(weights) // 2), beyond, made.size[axis])
+                made = self._convolve(made, axis, weights, 1, -(len(weights) // 2), spans[axis][1], made.size[axis])
         for axis, plan in reversed(list(enumerate(axes))):
             if plan.factor > 1:
-                made = self._enlarge(made, axis, plan.factor, -firsts[axis] * plan.factor, full[axis])
+                apron = -firsts[axis] * plan.factor
+                made = self._enlarge(made, axis, plan.factor, apron, full[axis], spans[axis][1])
         return made
 
     def convolve(
@@ -148,6 +174,17 @@ class Recorder:
         made = self._transformed(product, 1, height, (middle[1], picture.size[1]))
         return self._transformed(made, 0, width, (middle[0], picture.size[0]))
 
+    def recolor(self, image: Pixels, change: ColorChange) -> Drawn:
+        made, program = self._pixels(image), self._outside.recolor(change)
+        color = (Parameter("vec4", made.ref),)
+        return self._made(Call((made.shape,), self._owner, program.text.name, program.function, color, (), program))
+
+    def place(self, image: Pixels, matrix: Affine, kernel: Kernel, edge: Edge = "black") -> Drawn:
+        source = self._pixels(image).ref
+        shape = self._shape(None, self.size)
+        ref = transforms.place(self._builder, source, self._owner, shape, matrix, kernel, edge)
+        return Made(ref, shape)
+
     def reduce(self, image: Pixels, operation: Literal["sum", "max"]) -> Drawn:
         made = self._pixels(image)
         while made.size != (1, 1):
@@ -168,7 +205,7 @@ class Recorder:
         self.remembered = pixels.ref
 
     def read(self, path: str, layer: str, result: Socket) -> Drawn:
-        ref = self._reader(Picture(path, layer, result.kind, result.channels), self._owner)
+        ref = self._outside.read(Picture(path, layer, result.kind, result.channels))
         return Made(ref, self._builder.shape(ref))
 
     # --- parts ---------------------------------------------------------------------------------------------------
@@ -238,12 +275,12 @@ class Recorder:
             )
         return made
 
-    def _enlarge(self, made: Made, axis: int, factor: int, apron: int, length: int) -> Made:
+    def _enlarge(self, made: Made, axis: int, factor: int, apron: int, length: int, edge: Edge) -> Made:
         size = (length, made.size[1]) if axis == 0 else (made.size[0], length)
         shape = Shape(size, made.shape.channels, made.shape.data)
         accessor = Accessor("image", "vec4", made.ref)
         numbers = tuple(Parameter("int", Constant(value)) for value in (axis, factor, apron))
-        return self._made(Gather((shape,), self._owner, "primitive/enlarge", "enlarge", (accessor,), numbers))
+        return self._made(Gather((shape,), self._owner, "primitive/enlarge", "enlarge", (accessor,), numbers, edge))
 
 
 def shader(node: Node) -> str:

@@ -99,7 +99,8 @@ class _Parts:
 
 def _parts(program: Program, fused: Fused, names: Names, library: Library) -> _Parts:
     root = program.ops[fused.root]
-    shaders = [op.shader for op in (program.ops[index] for index in fused.members) if isinstance(op, Call)]
+    ops = [program.ops[index] for index in fused.members]
+    shaders = [op.shader for op in ops if isinstance(op, Call) and not op.program]
     if len(fused.members) > 1:
         shaders.insert(0, "primitive/settled")
     if isinstance(root, Call):
@@ -128,7 +129,10 @@ def _texts(program: Program, fused: Fused, parts: _Parts, library: Library) -> t
     """The shader files of a pass, includes first, with only the functions that it needs."""
     found: list[Text] = []
     needed = words(*parts.functions, *parts.body, *parts.results)
-    for text in reversed(library.closure(tuple(dict.fromkeys(parts.shaders)), program.ops[fused.root].owner)):
+    files = library.closure(tuple(dict.fromkeys(parts.shaders)), program.ops[fused.root].owner)
+    calls = (op for op in (program.ops[index] for index in fused.members) if isinstance(op, Call))
+    made = dict.fromkeys(op.program for op in calls if op.program)
+    for text in reversed((*files, *(one.text for one in made))):
         kept = text.only(needed)
         needed |= kept.words
         found.append(kept)

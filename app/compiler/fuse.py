@@ -52,7 +52,8 @@ def fuse(program: Program, target: Target, *, enabled: bool = True) -> tuple[Fus
         if enabled and root != index and isinstance(op, Call) and not kept.intersection(outputs):
             joined = _joined(reads[root], outputs, op)
             together = uniforms[root] + _uniforms(op)
-            if together <= MAX_UNIFORMS and _fits(ops, op, root, len(members[root]), joined, target):
+            inputs = len(joined) + _tables(ops, [*members[root], index])
+            if together <= MAX_UNIFORMS and _fits(ops, op, root, len(members[root]), inputs, target):
                 home[index] = root
                 uniforms[root] = together
                 members[root].append(index)
@@ -106,7 +107,12 @@ def _uniforms(op: Op) -> int:
     return taken + 4 * (len(factors) + len(op.shapes))
 
 
-def _fits(ops: tuple[Op, ...], op: Op, root: int, count: int, reads: dict[Ref, None], target: Target) -> bool:
+def _tables(ops: tuple[Op, ...], members: Iterable[int]) -> int:
+    """How many tables of color programs a pass reads at most."""
+    return sum(len(op.tables) for op in (ops[index] for index in members) if isinstance(op, Call))
+
+
+def _fits(ops: tuple[Op, ...], op: Op, root: int, count: int, inputs: int, target: Target) -> bool:
     reader = ops[root]
     if isinstance(reader, Call):
         same_size = reader.size == op.size
@@ -114,7 +120,7 @@ def _fits(ops: tuple[Op, ...], op: Op, root: int, count: int, reads: dict[Ref, N
         same_size = ops[reader.image.op].size == op.size
     else:
         return False
-    return same_size and count < MAX_MEMBERS and len(reads) <= target.max_inputs
+    return same_size and count < MAX_MEMBERS and inputs <= target.max_inputs
 
 
 def _writes(ops: tuple[Op, ...], root: int, readers: dict[Ref, list[int]], kept: set[Ref]) -> list[Ref]:

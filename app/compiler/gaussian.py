@@ -51,12 +51,12 @@ def plan_axis(sigma: float) -> Axis:
     return Axis(tuple(steps), factor, math.sqrt(sigma * sigma - variance - factor**2 / 3.0) / factor)
 
 
-def spans(axis: Axis, length: int, edge: Edge) -> list[tuple[int, int]]:
-    """The first pixel and the length of what each step of a row of `length` pixels makes, in its own pixels.
+def spans(axis: Axis, length: int, edge: Edge) -> tuple[list[tuple[int, int]], Edge]:
+    """The first pixel and the length of what each step of a row of `length` makes, in its own pixels; its edge mode.
 
-    A small picture reaches beyond the row, so that the edge mode is applied once, at full size. What is clamped or
-    black comes to an end: it goes that far, and its last pixels stand for all that follow. The other modes never do,
-    so these go as far as is ever read.
+    A small picture reaches beyond the row far enough for the edge mode to mean what it does at full size. What is
+    clamped or black comes to an end there, and its last pixels stand for all that follow. What repeats in whole blocks
+    does so at any size. All else goes on as far as is ever read.
     """
     found: list[tuple[int, int]] = []
     if edge in ("clamp", "black"):
@@ -66,12 +66,20 @@ def spans(axis: Axis, length: int, edge: Edge) -> list[tuple[int, int]]:
             first = (first - start - len(taps) + 1) // step
             end = -((start + 1 - end) // step) + 1
             found.append((first, end - first))
-        return found
-    apron, total = axis.factor * (math.ceil(4.0 * axis.rest) + 2), 1
-    for step in axis.steps:
+        return found, edge
+    for step in axis.steps if edge in ("reflect", "wrap") else ():
+        if length % step:
+            break
+        length //= step
+        found.append((0, length))
+    left = axis.steps[len(found):]
+    if not left:
+        return found, edge
+    apron, total = math.prod(left) * (math.ceil(4.0 * axis.rest) + 2), 1
+    for step in left:
         total *= step
         found.append((-apron // total, -(-(length + 2 * apron) // total)))
-    return found
+    return found, "clamp"
 
 
 def weights(sigma: float) -> tuple[float, ...]:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 from ...nodes import Edge, Kind, Size
 from ..graph import Port
+from .recolor import ColorProgram, Table
 
 
 @dataclass(frozen=True)
@@ -115,6 +116,11 @@ class Op:
         return self.shapes[0].size
 
     @property
+    def owners(self) -> tuple[str, ...]:
+        """All nodes whose work it does."""
+        return (self.owner,)
+
+    @property
     def label(self) -> str:
         """What it does, in a word or two."""
         return type(self).__name__.lower()
@@ -139,16 +145,25 @@ class History(Op):
 
 @dataclass(frozen=True)
 class Call(Op):
-    """A pointwise GLSL function. Several shapes are several `out` parameters. `choices` become macros for its file."""
+    """A pointwise GLSL function. Several shapes are several `out` parameters. `choices` become macros for its file.
+
+    With a `program` the function stands there and not in the library.
+    """
 
     shader: str
     function: str
     parameters: tuple[Parameter, ...]
     choices: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    program: ColorProgram | None = None
 
     @property
     def label(self) -> str:
-        return self.function
+        return "recolor" if self.program else self.function
+
+    @property
+    def tables(self) -> tuple[Table, ...]:
+        """What its function reads through samplers of its own."""
+        return self.program.tables if self.program else ()
 
     def reads(self) -> Iterator[Ref]:
         return (item.operand for item in self.parameters if isinstance(item.operand, Ref))

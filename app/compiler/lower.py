@@ -6,31 +6,47 @@ pictures of the wrong size get a fit, and values arrive in working units.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from dataclasses import replace
 from types import MappingProxyType
 
-from ...nodes import Filter, Image, Kind, Node, Pointwise, Size, Socket, Value, curve_knots, ramp_knots, working_factor
+from ...nodes import (
+    ColorChange,
+    Filter,
+    Image,
+    Kind,
+    LookupFile,
+    Node,
+    Pointwise,
+    Size,
+    Socket,
+    Value,
+    curve_knots,
+    ramp_knots,
+    working_factor,
+)
 from ..errors import GraphError, HalationError, ShaderError
 from ..graph import INPUTS, OUTPUTS, Graph, Port, did_you_mean
 from . import constants
-from .draws import Made, Recorder, choices, shader
+from .draws import Made, Outside, Recorder, choices, shader
 from .expand import Flat, expand, nothing, stand_in
 from .ir import Builder, Call, Choice, Constant, Operand, Parameter, Picture, Program, Ref, Shape
 from .library import Library
 from .pictures import Pictures
+from .recolor import ColorProgram, Colors
 from .request import Probe, Request
 
 
-def lower(graph: Graph, request: Request, library: Library, probe: Probe) -> Program:
+def lower(graph: Graph, request: Request, library: Library, probe: Probe, colors: Colors) -> Program:
     """Lower what `request` wants of `graph`. Raises GraphError where the graph is not fit to render."""
-    return _Lowering(graph, request, library, probe).run()
+    return _Lowering(graph, request, library, probe, colors).run()
 
 
 class _Lowering:
     """The work in progress: `results` says what every port visited so far stands for."""
 
-    def __init__(self, graph: Graph, request: Request, library: Library, probe: Probe) -> None:
-        self.graph, self.request, self.library = graph, request, library
+    def __init__(self, graph: Graph, request: Request, library: Library, probe: Probe, colors: Colors) -> None:
+        self.graph, self.request, self.library, self.colors = graph, request, library, colors
         self.flat: Flat = expand(graph)
         self.builder = Builder()
         self.pictures = Pictures(graph, self.flat, request, probe, self.builder)
@@ -265,7 +281,7 @@ class _Lowering:
         for name in linked:
             filled[name] = self._as_pixels(path, node.inputs[name], operands[name], size)
         recorder = Recorder(
-            path, node, size, filled, linked, self.builder, self.library, self._read_for(path),
+            path, node, size, filled, linked, self.builder, self.library, self._outside(path),
             self.request.memories.get(path),
         )
         drawn = node.passes(recorder)
@@ -289,5 +305,15 @@ class _Lowering:
         made = self.builder.shape(ref)
         return ref if made.channels == socket.channels else self.pictures.converted(ref, socket, made.size, owner)
 
-    def _read_for(self, path: str) -> Callable[[Picture, str], Ref]:
-        return lambda picture, owner: self.pictures.read(self.pictures.located(picture, path), owner)
+    def _outside(self, path: str) -> Outside:
+        """The files that a node names, which lie beside the graph file that it came from."""
+
+        def recolor(change: ColorChange) -> ColorProgram:
+            if isinstance(change, LookupFile):
+                change = replace(change, path=self.pictures.located(change.path, path))
+            return self.colors(change)
+
+        def read(picture: Picture) -> Ref:
+            return self.pictures.read(replace(picture, path=self.pictures.located(picture.path, path)), path)
+
+        return Outside(read, recolor)

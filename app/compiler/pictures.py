@@ -50,7 +50,7 @@ class Pictures:
         for path, node in self._flat.nodes.items():
             for value in node.values.values() if isinstance(node, Source) else ():
                 if value.type == "path" and getattr(node, value.name):
-                    yield self.located(Picture(getattr(node, value.name), "", Kind.IMAGE, 4), path), path
+                    yield Picture(self.located(getattr(node, value.name), path), "", Kind.IMAGE, 4), path
 
     def _scaled(self, size: Size) -> Size:
         scale = self._request.scale
@@ -96,6 +96,6 @@ class Pictures:
         parameters = (Parameter(glsl, operand),)
         return self._builder.add(Call((shape,), owner, "primitive/convert", f"as_{glsl}", parameters))
 
-    def located(self, picture: Picture, path: str) -> Picture:
+    def located(self, file: str, node: str) -> str:
         """Relative paths start at the folder of the graph file that the node came from."""
-        return replace(picture, path=str(PurePath(self._flat.folders[path], picture.path)))
+        return str(PurePath(self._flat.folders[node], file))

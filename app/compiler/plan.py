@@ -9,9 +9,13 @@ from typing import Literal
 from ...nodes import Size
 from ..graph import Port
 from .ir import Memory, Picture
+from .recolor import Table
 from .target import Form, Target
 
 Depth = Literal["f2", "f4"]
+FIRST_TABLE = 16
+"""Texture units below are for pictures: no stage has more."""
+
 LINES_PER_FILE = 1000
 """Line n of file f of a program is line f * LINES_PER_FILE + n: not all drivers report file numbers."""
 
@@ -88,7 +92,8 @@ class Upload:
 class Pass:
     """One draw or dispatch. Textures are bound in order as t0, t1, ...; targets as o0, o1, ...
 
-    `groups` are work groups of a compute pass. `weights` fill its uniform block, if any.
+    `groups` are work groups of a compute pass. `weights` fill its uniform block, if any. `tables` are bound from unit
+    `FIRST_TABLE` on.
     """
 
     nodes: tuple[str, ...]
@@ -99,6 +104,7 @@ class Pass:
     uniforms: tuple[tuple[str, Uniform], ...]
     weights: tuple[float, ...]
     groups: tuple[int, int]
+    tables: tuple[Table, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from ...nodes import Size
 from ..errors import DeviceError
 from .emit import Emitted, emit
 from .fuse import Fused, kept_refs
-from .ir import History, Memory, Program, Read, Ref, Shape
+from .ir import Call, History, Memory, Program, Read, Ref, Shape
 from .library import Library
 from .plan import Depth, Pass, Plan, Surface, Upload, texel, texture_bytes
 from .target import Precision, Target
@@ -159,7 +159,8 @@ def _uploads(program: Program, numbers: Mapping[Ref, int]) -> list[Upload]:
 def _pass(program: Program, fused: Fused, item: Emitted, numbers: Mapping[Ref, int]) -> Pass:
     ops = [program.ops[index] for index in fused.members]
     return Pass(
-        tuple(dict.fromkeys(op.owner for op in ops)), tuple(op.label for op in ops), item.shader,
+        tuple(dict.fromkeys(owner for op in ops for owner in op.owners)), tuple(op.label for op in ops), item.shader,
         tuple(numbers[ref] for ref in fused.reads), tuple(numbers[ref] for ref in fused.writes),
         item.uniforms, item.weights, item.groups,
+        tuple(dict.fromkeys(table for op in ops if isinstance(op, Call) for table in op.tables)),
     )

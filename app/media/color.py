@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import difflib
 import os
-from dataclasses import dataclass
 from functools import cache
 from typing import Any, Literal
 
@@ -72,8 +71,8 @@ def to_linear(rgb: Array, space: str, path: str = "") -> Array:
     if is_linear(space):
         return linear
     try:
-        processor = _config().getProcessor(space, WORKING).getDefaultCPUProcessor()
-    except _ocio().Exception as error:
+        processor = config().getProcessor(space, WORKING).getDefaultCPUProcessor()
+    except ocio().Exception as error:
         raise InputError(f"{path}: its color space '{space}' is unknown: save it as linear Rec.709 or sRGB") from error
     linear = linear.copy() if linear is rgb else linear
     _apply(processor, linear)
@@ -101,7 +100,7 @@ def _srgb_table(dtype: str) -> Array:
 
 def displays() -> tuple[str, ...]:
     """The kinds of screen that pictures can be shown on, the default first."""
-    return tuple(_config().getDisplays())
+    return tuple(config().getDisplays())
 
 
 def views(display: str = "") -> tuple[str, ...]:
@@ -110,7 +109,7 @@ def views(display: str = "") -> tuple[str, ...]:
     Raises:
         UsageError: unknown display.
     """
-    return (*_config().getViews(_find_display(display)), NO_VIEW)
+    return (*config().getViews(_find_display(display)), NO_VIEW)
 
 
 def find_view(name: str, display: str = "") -> str:
@@ -152,7 +151,7 @@ def to_display(array: Array, view: str = "", *, bits: Literal[8, 16, 32] = 8, di
     Raises:
         UsageError: unknown view or display.
     """
-    processor = _processor(view, display).getDefaultCPUProcessor()
+    processor = display_processor(view, display).getDefaultCPUProcessor()
     pixels = np.array(array, dtype=np.float32)
     np.nan_to_num(pixels, copy=False, nan=0.0, posinf=_LARGEST, neginf=-_LARGEST)
     rgb = np.ascontiguousarray(pixels[..., :3])
@@ -169,49 +168,7 @@ def to_display(array: Array, view: str = "", *, bits: Literal[8, 16, 32] = 8, di
     return (pixels * top + 0.5).astype(np.uint8 if bits == 8 else np.uint16)
 
 
-@dataclass(frozen=True)
-class Lut:
-    """A table that a view's GLSL reads: [height, width, channels], or [depth, height, width, channels], float32."""
-
-    sampler: str
-    values: Array
-    linear: bool
-
-
-@dataclass(frozen=True)
-class GpuView:
-    """A view as GLSL 4.00: `text` declares `vec4 <function>(vec4)` and the samplers of `luts`, clamped at the edges."""
-
-    text: str
-    function: str
-    luts: tuple[Lut, ...]
-
-
-def gpu_view(view: str = "", display: str = "") -> GpuView:
-    """The shader that computes what `to_display` computes, from straight working-space color.
-
-    Raises:
-        UsageError: unknown view or display.
-    """
-    ocio, name = _ocio(), "view_transform"
-    processor = _processor(view, display).getDefaultGPUProcessor()
-    text = ocio.GpuShaderDesc.CreateShaderDesc(
-        language=ocio.GPU_LANGUAGE_GLSL_4_0, functionName=name, resourcePrefix="view_"
-    )
-    text.setAllowTexture1D(False)
-    processor.extractGpuShaderInfo(text)
-    luts: list[Lut] = []
-    for table in text.getTextures():
-        channels = 1 if table.channel == text.TEXTURE_RED_CHANNEL else 3
-        values = np.array(table.getValues(), np.float32).reshape(table.height, table.width, channels)
-        luts.append(Lut(table.samplerName, values, table.interpolation != ocio.INTERP_NEAREST))
-    for cube in text.get3DTextures():
-        values = np.array(cube.getValues(), np.float32).reshape(*[cube.edgeLen] * 3, 3)
-        luts.append(Lut(cube.samplerName, values, cube.interpolation != ocio.INTERP_NEAREST))
-    return GpuView(text.getShaderText(), name, tuple(luts))
-
-
-def _ocio() -> Any:
+def ocio() -> Any:
     """OpenColorIO, which comes without types."""
     import PyOpenColorIO
 
@@ -219,17 +176,18 @@ def _ocio() -> Any:
 
 
 @cache
-def _config() -> Any:
-    return _ocio().Config.CreateFromBuiltinConfig(_CONFIG)
+def config() -> Any:
+    """The built-in config."""
+    return ocio().Config.CreateFromBuiltinConfig(_CONFIG)
 
 
 @cache
-def _processor(view: str, display: str) -> Any:
+def display_processor(view: str, display: str) -> Any:
     """From the working space to what a display shows."""
     screen, chosen = _find_display(display), find_view(view, display)
     if chosen == NO_VIEW:
         screen, chosen = _DISPLAY, _PLAIN_VIEW
-    return _config().getProcessor(WORKING, screen, chosen, _ocio().TRANSFORM_DIR_FORWARD)
+    return config().getProcessor(WORKING, screen, chosen, ocio().TRANSFORM_DIR_FORWARD)
 
 
 def _apply(processor: Any, rgb: Array) -> None:

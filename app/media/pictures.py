@@ -16,6 +16,8 @@ from ..graph import Graph, Input
 if TYPE_CHECKING:
     import numpy as np
 
+    from ...nodes import ColorChange
+    from ..compiler import ColorProgram
     from .info import ImageInfo
 
     Array = np.ndarray
@@ -59,6 +61,12 @@ class Pictures:
         if pixels.repaired:
             self.repaired[picture.path] = pixels.repaired
         return pixels.array
+
+    def recolor(self, change: ColorChange) -> ColorProgram:
+        """The program of a change of color. Raises InputError for a file that cannot be read."""
+        from .recolor import recolor
+
+        return recolor(change)
 
     def info(self, path: str) -> ImageInfo:
         """A file's header, read once."""

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import moderngl
 import numpy as np
 
-from ..compiler import MAX_WEIGHTS, Pass, Plan, Upload
+from ..compiler import FIRST_TABLE, MAX_WEIGHTS, Pass, Plan, Upload
 from ..errors import InputError, RenderError
 from .decoding import Array
 from .device import Device
 from .programs import Program, Programs
+from .tables import Tables
 from .textures import Lease, Texture, Textures
 
 MAX_WEIGHT_BUFFERS = 64
@@ -39,6 +40,7 @@ class Executor:
         self.textures = Textures(device.context, budget)
         self.counters = Counters()
         self.closed = False
+        self._tables = Tables(device.context)
         self._weights: dict[tuple[float, ...], moderngl.Buffer] = {}
         self._query: moderngl.Query | None = None
 
@@ -47,6 +49,7 @@ class Executor:
         self.closed = True
         self.textures.clear()
         self.programs.clear()
+        self._tables.clear()
         for buffer in self._weights.values():
             buffer.release()
         self._weights.clear()
@@ -101,6 +104,8 @@ class Executor:
             made = [self.resident(plan, number) for number in one.targets]
             for name, value in one.uniforms:
                 program.set(name, value)
+            for unit, table in enumerate(one.tables, FIRST_TABLE):
+                self._tables.use(table, unit)
             if one.weights:
                 self._weight_buffer(one.weights).bind_to_uniform_block(0)
             if one.shader.form == "compute":

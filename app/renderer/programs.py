@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import moderngl
 import numpy as np
 
-from ..compiler import Pass, Shader
+from ..compiler import FIRST_TABLE, Pass, Shader
 from ..errors import ShaderError
 
 # Mesa: "2:14(5): error: ...", NVIDIA: "2(14) : error ...", Apple and AMD: "ERROR: 2:14: ..."
@@ -85,6 +85,8 @@ class Programs:
         weights = program.handle.get("Weights", None)
         if isinstance(weights, moderngl.UniformBlock):
             weights.binding = 0
+        for unit, table in enumerate(one.tables, FIRST_TABLE):
+            program.set(table.sampler, unit)
         if one.shader.form == "fragment":
             for number in range(len(one.textures)):
                 program.set(f"t{number}", number)

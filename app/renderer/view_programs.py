@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from typing import cast, get_args
 
 import moderngl
-import numpy as np
 
-from ..compiler import installed
+from ..compiler import ColorProgram, installed
 from ..errors import DeviceError
-from ..media import GpuView, gpu_view
+from ..media import gpu_view
 from .look import Channels, Compare, Meaning
 from .programs import VERTEX, undisturbed
+from .tables import table_texture
 
 FIRST_LUT = 2
 """The texture unit of a view's first table; pictures are bound to those before."""
@@ -67,31 +67,20 @@ class ViewPrograms:
                 item.release()
         self._known.clear()
 
-    def _compile(self, view: GpuView | None, source: str) -> ViewProgram:
+    def _compile(self, view: ColorProgram | None, source: str) -> ViewProgram:
         context = self._context
         try:
             handle = context.program(vertex_shader=VERTEX, fragment_shader=source)
         except moderngl.Error as fault:
             raise DeviceError(f"the viewer's shader does not compile: {fault}") from None
-        luts: list[moderngl.Texture | moderngl.Texture3D] = []
-        for unit, lut in enumerate(view.luts if view else (), FIRST_LUT):
-            values = np.ascontiguousarray(lut.values)
-            *depth, height, width, channels = values.shape
-            if depth:
-                made = context.texture3d((width, height, depth[0]), channels, values, dtype="f4")
-                made.repeat_z = False
-            else:
-                made = context.texture((width, height), channels, values, dtype="f4")
-            made.repeat_x = made.repeat_y = False
-            way = moderngl.LINEAR if lut.linear else moderngl.NEAREST
-            made.filter = (way, way)
-            luts.append(made)
-            if lut.sampler in handle:
-                handle[lut.sampler] = unit
-        return ViewProgram(handle, context.vertex_array(handle, []), tuple(luts))
+        luts = [table_texture(context, table) for table in (view.tables if view else ())]
+        program = ViewProgram(handle, context.vertex_array(handle, []), tuple(luts))
+        for unit, table in enumerate(view.tables if view else (), FIRST_LUT):
+            program.set(table.sampler, unit)
+        return program
 
 
-def _source(view: GpuView | None, compare: Compare, texels: bool, viewed: bool) -> str:
+def _source(view: ColorProgram | None, compare: Compare, texels: bool, viewed: bool) -> str:
     """The whole fragment shader; modes are numbers by name."""
     names = {f"COMPARE_{mode}": number for number, mode in enumerate(cast("tuple[str, ...]", get_args(Compare)))}
     names |= {mode: number for number, mode in enumerate(cast("tuple[str, ...]", get_args(Channels)))}
@@ -99,6 +88,6 @@ def _source(view: GpuView | None, compare: Compare, texels: bool, viewed: bool) 
     names |= {"DATA": view is None and not viewed, "VIEWED": viewed}
     defines = [f"#define {name.replace(' ', '_').upper()} {number:d}" for name, number in names.items()]
     return "\n".join([
-        "#version 410 core", *defines, f"#define COMPARE COMPARE_{compare.upper()}", view.text if view else "",
+        "#version 410 core", *defines, f"#define COMPARE COMPARE_{compare.upper()}", view.text.body if view else "",
         *(text.body for text in installed().closure((f"viewer/{'texels' if texels else 'display'}",), "viewer")),
     ])

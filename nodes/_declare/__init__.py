@@ -18,8 +18,9 @@ Values reach `passes` and GLSL in working units (see `Slider.unit`), so no node 
 from __future__ import annotations
 
 from .curves import MAX_POINTS, curve_at, curve_knots, ramp_at, ramp_knots
-from .draw import Argument, Draw, Drawn, Pixels
+from .draw import Affine, Argument, Draw, Drawn, Kernel, Pixels
 from .node import Filter, Node, Pointwise, Source, Temporal
+from .recolor import ColorChange, LookupFile, SpaceChange
 from .sockets import Color, Edge, Field, Image, Kind, Number, Output, Size, Socket, Vector, glsl_type
 from .values import (
     RGBA,
@@ -43,9 +44,9 @@ from .values import (
 )
 
 __all__ = [
-    "MAX_POINTS", "RGBA", "Argument", "Color", "Curve", "Doc", "Draw", "Drawn", "Edge", "Field", "File", "FilePath",
-    "Filter", "Fraction", "Handle", "Image", "Kernel3x3", "Kind", "Node", "Number", "Output", "Pixels", "Plain",
-    "Points", "Pointwise", "Position", "Ramp", "Size", "Slider", "Socket", "Source", "Stops", "Swatch", "Temporal",
-    "Unit", "Value", "Vector",
+    "MAX_POINTS", "RGBA", "Affine", "Argument", "Color", "ColorChange", "Curve", "Doc", "Draw", "Drawn", "Edge",
+    "Field", "File", "FilePath", "Filter", "Fraction", "Handle", "Image", "Kernel", "Kernel3x3", "Kind",
+    "LookupFile", "Node", "Number", "Output", "Pixels", "Plain", "Points", "Pointwise", "Position", "Ramp", "Size",
+    "Slider", "Socket", "Source", "SpaceChange", "Stops", "Swatch", "Temporal", "Unit", "Value", "Vector",
     "curve_at", "curve_knots", "glsl_type", "ramp_at", "ramp_knots", "working_factor",
 ]

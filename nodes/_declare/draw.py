@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Literal, Protocol
 
+from .recolor import ColorChange
 from .sockets import Edge, Size, Socket
 from .values import Plain
 
@@ -16,6 +17,12 @@ class Drawn(Protocol):
 
 
 Pixels = Socket | Drawn
+Affine = tuple[float, float, float, float, float, float]
+"""A map of pixel positions, by rows: x' = a x + b y + c, y' = d x + e y + f. Pixels have their centers at .5."""
+
+Kernel = Literal["nearest", "triangle", "catmull-rom", "mitchell", "lanczos"]
+"""How pixels between pixels are made. Catmull-Rom and Mitchell: Mitchell and Netravali 1988; Lanczos has 3 lobes."""
+
 Argument = Socket | Drawn | Plain
 
 
@@ -69,6 +76,18 @@ class Draw(Protocol):
 
         The kernel's origin is its middle, pixel `size // 2`; it is not normalized. By fast Fourier transform: exact
         but for rounding, and the cost hardly depends on what the kernel holds.
+        """
+        ...
+
+    def recolor(self, image: Pixels, change: ColorChange) -> Drawn:
+        """Change straight color as OpenColorIO does, exactly; alpha is kept. It can fuse, as `point` does."""
+        ...
+
+    def place(self, image: Pixels, matrix: Affine, kernel: Kernel, edge: Edge = "black") -> Drawn:
+        """Move, turn and scale: `matrix` says where a pixel of the result lies in `image`.
+
+        The kernel widens where the picture shrinks. What was itself placed with the same edge is placed anew: pixels
+        are filtered once, and what left the frame in between is still there.
         """
         ...
 

@@ -3,9 +3,9 @@
 vec2 fourier_times(vec2 a, vec2 b) { return vec2(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x); }
 
 // One stage along an axis (Stockham's, decimated in time): `radix` transforms of `span` points become one of all. The
-// input may be shorter than `length`, the rest of it is 0; of the result, pixels from `first` on are wanted.
-vec4 fourier_stage(int axis, int radix, int span, int length, int first, float direction) {
-    int at = pixel[axis] + first, points = span * radix, frequency = at % points, apart = length / radix;
+// input may be shorter than `count`, the rest of it is 0; of the result, pixels from `first` on are wanted.
+vec4 fourier_stage(int axis, int radix, int span, int count, int first, float direction) {
+    int at = pixel[axis] + first, points = span * radix, frequency = at % points, apart = count / radix;
     ivec2 p = pixel, along = axis == 0 ? ivec2(apart, 0) : ivec2(0, apart);
     p[axis] = at / points * span + at % span + (radix - 1) * apart;
     if (2 * frequency > points) frequency -= points;  // small angles are exact ones

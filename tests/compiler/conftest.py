@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from halation.app.compiler import Picture, Plan, Probed, Request, compile_graph
 from halation.app.graph import Graph
+from halation.app.media.recolor import recolor
 
 SIZE = (37, 23)
 
@@ -24,6 +25,6 @@ def plan():
             name: Picture(name, "", item.kind, item.socket().channels, in_memory=True)
             for name, item in graph.inputs.items()
         }
-        return compile_graph(graph, Request(bindings=bindings, **asked), probe, **options)
+        return compile_graph(graph, Request(bindings=bindings, **asked), probe, colors=recolor, **options)
 
     return planned

@@ -80,8 +80,10 @@ def test_faults_name_node_file_and_line(plan, texts, message):
 
 
 def test_a_file_included_twice_appears_once(plan):
+    twice = '#include "lib/a.glsl"\n#include "lib/b.glsl"\n'
     texts = {
-        "color__exposure": '#include "lib/a.glsl"\n#include "lib/b.glsl"\n' + GOOD, "lib__a": '#include "lib/b.glsl"\n',
-        "lib__b": "float lib_b() { return 1.0; }\n",
+        "color__exposure": twice + GOOD.replace("return ", "return lib_b() * "), "lib__a": '#include "lib/b.glsl"\n',
+        "lib__b": "float lib_b() { return 1.0; }\nfloat unused() { return 2.0; }\n",
     }
-    assert plan(exposed(), library=library(**texts)).passes[0].shader.source.count("float lib_b()") == 1
+    source = plan(exposed(), library=library(**texts)).passes[0].shader.source
+    assert source.count("float lib_b()") == 1 and "unused" not in source

@@ -213,7 +213,8 @@ def test_another_display_shows_other_numbers(rng: Random) -> None:
 def test_a_view_for_shaders_declares_all_that_it_reads(display: str) -> None:
     for view in views(display):
         found = gpu_view(view, display)
-        assert f"vec4 {found.function}(vec4" in found.text and "sampler1D" not in found.text
-        assert found.text.count("uniform sampler") == len(found.luts)
-        for lut in found.luts:
-            assert lut.sampler in found.text and lut.values.dtype == np.float32 and np.isfinite(lut.values).all()
+        assert f"vec4 {found.function}(vec4" in found.text.body and "sampler1D" not in found.text.body
+        assert found.text.body.count("uniform sampler") == len(found.tables)
+        for table in found.tables:
+            values = np.asarray(table.values)
+            assert table.sampler in found.text.body and values.dtype == np.float32 and np.isfinite(values).all()

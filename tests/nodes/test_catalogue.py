@@ -179,6 +179,8 @@ def neutral_off(node: type[Node]) -> dict[str, object]:
             return {value.name: tuple(part + 0.1 for part in value.default)}
         if value.type == "curve":
             return {value.name: (0.0, 0.1, 0.3, 0.6, 1.0, 0.9)}
+        if value.type == "path":
+            return {value.name: str(ROOT / "tests/data/warm.cube")}
     raise AssertionError(f"{node.id} is neutral whatever its values are")
 
 

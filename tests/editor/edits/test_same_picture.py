@@ -14,6 +14,7 @@ from halation.app.editor.edits.room import roomy
 from halation.app.editor.edits.ungrouping import ungrouped
 from halation.app.errors import GraphError
 from halation.app.graph import Control, Graph, Group, Port, signature
+from halation.app.media.recolor import recolor
 from halation.nodes import catalogue
 from random_graphs import SIZE, random_graph
 
@@ -26,7 +27,9 @@ def keys(graph: Graph) -> dict[str, str]:
         name: Picture(name, "", item.kind, item.socket().channels, in_memory=True)
         for name, item in graph.inputs.items()
     }
-    plan = compile_graph(graph, Request(bindings=bindings), lambda picture: Probed(SIZE, False, picture.path))
+    plan = compile_graph(
+        graph, Request(bindings=bindings), lambda picture: Probed(SIZE, False, picture.path), colors=recolor
+    )
     return {name: plan.surfaces[surface].key for name, surface in plan.outputs.items()}
 
 

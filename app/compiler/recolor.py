@@ -1,0 +1,46 @@
+"""Color math that is written elsewhere: GLSL that a color library makes for one change of color."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from ...nodes import ColorChange
+from ..errors import UsageError
+from .library import Text
+
+
+@dataclass(frozen=True)
+class Table:
+    """Numbers that GLSL reads through a sampler: float32 [height, width, channels] or [depth, height, width, channels].
+
+    `linear` tables are interpolated by the sampler; all are clamped at their edges. Tables of the same sampler are the
+    same.
+    """
+
+    sampler: str
+    linear: bool
+    values: object = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class ColorProgram:
+    """GLSL 4.00 that declares `vec4 <function>(vec4)`, on straight color, and the samplers of `tables`.
+
+    Programs of the same function are the same.
+    """
+
+    function: str
+    text: Text = field(compare=False, repr=False)
+    tables: tuple[Table, ...]
+
+
+class Colors(Protocol):
+    """Writes the program of a change. Raises InputError for a file that cannot be read, UsageError for a name."""
+
+    def __call__(self, change: ColorChange) -> ColorProgram: ...
+
+
+def no_colors(change: ColorChange) -> ColorProgram:
+    """For plans of graphs that change no colors."""
+    raise UsageError(f"{change}: no color library was given to compile it")

@@ -1,0 +1,87 @@
+"""Changes of color as GLSL, written by OpenColorIO: what it computes on the CPU, exactly."""
+
+from __future__ import annotations
+
+from functools import cache, lru_cache
+from hashlib import blake2b
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...nodes import ColorChange, LookupFile, SpaceChange
+from ..compiler import ColorProgram, Table, parse
+from ..errors import InputError, UsageError
+from .color import display_processor, ocio
+from .info import fingerprint
+
+
+def recolor(change: ColorChange) -> ColorProgram:
+    """The program of a change of color.
+
+    Raises:
+        InputError: the file is missing or no table that OpenColorIO can read.
+        UsageError: a color space that nobody knows.
+    """
+    return _recolor(change, fingerprint(change.path) if isinstance(change, LookupFile) else "")
+
+
+def color_program(processor: Any, name: str) -> ColorProgram:
+    """A processor of OpenColorIO as GLSL. Functions, samplers and constants begin with `name`."""
+    api = ocio()
+    made = api.GpuShaderDesc.CreateShaderDesc(
+        language=api.GPU_LANGUAGE_GLSL_4_0, functionName=name, resourcePrefix=f"{name}_"
+    )
+    made.setAllowTexture1D(False)
+    processor.getDefaultGPUProcessor().extractGpuShaderInfo(made)
+    tables: list[Table] = []
+    for table in made.getTextures():
+        channels = 1 if table.channel == made.TEXTURE_RED_CHANNEL else 3
+        values = np.array(table.getValues(), np.float32).reshape(table.height, table.width, channels)
+        tables.append(Table(table.samplerName, table.interpolation != api.INTERP_NEAREST, values))
+    for cube in made.get3DTextures():
+        values = np.array(cube.getValues(), np.float32).reshape(*[cube.edgeLen] * 3, 3)
+        tables.append(Table(cube.samplerName, cube.interpolation != api.INTERP_NEAREST, values))
+    return ColorProgram(name, parse(f"OpenColorIO/{name}", made.getShaderText()), tuple(tables))
+
+
+def gpu_view(view: str = "", display: str = "") -> ColorProgram:
+    """The program that computes what `to_display` computes, from straight working-space color.
+
+    Raises:
+        UsageError: unknown view or display.
+    """
+    return color_program(display_processor(view, display), "view_transform")
+
+
+@cache
+def _spaces() -> Any:
+    """The config whose names changes of space go by: it knows what cameras write, too."""
+    return ocio().Config.CreateFromBuiltinConfig("ocio://studio-config-latest")
+
+
+@lru_cache(maxsize=64)
+def _recolor(change: ColorChange, mark: str) -> ColorProgram:
+    name = f"recolor_{blake2b(f'{change} {mark}'.encode(), digest_size=8).hexdigest()}"
+    return color_program(_of_file(change) if isinstance(change, LookupFile) else _of_spaces(change), name)
+
+
+def _of_spaces(change: SpaceChange) -> Any:
+    try:
+        return _spaces().getProcessor(change.source, change.target)
+    except ocio().Exception as error:
+        raise UsageError(f"no color space is called '{change.source}' or '{change.target}': {error}") from error
+
+
+def _of_file(change: LookupFile) -> Any:
+    api = ocio()
+    if not Path(change.path).is_file():
+        raise InputError(f"{change.path}: there is no such file: choose a table (.cube, .3dl, .clf, ...)")
+    api.ClearAllCaches()  # files that have changed are to be read again; a config would remember them, too
+    way = api.TRANSFORM_DIR_INVERSE if change.inverse else api.TRANSFORM_DIR_FORWARD
+    transform = api.FileTransform(change.path, interpolation=api.INTERP_BEST, direction=way)
+    try:
+        return api.Config.CreateRaw().getProcessor(transform)
+    except api.Exception as error:
+        reason = str(error).strip().splitlines()[0]
+        raise InputError(f"{change.path}: is no color table that can be read: {reason}") from error

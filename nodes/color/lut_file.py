@@ -1,0 +1,33 @@
+from typing import Annotated
+
+from .._declare import Doc, Draw, Drawn, FilePath, Filter, Fraction, Image, LookupFile, SpaceChange
+from ._spaces import SPACES, WORKING, Space
+
+
+class LutFile(Filter):
+    """Apply a lookup table or a list of color operations from a file: .cube, .3dl, .csp, .spi3d, .clf, .cc, .icc, ...
+
+    Say what the table was made for: most looks take a camera's log or sRGB codes and give codes for a display, which
+    are brought back to scene light. Computed by OpenColorIO's own GLSL, exactly: tables of three dimensions are
+    interpolated in tetrahedra. Works on the color without its alpha; alpha stays. Without a file the picture passes.
+    """
+
+    image = Image()
+    file: Annotated[FilePath, Doc("The table. A relative path starts at the folder of the graph.")] = ""
+    takes: Annotated[Space, Doc("The color space that the table takes.")] = WORKING
+    gives: Annotated[Space, Doc("The color space that the table gives.")] = WORKING
+    inverse: Annotated[bool, Doc("Undo the table, where it has an inverse.")] = False
+    amount: Annotated[Fraction, Doc("Mix with the input.")] = 1.0
+
+    def identity(self) -> str | None:
+        return "image" if not self.file or self.amount == 0.0 else None
+
+    def passes(self, draw: Draw) -> Drawn:
+        first, last = (self.gives, self.takes) if self.inverse else (self.takes, self.gives)
+        color = draw.point("lut_file_color", self.image)
+        if first != WORKING:
+            color = draw.recolor(color, SpaceChange(SPACES[WORKING], SPACES[first]))
+        color = draw.recolor(color, LookupFile(self.file, self.inverse))
+        if last != WORKING:
+            color = draw.recolor(color, SpaceChange(SPACES[last], SPACES[WORKING]))
+        return draw.point("lut_file", self.image, changed=color, amount=self.amount)
