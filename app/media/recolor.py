@@ -26,6 +26,12 @@ def recolor(change: ColorChange) -> ColorProgram:
     return _recolor(change, fingerprint(change.path) if isinstance(change, LookupFile) else "")
 
 
+@cache
+def table_endings() -> frozenset[str]:
+    """Endings of names of files that hold tables of colors, such as `.cube`."""
+    return frozenset(f".{ending.lower()}" for _, ending in ocio().FileTransform.getFormats())
+
+
 def color_program(processor: Any, name: str) -> ColorProgram:
     """A processor of OpenColorIO as GLSL. Functions, samplers and constants begin with `name`."""
     api = ocio()

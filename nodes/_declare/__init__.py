@@ -30,6 +30,7 @@ from .values import (
     FilePath,
     Fraction,
     Handle,
+    Holds,
     Kernel3x3,
     Plain,
     Points,
@@ -38,6 +39,7 @@ from .values import (
     Slider,
     Stops,
     Swatch,
+    TablePath,
     Unit,
     Value,
     working_factor,
@@ -45,8 +47,9 @@ from .values import (
 
 __all__ = [
     "MAX_POINTS", "RGBA", "Affine", "Argument", "Color", "ColorChange", "Curve", "Doc", "Draw", "Drawn", "Edge",
-    "Field", "File", "FilePath", "Filter", "Fraction", "Handle", "Image", "Kernel", "Kernel3x3", "Kind",
+    "Field", "File", "FilePath", "Filter", "Fraction", "Handle", "Holds", "Image", "Kernel", "Kernel3x3", "Kind",
     "LookupFile", "Node", "Number", "Output", "Pixels", "Plain", "Points", "Pointwise", "Position", "Ramp", "Size",
-    "Slider", "Socket", "Source", "SpaceChange", "Stops", "Swatch", "Temporal", "Unit", "Value", "Vector",
+    "Slider", "Socket", "Source", "SpaceChange", "Stops", "Swatch", "TablePath", "Temporal", "Unit", "Value",
+    "Vector",
     "curve_at", "curve_knots", "glsl_type", "ramp_at", "ramp_knots", "working_factor",
 ]

@@ -42,11 +42,16 @@ class Doc:
     text: str
 
 
+Holds = Literal["picture", "table"]
+"""What is in a file: pixels, or a table of colors (.cube, .3dl, ...)."""
+
+
 @dataclass(frozen=True)
 class File:
-    """The value is a path; `layer` names the sibling value that picks a layer of that file, if any."""
+    """The value is a path of a picture, or of a table of colors. `layer` names the value that picks a layer of it."""
 
     layer: str = ""
+    holds: Holds = "picture"
 
 
 @dataclass(frozen=True)
@@ -81,6 +86,7 @@ Fraction = Annotated[float, Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=
 RGBA = Annotated[tuple[float, float, float, float], Swatch()]
 Position = Annotated[tuple[float, float], Handle()]
 FilePath = Annotated[str, File()]
+TablePath = Annotated[str, File(holds="table")]
 Points = Annotated[tuple[float, ...], Curve()]
 Stops = Annotated[tuple[float, ...], Ramp()]
 Kernel3x3 = tuple[float, float, float, float, float, float, float, float, float]
@@ -108,6 +114,8 @@ class Value:
     doc: str = ""
     layer_by: str = ""
     """The value that picks a layer of this file."""
+    holds: Holds = "picture"
+    """What a file is expected to be."""
     handle: bool = False
     """True for a position that is dragged in the viewer."""
 
@@ -150,7 +158,7 @@ def read_value(name: str, hint: Any, default: Any) -> Value:
         elif isinstance(note, Swatch):
             found["type"] = "color"
         elif isinstance(note, File):
-            found |= {"type": "path", "layer_by": note.layer}
+            found |= {"type": "path", "layer_by": note.layer, "holds": note.holds}
         elif isinstance(note, Handle):
             found |= {"handle": True, "low": 0.0, "high": 1.0}
         elif isinstance(note, Curve):

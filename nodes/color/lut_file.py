@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, FilePath, Filter, Fraction, Image, LookupFile, SpaceChange
+from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, LookupFile, SpaceChange, TablePath
 from ._spaces import SPACES, WORKING, Space
 
 
@@ -13,7 +13,7 @@ class LutFile(Filter):
     """
 
     image = Image()
-    file: Annotated[FilePath, Doc("The table. A relative path starts at the folder of the graph.")] = ""
+    file: Annotated[TablePath, Doc("The table. A relative path starts at the folder of the graph.")] = ""
     takes: Annotated[Space, Doc("The color space that the table takes.")] = WORKING
     gives: Annotated[Space, Doc("The color space that the table gives.")] = WORKING
     inverse: Annotated[bool, Doc("Undo the table, where it has an inverse.")] = False

@@ -8,12 +8,12 @@ from imgui_bundle import imgui
 
 from ....nodes import Plain, Value
 from ...graph import Port
-from ..dialogs import Browse
 from ..editor import Editor
 from ..inspector.choice_field import toggle_field
 from ..inspector.color_field import color_picker
 from ..inspector.colors import intensity
 from ..inspector.fields import Edit, Fields
+from ..inspector.file_field import browse
 from ..inspector.number_field import number_field, row_of_numbers
 from ..inspector.text_field import text_field
 from .brush import TEXT, Brush, on_nodes
@@ -135,9 +135,8 @@ class Live:
         plain = editor.session.value(port)
         if opening == "path":
             self.open = None
-            editor.dialogs.browse = Browse(
-                f"Choose a file for {port}", "image",
-                lambda path: editor.attempt(lambda: editor.session.set(port, editor.session.relative(path))),
+            editor.dialogs.browse = browse(
+                value, lambda path: editor.attempt(lambda: editor.session.set(port, editor.session.relative(path)))
             )
             return
         if opening:

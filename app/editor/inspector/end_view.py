@@ -15,7 +15,7 @@ from ..toolkit.words import tip
 from .choice_field import choose
 from .color_field import color_field
 from .fields import Edit, Fields
-from .file_field import FileField
+from .file_field import PICTURE, FileField
 from .heading import faults, heading, name_field
 from .number_field import number_field, row_of_numbers
 from .text_field import text_field
@@ -75,12 +75,12 @@ class EndView:
                 rows.act(lambda: session.bind(name, None))
         rows.name(f"{key} file", "file", doc="What comes in unless something else is linked or bound")
         edit = self._files.path(
-            rows, f"{key} file", end.file, rows.field(), lambda path: session.set_input(name, file=path)
+            rows, f"{key} file", end.file, PICTURE, rows.field(), lambda path: session.set_input(name, file=path)
         )
         if edit:
             rows.act(lambda: session.set_input(name, file=str(edit.value)))
         if not bound:
-            self._files.about(rows, end.file, end.layer)
+            self._files.about(rows, end.file, PICTURE, end.layer)
         rows.name(f"{key} layer", "layer", doc="The layer of that file")
         layer = self._files.layer(rows, f"{key} layer", end.file, end.layer, rows.field())
         if layer:

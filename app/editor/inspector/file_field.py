@@ -24,7 +24,17 @@ if TYPE_CHECKING:
     from .rows import Rows
 
 _TEXT = Value("path", "text", "")
+PICTURE = Value("file", "path", "")
+"""What a graph input takes."""
+
 FIRST = "first color layer"
+
+
+def browse(declaration: Value, then: Callable[[Path], object]) -> Browse:
+    """The question for a file of the kind that a value takes."""
+    if declaration.holds == "table":
+        return Browse("Choose a Color Table", "table", then)
+    return Browse("Choose an Image", "image", then)
 
 
 class FileField:
@@ -40,10 +50,12 @@ class FileField:
         self.known.close()
         self._textures.clear()
 
-    def path(self, rows: Rows, key: str, value: str, width: float, then: Callable[[str], object]) -> Edit | None:
+    def path(
+        self, rows: Rows, key: str, value: str, declaration: Value, width: float, then: Callable[[str], object]
+    ) -> Edit | None:
         """The path, red if nothing is there, and a button that asks for one."""
         side = imgui.get_frame_height()
-        missing = bool(value) and isinstance(self.known.header(self._full(rows, value)), str)
+        missing = bool(value) and bool(self._fault(rows, value, declaration))
         edit = text_field(
             self.fields, key, value, _TEXT, width - side - rows.gap * 0.5, hint="no file", fault=missing,
             elide_left=True,
@@ -53,23 +65,22 @@ class FileField:
         imgui.same_line(0.0, rows.gap * 0.5)
         if rows.icon(icons.ICON_FA_FOLDER_OPEN, f"browse {key}", "Choose a file"):
             editor = rows.editor
-            editor.dialogs.browse = Browse(
-                "Choose an Image", "image", lambda path: editor.attempt(lambda: then(editor.session.relative(path)))
+            editor.dialogs.browse = browse(
+                declaration, lambda path: editor.attempt(lambda: then(editor.session.relative(path)))
             )
         rows.editor.places[f"field {key}"] = union(first, item_rect())
         return edit
 
-    def about(self, rows: Rows, value: str, layer: str) -> None:
+    def about(self, rows: Rows, value: str, declaration: Value, layer: str) -> None:
         """One line on what is in the file, or a sentence on why nothing is."""
         if not value:
             return
-        header = self.known.header(self._full(rows, value))
-        if isinstance(header, ImageInfo):
-            rows.field_note(described(header, layer))
-        elif header is None:
-            rows.field_note("reading…")
-        else:
-            rows.field_note(header.removeprefix(f"{self._full(rows, value)}: "), rows.palette.error)
+        fault = self._fault(rows, value, declaration)
+        if fault:
+            rows.field_note(fault.removeprefix(f"{self._full(rows, value)}: "), rows.palette.error)
+        elif declaration.holds == "picture":
+            header = self.known.header(self._full(rows, value))
+            rows.field_note(described(header, layer) if isinstance(header, ImageInfo) else "reading…")
 
     def layer(self, rows: Rows, key: str, file: str, value: str, width: float) -> Edit | None:
         """The layer: a list of those in the file, or plain text while the file cannot be read."""
@@ -116,6 +127,14 @@ class FileField:
             lines.add_image(texture, (left, top), (left + wide, top + high))
         write((rect[0] + size[0] + rows.gap * 1.5, rect[1], rect[2], rect[3]), name, rows.palette.text)
         return pressed
+
+    def _fault(self, rows: Rows, value: str, declaration: Value) -> str:
+        """Why the file cannot be read, as far as is known."""
+        path = self._full(rows, value)
+        if declaration.holds == "table":
+            return self.known.fault(path)
+        header = self.known.header(path)
+        return header if isinstance(header, str) else ""
 
     def _full(self, rows: Rows, value: str) -> Path:
         return Path(rows.editor.session.graph.folder, value)

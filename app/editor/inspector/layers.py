@@ -33,6 +33,10 @@ class Layers:
         found = fault or self._made.get((str(path), version, None))
         return found if isinstance(found, ImageInfo | str) else None
 
+    def fault(self, path: Path) -> str:
+        """Why there is no such file, or ""."""
+        return self._version(path)[1]
+
     def picture(self, path: Path, layer: str) -> Array | None:
         """A layer as [h, w, 3] of uint8, at most 96 x 54; None while it is being read, or if it cannot be."""
         version, fault = self._version(path)

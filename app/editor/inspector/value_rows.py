@@ -64,7 +64,7 @@ class ValueRows:
             if control:
                 self._mark(rows, port, control)
             if declaration.type == "path" and isinstance(value, str):
-                self.files.about(rows, value, _layer_of(graph, port, declaration))
+                self.files.about(rows, value, declaration, _layer_of(graph, port, declaration))
         if self.fields.eyedropper == key:
             editor.viewer.picking = key
         self._targets[key] = ports, declaration
@@ -95,7 +95,7 @@ class ValueRows:
         port = ports[0]
         graph = rows.editor.session.graph
         if declaration.type == "path" and isinstance(value, str):
-            return self.files.path(rows, str(port), value, width, lambda path: apply(
+            return self.files.path(rows, str(port), value, declaration, width, lambda path: apply(
                 rows.editor.session, ports, declaration, Edit(path)
             ))
         file = _file_of(graph, port)

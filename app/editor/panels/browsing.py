@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from time import localtime, strftime
 
+from ...media.recolor import table_endings
 from ...media.thumbnail import readable
 from ..dialogs import Browse
 from ..editor import Editor
@@ -105,6 +106,8 @@ def endings(browse: Browse) -> frozenset[str]:
     """Which files are listed."""
     if browse.purpose == "image":
         return readable()
+    if browse.purpose == "table":
+        return table_endings()
     return frozenset({".json" if browse.purpose == "graph" else Path(browse.name).suffix.lower() or ".exr"})
 
 
