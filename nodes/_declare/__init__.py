@@ -17,6 +17,7 @@ Values reach `passes` and GLSL in working units (see `Slider.unit`), so no node 
 
 from __future__ import annotations
 
+from .camera import Camera, look_at
 from .curves import MAX_POINTS, curve_at, curve_knots, ramp_at, ramp_knots
 from .draw import Affine, Argument, Draw, Drawn, Kernel, Pixels
 from .node import Filter, Node, Pointwise, Source, Temporal
@@ -46,10 +47,10 @@ from .values import (
 )
 
 __all__ = [
-    "MAX_POINTS", "RGBA", "Affine", "Argument", "Color", "ColorChange", "Curve", "Doc", "Draw", "Drawn", "Edge",
-    "Field", "File", "FilePath", "Filter", "Fraction", "Handle", "Holds", "Image", "Kernel", "Kernel3x3", "Kind",
-    "LookupFile", "Node", "Number", "Output", "Pixels", "Plain", "Points", "Pointwise", "Position", "Ramp", "Size",
-    "Slider", "Socket", "Source", "SpaceChange", "Stops", "Swatch", "TablePath", "Temporal", "Unit", "Value",
-    "Vector",
-    "curve_at", "curve_knots", "glsl_type", "ramp_at", "ramp_knots", "working_factor",
+    "MAX_POINTS", "RGBA", "Affine", "Argument", "Camera", "Color", "ColorChange", "Curve", "Doc", "Draw", "Drawn",
+    "Edge", "Field", "File", "FilePath", "Filter", "Fraction", "Handle", "Holds", "Image", "Kernel", "Kernel3x3",
+    "Kind", "LookupFile", "Node", "Number", "Output", "Pixels", "Plain", "Points", "Pointwise", "Position", "Ramp",
+    "Size", "Slider", "Socket", "Source", "SpaceChange", "Stops", "Swatch", "TablePath", "Temporal", "Unit",
+    "Value", "Vector",
+    "curve_at", "curve_knots", "glsl_type", "look_at", "ramp_at", "ramp_knots", "working_factor",
 ]

@@ -4,14 +4,16 @@ from .._declare import Doc, Field, Image, Output, Pointwise, Slider, Vector
 
 
 class Noise(Pointwise):
-    """Random but repeatable texture, layered in octaves (fBm), from integer hashes: the same on every device.
+    """Random but repeatable texture, layered in octaves, from integer hashes: the same on every device.
 
-    Hash: pcg3d (Jarzynski and Olano, 2020). Gradient noise: Perlin (2002). The layers are divided by the sum of their
-    strengths, then scaled by the contrast: every output keeps its range whatever the values.
+    Hash: pcg3d (Jarzynski and Olano, 2020). Gradient noise: Perlin (2002); simplex: Perlin (2001), Gustavson and McEwan
+    (2022). Layers: fBm (Mandelbrot and van Ness, 1968), ridged (Musgrave, 1994), turbulence (Perlin, 1985), warped
+    (Quilez, 2002). They are divided by the sum of their strengths: every output keeps its range whatever the values.
     """
 
-    kind: Annotated[Literal["gradient", "value", "white"], Doc(
-        "Gradient is smooth and even (Perlin), value is smooth and blotchy, white has no relation between neighbors."
+    kind: Annotated[Literal["gradient", "value", "white", "simplex"], Doc(
+        "Gradient is smooth and even (Perlin), value is smooth and blotchy, white has no relation between neighbors, "
+        "simplex is like gradient with more contrast, and as strong at every evolution."
     )] = "gradient"
     size: Annotated[float, Slider(1.0, 512.0, unit="px", minimum=0.01, doc="Size of the largest features.")] = 64.0
     octaves: Annotated[int, Slider(
@@ -25,13 +27,22 @@ class Noise(Pointwise):
     )] = 0.5
     contrast: Annotated[float, Slider(
         0.0, 4.0, unit="ratio", minimum=0.0, maximum=64.0,
-        doc="1 keeps the layers' own range, of which they rarely reach the ends; above, what passes the ends is cut."
+        doc="1 keeps the noise's own range, of which it rarely reaches the ends; above, what passes the ends is cut."
     )] = 2.0
     seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another pattern.")] = 0
     evolution: Annotated[float, Slider(
         0.0, 10.0, unit="ratio", doc="Changes the pattern smoothly; white noise is new at every whole number."
     )] = 0.0
+    fractal: Annotated[Literal["fbm", "ridged", "turbulence", "warped"], Doc(
+        "How layers add up. Fbm: as they are, for clouds. Ridged: sharp crests, fine ones on coarse ones only, for "
+        "mountains and lightning. Turbulence: sharp creases, for smoke. Warped: fbm bent by fbm, for marble."
+    )] = "fbm"
+    warp: Annotated[float, Slider(
+        0.0, 8.0, unit="ratio", doc="How far warped noise is bent, in sizes."
+    )] = 2.0
 
     out = Output(Image(doc="The value as an opaque gray."))
-    value = Output(Field(doc="0..1, 0.5 on average."))
-    vector = Output(Vector(width=2, doc="Two more noises, each -1..1 with average 0: an offset for Displace."))
+    value = Output(Field(doc="0..1; of fbm 0.5 on average."))
+    vector = Output(Vector(
+        width=2, doc="Two more noises, each -1..1, of fbm with average 0: an offset for Displace. See also Curl Noise."
+    ))

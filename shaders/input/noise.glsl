@@ -1,23 +1,50 @@
 #include "lib/finite.glsl"
 #include "lib/noise.glsl"
 
-void noise(
-    int kind, float size, int octaves, float lacunarity, float gain, float contrast, int seed, float evolution,
-    out vec4 result, out float value, out vec2 vector
+vec3 noise_layer(int kind, vec3 p, uvec3 stream) {
+    if (kind == KIND_VALUE) return value_noise(p, stream);
+    if (kind == KIND_WHITE) return white_noise(p, stream);
+    if (kind == KIND_SIMPLEX) return simplex_noise(p, stream);
+    return gradient_noise(p, stream);
+}
+
+// Three independent noises, each within -1..1.
+vec3 noise_layers(
+    int kind, int fractal, vec3 position, int octaves, float lacunarity, float gain, float contrast, int seed
 ) {
-    vec3 position = vec3((vec2(pixel) + 0.5) / max(finite(size), 1e-3), finite(evolution));
-    vec3 sum = vec3(0.0);
+    vec3 sum = vec3(0.0), carried = vec3(1.0);
     float strength = 1.0, total = 0.0;
     for (int octave = 0; octave < min(octaves, 16); octave++) {
         uvec3 stream = pcg3d(uvec3(uint(seed), uint(octave), 0u));
-        if (kind == KIND_GRADIENT) sum += strength * gradient_noise(position, stream);
-        if (kind == KIND_VALUE) sum += strength * value_noise(position, stream);
-        if (kind == KIND_WHITE) sum += strength * white_noise(position, stream);
+        vec3 layer = noise_layer(kind, position, stream);
+        if (fractal == FRACTAL_RIDGED || fractal == FRACTAL_TURBULENCE) layer = min(abs(layer * contrast), 1.0);
+        if (fractal == FRACTAL_RIDGED) {
+            layer = (1.0 - layer) * (1.0 - layer) * carried;
+            carried = min(2.0 * layer, 1.0);  // finer layers show on the ridges of coarser ones only
+        }
+        sum += strength * layer;
         total += strength;
-        strength *= finite(gain);
-        position *= finite(lacunarity);
+        strength *= gain;
+        position *= lacunarity;
     }
-    sum = clamp(finite(sum / max(total, 1e-6)) * finite(contrast), -1.0, 1.0);
+    sum = finite(sum / max(total, 1e-6));
+    if (fractal == FRACTAL_RIDGED || fractal == FRACTAL_TURBULENCE) return sum * 2.0 - 1.0;
+    return clamp(sum * contrast, -1.0, 1.0);
+}
+
+void noise(
+    int kind, float size, int octaves, float lacunarity, float gain, float contrast, int seed, float evolution,
+    int fractal, float warp, out vec4 result, out float value, out vec2 vector
+) {
+    lacunarity = finite(lacunarity);
+    gain = finite(gain);
+    contrast = finite(contrast);
+    vec3 position = vec3((vec2(pixel) + 0.5) / max(finite(size), 1e-3), finite(evolution));
+    if (fractal == FRACTAL_WARPED) {
+        vec3 bend = noise_layers(kind, fractal, position, octaves, lacunarity, gain, 1.0, seed);
+        position.xy += finite(warp) * bend.yz;
+    }
+    vec3 sum = noise_layers(kind, fractal, position, octaves, lacunarity, gain, contrast, seed);
     value = 0.5 + 0.5 * sum.x;
     vector = sum.yz;
     result = vec4(vec3(value), 1.0);

@@ -1,5 +1,5 @@
-// The contour of a mask, where it crosses one half. First every pixel learns the nearest row within its column that holds
-// a pixel of the mask (x) and one outside of it (y), by jump flooding (Rong and Tan 2006), which is exact along a line.
+// The contour of a mask, where it crosses one half. First every pixel learns the nearest row within its column that
+// holds a pixel of the mask (x) and one outside of it (y), by jump flooding (Rong and Tan 2006), exact along a line.
 
 const float CONTOUR_NONE = -1.0;
 
@@ -26,3 +26,31 @@ float contour_before(float covered, float covered_back) {
 }
 
 float contour_covered(float mask, bool kind) { return kind ? clamp(mask, 0.0, 1.0) : 1.0 - clamp(mask, 0.0, 1.0); }
+
+// One step of the flooding, in a pass that reads `seeds`: the rows found by the pixels so far above and below.
+vec2 contour_columns(vec2 here, int reach) {
+    vec2 above = seeds_at(pixel - ivec2(0, reach)), below = seeds_at(pixel + ivec2(0, reach));
+    return contour_nearer(contour_nearer(here, above, float(pixel.y)), below, float(pixel.y));
+}
+
+// Distance to the contour, below 0 inside, `most` where it is farther, in a pass that reads `columns` and `mask`: the
+// nearest of what the columns found, ever farther along the row, until no column can hold anything nearer.
+float contour_distance(vec2 here, float most) {
+    bool mine = here.x == float(pixel.y);
+    float nearest = most * most;
+    ivec2 seed = ivec2(-1);
+    for (int away = 0; away < extent.x && float(away * away) < nearest; ++away)
+        for (int side = -1; side <= 1; side += 2) {
+            int x = pixel.x + side * away;
+            if (x < 0 || x >= extent.x) continue;
+            vec2 rows = columns_at(ivec2(x, pixel.y));
+            float row = mine ? rows.y : rows.x, up = row - float(pixel.y), found = float(away * away) + up * up;
+            if (row >= 0.0 && found < nearest) nearest = found, seed = ivec2(x, row);
+        }
+    float far = sqrt(nearest);
+    if (seed.x >= 0)
+        far -= contour_before(
+            contour_covered(mask_at(seed), !mine), contour_covered(mask_at(seed + contour_step(pixel - seed)), !mine)
+        );
+    return mine ? -far : far;
+}

@@ -18,3 +18,9 @@ vec3 unit_float(uvec3 bits) { return vec3(bits >> 8u) * (1.0 / 16777216.0); }
 
 // Three independent uniform numbers for a lattice cell.
 vec3 hash3(ivec3 cell, uvec3 seed) { return unit_float(pcg3d(uvec3(cell) + seed)); }
+
+// Three independent normal numbers for a lattice cell, mean 0 and variance 1 (Box and Muller 1958).
+vec3 normal3(ivec3 cell, uvec3 seed) {
+    uvec3 bits = pcg3d(uvec3(cell) + seed);
+    return sqrt(-2.0 * log(1.0 - unit_float(bits))) * cos(6.28318531 * unit_float(pcg3d(bits)));
+}

@@ -42,3 +42,59 @@ vec3 gradient_noise(vec3 p, uvec3 seed) {
     vec3 near = mix(corners[0], corners[1], t.y), far = mix(corners[2], corners[3], t.y);
     return mix(near, far, t.z) * 0.9649214;
 }
+
+// The corners of the tetrahedron around p and the ways from them to p. Skewed along the diagonal, a tetrahedron is a path
+// from one corner of a cube to the opposite one, along the axis that p is farthest on first (Gustavson and McEwan 2022).
+void simplex_corners(vec3 p, out ivec3 cells[4], out vec3 away[4]) {
+    p += (p.x + p.y + p.z) / 3.0;
+    vec3 inside = fract(p);
+    vec3 later = step(inside.xyx, inside.yzz), sooner = 1.0 - later;
+    vec3 a = vec3(sooner.z, later.xy), b = vec3(sooner.xy, later.z);
+    vec3 path[4] = vec3[4](vec3(0.0), min(a, b), max(a, b), vec3(1.0));
+    for (int i = 0; i < 4; i++) {
+        cells[i] = lattice_cell(p) + ivec3(path[i]);
+        away[i] = inside - path[i];
+        away[i] -= (away[i].x + away[i].y + away[i].z) / 6.0;
+    }
+}
+
+// What a corner still counts at a place, to the fourth root: nothing where the next tetrahedron begins, so that three
+// derivatives are continuous.
+float simplex_reach(vec3 away) { return max(0.5 - dot(away, away), 0.0); }
+
+const float SIMPLEX_SCALE = 76.88075;  // one over the largest value that it could reach otherwise
+const float SIMPLEX_DENSITY = 0.5;  // tetrahedra to a cell: makes features about as large as those of gradient noise
+const float SIMPLEX_STEEPEST = 3.44793;  // the longest slope that simplex_noise could have within a plane of two axes
+
+// Perlin 2001, with the edges and the range of gradient noise.
+vec3 simplex_noise(vec3 p, uvec3 seed) {
+    ivec3 cells[4];
+    vec3 away[4];
+    simplex_corners(p * SIMPLEX_DENSITY, cells, away);
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < 4; i++) {
+        uvec3 bits = pcg3d(uvec3(cells[i]) + seed);
+        vec3 d = away[i];
+        float reach = simplex_reach(d), square = reach * reach;
+        sum += square * square * vec3(edge_gradient(bits.x, d), edge_gradient(bits.y, d), edge_gradient(bits.z, d));
+    }
+    return sum * SIMPLEX_SCALE;
+}
+
+// The first of the three simplex noises in w, its slope in xyz.
+vec4 simplex_slope(vec3 p, uvec3 seed) {
+    ivec3 cells[4];
+    vec3 away[4];
+    simplex_corners(p * SIMPLEX_DENSITY, cells, away);
+    vec4 sum = vec4(0.0);
+    for (int i = 0; i < 4; i++) {
+        uint bits = pcg3d(uvec3(cells[i]) + seed).x;
+        float reach = simplex_reach(away[i]), cube = reach * reach * reach, along = edge_gradient(bits, away[i]);
+        vec3 edge = vec3(
+            edge_gradient(bits, vec3(1.0, 0.0, 0.0)), edge_gradient(bits, vec3(0.0, 1.0, 0.0)),
+            edge_gradient(bits, vec3(0.0, 0.0, 1.0))
+        );
+        sum += cube * vec4(reach * edge - 8.0 * along * away[i], reach * along);
+    }
+    return sum * SIMPLEX_SCALE * vec4(vec3(SIMPLEX_DENSITY), 1.0);
+}

@@ -1,14 +1,15 @@
-"""Heat haze: what it promises, read off a picture that holds its own positions."""
+"""Heat haze against scipy at positions computed in 64 bits, and what it promises."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.app.graph import Graph, Input, Output, Port
+from conftest import graph_of
+from halation.app.graph import Port
 from halation.app.renderer import Wanted
-from halation.nodes import Kind
 from halation.nodes.distort.heat_haze import HeatHaze
-from warps import waves
+from noises import gradient_noise, places
+from warps import looked_up, waves
 
 
 def ramp(width: int, height: int) -> np.ndarray:
@@ -17,12 +18,35 @@ def ramp(width: int, height: int) -> np.ndarray:
     return np.stack([x, y, 0 * x, 0 * x + 1], -1).astype(np.float32)
 
 
-def at_frame(renderer, node: HeatHaze, picture: np.ndarray, frame: int) -> np.ndarray:
-    graph = Graph().add("node", node).add_input("image", Input(Kind.IMAGE, 4)).add_output("out", Output(Kind.IMAGE, 4))
-    graph = graph.connect(Port("inputs", "image"), Port("node", "image"))
-    graph = graph.connect(Port("node", "out"), Port("outputs", "out"))
-    wanted = Wanted({"image": picture}, {"out": Port("outputs", "out")}, precision="float", frame=frame)
-    return renderer.render(graph, wanted)["out"]
+def at_frame(
+    renderer, node: HeatHaze, picture: np.ndarray, frame: int, heat: np.ndarray | None = None
+) -> np.ndarray:
+    arrays = {"image": picture} if heat is None else {"image": picture, "heat": heat}
+    wanted = Wanted(arrays, {"out": Port("outputs", "out")}, precision="float", frame=frame)
+    return renderer.render(graph_of(node, arrays), wanted)["out"]
+
+
+def haze(node: HeatHaze, width: int, height: int, frame: int) -> np.ndarray:
+    """How far every pixel looks away where it is hot, in pixels: [h, w, 2]."""
+    risen = np.array([0.0, height * node.rise / node.rate * frame, 0.0])
+    p = places(width, height, 1.0, node.change / node.rate * frame) + risen
+    p = p / [node.size * height, node.size * node.stretch * height, 1.0]
+    coarse, fine = (gradient_noise(p * [2**i, 2**i, 1], np.array([node.seed, i, 0], np.uint32)) for i in (0, 1))
+    return node.amount * height * (2 * coarse + fine)[..., :2] / 3
+
+
+@pytest.mark.parametrize("size", [(33, 26), (3, 2), (1, 1)])
+@pytest.mark.parametrize(("frame", "values"), [
+    (1, {}), (17, {"amount": 0.05, "size": 0.2, "stretch": 0.6, "rise": -1.0, "rate": 30.0, "seed": 8}),
+])
+def test_it_is_scipys_at_these_positions(renderer, hdr, edge, size, frame, values):
+    node, picture = HeatHaze(edge=edge.name, **values), hdr(*size)
+    heat = np.random.default_rng(1).uniform(-1, 1, size[::-1]).astype(np.float32)
+    y, x = np.mgrid[: size[1], : size[0]] + 0.5
+    away = heat[..., None].astype(np.float64) * haze(node, *size, frame)
+    expected = looked_up(picture, x + away[..., 0], y + away[..., 1], edge.scipy_map)
+    found = at_frame(renderer, node, picture, frame, heat)
+    assert np.abs(found - expected).max() < 2e-5 * picture.max()
 
 
 def test_nothing_moves_farther_than_the_amount_and_half_of_it_half_as_far(run):

@@ -1,0 +1,117 @@
+"""Cameras: from places in the world to places in the picture, and back."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+Vector3 = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A perspective camera at one moment.
+
+    `rows` are those of the 3 x 4 matrix that takes a place in the world (x, y, z, 1) to (u d, v d, d): u and v are
+    fractions of the picture from its top left, d is the planar depth in world units, positive in front. The size of
+    the picture does not matter.
+    """
+
+    rows: tuple[float, ...]
+
+    @property
+    def eye(self) -> Vector3:
+        """Where it stands."""
+        x, y, z = (row[3] for row in _in_fours(self.inverse))
+        return x, y, z
+
+    @property
+    def forward(self) -> Vector3:
+        """The unit vector along which depth grows."""
+        return _unit(self._row(2))
+
+    @property
+    def right(self) -> Vector3:
+        """The unit vector towards the right edge of the picture."""
+        return _unit(_without(self._row(0), self.forward))
+
+    @property
+    def down(self) -> Vector3:
+        """The unit vector towards the lower edge of the picture."""
+        return _unit(_without(self._row(1), self.forward))
+
+    @property
+    def focal(self) -> tuple[float, float]:
+        """Focal lengths as fractions of the picture's width and height."""
+        forward = self.forward
+        return math.hypot(*_without(self._row(0), forward)), math.hypot(*_without(self._row(1), forward))
+
+    @property
+    def center(self) -> tuple[float, float]:
+        """Where the optical axis meets the picture, as fractions of it."""
+        forward = self.forward
+        return _dot(self._row(0), forward), _dot(self._row(1), forward)
+
+    @property
+    def inverse(self) -> tuple[float, ...]:
+        """The rows of the 3 x 4 matrix that takes (u d, v d, d, 1) to a place in the world."""
+        a, b, c = (self._row(index) for index in range(3))
+        columns = [_cross(b, c), _cross(c, a), _cross(a, b)]
+        volume = _dot(a, columns[0])
+        offsets = self.rows[3], self.rows[7], self.rows[11]
+        rows: list[float] = []
+        for axis in range(3):
+            row = [column[axis] / volume for column in columns]
+            rows += [*row, -sum(part * offset for part, offset in zip(row, offsets, strict=True))]
+        return tuple(rows)
+
+    def project(self, place: Vector3) -> Vector3:
+        """u, v and depth of a place in the world; what lies in the camera's own plane has none and raises."""
+        u, v, depth = (_dot(self._row(index), place) + self.rows[4 * index + 3] for index in range(3))
+        return u / depth, v / depth, depth
+
+    def _row(self, index: int) -> Vector3:
+        x, y, z = self.rows[4 * index : 4 * index + 3]
+        return x, y, z
+
+
+def look_at(eye: Vector3, target: Vector3, focal: tuple[float, float], up: Vector3 = (0.0, 0.0, 1.0)) -> Camera:
+    """A camera at `eye` that has `target` in the middle, with the focal lengths of `Camera.focal`."""
+    forward = _unit(_minus(target, eye))
+    right = _cross(forward, up)
+    if math.hypot(*right) < 1e-9:  # straight up or down
+        right = _cross(forward, (0.0, 1.0, 0.0))
+    right = _unit(right)
+    down = _cross(forward, right)
+    rows: list[float] = []
+    for axis, length in ((right, focal[0]), (down, focal[1])):
+        row = [length * part + 0.5 * ahead for part, ahead in zip(axis, forward, strict=True)]
+        rows += [*row, -sum(part * place for part, place in zip(row, eye, strict=True))]
+    return Camera((*rows, *forward, -_dot(forward, eye)))
+
+
+def _in_fours(rows: tuple[float, ...]) -> tuple[tuple[float, ...], ...]:
+    return rows[0:4], rows[4:8], rows[8:12]
+
+
+def _dot(a: Vector3, b: Vector3) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _cross(a: Vector3, b: Vector3) -> Vector3:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def _minus(a: Vector3, b: Vector3) -> Vector3:
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def _unit(a: Vector3) -> Vector3:
+    length = math.hypot(*a)
+    return a[0] / length, a[1] / length, a[2] / length
+
+
+def _without(a: Vector3, along: Vector3) -> Vector3:
+    """What of `a` is at right angles to a unit vector."""
+    share = _dot(a, along)
+    return a[0] - share * along[0], a[1] - share * along[1], a[2] - share * along[2]

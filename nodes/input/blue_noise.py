@@ -1,0 +1,19 @@
+from typing import Annotated
+
+from .._declare import Doc, Field, Image, Output, Pointwise, Slider, Vector
+
+
+class BlueNoise(Pointwise):
+    """Random dots that never clump, the noise that is seen least: thresholds for dissolves and stipples.
+
+    Void and cluster (Ulichney, 1993): 64 x 64 cells that repeat, with 256 values of which each is as frequent as any
+    other. Next to nothing of it is left in low frequencies.
+    """
+
+    size: Annotated[float, Slider(1.0, 16.0, unit="px", minimum=0.01, doc="Side of a cell, at least one pixel.")] = 1.0
+    seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another pattern.")] = 0
+    animate: Annotated[bool, Doc("Another pattern for each frame.")] = False
+
+    out = Output(Image(doc="The value as an opaque gray."))
+    value = Output(Field(doc="Between 0 and 1, 0.5 on average."))
+    vector = Output(Vector(width=2, doc="Two more noises, each -1..1 with average 0."))
