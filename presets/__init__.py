@@ -13,3 +13,8 @@ def paths() -> tuple[Path, ...]:
 def picture(preset: Path) -> Path:
     """A small picture of what it makes of its sample."""
     return preset.parent / "pictures" / f"{preset.stem}.jpg"
+
+
+def sample() -> Path:
+    """The frame that presets and nodes are shown on: layers of a small scene."""
+    return Path(__file__).parent / "samples" / "neon.exr"

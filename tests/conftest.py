@@ -34,7 +34,7 @@ def graph_of(node: Node, inputs: Mapping[str, Array]) -> Graph:
     for name, array in inputs.items():
         socket = type(node).inputs.get(name)
         channels = 1 if array.ndim == 2 else array.shape[2]
-        if socket is not None and not socket.single:
+        if socket is not None:
             kind, width = socket.kind, socket.channels
         else:
             kind, width = _KINDS[channels], channels

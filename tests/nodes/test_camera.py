@@ -8,7 +8,7 @@ from halation.nodes import Camera, look_at
 
 
 def matrix(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """A camera of known parts: K of focal lengths and center, a rotation whose rows are right, down, forward; its eye."""
+    """A camera of known parts: focal lengths and center; a rotation of rows right, down, forward; its eye."""
     rng = np.random.default_rng(seed)
     rotation, _ = np.linalg.qr(rng.normal(size=(3, 3)))
     rotation[2] *= np.sign(np.linalg.det(rotation))

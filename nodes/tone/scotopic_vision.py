@@ -1,0 +1,68 @@
+from math import degrees, pi, sqrt
+from typing import Annotated
+
+from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Number, Pixels, Slider
+
+_DAY, _NIGHT = 17.25 * pi / 2.0 + 25.72, 2.0
+"""Finest stripes that the eye can tell apart, in cycles per degree: in bright light, and where the fit ends."""
+
+_FINEST, _STEP = 0.5, sqrt(2.0)
+"""Sigma of the least blur in pixels, and from one to the next."""
+
+
+class ScotopicVision(Filter):
+    """See as eyes do at night: dark places lose their color and sharpness, reds go dark, and what is left is bluish.
+
+    Rods replace cones by `0.04 / (0.04 + Y)` for a luminance of Y cd/m2; they see `V = Y (1.33 (1 + (Y + Z) / X) -
+    1.68)` of CIE XYZ, here scaled so that white keeps its luminance (Ward Larson et al. 1997, Krawczyk et al. 2005).
+    Sharpness follows the finest stripes that are visible at Y, `17.25 atan(1.4 log10 Y + 0.35) + 25.72` cycles per
+    degree, as far as it is below that of daylight. The picture is not darkened: take its exposure down as you like.
+    """
+
+    image = Image()
+    adaptation = Number(0.0, doc="Luminance that the eye is used to; without a link it is every pixel's own.")
+    nits: Annotated[float, Slider(
+        0.001, 10.0, unit="ratio", minimum=0.0, doc="cd/m2 of a luminance of 1 in the scene. Moonlight is about 0.05."
+    )] = 0.1
+    amount: Annotated[Fraction, Doc("0 leaves the picture as it is.")] = 1.0
+    blue_shift: Annotated[float, Slider(
+        0.0, 2.0, unit="ratio", minimum=0.0, maximum=4.0, doc="How bluish the night is: 0 gray, 1 as published."
+    )] = 1.0
+    brightness: Annotated[float, Slider(
+        0.0, 2.0, unit="ratio", minimum=0.0, doc="How bright rods see: 1 keeps the luminance of white."
+    )] = 1.0
+    blur: Annotated[float, Slider(
+        0.0, 3.0, unit="ratio", minimum=0.0, maximum=20.0, doc="Loss of sharpness: 0 none, 1 as an eye has it."
+    )] = 1.0
+    field_of_view: Annotated[float, Slider(
+        10.0, 120.0, unit="deg", minimum=0.1, maximum=360.0, doc="Of the width of the picture, for the sharpness."
+    )] = 50.0
+
+    def identity(self) -> str | None:
+        return "image" if self.amount == 0.0 else None
+
+    def passes(self, draw: Draw) -> Drawn:
+        light = draw.point(
+            "scotopic_vision_light", self.image, result=Field(),
+            adaptation=self.adaptation, local=not draw.linked(self.adaptation), nits=self.nits,
+        )
+        seen = draw.point(
+            "scotopic_vision", self.image, light=light,
+            amount=self.amount, blue_shift=self.blue_shift, brightness=self.brightness,
+        )
+        # Pixels that a stripe per degree is wide: the sigma that takes stripes down to 0.3 percent is 1 / 1.86 of it.
+        scale = self.amount * self.blur * draw.size[0] / degrees(self.field_of_view) / 1.86
+        widest = scale * sqrt(_NIGHT**-2 - _DAY**-2)
+        if widest < _FINEST / 2.0:
+            return seen
+        sigma = draw.point("scotopic_vision_sigma", result=Field(), light=light, scale=scale)
+        sigmas = [min(_FINEST, widest)]
+        while sigmas[-1] < widest:
+            sigmas.append(min(sigmas[-1] * _STEP, widest))
+        found: Pixels = seen
+        for low, high in zip([0.0, *sigmas], sigmas, strict=False):
+            found = draw.point(
+                "scotopic_vision_blur", sharp=found, soft=draw.blur(seen, high), sigma=sigma, low=low, high=high
+            )
+        assert not isinstance(found, Image)
+        return found
