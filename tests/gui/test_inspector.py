@@ -93,7 +93,7 @@ def test_numbers_are_typed(gui, file) -> None:
         assert value(ui, "tone_map.key") == 0.26
         ui.keys("Tab")
         ui.type("20")
-        assert (value(ui, "tone_map.key"), value(ui, "tone_map.maximum")) == (0.26, 20.0)
+        assert (value(ui, "tone_map.key"), value(ui, "tone_map.nits")) == (0.26, 20.0)
 
     gui(body, file)
 
