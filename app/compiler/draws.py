@@ -10,6 +10,7 @@ from typing import Literal
 from ...nodes import (
     Affine,
     Argument,
+    Camera,
     ColorChange,
     Drawn,
     Edge,
@@ -22,6 +23,7 @@ from ...nodes import (
     Plain,
     Size,
     Socket,
+    Viewpoint,
     glsl_type,
 )
 from ..errors import ShaderError
@@ -89,6 +91,12 @@ class Recorder:
 
     def linked(self, socket: Socket) -> bool:
         return socket.name in self._linked
+
+    def camera(self, socket: Viewpoint) -> Camera | None:
+        operand = self._resolved[socket.name]
+        assert isinstance(operand, Constant)
+        rows = operand.value
+        return Camera(rows) if isinstance(rows, tuple) and any(rows) else None
 
     def __call__(
         self, function: str, /, *inputs: Socket, size: Size | None = None, edge: Edge = "clamp",
@@ -257,20 +265,24 @@ class Recorder:
 
     def _transformed(self, made: Made, axis: int, length: int, wanted: tuple[int, int] | None = None) -> Made:
         """Transform along an axis; with `wanted` (the first pixel and how many) the other way."""
-        stages = fourier.stages(length)
+        stages = fourier.stages(length, made.size[axis])
         for stage in stages:
             first, count = wanted if wanted and stage is stages[-1] else (0, length)
             size = (count, made.size[1]) if axis == 0 else (made.size[0], count)
-            numbers = (axis, stage.radix, stage.span, length, first)
-            parameters = (
-                *(Parameter("int", Constant(number)) for number in numbers),
-                Parameter("float", Constant(1.0 if wanted else -1.0)),
-            )
-            accessor = Accessor("image", "vec4", made.ref)
+            apart = length // stage.radix
+            begins = not wanted and stage is stages[0]
+            # The numbers that loops run to are part of the text, so that drivers unroll them.
+            parameters = [Parameter("int", Choice(axis)), Parameter("int", Choice(stage.terms))]
+            if begins:
+                parameters += [Parameter("int", Constant(number)) for number in (stage.radix, apart)]
+            else:
+                parameters += [Parameter("int", Constant(number)) for number in (stage.span, apart, first)]
+                parameters.append(Parameter("float", Constant(1.0 if wanted else -1.0)))
             made = self._made(
                 Gather(
-                    (Shape(size, 4, data=True),), self._owner, "primitive/fourier", "fourier_stage", (accessor,),
-                    parameters, "black",
+                    (Shape(size, 4, data=True),), self._owner, "primitive/fourier",
+                    "fourier_first" if begins else "fourier_stage", (Accessor("image", "vec4", made.ref),),
+                    tuple(parameters), "black" if begins else "clamp",
                 )
             )
         return made

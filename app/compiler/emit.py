@@ -63,11 +63,15 @@ def emit(program: Program, fused: Fused, library: Library, target: Target, texel
         *_textures(names, fused, target, texels), *_targets(names, fused, target, texels),
         "ivec2 pixel = ivec2(0), extent = ivec2(0);", *_half_rounding(target, halves),
     ]
-    # What reads through the accessors, which are functions of the pass, follows them.
-    for text in (item for item in texts if not item.words & parts.accessors):
-        lines += _included(text, files, program, fused)
+    # What reads through the accessors, which are functions of the pass, follows them; so does what calls it.
+    late: list[Text] = []
+    for text in texts:
+        if text.words & parts.accessors.union(*(item.functions for item in late)):
+            late.append(text)
+        else:
+            lines += _included(text, files, program, fused)
     lines += parts.functions
-    for text in (item for item in texts if item.words & parts.accessors):
+    for text in late:
         lines += _included(text, files, program, fused)
     return Emitted(
         Shader("\n".join([*lines, *main]) + "\n", target.form, tuple(files), by_image),

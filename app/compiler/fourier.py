@@ -2,19 +2,29 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import cache
 
 _PRIMES = (2, 3, 5)
-_JOINED = {2: (8, 4, 2), 3: (9, 3), 5: (5,)}
-"""A stage reads as many pixels as its radix and takes a pass: these powers cost the least."""
+
+_PASS = 14
+"""What a stage costs besides its reads, in reads: measured on the software rasterizer."""
+
+_MOST = 20
+"""Reads of a stage at most: the driver unrolls them."""
 
 
 @dataclass(frozen=True)
 class Stage:
-    """One pass: every pixel is made of `radix` pixels of transforms of length `span`."""
+    """One pass: `radix` transforms of length `span` become one; every pixel of it is made of `terms` pixels.
+
+    Of the first stage, `terms` may be less than `radix`: what is not read is black.
+    """
 
     radix: int
     span: int
+    terms: int
 
 
 def padded_length(picture: int, kernel: int) -> int:
@@ -25,14 +35,34 @@ def padded_length(picture: int, kernel: int) -> int:
     return length
 
 
-def stages(length: int) -> tuple[Stage, ...]:
-    """The passes that transform a length that has no prime factors but 2, 3 and 5."""
-    found: list[Stage] = []
-    span = 1
-    for radix in _radices(length):
-        found.append(Stage(radix, span))
+def stages(length: int, filled: int) -> tuple[Stage, ...]:
+    """The passes that transform a length with no prime factors but 2, 3 and 5; pixels from `filled` on are black."""
+    terms = {
+        radix: math.ceil(filled * radix / length) for radix in range(1, length + 1) if length % radix == 0
+    }
+    first = min(
+        (radix for radix in terms if terms[radix] <= _MOST),
+        key=lambda radix: _PASS + terms[radix] + _cost(_radices(length // radix)),
+    )
+    found = [Stage(first, 1, terms[first])]
+    span = first
+    for radix in _radices(length // first):
+        found.append(Stage(radix, span, radix))
         span *= radix
     return tuple(found)
+
+
+@cache
+def _radices(length: int) -> tuple[int, ...]:
+    """The factors of a length that cost the least."""
+    if length == 1:
+        return ()
+    tried = ((radix, *_radices(length // radix)) for radix in range(2, _MOST + 1) if length % radix == 0)
+    return min(tried, key=_cost)
+
+
+def _cost(radices: tuple[int, ...]) -> int:
+    return sum(_PASS + radix for radix in radices)
 
 
 def _rest(length: int) -> int:
@@ -40,15 +70,3 @@ def _rest(length: int) -> int:
         while length % prime == 0:
             length //= prime
     return length
-
-
-def _radices(length: int) -> list[int]:
-    found: list[int] = []
-    for prime in _PRIMES:
-        while length % prime == 0:
-            radix = next(one for one in _JOINED[prime] if length % one == 0)
-            if radix == 8 and length % 16 == 0 and length % 32 != 0:
-                radix = 4  # 4 x 4 reads less than 8 x 2
-            found.append(radix)
-            length //= radix
-    return found or [1]

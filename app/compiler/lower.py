@@ -11,6 +11,7 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from ...nodes import (
+    Camera,
     ColorChange,
     Filter,
     Image,
@@ -136,6 +137,8 @@ class _Lowering:
                 "give it a file, or bind it by name", node=f"{port}",
             )
         shown = shown or Image()
+        if shown.kind is Kind.CAMERA:
+            raise GraphError(f"output '{name}' is a camera, which is no picture: choose another one", node=f"{port}")
         if isinstance(operand, Constant):
             size = (1, 1) if shown.single else self.pictures.canvas
             return self.pictures.converted(operand, shown, size, name)
@@ -289,8 +292,8 @@ class _Lowering:
             self.memories[path] = recorder.remembered
         made = drawn if isinstance(drawn, Mapping) else {next(iter(node.outputs)): drawn}
         for name, item in made.items():
-            assert isinstance(item, Made)
-            self.results[Port(path, name)] = item.ref
+            assert isinstance(item, Made | Camera)
+            self.results[Port(path, name)] = Constant(item.rows) if isinstance(item, Camera) else item.ref
 
     def _as_pixels(self, path: str, socket: Socket, operand: Operand, size: Size) -> Operand:
         """A filter looks around in its input: give it real pixels with the channels that it declares."""

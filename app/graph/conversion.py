@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from ...nodes import Color, Field, Image, Kind, Number, Plain, Socket, Value, Vector
+from ...nodes import Color, Field, Image, Kind, Number, Plain, Socket, Value, Vector, Viewpoint
 
 _FITS: Mapping[Kind, frozenset[Kind]] = MappingProxyType({
-    Kind.NUMBER: frozenset(Kind),
+    Kind.NUMBER: frozenset(Kind) - {Kind.CAMERA},
     Kind.COLOR: frozenset({Kind.COLOR, Kind.IMAGE}),
     Kind.FIELD: frozenset({Kind.FIELD, Kind.IMAGE, Kind.VECTOR}),
     Kind.IMAGE: frozenset({Kind.IMAGE}),
     Kind.VECTOR: frozenset({Kind.VECTOR}),
+    Kind.CAMERA: frozenset({Kind.CAMERA}),
 })
 
 _VALUE_TAKES: Mapping[str, frozenset[Kind]] = MappingProxyType({
@@ -29,7 +30,9 @@ def make_socket(kind: Kind, width: int = 4, default: Plain | None = None, *, nam
     if kind is Kind.VECTOR:
         socket: Socket = Vector(start, width=width, doc=doc)
     else:
-        makers = {Kind.IMAGE: Image, Kind.FIELD: Field, Kind.NUMBER: Number, Kind.COLOR: Color}
+        makers = {
+            Kind.IMAGE: Image, Kind.FIELD: Field, Kind.NUMBER: Number, Kind.COLOR: Color, Kind.CAMERA: Viewpoint,
+        }
         socket = makers[kind](start, doc=doc)
     socket.__set_name__(Socket, name)
     return socket
@@ -46,6 +49,8 @@ def conversion(source: Socket, target: Socket | Value) -> str | None:
     if target.kind in _FITS[source.kind] and not _widths_differ(source, target.kind, target.channels):
         return None
     reason = f"{_word(source)} does not fit {_word(target)}"
+    if Kind.CAMERA in (source.kind, target.kind):
+        return f"{reason}: a camera goes where a Camera is wanted, and nothing else does"
     if target.single:
         single = "a Number" if target.kind is Kind.NUMBER else "a Number or Color"
         return f"{reason}, one value for the whole picture: link {single}, such as 'luminance_statistics' measures"

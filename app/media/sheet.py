@@ -1,22 +1,37 @@
-"""Pictures side by side under their names, to be compared at a glance."""
+"""Contact sheets: pictures side by side under their names, to be compared at a glance."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 import OpenImageIO as oiio
 
+from ..errors import OutputError
 from .color import Array, decode_srgb, to_display
+from .store import store
 
+RGB = tuple[float, float, float]
+
+_MARGIN = 16
 _GAP = 12
-_LETTERS = 15
-_BACK = 0.012
-_INK = 0.6
+_RADIUS = 5.0
+_RULE = 2
+_BACK = (0.08, 0.08, 0.086)
+_NEST = (0.115, 0.115, 0.125)
+_DIM = (0.70, 0.70, 0.73)
+_TEXT = (0.90, 0.90, 0.91)
+_CHECKER = (0.20, 0.28)
+_SQUARE = 12
+_BOLD = "DroidSans-Bold"
+_QUALITY = 84
 
 
 def shown(array: Array, view: str = "") -> Array:
-    """Scene-linear pixels as light of the display, [h, w, 3] of float32 within 0..1: what `sheet` takes.
+    """Scene-linear pixels as light of the display, [h, w, 3] of float32 within 0..1: what sheets take.
 
     Raises:
         UsageError: unknown view.
@@ -24,31 +39,206 @@ def shown(array: Array, view: str = "") -> Array:
     return decode_srgb(np.clip(to_display(array, view, bits=32)[..., :3], 0.0, 1.0))
 
 
+def light_shown(array: Array) -> Array:
+    """The same of light in any number of channels: one is gray, two are red and green."""
+    return shown(_three(array.astype(np.float32)))
+
+
+def shown_over_checker(array: Array, view: str = "") -> Array:
+    """The same of RGBA, with squares behind what is transparent. Light without alpha lies on top of them."""
+    light, alpha = shown(array, view), np.clip(np.nan_to_num(array[..., 3:4].astype(np.float32)), 0.0, 1.0)
+    row, column = np.indices(light.shape[:2]) // _SQUARE
+    behind = decode_srgb(np.array(_CHECKER, np.float32))[(row + column) % 2][..., None]
+    over = light * np.where(alpha > 0.0, alpha, 1.0) + behind * (1.0 - alpha)
+    return np.clip(over, 0.0, 1.0).astype(np.float32)
+
+
+def data_shown(array: Array, low: float, high: float) -> Array:
+    """Data as such light: `low` is black and `high` is white; one channel is gray, two are red and green."""
+    codes = np.clip((np.nan_to_num(array.astype(np.float32)) - low) / (high - low), 0.0, 1.0)
+    return decode_srgb(_three(codes)).astype(np.float32)
+
+
+def captioned(light: Array, lines: Sequence[str]) -> Array:
+    """A picture pushed back behind lines of text: for results that are numbers."""
+    height, width = light.shape[:2]
+    paper, letters = oiio.ImageBuf(_encoded(light * 0.06)), height // 9
+    top = height / 2 - (len(lines) - 1) * letters * 0.75
+    for index, line in enumerate(lines):
+        at = (width // 2, round(top + index * letters * 1.5))
+        oiio.ImageBufAlgo.render_text(paper, *at, line, letters, "", _TEXT, "center", "center")
+    return decode_srgb(_pixels(paper)).astype(np.float32)
+
+
 def sheet(pictures: Mapping[str, Array], columns: int = 4, width: int = 0) -> Array:
-    """Light of the display, [h, w, 3] of float32; write it with the view `none`.
+    """Light of the display, [h, w, 3] of float32. `pictures` are such light too, by name.
 
-    `pictures` are such light too, by name and of one shape. They are shrunk to `width` pixels, if it is not 0.
+    The first is made `width` pixels wide, if that is not 0; the others have its scale, or fit where it would.
     """
-    pictures = {name: _resized(array, width or array.shape[1]) for name, array in pictures.items()}
-    height, width = next(iter(pictures.values())).shape[:2]
-    across, down = width + _GAP, height + 2 * _GAP + _LETTERS
-    columns = min(columns, len(pictures))
-    rows = -(-len(pictures) // columns)
-    made = np.full((rows * down + _GAP, columns * across + _GAP, 3), _BACK, np.float32)
-    places = [(_GAP + index // columns * down, _GAP + index % columns * across) for index in range(len(pictures))]
-    for (top, left), array in zip(places, pictures.values(), strict=True):
-        made[top : top + height, left : left + width] = array
+    return grouped_sheet({"": pictures}, columns, width)
+
+
+def grouped_sheet(
+    groups: Mapping[str, Mapping[str, Array]], columns: int = 4, width: int = 0, *, letters: int = 15,
+    colors: Mapping[str, RGB] = MappingProxyType({}),
+) -> Array:
+    """The same for pictures by group and name, under headings with rules of these `colors` (sRGB) by group.
+
+    A small group stands beside others, in the first row with room for it. `letters` is the size of names in pixels.
+    """
+    first = next(picture for group in groups.values() for picture in group.values())
+    width = width or first.shape[1]
+    plan = _Plan({name: len(group) for name, group in groups.items()}, columns, (width, _height(first, width)), letters)
+    made = np.full((*plan.size[::-1], 3), _BACK, np.float32)
+    for name, group in groups.items():
+        for (left, top), picture in zip(plan.cells(name), group.values(), strict=True):
+            _paste(made, _fitted(picture, plan.cell, width / first.shape[1]), left, top, plan.cell)
+        if name:
+            left, top, across = plan.rule(name)
+            made[top : top + _RULE, left : left + across] = colors.get(name, _DIM)
     paper = oiio.ImageBuf(made)
-    for (top, left), name in zip(places, pictures, strict=True):
-        baseline = top + height + _LETTERS + 2
-        oiio.ImageBufAlgo.render_text(paper, left, baseline, name.replace("_", " "), _LETTERS, "", (_INK,) * 3)
-    return np.asarray(paper.get_pixels(oiio.FLOAT), np.float32)
+    for name, group in groups.items():
+        for (left, top), title in zip(plan.cells(name), group, strict=True):
+            _label(paper, title, left, top + plan.cell[1] + round(1.3 * letters), plan.cell[0], letters)
+        if name:
+            left, top, _ = plan.rule(name)
+            oiio.ImageBufAlgo.render_text(paper, left, top - letters // 2, _words(name), letters + 3, _BOLD, _TEXT)
+    return decode_srgb(_pixels(paper)).astype(np.float32)
 
 
-def _resized(array: Array, width: int) -> Array:
-    source = np.ascontiguousarray(array, dtype=np.float32)
-    height = round(width * array.shape[0] / array.shape[1])
+def write_sheet(path: str | Path, light: Array, description: str = "") -> None:
+    """Keep a sheet as JPEG, small enough for a page. Raises OutputError."""
+    pixels = np.ascontiguousarray((_encoded(light) * 255.0 + 0.5).astype(np.uint8))
+    spec = oiio.ImageSpec(pixels.shape[1], pixels.shape[0], 3, "uint8")
+    spec.attribute("compression", f"jpeg:{_QUALITY}")
+    spec.attribute("jpeg:subsampling", "4:2:0")
+    spec.attribute("ImageDescription", description)
+
+    def encode(file: str) -> None:
+        output = oiio.ImageOutput.create("jpeg")
+        done = output is not None and output.open(file, spec) and output.write_image(pixels)
+        if output is None or not (output.close() and done):
+            raise OutputError(f"{path}: cannot be written: {oiio.geterror() or 'the encoder gave no reason'}")
+
+    store(path, encode, pixels.nbytes)
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """Where everything lies, as (left, top) in pixels. `counts` are pictures by group, `cell` is the size of one."""
+
+    counts: Mapping[str, int]
+    columns: int
+    cell: tuple[int, int]
+    letters: int
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the sheet."""
+        across = min(self.columns, max(first + self.counts[name] for shelf in self._shelves() for name, first in shelf))
+        down = _MARGIN + sum(self._depth(shelf) for shelf in self._shelves())
+        return 2 * _MARGIN + across * (self.cell[0] + _GAP) - _GAP, down + _MARGIN - _GAP
+
+    def cells(self, group: str) -> Iterator[tuple[int, int]]:
+        """Of every picture of a group."""
+        first, top = self._place(group)
+        for index in range(self.counts[group]):
+            row, column = divmod(first + index, self.columns) if not first else (0, first + index)
+            yield _MARGIN + column * (self.cell[0] + _GAP), top + self._head + row * self._row
+
+    def rule(self, group: str) -> tuple[int, int, int]:
+        """Left end, top and length of the line under a heading."""
+        first, top = self._place(group)
+        pictures = min(self.counts[group], self.columns)
+        left = _MARGIN + first * (self.cell[0] + _GAP)
+        return left, top + self._head - self.letters, pictures * (self.cell[0] + _GAP) - _GAP
+
+    @property
+    def _row(self) -> int:
+        return self.cell[1] + 2 * self.letters + _GAP
+
+    @property
+    def _head(self) -> int:
+        return 3 * self.letters if any(self.counts) else 0
+
+    def _shelves(self) -> list[list[tuple[str, int]]]:
+        """Groups side by side, each with its first column; one that takes several rows has its shelf for itself."""
+        shelves: list[list[tuple[str, int]]] = []
+        for name, count in self.counts.items():
+            taken = [sum(self.counts[other] for other, _ in shelf) for shelf in shelves]
+            free = next((index for index, part in enumerate(taken) if part + count <= self.columns), None)
+            if free is None:
+                shelves.append([(name, 0)])
+            else:
+                shelves[free].append((name, taken[free]))
+        return shelves
+
+    def _depth(self, shelf: Sequence[tuple[str, int]]) -> int:
+        return self._head + -(-self.counts[shelf[0][0]] // self.columns) * self._row
+
+    def _place(self, group: str) -> tuple[int, int]:
+        """First column of a group, and the top of its shelf."""
+        top = _MARGIN
+        for shelf in self._shelves():
+            if group in dict(shelf):
+                return dict(shelf)[group], top
+            top += self._depth(shelf)
+        raise KeyError(group)
+
+
+def _paste(made: Array, picture: Array, left: int, top: int, cell: tuple[int, int]) -> None:
+    """Put a picture into the middle of its cell, whose corners are round."""
+    nest = np.full((cell[1], cell[0], 3), _NEST, np.float32)
+    height, width = picture.shape[:2]
+    y, x = (cell[1] - height) // 2, (cell[0] - width) // 2
+    nest[y : y + height, x : x + width] = _encoded(picture)
+    inside = [np.minimum(np.arange(side), np.arange(side)[::-1]) + 0.5 for side in (cell[1], cell[0])]
+    dy, dx = np.meshgrid(*(np.maximum(_RADIUS - distance, 0.0) for distance in inside), indexing="ij")
+    cover = np.clip(_RADIUS + 0.5 - np.hypot(dx, dy), 0.0, 1.0).astype(np.float32)[..., None]
+    there = made[top : top + cell[1], left : left + cell[0]]
+    there += (nest - there) * cover
+
+
+def _label(paper: oiio.ImageBuf, title: str, left: int, baseline: int, room: int, letters: int) -> None:
+    """A name, in smaller letters where it is long."""
+    text = _words(title)
+    while letters > 8 and oiio.ImageBufAlgo.text_size(text, letters).width > room:
+        letters -= 1
+    oiio.ImageBufAlgo.render_text(paper, left, baseline, text, letters, "", _DIM)
+
+
+def _fitted(light: Array, cell: tuple[int, int], scale: float) -> Array:
+    """The picture at this scale, or the largest that fits into the cell."""
+    scale = min(scale, cell[0] / light.shape[1], cell[1] / light.shape[0])
+    width, height = (max(1, round(scale * side)) for side in light.shape[1::-1])
+    width, height = min(width, cell[0]), min(height, cell[1])
+    source = np.ascontiguousarray(light, np.float32)
     if source.shape[:2] == (height, width):
         return source
-    made = oiio.ImageBufAlgo.resize(oiio.ImageBuf(source), filtername="lanczos3", roi=oiio.ROI(0, width, 0, height))
-    return np.clip(np.asarray(made.get_pixels(oiio.FLOAT), np.float32), 0.0, 1.0)
+    made = oiio.ImageBufAlgo.resize(oiio.ImageBuf(source), filtername="catmull-rom", roi=oiio.ROI(0, width, 0, height))
+    return np.clip(_pixels(made), 0.0, 1.0)
+
+
+def _three(array: Array) -> Array:
+    if array.shape[2] == 2:
+        return np.pad(array, ((0, 0), (0, 0), (0, 1)))
+    return array[..., [0, 0, 0]] if array.shape[2] == 1 else array[..., :3]
+
+
+def _height(picture: Array, width: int) -> int:
+    return round(width * picture.shape[0] / picture.shape[1])
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ")
+
+
+def _encoded(light: Array) -> Array:
+    """sRGB codes of light (IEC 61966-2-1)."""
+    light = np.clip(light, 0.0, 1.0)
+    codes = np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.maximum(light, 0.0031308) ** (1 / 2.4) - 0.055)
+    return codes.astype(np.float32)
+
+
+def _pixels(buffer: oiio.ImageBuf) -> Array:
+    return np.asarray(buffer.get_pixels(oiio.FLOAT), np.float32)

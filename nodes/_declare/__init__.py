@@ -22,7 +22,7 @@ from .curves import MAX_POINTS, curve_at, curve_knots, ramp_at, ramp_knots
 from .draw import Affine, Argument, Draw, Drawn, Kernel, Pixels
 from .node import Filter, Node, Pointwise, Source, Temporal
 from .recolor import ColorChange, LookupFile, SpaceChange
-from .sockets import Color, Edge, Field, Image, Kind, Number, Output, Size, Socket, Vector, glsl_type
+from .sockets import Color, Edge, Field, Image, Kind, Number, Output, Size, Socket, Vector, Viewpoint, glsl_type
 from .values import (
     RGBA,
     Curve,
@@ -51,6 +51,6 @@ __all__ = [
     "Edge", "Field", "File", "FilePath", "Filter", "Fraction", "Handle", "Holds", "Image", "Kernel", "Kernel3x3",
     "Kind", "LookupFile", "Node", "Number", "Output", "Pixels", "Plain", "Points", "Pointwise", "Position", "Ramp",
     "Size", "Slider", "Socket", "Source", "SpaceChange", "Stops", "Swatch", "TablePath", "Temporal", "Unit",
-    "Value", "Vector",
+    "Value", "Vector", "Viewpoint",
     "curve_at", "curve_knots", "glsl_type", "look_at", "ramp_at", "ramp_knots", "working_factor",
 ]

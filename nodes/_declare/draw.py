@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Literal, Protocol
 
+from .camera import Camera
 from .recolor import ColorChange
-from .sockets import Edge, Size, Socket
+from .sockets import Edge, Size, Socket, Viewpoint
 from .values import Plain
 
 
@@ -43,6 +44,10 @@ class Draw(Protocol):
 
     def linked(self, socket: Socket) -> bool:
         """True if something is linked to this input of the node."""
+        ...
+
+    def camera(self, socket: Viewpoint) -> Camera | None:
+        """The camera that is linked to this input of the node, if any is."""
         ...
 
     def __call__(

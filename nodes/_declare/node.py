@@ -7,6 +7,7 @@ import re
 from collections.abc import Mapping
 from typing import Any, ClassVar, Self, dataclass_transform, get_type_hints
 
+from .camera import Camera
 from .draw import Draw, Drawn
 from .sockets import Output, Size, Socket
 from .values import Value, read_value, working_factor
@@ -87,8 +88,8 @@ class Pointwise(Node):
 class Filter(Node):
     """Anything that looks at other pixels or takes several passes."""
 
-    def passes(self, draw: Draw) -> Drawn | Mapping[str, Drawn]:
-        """What to draw. Several outputs come back by name."""
+    def passes(self, draw: Draw) -> Drawn | Mapping[str, Drawn | Camera]:
+        """What to draw. Several outputs come back by name; a camera is made without drawing."""
         raise NotImplementedError
 
 

@@ -23,6 +23,7 @@ class Kind(StrEnum):
     VECTOR = "Vector"
     NUMBER = "Number"
     COLOR = "Color"
+    CAMERA = "Camera"
 
 
 @dataclass(frozen=True)
@@ -42,7 +43,7 @@ class Socket:
     @property
     def channels(self) -> int:
         """Floats per pixel."""
-        return 1 if self.kind in (Kind.FIELD, Kind.NUMBER) else 4
+        return {Kind.FIELD: 1, Kind.NUMBER: 1, Kind.CAMERA: 12}.get(self.kind, 4)
 
     @property
     def optional(self) -> bool:
@@ -52,7 +53,7 @@ class Socket:
     @property
     def single(self) -> bool:
         """True if it carries one value for the whole picture instead of one per pixel."""
-        return self.kind in (Kind.NUMBER, Kind.COLOR)
+        return self.kind in (Kind.NUMBER, Kind.COLOR, Kind.CAMERA)
 
     @property
     def glsl(self) -> str:
@@ -94,6 +95,12 @@ class Color(Socket):
     """One scene-linear RGBA color for the whole picture."""
 
     kind = Kind.COLOR
+
+
+class Viewpoint(Socket):
+    """The camera that a picture was taken with, known before anything is drawn: see `Camera`. Filters take it."""
+
+    kind = Kind.CAMERA
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,9 @@ class Fxaa(Filter):
     """Smooth jagged edges of a finished picture, without any other layer: best after tone mapping.
 
     FXAA 3.11 Quality (Lottes 2009-2011), written from its white paper: where the tone changes, the ends of the edge's
-    step are searched along it, and the pixel is read from as far across the edge as the step has risen there. The tone
-    is the luminance as a display shows it (sRGB), colors are mixed in linear light.
+    step are searched along it, and the pixel is read from as far across the edge as the step has risen there. Nearer
+    than some 25 degrees to a diagonal it does less: SMAA knows those. The tone is the luminance as a display shows it
+    (sRGB), colors are mixed in linear light.
     """
 
     image = Image()

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Output, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Output, Slider, Vector
 
 
 class DifferenceOfGaussians(Filter):
@@ -9,7 +9,8 @@ class DifferenceOfGaussians(Filter):
 
     XDoG (Winnemöller et al. 2012): `S = (1 + p) G(sigma) - p G(ratio sigma)`, white where S is at least epsilon, else
     `1 + tanh(phi (S - epsilon))`. DoG (Marr and Hildreth 1980): `strength * (G(sigma) - G(ratio sigma))`, which may be
-    negative. Both work on the luminance as a display shows it (sRGB, 0..1). Alpha is kept.
+    negative. Guided by the flow (Kang et al. 2007), the blurs run only across the lines, then along them, which draws
+    long calm strokes. All work on the luminance as a display shows it (sRGB, 0..1). Alpha is kept.
     """
 
     image = Image()
@@ -29,6 +30,17 @@ class DifferenceOfGaussians(Filter):
     phi: Annotated[float, Slider(
         0.5, 50.0, unit="ratio", minimum=0.0, doc="For XDoG: how hard ink and paper part; low values keep grays."
     )] = 6.0
+    guide: Annotated[Literal["none", "flow"], Doc(
+        "Blur round, or only across the lines of the picture, whose directions the structure tensor tells."
+    )] = "none"
+    smoothing: Annotated[float, Slider(
+        0.5, 8.0, unit="px", minimum=0.0, maximum=200.0,
+        doc="For flow: sigma over which the directions of lines are averaged.",
+    )] = 2.5
+    stroke: Annotated[float, Slider(
+        0.0, 20.0, unit="px", minimum=0.0, maximum=500.0,
+        doc="For flow: sigma over which lines are drawn together along themselves.",
+    )] = 3.0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
     out = Output()
@@ -36,9 +48,28 @@ class DifferenceOfGaussians(Filter):
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         tone = draw.point("difference_of_gaussians_tone", self.image, result=Field())
+        fine, coarse = self._guided(draw, tone) if self.guide == "flow" else (
+            draw.blur(tone, self.sigma, self.edge), draw.blur(tone, self.sigma * self.ratio, self.edge)
+        )
         value = draw.point(
-            "difference_of_gaussians_value", result=Field(), fine=draw.blur(tone, self.sigma, self.edge),
-            coarse=draw.blur(tone, self.sigma * self.ratio, self.edge), kind=self.kind,
+            "difference_of_gaussians_value", result=Field(), fine=fine, coarse=coarse, kind=self.kind,
             strength=self.strength, epsilon=self.epsilon, phi=self.phi,
         )
         return {"out": draw.point("difference_of_gaussians", self.image, value=value, kind=self.kind), "value": value}
+
+    def _guided(self, draw: Draw, tone: Drawn) -> tuple[Drawn, Drawn]:
+        changes = draw("difference_of_gaussians_changes", tone=tone, edge=self.edge, result=Vector(width=3))
+        tensor = draw.blur(changes, self.smoothing, self.edge)
+        blurs = draw(
+            "difference_of_gaussians_across", tone=tone, tensor=tensor, edge=self.edge, result=Vector(width=2),
+            sigma=self.sigma, ratio=self.ratio,
+        )
+        if self.stroke > 0.0:
+            blurs = draw(
+                "difference_of_gaussians_along", blurs=blurs, tensor=tensor, edge=self.edge, result=Vector(width=2),
+                stroke=self.stroke,
+            )
+        return (
+            draw.point("difference_of_gaussians_fine", result=Field(), blurs=blurs),
+            draw.point("difference_of_gaussians_coarse", result=Field(), blurs=blurs),
+        )

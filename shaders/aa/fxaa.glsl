@@ -14,13 +14,11 @@ float fxaa_stride(int quality, int i) {
 
 // How far along the edge its step ends, and how much the tone there differs from the edge's own.
 vec2 fxaa_end(vec2 from, vec2 along, float edge_tone, float enough, int quality) {
-    float away = 0.0, differs = 0.0;
-    for (int i = 0; i < 12; ++i) {
-        float stride = fxaa_stride(quality, i);
-        if (stride == 0.0) break;
-        away += stride;
+    float away = fxaa_stride(quality, 0), differs = 0.0;
+    for (int i = 1; i < 12 && fxaa_stride(quality, i) > 0.0; ++i) {
         differs = tone_near(from + away * along) - edge_tone;
         if (abs(differs) >= enough) break;
+        away += fxaa_stride(quality, i);  // behind the last, longest step nothing is read
     }
     return vec2(away, differs);
 }

@@ -2,3 +2,23 @@
 
 // What red, green and blue see at a place in the spectrum from -1, red light, to 1, blue light; alpha sees all alike.
 vec4 spectrum_response(float place) { return vec4(max(-place, 0.0), 1.0 - abs(place), max(place, 0.0), 1.0); }
+
+float spectrum_lobe(float nm, float middle, float below, float above) {
+    float t = (nm - middle) / (nm < middle ? below : above);
+    return exp(-0.5 * t * t);
+}
+
+// The color that light of one wavelength has for the CIE 1931 observer (fits by Wyman, Sloan and Shirley 2013), in
+// Rec.709 primaries; what these cannot show is cut off. Divide sums by the sum over 400 to 700 nm for white light.
+vec3 spectrum_color(float nm) {
+    vec3 xyz = vec3(
+        1.056 * spectrum_lobe(nm, 599.8, 37.9, 31.0) + 0.362 * spectrum_lobe(nm, 442.0, 16.0, 26.7)
+            - 0.065 * spectrum_lobe(nm, 501.1, 20.4, 26.2),
+        0.821 * spectrum_lobe(nm, 568.8, 46.9, 40.5) + 0.286 * spectrum_lobe(nm, 530.9, 16.3, 31.1),
+        1.217 * spectrum_lobe(nm, 437.0, 11.8, 36.0) + 0.681 * spectrum_lobe(nm, 459.0, 26.0, 13.8)
+    );
+    const mat3 rec709 = mat3(
+        3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108, -0.2040259, -0.4985314, 0.0415560, 1.0572252
+    );
+    return max(rec709 * xyz, 0.0);
+}

@@ -1,4 +1,5 @@
 #include "lib/display.glsl"
+#include "lib/structure.glsl"
 
 const float kuwahara_pi = 3.14159265;
 
@@ -26,7 +27,7 @@ vec4 kuwahara_quadrants(int radius) {
     return here + best;
 }
 
-// The structure tensor: products of the changes across and down (Sobel), over all channels.
+// The structure tensor by Sobel, summed over all channels.
 vec3 kuwahara_changes() {
     vec3 falling = tones_at(pixel + ivec2(1, 1)).rgb - tones_at(pixel - ivec2(1, 1)).rgb;
     vec3 rising = tones_at(pixel + ivec2(1, -1)).rgb - tones_at(pixel + ivec2(-1, 1)).rgb;
@@ -38,12 +39,9 @@ vec3 kuwahara_changes() {
 vec4 kuwahara_sectors(int kind, float radius, float sharpness) {
     // An ellipse along the stroke: with anisotropy A its axes are r (1 + A) and r / (1 + A).
     vec3 change = changes_at(pixel);
-    float apart = length(vec2(change.x - change.z, 2.0 * change.y)), anisotropy = 0.0, turn = 0.0;
-    if (kind == KIND_ANISOTROPIC && apart > 1e-12) {
-        anisotropy = apart / (change.x + change.z);
-        turn = 0.5 * atan(2.0 * change.y, change.x - change.z) + 0.5 * kuwahara_pi;
-    }
-    vec2 axes = radius * vec2(1.0 + anisotropy, 1.0 / (1.0 + anisotropy)), along = vec2(cos(turn), sin(turn));
+    float anisotropy = kind == KIND_ANISOTROPIC ? structure_anisotropy(change) : 0.0;
+    vec2 along = anisotropy > 0.0 ? structure_across(change).yx * vec2(-1.0, 1.0) : vec2(1.0, 0.0);
+    vec2 axes = radius * vec2(1.0 + anisotropy, 1.0 / (1.0 + anisotropy));
     vec2 reach = vec2(length(axes * along), length(axes * along.yx));
     mat2 to_disc = mat2(along.x / axes.x, -along.y / axes.y, along.y / axes.x, along.x / axes.y);
 

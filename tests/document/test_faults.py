@@ -100,7 +100,7 @@ def test_sixty_four_levels_are_fine() -> None:
         ('"links": {"a.image": 5}', "links.a.image", "expected a string, got the number 5"),
         ('"links": {"image": "inputs.a"}', "links.image", "'image' names no socket"),
         ('"links": {"a.b": "inputs"}', "links.a.b", "'inputs' names no socket"),
-        ('"inputs": {"a": {"type": "Mesh"}}', "inputs.a.type", "'Mesh' is no type: write Color, Field, Image"),
+        ('"inputs": {"a": {"type": "Mesh"}}', "inputs.a.type", "'Mesh' is no type: write Camera, Color, Field"),
         ('"inputs": {"a": {"type": "Image2"}}', "inputs.a.type", "'Image2' is no type"),
         ('"inputs": {"a": {"default": "red"}}', "inputs.a.default", "expected a number or a list or null"),
         ('"inputs": {"a": {"default": [1, "2"]}}', "inputs.a.default[1]", "expected a number"),

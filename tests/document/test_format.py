@@ -77,7 +77,7 @@ def test_ends_of_every_type() -> None:
     assert read(text) == graph
     assert dumps(read(text)) == text
     types = {end["type"] for end in json.loads(text)["inputs"].values()}
-    assert types == {"Image", "Field", "Number", "Color", "Vector", "Vector2", "Vector4"}
+    assert types == {"Image", "Field", "Number", "Color", "Camera", "Vector", "Vector2", "Vector4"}
     assert read('{"halation": 1, "inputs": {"v": {"type": "Vector3"}}}').inputs["v"] == Input(Kind.VECTOR, 3)
 
 

@@ -19,7 +19,7 @@ _SIDE, _GAP = 24.0, 12.0
 _MEANING = {
     Kind.IMAGE: "a picture: red, green, blue, alpha", Kind.FIELD: "one channel: depth, mask, occlusion",
     Kind.VECTOR: "data of 2 to 4 channels: normal, velocity", Kind.NUMBER: "one number for the whole picture",
-    Kind.COLOR: "one color for the whole picture",
+    Kind.COLOR: "one color for the whole picture", Kind.CAMERA: "the camera that a picture was taken with",
 }
 
 _MOUSE = (

@@ -31,6 +31,7 @@ _COLOR = Value("color", "color", (0.0,) * 4, 4, low=0.0, high=1.0)
 _KINDS = (
     ("Image", Kind.IMAGE, 4), ("Field", Kind.FIELD, 1), ("Vector2", Kind.VECTOR, 2), ("Vector3", Kind.VECTOR, 3),
     ("Vector4", Kind.VECTOR, 4), ("Number", Kind.NUMBER, 1), ("Color", Kind.COLOR, 4),
+    ("Camera", Kind.CAMERA, 12),
 )
 FULL_HD = (1920, 1080)
 

@@ -58,12 +58,12 @@ class Palette:
 
 _KINDS = MappingProxyType({
     Kind.IMAGE: _hex("e2b93b"), Kind.FIELD: _hex("b6bcc6"), Kind.VECTOR: _hex("8f83f0"),
-    Kind.NUMBER: _hex("4fb3a5"), Kind.COLOR: _hex("e0709a"),
+    Kind.NUMBER: _hex("4fb3a5"), Kind.COLOR: _hex("e0709a"), Kind.CAMERA: _hex("5aa7e0"),
 })
 
 _KINDS_LIGHT = MappingProxyType({
     Kind.IMAGE: _hex("ad7c00"), Kind.FIELD: _hex("5f6772"), Kind.VECTOR: _hex("6152d9"),
-    Kind.NUMBER: _hex("0f8273"), Kind.COLOR: _hex("c23d70"),
+    Kind.NUMBER: _hex("0f8273"), Kind.COLOR: _hex("c23d70"), Kind.CAMERA: _hex("1f74b5"),
 })
 
 DARK = Palette(
