@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-import inspect
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from .facts import doc_of, facts_of, hard_range, passes_of, plain_text, socket_note, soft_range, type_of
 from .options import AsJson
 from .outcome import print_json
 
 if TYPE_CHECKING:
-    from ...nodes import Node, Socket, Value
+    from ...nodes import Node, Value
 
 
 def nodes(
     id: Annotated[str, typer.Argument(help="A node; without one, all are listed.")] = "",
+    markdown: Annotated[
+        bool, typer.Option("--markdown", help="Print the whole catalogue as one Markdown page.")
+    ] = False,
     as_json: AsJson = False,
 ) -> int:
-    """List the nodes, or show one with its sockets, values, ranges and units."""
+    """List the nodes, or show one with its sockets, values, ranges and units, and the passes that it compiles to."""
     from ...nodes import catalogue
     from ..errors import UsageError
     from ..graph import did_you_mean
@@ -26,8 +29,14 @@ def nodes(
     known = catalogue()
     if id and id not in known:
         raise UsageError(f"there is no node '{id}'{did_you_mean(id, known)}")
-    if as_json:
-        print_json(_facts(known[id]) if id else {"nodes": [_facts(node) for node in known.values()]})
+    if markdown and (id or as_json):
+        raise UsageError("--markdown prints the whole catalogue: leave out the node and --json")
+    if markdown:
+        from .manual import page
+
+        print(page(list(known.values())), end="")
+    elif as_json:
+        print_json(facts_of(known[id]) if id else {"nodes": [facts_of(node) for node in known.values()]})
     elif id:
         _page(known[id])
     else:
@@ -42,77 +51,45 @@ def _list(classes: list[type[Node]]) -> None:
         if node.category != category:
             category = node.category
             print(f"\n{category}")
-        print(f"  {node.id:<{width}}  {_doc(node).splitlines()[0]}")
+        print(f"  {node.id:<{width}}  {doc_of(node).splitlines()[0]}")
 
 
 def _page(node: type[Node]) -> None:
-    print(f"{node.id}  ({node.category}, version {node.version})\n\n{_doc(node)}\n")
-    for title, sockets in (
-        ("inputs", node.inputs), ("outputs", {name: output.socket for name, output in node.outputs.items()})
-    ):
+    print(f"{node.id}  ({node.category}, version {node.version})\n\n{doc_of(node)}\n")
+    outputs = {name: output.socket for name, output in node.outputs.items()}
+    for title, sockets in (("inputs", node.inputs), ("outputs", outputs)):
         if sockets:
             print(title)
             for name, socket in sockets.items():
-                print(f"  {name:<16} {_type(socket):<10} {_socket_note(socket, title)}".rstrip())
+                print(f"  {name:<16} {type_of(socket):<10} {socket_note(socket)}".rstrip())
             print()
     if node.values:
         print("values")
         for value in node.values.values():
-            print(f"  {value.name:<16} {value.type:<10} {_shown(value.default):<14} {_range(value)}".rstrip())
+            print(f"  {value.name:<16} {value.type:<10} {plain_text(value.default):<14} {_range(value)}".rstrip())
             if value.doc:
                 print(f"  {'':<16} {value.doc}")
+        print()
+    _print_passes(node)
 
 
-def _doc(node: type[Node]) -> str:
-    return inspect.getdoc(node) or ""
+def _print_passes(node: type[Node]) -> None:
+    from ..compiler.explain import size_text
 
-
-def _type(socket: Socket) -> str:
-    return f"{socket.kind}{socket.channels if socket.kind == 'Vector' else ''}"
-
-
-def _socket_note(socket: Socket, title: str) -> str:
-    optional = f"optional, {_shown(socket.default)} if unlinked" if title == "inputs" and socket.optional else ""
-    return "; ".join(part for part in (socket.doc, optional) if part)
-
-
-def _shown(plain: object) -> str:
-    if isinstance(plain, tuple):
-        return ", ".join(_shown(part) for part in plain)
-    return f"{plain:g}" if isinstance(plain, float) else str(plain)
+    facts = passes_of(node)
+    width, height = facts["size"]
+    print(f"passes at these values, {width}x{height}")
+    widest = max((len(item["label"]) for item in facts["passes"]), default=0)
+    for index, item in enumerate(facts["passes"]):
+        made = ", ".join(f"{'x'.join(map(str, one['size']))} {one['format']}" for one in item["writes"])
+        print(f"  {index:<4} {item['label']:<{widest}}  {made}")
+    if not facts["passes"]:
+        print("  none: the picture goes through as it is" if node.inputs else "  none: files are loaded as they are")
+    print(f"  {size_text(facts['peak_bytes'])} of textures at the peak")
 
 
 def _range(value: Value) -> str:
     if value.choices:
         return " | ".join(value.choices)
-    if value.unit is None:
-        return ""
-    soft = f"{value.low:g} .. {value.high:g} {value.unit}"
-    hard = [
-        f"{word} {limit:g}"
-        for word, limit in (("at least", value.minimum), ("at most", value.maximum)) if abs(limit) != float("inf")
-    ]
-    return f"{soft} ({', '.join(hard)})" if hard else soft
-
-
-def _facts(node: type[Node]) -> dict[str, Any]:
-    return {
-        "id": node.id, "category": node.category, "version": node.version, "doc": _doc(node),
-        "inputs": {name: _socket_facts(socket) for name, socket in node.inputs.items()},
-        "outputs": {name: _socket_facts(output.socket) for name, output in node.outputs.items()},
-        "values": {
-            value.name: {
-                "type": value.type, "default": value.default, "choices": list(value.choices), "unit": value.unit,
-                "soft": _finite(value.low, value.high), "hard": _finite(value.minimum, value.maximum), "doc": value.doc,
-            }
-            for value in node.values.values()
-        },
-    }
-
-
-def _socket_facts(socket: Socket) -> dict[str, Any]:
-    return {"type": _type(socket), "default": socket.default, "doc": socket.doc}
-
-
-def _finite(low: float, high: float) -> list[float | None]:
-    return [None if abs(limit) == float("inf") else limit for limit in (low, high)]
+    soft, hard = f"{soft_range(value)} {value.unit or ''}".strip(), hard_range(value)
+    return f"{soft} ({hard})" if hard else soft

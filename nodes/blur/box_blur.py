@@ -65,11 +65,14 @@ class BoxBlur(Filter):
 
 
 def _blocks(width: int) -> tuple[int, int]:
-    """How long blocks are and how many of them are summed at once, so that a row of `width` needs the fewest reads."""
-    def cost(stride: int) -> float:
-        return width / stride**2 / 2 + stride / 2 + abs(width - round(width / stride) * stride)
+    """How long blocks are and how many of them are summed at once, so that a row of `width` needs the fewest reads.
 
-    stride = min(range(4, 33), key=cost)
+    Longer sums than of 64 would round off too much.
+    """
+    def cost(stride: int) -> float:
+        return width / stride**2 / 3 + stride + abs(width - round(width / stride) * stride)
+
+    stride = min(range(min(max(4, width // 64), 32), 33), key=cost)
     return stride, round(width / stride)
 
 

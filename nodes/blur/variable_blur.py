@@ -1,18 +1,24 @@
+import math
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Pixels, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Slider
 
-_FINEST = 0.35
-"""The first sigma above none, in pixels. From there each level is wider by `_NEAR` or, from `_WIDE` on, by `_FAR`."""
+_FINEST = 0.16
+"""Variance of the finest blur, in square pixels: one between it and the picture is well mixed from the two."""
 
-_NEAR, _WIDE, _FAR = 2.0**0.25, 2.0, 2.0**0.5
+_STEP = 2.0 ** (2.0 / 3.0)
+"""From a blur to the next finer one, the variance falls by this factor."""
+
+_NOTHING = 0.1
+"""Sigmas up to this, in pixels, change nothing that could be seen."""
 
 
 class VariableBlur(Filter):
     """Blur by a mask: where the field is 1 with the whole sigma, where it is 0 not at all.
 
-    Every pixel shows its surroundings through a Gaussian of its own sigma, `sigma * field`. It is mixed from two of a
-    row of blurs, in the share that gives the right variance: within 3 percent (RMS) even on noise.
+    Every pixel shows its surroundings through a Gaussian of its own sigma, `sigma * field`. It is mixed from three of a
+    ladder of blurs, three to an octave: with the right variance, as near as can be in shape, and nowhere negative.
+    Within 1.5 percent (RMS) of that Gaussian even on white noise, and far closer on pictures.
     """
 
     image = Image()
@@ -26,14 +32,32 @@ class VariableBlur(Filter):
         return "image" if self.sigma == 0.0 else None
 
     def passes(self, draw: Draw) -> Drawn:
-        sigmas = [min(_FINEST, self.sigma)]
-        while sigmas[-1] < self.sigma:
-            sigmas.append(min(sigmas[-1] * (_NEAR if sigmas[-1] < _WIDE else _FAR), self.sigma))
-        found: Pixels = self.image
-        for below, sigma in zip([0.0, *sigmas], sigmas, strict=False):
-            found = draw.point(
-                "variable_blur", sharp=found, soft=draw.blur(self.image, sigma, self.edge),
-                field=self.field, low=below / self.sigma, high=sigma / self.sigma,
-            )
-        assert not isinstance(found, Image)
+        if not draw.linked(self.field) or self.sigma <= _NOTHING:
+            return draw.blur(self.image, self.sigma, self.edge)
+        full = _variance(self.sigma)
+        last = max(math.ceil(math.log(full / _FINEST, _STEP)), 0)
+        sigmas = [self.sigma, *(_sigma(full / _STEP**number) for number in range(1, last + 1))]
+        rung = draw.point("variable_blur_rung", self.field, result=Field(), sigma=self.sigma, full=full, last=last)
+        found = draw.point("variable_blur_sharp", self.image, at=rung, last=last)
+        for number, sigma in enumerate(sigmas):
+            soft = draw.blur(self.image, sigma, self.edge)
+            found = draw.point("variable_blur", sum=found, soft=soft, at=rung, rung=number, last=last)
         return found
+
+
+def _variance(sigma: float) -> float:
+    """What a blur's weights have: below one pixel, the Gaussian is integrated over each."""
+    if sigma >= 1.0:
+        return sigma * sigma
+    return sum((2 * i + 1) * math.erfc((i + 0.5) / (sigma * math.sqrt(2.0))) for i in range(4))
+
+
+def _sigma(variance: float) -> float:
+    """The other way round."""
+    if variance >= 1.0:
+        return math.sqrt(variance)
+    low, high = 0.0, 1.0
+    for _ in range(50):
+        middle = (low + high) / 2.0
+        low, high = (middle, high) if middle and _variance(middle) < variance else (low, middle)
+    return high

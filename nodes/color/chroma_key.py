@@ -8,8 +8,8 @@ class ChromaKey(Pointwise):
 
     The screen's color decides which channel is keyed. Difference is the color difference of film and video keyers
     (Vlahos 1964): how far that channel exceeds the others, compared to the screen; exact for gray subjects (Smith and
-    Blinn 1996). Distance compares the color alone, with its brightness taken out. `out` is the subject with the screen
-    subtracted, `matte` its coverage.
+    Blinn 1996). Distance compares the color alone, with its brightness taken out: how far `rgb / (r + g + b)` lies from
+    the screen's, over the tolerance. `out` is the subject with the screen subtracted, `matte` its coverage.
     """
 
     image = Image()

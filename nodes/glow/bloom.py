@@ -2,12 +2,32 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, Output, Pixels, Size, Slider
+from .._declare import (
+    RGBA,
+    Curve,
+    Doc,
+    Draw,
+    Drawn,
+    Filter,
+    Fraction,
+    Image,
+    Output,
+    Pixels,
+    Points,
+    Size,
+    Slider,
+    curve_at,
+)
 
 _NO_LIMIT = 65504.0
 
+_WHITE = (1.0, 1.0, 1.0, 1.0)
+
 _OCTAVES = 4
 """Scatter shares light out over this many halvings of the radius, so that the glow's shape is the same at any size."""
+
+_FAINTEST = 1e-12
+"""No level counts for less, so that levels that all count for nothing are all alike instead."""
 
 
 class Bloom(Filter):
@@ -26,6 +46,11 @@ class Bloom(Filter):
         ),
     ] = 0.1
     scatter: Annotated[Fraction, Doc("How much light goes on to wider levels: 0 a tight glow, 1 a wide one.")] = 0.7
+    levels: Annotated[Points, Curve(0.0, 2.0, minimum=0.0), Doc(
+        "How much each width counts, beside what scatter gives it: from a sixteenth of the radius, left, by doublings "
+        "to the whole radius, right. The sum stays."
+    )] = (0.0, 1.0, 1.0, 1.0)
+    tint: Annotated[RGBA, Doc("Color of the glow; white keeps that of the light.")] = _WHITE
     intensity: Annotated[
         float, Slider(0.0, 1.0, unit="ratio", minimum=0.0, doc="How much glow reaches the picture.")
     ] = 0.04
@@ -54,23 +79,35 @@ class Bloom(Filter):
         light: Pixels = self.image
         if self.threshold > 0.0 or self.limit < _NO_LIMIT:
             light = draw.point("bloom_light", self.image, threshold=self.threshold, knee=self.knee, limit=self.limit)
-        glow = self._spread(draw, light, draw.size, 0)
+        glow = self._spread(draw, light, draw.size, self._shares())
+        if self.tint != _WHITE:
+            glow = draw.point("bloom_tint", glow=glow, tint=self.tint)
         out = draw.point("bloom", self.image, glow=glow, intensity=self.intensity, mode=self.mode)
         return {"out": out, "glow": glow}
 
-    def _spread(self, draw: Draw, light: Pixels, size: Size, level: int) -> Drawn:
+    def _spread(self, draw: Draw, light: Pixels, size: Size, shares: list[float], first: bool = True) -> Drawn:
         """The glow of a level's light: half the size, spread there by the levels below, and back."""
-        last, part = _levels(self.radius)
-        # How many octaves this level lies below the radius; what would lie below the finest level stays in it.
-        below_radius = last + part - 1.0 - level
-        octaves = max(_OCTAVES - below_radius, 0.0) if level == 0 else min(max(_OCTAVES - below_radius, 0.0), 1.0)
         half = ((size[0] + 1) // 2, (size[1] + 1) // 2)
-        steady = self.firefly and level == 0
+        steady = self.firefly and first
         below = draw("bloom_shrink_steady" if steady else "bloom_shrink", image=light, size=half)
-        if level < last:
-            below = self._spread(draw, below, half, level + 1)
-        share = self.scatter**octaves * (part if level == last else 1.0)
-        return draw("bloom_grow", image=below, level=light, size=size, share=share)
+        if len(shares) > 1:
+            below = self._spread(draw, below, half, shares[1:], first=False)
+        return draw("bloom_grow", image=below, level=light, size=size, share=shares[0])
+
+    def _shares(self) -> list[float]:
+        """Of every level, the part of its glow that comes from the levels below it."""
+        last, part = _levels(self.radius)
+        # What lies on each level. What would lie on levels finer than the picture stays on its finest, the first.
+        amounts = [0.0] * (last + 2)
+        rest = 1.0
+        for level in range(min(last - _OCTAVES, 0), last + 2):
+            octave = last + part - level  # from the radius to how wide this level is, in halvings
+            share = self.scatter ** min(max(_OCTAVES + 1.0 - octave, 0.0), 1.0) * (part if level == last else 1.0)
+            here = rest if level == last + 1 else rest * (1.0 - share)
+            amounts[max(level, 0)] += here * max(curve_at(self.levels, 1.0 - octave / _OCTAVES), _FAINTEST)
+            rest -= here
+        below = [sum(amounts[level:]) for level in range(last + 3)]
+        return [below[level + 1] / below[level] if below[level] > 0.0 else 1.0 for level in range(last + 1)]
 
 
 def _levels(sigma: float) -> tuple[int, float]:

@@ -4,11 +4,12 @@
 
 const float crt_circle = 6.28318531;
 
-// The average of a cosine over `width` turns, at this phase in turns; none is left over a whole turn or more.
+// The average of a cosine over `width` turns, at this phase in turns. Turns of less than two pixels would beat with
+// the pixels: they fade out before.
 float crt_cosine(float phase, float width) {
-    if (width >= 1.0) return 0.0;
-    float half_turn = 0.5 * crt_circle * width;
-    return cos(crt_circle * phase) * (half_turn > 1e-4 ? sin(half_turn) / half_turn : 1.0);
+    if (width >= 0.5) return 0.0;
+    float half_turn = 0.5 * crt_circle * width, fade = min(10.0 - 20.0 * width, 1.0);
+    return fade * cos(crt_circle * phase) * (half_turn > 1e-4 ? sin(half_turn) / half_turn : 1.0);
 }
 
 vec4 crt(

@@ -1,14 +1,10 @@
+#include "lib/bright.glsl"
 #include "lib/color.glsl"
 #include "lib/finite.glsl"
 
-// The light that glows: eased in around the threshold by a quadratic knee, no brighter than the limit.
+// The light that glows: eased in around the threshold, no brighter than the limit.
 vec4 bloom_light(vec4 image, float threshold, float knee, float limit) {
-    vec4 safe = finite(image);
-    float light = luminance(safe.rgb);
-    if (light <= 0.0) return vec4(0.0, 0.0, 0.0, safe.a);
-    float above = min(light, limit) - threshold, width = threshold * knee;
-    float eased = clamp(above + width, 0.0, 2.0 * width);
-    return vec4(safe.rgb * max(eased * eased / (4.0 * width + 1e-5), above) / light, safe.a);
+    return bright_light(image, threshold, knee, limit);
 }
 
 // One step down: five overlapping boxes of 4 x 4 pixels, the middle one worth four of the others (Jimenez 2014).
@@ -57,6 +53,8 @@ vec4 bloom_grow(float share) {
             sum += across[x] * down[y] * image_at(first + ivec2(x, y));
     return mix(level_at(pixel), sum, share);
 }
+
+vec4 bloom_tint(vec4 glow, vec4 tint) { return vec4(glow.rgb * tint.rgb, glow.a); }
 
 vec4 bloom(vec4 image, vec4 glow, float intensity, int mode) {
     vec4 safe = finite(image);

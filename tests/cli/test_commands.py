@@ -144,6 +144,12 @@ def test_nodes_shows_a_page(cli, id):
     assert result.code == 0 and result.out.startswith(f"{id}  ({node.category}, version {node.version})")
     for name in (*node.inputs, *node.outputs, *node.values):
         assert re.search(rf"^  {name} ", result.out, re.M), name
+    *passes, peak = result.out.split("\npasses at these values, 1920x1080\n")[1].splitlines()
+    facts = cli("nodes", id, "--json").json["plan"]
+    assert peak.endswith(" of textures at the peak") and len(passes) == max(1, len(facts["passes"]))
+    for index, (line, item) in enumerate(zip(passes, facts["passes"], strict=False)):
+        assert line.startswith(f"  {index} ") and item["label"] in line
+        assert all(f"{'x'.join(map(str, one['size']))} {one['format']}" in line for one in item["writes"])
 
 
 def test_nodes_for_machines(cli):
@@ -154,6 +160,13 @@ def test_nodes_for_machines(cli):
     amount = one["values"]["amount"]
     assert (amount["default"], amount["soft"], amount["hard"], amount["unit"]) == (0.5, [0, 1], [-16, 1], "ratio")
     assert one["inputs"]["image"]["type"] == "Image" and "smooth" in one["values"]["falloff"]["choices"]
+    assert one["plan"]["passes"] == [{"label": "vignette", "writes": [{"size": [1920, 1080], "format": "rgba32f"}]}]
+
+
+def test_a_neutral_node_has_no_passes(cli):
+    assert "  none: the picture goes through as it is\n" in cli("nodes", "exposure").out
+    assert "  none: files are loaded as they are\n" in cli("nodes", "read_image").out
+    assert cli("nodes", "exposure", "--json").json["plan"]["passes"] == []
 
 
 # --- fmt ----------------------------------------------------------------------------------------------------------
@@ -233,7 +246,7 @@ def test_version(cli):
 def test_help(cli):
     result = cli("--help")
     assert result.code == 0 and result.out.count("130  interrupted") == 1
-    for command in ("render", "check", "explain", "nodes", "fmt", "demo"):
+    for command in ("render", "check", "explain", "nodes", "fmt", "demo", "gallery"):
         assert f"\n  {command} " in result.out
         page = cli(command, "--help")
         assert page.code == 0 and "--json" in page.out and page.out.startswith(f"Usage: halation {command} ")
@@ -250,7 +263,7 @@ def test_the_reference_knows_every_flag_and_exit_code(cli):
     for command, text in chapters.items():
         flags = set(re.findall(r"(--[a-z]+)", cli(command, "--help").out)) - {"--help", "--json", "--input"}
         assert flags <= set(re.findall(r"--[a-z]+", text)), command
-    assert set(chapters) == {"edit", "render", "check", "explain", "nodes", "fmt", "demo"}
+    assert set(chapters) == {"edit", "render", "check", "explain", "nodes", "fmt", "demo", "gallery"}
     assert set(re.findall(r"^(\d+)  ", cli("--help").out.replace("\n  ", "\n"), re.M)) <= set(
         re.findall(r"^\| (\d+) \|", page, re.M)
     )

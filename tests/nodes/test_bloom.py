@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from halation.nodes.glow.bloom import Bloom
+from scipy.interpolate import PchipInterpolator
 from scipy.ndimage import map_coordinates
 from scipy.signal import fftconvolve
 
@@ -58,6 +59,68 @@ def pyramid(image: np.ndarray, sigma: float, scatter: float) -> np.ndarray:
         below = sampled(glow, levels[level].shape[1::-1], UP, 0.5)
         glow = levels[level] * (1.0 - share) + below * share
     return glow
+
+
+def weighed(image: np.ndarray, sigma: float, scatter: float, curve: tuple[float, ...]) -> np.ndarray:
+    """The glow as the sum of its levels, each times its weight, in 64 bits.
+
+    Levels go on below the finest of the picture, where they are the picture itself, so that sizes do not matter.
+    """
+    depth = math.log(1.0 + sigma * sigma / 1.5) / math.log(4.0)
+    last = int(depth)
+    part = (sigma * sigma - levels(last) ** 2) / (levels(last + 1) ** 2 - levels(last) ** 2)
+    weight = PchipInterpolator(curve[0::2], curve[1::2])
+    total, rest, sizes = 0.0, 1.0, [image]
+    glow = np.zeros(image.shape)
+    for level in range(last - 12, last + 2):
+        octave = last + part - level
+        onward = scatter ** float(np.clip(5.0 - octave, 0.0, 1.0)) * (part if level == last else float(level < last))
+        amount = rest * (1.0 - onward) * float(weight(np.clip(1.0 - octave / 4.0, 0.0, 1.0)))
+        rest *= onward
+        total += amount
+        if level > 0:
+            sizes.append(sampled(sizes[-1], half(sizes[-1]), DOWN, 2.0))
+        wide = sizes[-1].astype(np.float64)
+        for smaller in reversed(sizes[:-1]):
+            wide = sampled(wide, smaller.shape[1::-1], UP, 0.5)
+        glow += amount * wide
+    return glow / total
+
+
+CURVES = [(0.0, 0.2, 0.4, 2.0, 1.0, 0.5), (0.0, 0.0, 1.0, 1.0), (0.0, 3.0, 0.7, 0.0, 1.0, 0.0)]
+
+
+@pytest.mark.parametrize("curve", CURVES)
+@pytest.mark.parametrize(("sigma", "scatter"), [(2.5, 0.7), (9.0, 0.5), (31.0, 0.8)])
+def test_every_level_has_its_weight(run, hdr, sigma, scatter, curve):
+    picture = hdr(61, 47)
+    found = glow_of(run, picture, sigma, scatter=scatter, levels=curve)
+    expected = weighed(picture, sigma, scatter, curve)
+    # A share in 32 bits leaves that much of the picture on a level that counts for nothing.
+    np.testing.assert_allclose(found, expected, rtol=2e-5, atol=1.2e-7 * float(picture.max()))
+
+
+@pytest.mark.parametrize("height", [0.0, 0.3, 2.0])
+def test_levels_that_all_count_alike_change_nothing(run, hdr, height):
+    picture = hdr(40, 30)
+    found = glow_of(run, picture, 7.0, levels=(0.0, height, 1.0, height))
+    np.testing.assert_allclose(found, glow_of(run, picture, 7.0), rtol=1e-5)
+
+
+@pytest.mark.parametrize("curve", CURVES)
+def test_weights_lose_no_light(run, hdr, curve):
+    flat = np.full((33, 47, 4), 2.5, np.float32)
+    np.testing.assert_allclose(run(Bloom(levels=curve), {"image": flat}, output="glow"), flat, rtol=1e-5)
+    picture = np.pad(hdr(31, 23, opaque=True), ((100, 101), (100, 97), (0, 0)))
+    found = glow_of(run, picture, 9.0, levels=curve)[..., :3].sum(dtype=np.float64)
+    assert found == pytest.approx(picture[..., :3].sum(dtype=np.float64), rel=1e-5)
+
+
+def test_the_tint_is_the_color_of_the_glow(run, hdr):
+    picture, tint = hdr(24, 20), (0.9, 0.3, 0.1, 0.0)
+    plain = run(Bloom(), {"image": picture}, output="glow")
+    found = run(Bloom(tint=tint), {"image": picture}, output="glow")
+    np.testing.assert_allclose(found, plain * np.float32([0.9, 0.3, 0.1, 1.0]), rtol=1e-6)
 
 
 def glow_of(run, picture: np.ndarray, sigma: float, **values: object) -> np.ndarray:

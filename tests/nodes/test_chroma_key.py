@@ -72,3 +72,45 @@ def test_spill_is_taken_off_as_far_as_asked(run):
     lit = np.float32([[[0.3, 0.5, 0.2, 1.0]]])
     node = ChromaKey(screen=(0.0, 1.0, 0.0, 1.0), white=0.5, spill=0.5)
     assert np.abs(run(node, {"image": lit})[0, 0] - [0.3, 0.4, 0.2, 1.0]).max() < 1e-6
+
+
+def by_distance(picture: np.ndarray, node: ChromaKey) -> tuple[np.ndarray, np.ndarray]:
+    """The distance method in 64 bits: the subject and its matte."""
+    rgb, alpha = picture[..., :3].astype(np.float64), picture[..., 3].astype(np.float64)
+    screen = np.float32(node.screen[:3]).astype(np.float64)
+    chromaticity, empty = (np.maximum(c, 0) / np.maximum(c, 0).sum(-1, keepdims=True) for c in (rgb, screen))
+    away = np.sqrt(((chromaticity - empty) ** 2).sum(-1)) / node.tolerance
+    cover = ((np.minimum(away, 1) - node.black) / (node.white - node.black)).clip(0, 1)
+    subject = rgb - (1 - cover)[..., None] * screen
+    keyed = int(screen.argmax())
+    others = [subject[..., channel] for channel in range(3) if channel != keyed]
+    allowed = np.maximum(*others) if node.limit == "maximum" else sum(others) / 2
+    subject[..., keyed] -= node.spill * np.maximum(subject[..., keyed] - allowed, 0)
+    # What the screen took more of than there was is none, but what was negative before may stay.
+    subject = np.where(cover[..., None] > 0, np.maximum(subject, np.minimum(rgb, 0)), 0)
+    return np.concatenate([subject, (cover * alpha)[..., None]], -1), cover * alpha
+
+
+@pytest.mark.parametrize("name", SCREENS)
+@pytest.mark.parametrize("values", [
+    {}, {"tolerance": 0.2, "limit": "average"}, {"tolerance": 1.3, "spill": 0.4},
+    {"tolerance": 0.8, "black": 0.15, "white": 0.6}, {"tolerance": 0.5, "black": -0.3, "white": 1.5, "spill": 0.0},
+], ids=str)
+def test_distance_is_its_formula(run, name, values):
+    """Over all colors, also such as no light has, and around the screen's own, where the matte begins."""
+    random = np.random.default_rng(21)
+    screen = np.array([*SCREENS[name], 1.0])
+    picture = np.exp(random.normal(-1.0, 1.5, (24, 31, 4)))
+    picture[:6] = screen * np.exp(random.normal(0.0, 0.3, (6, 31, 4)))
+    picture[6:9, :, random.integers(3)] *= -0.1
+    picture[..., 3] = random.random((24, 31))
+    picture = picture.astype(np.float32)
+    node = ChromaKey(method="distance", screen=tuple(screen), **values)
+    subject, matte = by_distance(picture, node)
+    assert np.ptp(matte / picture[..., 3]) > 0.5
+    assert np.abs(run(node, {"image": picture}, output="matte")[..., 0] - matte).max() < 3e-6
+    error = np.abs(run(node, {"image": picture}) - subject)
+    assert (error <= 3e-6 * (1.0 + np.abs(picture[..., :3]).max(-1, keepdims=True))).all()
+    # The matte knows no brightness.
+    brighter = picture * np.float32([7.5, 7.5, 7.5, 1.0])
+    assert np.abs(run(node, {"image": brighter}, output="matte")[..., 0] - matte).max() < 3e-6

@@ -12,8 +12,12 @@ from scipy.ndimage import correlate1d, gaussian_filter
 LARGE = (7.0, 8.0, 11.3, 20.0, 50.0, 100.0)
 
 
-def blurred(image: np.ndarray, sigma: float, mode: str = "nearest", truncate: float = 6.0) -> np.ndarray:
-    return gaussian_filter(image.astype(np.float64), (sigma, sigma, 0.0), mode=mode, truncate=truncate)
+def blurred(
+    image: np.ndarray, sigma: float | tuple[float, float], mode: str = "nearest", truncate: float = 6.0
+) -> np.ndarray:
+    """By scipy; two sigmas are across and down."""
+    across, down = sigma if isinstance(sigma, tuple) else (sigma, sigma)
+    return gaussian_filter(image.astype(np.float64), (down, across, 0.0), mode=mode, truncate=truncate)
 
 
 def impulse(width: int, height: int, x: int, y: int) -> np.ndarray:
@@ -54,6 +58,40 @@ def test_large_sigmas_equal_scipy(run, hdr, edge, sigma, size):
     assert np.abs(error).max() <= 1e-3 * expected.max()
     if min(size) > 1:
         assert np.sqrt((error**2).mean()) <= 3e-4 * np.sqrt((expected**2).mean())
+
+
+# Sides that small pictures divide (all steps, some, none), where reflect and wrap stay what they are at any size.
+@pytest.mark.parametrize("size", [(256, 64), (96, 40), (97, 12)])
+@pytest.mark.parametrize("sigma", [30.0, 200.0])
+def test_edges_are_right_however_far_it_reaches(run, hdr, edge, sigma, size):
+    picture = hdr(*size)
+    expected = blurred(picture, sigma, edge.scipy)
+    error = run(GaussianBlur(sigma=sigma, edge=edge.name), {"image": picture}) - expected
+    assert np.abs(error).max() <= 5e-4 * expected.max()
+    for border in (error[:2], error[-2:], error[:, :2], error[:, -2:]):
+        assert np.abs(border).max() <= 5e-4 * expected.max()
+
+
+@pytest.mark.parametrize(("sigma", "scale"), [
+    (4.0, (1.0, 0.25)), (4.0, (0.0, 1.0)), (40.0, (1.0, 0.05)), (40.0, (0.4, 1.0)), (40.0, (1.0, 0.0)),
+])
+def test_each_direction_has_its_own_sigma(run, hdr, edge, sigma, scale):
+    picture = hdr(71, 48)
+    sigmas = (sigma * scale[0], sigma * scale[1])
+    expected = blurred(picture, sigmas, edge.scipy, truncate=4.0 if sigma < 7.0 else 6.0)
+    error = run(GaussianBlur(sigma=sigma, scale=scale, edge=edge.name), {"image": picture}) - expected
+    assert np.abs(error).max() <= (1e-5 if sigma < 7.0 else 1e-3) * expected.max()
+    if sigma > 7.0:
+        assert np.sqrt((error**2).mean()) <= 3e-4 * np.sqrt((expected**2).mean())
+
+
+def test_turning_the_picture_turns_the_scale(run, hdr):
+    picture = hdr(61, 44)
+    turned = np.ascontiguousarray(picture.transpose(1, 0, 2))
+    for sigma in (3.0, 20.0):
+        found = run(GaussianBlur(sigma=sigma, scale=(1.0, 0.3)), {"image": picture})
+        other = run(GaussianBlur(sigma=sigma, scale=(0.3, 1.0)), {"image": turned}).transpose(1, 0, 2)
+        np.testing.assert_allclose(found, other, rtol=1e-5, atol=2e-6 * float(found.max()))
 
 
 @pytest.mark.parametrize("sigma", LARGE)
@@ -121,7 +159,8 @@ def test_two_blurs_add_their_variances(run):
 
 
 def test_sigma_zero_changes_nothing(run, hdr):
-    assert GaussianBlur(sigma=0.0).identity() == "image"
+    assert GaussianBlur(sigma=0.0).identity() == GaussianBlur(scale=(0.0, 0.0)).identity() == "image"
+    assert GaussianBlur(scale=(0.0, 1.0)).identity() is None
     picture = hdr(13, 11)
     np.testing.assert_array_equal(run(GaussianBlur(sigma=0.0), {"image": picture}), picture)
 
