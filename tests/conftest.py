@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from halation.app.graph import Graph, Input, Output, Port
 from halation.app.renderer import Renderer, Wanted, open_device
-from halation.nodes import Kind, Node
+from halation.nodes import Camera, Kind, Node
 
 Array = np.ndarray
 Run = Callable[..., Array]
@@ -28,10 +28,14 @@ def renderer() -> Iterator[Renderer]:
     made.close()
 
 
-def graph_of(node: Node, inputs: Mapping[str, Array]) -> Graph:
-    """A graph of one node with an input for every array; arrays may feed values too."""
+def graph_of(node: Node, inputs: Mapping[str, Array | Camera]) -> Graph:
+    """A graph of one node with an input for every array or camera; arrays may feed values too."""
     graph = Graph().add("node", node)
     for name, array in inputs.items():
+        if isinstance(array, Camera):
+            graph = graph.add_input(name, Input(Kind.CAMERA, default=array.rows))
+            graph = graph.connect(Port("inputs", name), Port("node", name))
+            continue
         socket = type(node).inputs.get(name)
         channels = 1 if array.ndim == 2 else array.shape[2]
         if socket is not None:
@@ -47,14 +51,19 @@ def graph_of(node: Node, inputs: Mapping[str, Array]) -> Graph:
 
 @pytest.fixture
 def run(renderer: Renderer) -> Run:
-    """`run(Exposure(stops=1.0), {"image": rgba})` renders a node, or a graph; [h, w, channels] of float32."""
+    """`run(Exposure(stops=1.0), {"image": rgba})` renders a node, or a graph; [h, w, channels] of float32.
+
+    Inputs that take cameras are given one.
+    """
 
     def rendered(
-        subject: Node | Graph, inputs: Mapping[str, Array] | None = None, *, size: tuple[int, int] | None = None,
+        subject: Node | Graph, inputs: Mapping[str, Array | Camera] | None = None, *, size: tuple[int, int] | None = None,
         output: str = "out", scale: float = 1.0, precision: str = "float", engine: Renderer | None = None,
     ) -> Array:
-        arrays = {name: np.asarray(array, np.float32) for name, array in (inputs or {}).items()}
-        graph = graph_of(subject, arrays) if isinstance(subject, Node) else subject
+        given = inputs or {}
+        cameras = {name: item for name, item in given.items() if isinstance(item, Camera)}
+        arrays = {name: np.asarray(item, np.float32) for name, item in given.items() if name not in cameras}
+        graph = graph_of(subject, arrays | cameras) if isinstance(subject, Node) else subject
         if output not in graph.outputs:
             output = next(iter(graph.outputs))
         engine = engine or renderer

@@ -16,7 +16,10 @@ from halation.nodes import Filter, Kind, Node, Pointwise, Source, catalogue
 
 ROOT = Path(__file__).parents[2]
 NODES = list(catalogue().values())
-RENDERED = [node for node in NODES if not issubclass(node, Source)]
+RENDERED = [
+    node for node in NODES
+    if not issubclass(node, Source) and any(output.socket.kind is not Kind.CAMERA for output in node.outputs.values())
+]
 
 GLSL_WORDS = frozenset((
     "abs", "acos", "acosh", "active", "all", "any", "asin", "asinh", "atan", "atanh", "atomicAdd", "attribute",

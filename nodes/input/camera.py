@@ -1,0 +1,32 @@
+from collections.abc import Mapping
+from typing import Annotated, Literal
+
+from .._declare import Camera as Placed
+from .._declare import Doc, Draw, Filter, Output, Slider, Viewpoint, look_at
+
+Place = Annotated[tuple[float, float, float], Slider(-10.0, 10.0, unit="scene")]
+
+
+class Camera(Filter):
+    """A camera by hand, for pictures whose file does not say where they were taken from.
+
+    The field of view is `2 atan(sensor / (2 focal))` across the picture. Depth grows along the way it looks.
+    """
+
+    eye: Annotated[Place, Doc("Where it stands.")] = (0.0, -5.0, 1.5)
+    target: Annotated[Place, Doc("What it looks at.")] = (0.0, 0.0, 1.0)
+    focal: Annotated[float, Slider(
+        8.0, 200.0, unit="ratio", minimum=0.1, maximum=10000.0, doc="Focal length in millimeters."
+    )] = 50.0
+    sensor: Annotated[float, Slider(
+        4.0, 70.0, unit="ratio", minimum=0.1, maximum=1e3, doc="Width of the sensor in millimeters, 36 for full frame."
+    )] = 36.0
+    up: Annotated[Literal["z", "y"], Doc("The axis of the world that points up: z in Blender, y in Maya.")] = "z"
+
+    camera = Output(Viewpoint())
+
+    def passes(self, draw: Draw) -> Mapping[str, Placed]:
+        width, height = draw.size
+        across = self.focal / self.sensor
+        up = (0.0, 0.0, 1.0) if self.up == "z" else (0.0, 1.0, 0.0)
+        return {"camera": look_at(self.eye, self.target, (across, across * width / height), up)}
