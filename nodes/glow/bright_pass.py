@@ -1,0 +1,34 @@
+from typing import Annotated, Literal
+
+from .._declare import Doc, Field, Fraction, Image, Pointwise, Slider
+
+
+class BrightPass(Pointwise):
+    """Keep only the light that shall glow: what is bright, or what a mask picks.
+
+    `L` is how bright a pixel is and `t` the threshold; the color is scaled to the new `L` and keeps its hue. Hard keeps
+    `L > t` as it is. Soft takes `t` off and eases in by a quadratic knee (KinoBloom, Takahashi 2015). Clamp
+    keeps everything up to the limit. Exponential keeps `1 - exp(-(L/t)^power)` of it, power `(L/t)^power`: both without
+    an edge that could flicker. To glow by mask only, link `mask` and set the threshold to 0. Light is measured as it
+    arrives, that is premultiplied; alpha is kept.
+    """
+
+    image = Image()
+    mask = Field(1.0, doc="How much of each pixel may glow: emission, a matte.")
+    mode: Annotated[
+        Literal["hard", "soft", "clamp", "exponential", "power"], Doc("How light is picked: see above.")
+    ] = "soft"
+    measure: Annotated[Literal["luminance", "maximum"], Doc(
+        "Luminance is Rec.709. Maximum is of the three channels, so that blue and red lamps count as white ones do."
+    )] = "luminance"
+    threshold: Annotated[float, Slider(
+        0.0, 10.0, unit="scene", minimum=0.0, doc="Light counts as bright above this. Clamp does not use it."
+    )] = 1.0
+    knee: Annotated[Fraction, Doc("For soft: the part of the threshold over which light fades in.")] = 0.5
+    power: Annotated[float, Slider(
+        0.5, 8.0, unit="ratio", minimum=0.0, maximum=16.0, doc="For exponential and power: how steep."
+    )] = 2.0
+    limit: Annotated[float, Slider(
+        1.0, 1000.0, unit="scene", minimum=0.0, maximum=65504.0,
+        doc="Nothing counts as brighter than this, for suns and noise; 65504 sets no limit.",
+    )] = 65504.0

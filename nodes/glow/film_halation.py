@@ -1,0 +1,114 @@
+import math
+from collections.abc import Mapping
+from itertools import pairwise
+from typing import Annotated
+
+from .._declare import RGBA, Doc, Draw, Drawn, Filter, Fraction, Image, Output, Slider
+
+_NO_LIMIT = 65504.0
+
+_INDEX = 1.48
+"""Refractive index of cellulose triacetate."""
+
+_CRITICAL = math.asin(1.0 / _INDEX)
+"""Light that meets the back of the base at less than this angle, 42.5 degrees, mostly leaves the film."""
+
+_STRAIGHT = ((_INDEX - 1.0) / (_INDEX + 1.0)) ** 2
+"""What is reflected of light that meets the back at a right angle (Fresnel)."""
+
+_LOST = 0.416
+"""What leaves the film of light that enters the base in all directions (Lambert): sin^2 of the critical angle, less the
+Fresnel reflection within it."""
+
+_SIGMAS = (0.22, 0.33, 0.5, 0.74, 1.11, 1.67, 2.5, 3.76)
+"""The Gaussians that the halo is mixed from, in thicknesses of the light's way: twice that of the base."""
+
+
+class FilmHalation(Filter):
+    """Give bright light the red-orange halo that it has on film.
+
+    Light that passes the emulsion spreads in the film base, is reflected at its back and exposes the emulsion once
+    more from behind: the red-sensitive layer first, which lies deepest, less the green one above it, hardly the blue
+    one on top under a yellow filter. Rays flatter than the critical angle, asin(1 / 1.48) for triacetate, are reflected
+    wholly, so the halo is brightest in a ring of radius `2 t tan(angle)`: 0.24 mm for a base t = 0.13 mm thick, 0.015
+    of the 16 mm height of a Super 35 frame. Light that enters the base in all directions comes back as
+    `b^2 / (pi (r^2 + b^2)^2)`, b = 2 t, less the 42 percent that leave within the angle, taken off as a Gaussian so
+    narrow that in the middle just what Fresnel reflects is left. Flat rays cross more emulsion, so the upper layers see
+    a smaller halo. An anti-halation backing (remjet) absorbs nearly all of this; film without it glows. (Kodak, "The
+    Essential Reference Guide for Filmmakers"; Mees and James, "The Theory of the Photographic Process".)
+
+    A channel's halo has `amount * color` times the sum of its light above the threshold, and is added. `glow` is the
+    halo alone. Alpha is kept.
+    """
+
+    image = Image()
+    amount: Annotated[float, Slider(
+        0.0, 0.58, unit="ratio", minimum=0.0, maximum=16.0,
+        doc="How much of the bright light comes back. 0: the backing absorbs all of it; 0.58: there is no backing.",
+    )] = 0.2
+    color: Annotated[RGBA, Doc("How much of it the red, green and blue layers take up.")] = (1.0, 0.15, 0.02, 1.0)
+    radius: Annotated[float, Slider(
+        0.0, 0.06, unit="height", minimum=0.0, maximum=0.5,
+        doc="Radius of the ring: 0.015 for Super 35, 0.032 for 16 mm film, 0.01 for a still of 24 x 36 mm.",
+    )] = 0.015
+    reach: Annotated[tuple[float, float, float], Slider(
+        0.5, 1.0, unit="ratio", minimum=0.5, maximum=1.0, doc="The radius in red, green and blue, as a part of it."
+    )] = (1.0, 0.85, 0.7)
+    threshold: Annotated[tuple[float, float, float], Slider(
+        0.0, 10.0, unit="scene", minimum=0.0,
+        doc="Only light above this gets through the layers, in red, green and blue.",
+    )] = (1.0, 1.0, 1.0)
+    knee: Annotated[Fraction, Doc("Softness of the threshold: the part of it over which light fades in.")] = 0.5
+    limit: Annotated[float, Slider(
+        1.0, 1000.0, unit="scene", minimum=0.0, maximum=_NO_LIMIT,
+        doc="The light in a channel that comes back at most, for suns and noise; 65504 sets no limit.",
+    )] = 200.0
+
+    out = Output()
+    glow = Output()
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        way = self.radius / math.tan(_CRITICAL)
+        # Every Gaussian with its share in red, green and blue: layers that see the same halo have the same ones.
+        gaussians: dict[float, list[float]] = {}
+        for layer, reach in enumerate(self.reach):
+            for sigma, share in _mixture(min(max(reach, 0.5), 1.0)):
+                gaussians.setdefault(sigma, [0.0, 0.0, 0.0])[layer] += share
+        factor = _factor(min(gaussians) * way)
+        size = (-(-draw.size[0] // factor), -(-draw.size[1] // factor))
+        light = draw.point(
+            "film_halation_light", self.image, threshold=self.threshold, knee=self.knee, limit=self.limit
+        )
+        if factor > 1:
+            light = draw("film_halation_shrink", image=light, size=size, factor=factor)
+        # What shrinking (a box) and enlarging (a tent) blur themselves.
+        known = (factor**2 - 1.0) / 12.0 + factor**2 / 6.0 if factor > 1 else 0.0
+        halo = draw.point("film_halation_none", light=light)
+        for sigma, share in gaussians.items():
+            soft = draw.blur(light, math.sqrt(max((sigma * way) ** 2 - known, 0.0)) / factor)
+            halo = draw.point("film_halation_add", halo=halo, soft=soft, share=tuple(share))
+        if factor > 1:
+            halo = draw("film_halation_enlarge", image=halo, size=draw.size, factor=factor)
+        glow = draw.point("film_halation_glow", self.image, halo=halo, amount=self.amount, color=self.color)
+        return {"out": draw.point("film_halation", self.image, glow=glow), "glow": glow}
+
+
+def _factor(sigma: float) -> int:
+    """How much smaller the picture may be for a blur of `sigma` pixels and wider ones."""
+    return 4 if sigma >= 8.0 else 2 if sigma >= 4.0 else 1
+
+
+def _mixture(reach: float) -> list[tuple[float, float]]:
+    """Sigmas and shares of the Gaussians that make a halo `reach` times as large. The shares add up to 1.
+
+    `b^2 / (pi (r^2 + b^2)^2)` is a mixture of Gaussians whose variances v are distributed as exp(-b^2 / 2 v): each of
+    ours stands for those around it.
+    """
+    precisions = [(reach / sigma) ** 2 for sigma in _SIGMAS]
+    bounds = [0.0, *(math.exp(-0.5 * math.sqrt(a * b)) for a, b in pairwise(precisions)), 1.0]
+    back = [above - below for below, above in pairwise(bounds)]
+    # Taken off: as much as leaves the film, so narrow that in the middle only what is reflected straight stays.
+    variance = 0.5 * _LOST / (1.0 - _STRAIGHT)
+    lost = (1.0 - _STRAIGHT) * variance * sum(a * b for a, b in zip(back, precisions, strict=True))
+    found = [(sigma, share / (1.0 - lost)) for sigma, share in zip(_SIGMAS, back, strict=True)]
+    return [*found, (math.sqrt(variance) * reach, -lost / (1.0 - lost))]
