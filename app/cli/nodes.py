@@ -84,7 +84,7 @@ def _print_passes(node: type[Node]) -> None:
         made = ", ".join(f"{'x'.join(map(str, one['size']))} {one['format']}" for one in item["writes"])
         print(f"  {index:<4} {item['label']:<{widest}}  {made}")
     if not facts["passes"]:
-        print("  none: the picture goes through as it is" if node.inputs else "  none: files are loaded as they are")
+        print(f"  none: {'the picture goes through as it is' if node.inputs else 'nothing has to be drawn'}")
     print(f"  {size_text(facts['peak_bytes'])} of textures at the peak")
 
 

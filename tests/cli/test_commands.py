@@ -165,7 +165,7 @@ def test_nodes_for_machines(cli):
 
 def test_a_neutral_node_has_no_passes(cli):
     assert "  none: the picture goes through as it is\n" in cli("nodes", "exposure").out
-    assert "  none: files are loaded as they are\n" in cli("nodes", "read_image").out
+    assert "  none: nothing has to be drawn\n" in cli("nodes", "read_image").out
     assert cli("nodes", "exposure", "--json").json["plan"]["passes"] == []
 
 

@@ -1,0 +1,146 @@
+"""`halation gallery`: contact sheets of all presets and of all nodes."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from .options import AsJson
+from .outcome import note, print_json
+
+if TYPE_CHECKING:
+    from ...nodes import Kind, Node
+    from ..media.color import Array
+    from ..renderer import Renderer
+
+Step = Callable[[str], None]
+"""Called with the name of what is rendered next."""
+
+_COLUMNS = 6
+_WIDTH = 256
+_LETTERS = 18
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A contact sheet: light of the display, and the names of what it shows, in order."""
+
+    light: Array
+    names: tuple[str, ...]
+
+
+def gallery(
+    output: Annotated[Path, typer.Option("-o", "--output", help="The folder to write to.")] = Path("out"),
+    as_json: AsJson = False,
+) -> int:
+    """Make contact sheets of all presets and of all nodes at their defaults, over the sample frame."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+
+    from ...nodes import catalogue
+    from ...presets import paths
+    from ..errors import OutputError
+    from ..media.sheet import write_sheet
+    from ..renderer import Renderer, open_device
+    from .specimen import drawn
+
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+    except OSError as fault:
+        raise OutputError(f"{output}: the folder cannot be made ({fault.strerror}); choose another with -o") from None
+    renderer = Renderer(open_device(), budget=0)
+    note(renderer.device.description)
+    console = Console(stderr=True)
+    done: list[dict[str, object]] = []
+    columns = (TextColumn("{task.description:<24}", markup=False), BarColumn(), MofNCompleteColumn())
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
+        task = progress.add_task("", total=len(paths()) + sum(bool(drawn(node)) for node in catalogue().values()))
+
+        def step(name: str) -> None:
+            progress.update(task, description=name, advance=1)
+
+        for name, made in (("presets", preset_sheet), ("nodes", node_sheet)):
+            started, file = time.perf_counter(), output / f"{name}.jpg"
+            sheet = made(renderer, step)
+            write_sheet(file, sheet.light, ", ".join(sheet.names))
+            spent = time.perf_counter() - started
+            line = f"{name:<24} {len(sheet.names):>3} pictures  {spent:5.2f} s  {file}"
+            progress.console.print(line, soft_wrap=True, markup=False, highlight=False)
+            done.append({"sheet": str(file), "pictures": list(sheet.names), "seconds": round(spent, 3)})
+    renderer.close()
+    if as_json:
+        print_json({"device": renderer.device.description, "sheets": done})
+    return 0
+
+
+def preset_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet:
+    """Every preset on its own sample."""
+    from ...presets import paths
+    from .. import document
+    from ..media.sheet import grouped_sheet, shown
+
+    pictures: dict[str, Array] = {}
+    for path in paths():
+        step(path.stem)
+        graph = document.load(path)
+        name, output = next(iter(graph.outputs.items()))
+        pictures[path.stem] = shown(renderer.render(graph)[name], output.view)
+    return Sheet(grouped_sheet({"": pictures}, 4, 320, letters=_LETTERS), tuple(pictures))
+
+
+def node_sheet(renderer: Renderer, step: Step = lambda name: None, ids: tuple[str, ...] = ()) -> Sheet:
+    """Every node that draws, at its defaults over the sample, by category; or only these."""
+    from ...nodes import catalogue
+    from ...presets import sample
+    from ..editor.theme.palette import DARK
+    from ..media.sheet import grouped_sheet
+    from .specimen import drawn
+
+    nodes = [node for id, node in catalogue().items() if drawn(node) and (not ids or id in ids)]
+    groups: dict[str, dict[str, Array]] = {node.category: {} for node in nodes}
+    for node in nodes:
+        step(node.id)
+        groups[node.category][node.id] = picture_of(node, renderer, sample())
+    colors = {name: DARK.category(name) for name in groups}
+    light = grouped_sheet(groups, _COLUMNS, _WIDTH, letters=_LETTERS, colors=colors)
+    return Sheet(light, tuple(node.id for node in nodes))
+
+
+def picture_of(node: type[Node], renderer: Renderer, sample: Path) -> Array:
+    """What a node makes of the sample, as light of the display: its first picture, else its data made visible."""
+    from ...nodes import Kind
+    from .specimen import CANVAS, over, untouched
+
+    graph = over(node, sample)
+    found = renderer.render(graph)
+    name = next((name for name, end in graph.outputs.items() if end.kind is Kind.IMAGE), next(iter(found)))
+    if graph.outputs[name].kind is Kind.NUMBER:
+        from ..media.sheet import captioned, shown
+
+        numbers = [f"{name.replace('_', ' ')}  {array.item():.4g}" for name, array in found.items() if array.size == 1]
+        return captioned(shown(renderer.render(untouched(sample))["image"]), numbers)
+    if graph.outputs[name].kind is Kind.COLOR:
+        found[name] = found[name].repeat(CANVAS[0], axis=1).repeat(CANVAS[1], axis=0)
+    return light_of(graph.outputs[name].kind, found[name])
+
+
+def light_of(kind: Kind, array: Array) -> Array:
+    """An output as light of the display, which a picture that stays within 0..1 is taken to be already."""
+    from ...nodes import Kind
+    from ..editor.preview.data import are_normals, balanced, data_range
+    from ..media.sheet import data_shown, light_shown, shown_over_checker
+
+    if kind in (Kind.IMAGE, Kind.COLOR):
+        return shown_over_checker(array, "none" if array[..., :3].max() <= 1.0 else "")
+    array = array.astype("float32")
+    low, high = data_range(array)
+    if low >= 0.0 and high > 1.0:
+        return light_shown(array)
+    if kind is Kind.VECTOR:
+        return data_shown(array, *((-1.0, 1.0) if are_normals(array) else balanced(low, high)))
+    return data_shown(array, low, high)

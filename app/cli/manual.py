@@ -1,0 +1,98 @@
+"""The catalogue as one Markdown page."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from .facts import doc_of, hard_range, plain_text, socket_note, soft_range, type_of
+
+if TYPE_CHECKING:
+    from ...nodes import Node, Socket, Value
+
+_INTRODUCTION = """\
+# Nodes
+
+{count} nodes in {menus} menus. A value has a default, a range that its slider covers, and limits that typing cannot
+leave. Units: `px` pixels at full size, `height` a fraction of the height of the picture, `deg` degrees, `EV`
+photographic stops, `ratio` a factor, `count` a whole number of things, `s` seconds, `scene` the units of the scene.
+"""
+
+
+def page(nodes: Sequence[type[Node]]) -> str:
+    """A table of every menu, then a section for each of its nodes."""
+    menus: dict[str, list[type[Node]]] = {}
+    for node in nodes:
+        menus.setdefault(node.category, []).append(node)
+    contents = ", ".join(f"[{name}](#{_slug(_heading(name, menu))})" for name, menu in menus.items())
+    blocks = [_INTRODUCTION.format(count=len(nodes), menus=len(menus)).rstrip(), contents]
+    for name, menu in menus.items():
+        blocks += [f"## {_heading(name, menu)}", _menu(menu)]
+        for node in menu:
+            blocks += _section(node)
+    return "\n\n".join(blocks) + "\n"
+
+
+def _heading(name: str, menu: Sequence[type[Node]]) -> str:
+    """The name of a menu and how many nodes it has; so no menu's anchor is that of a node."""
+    return f"{name.capitalize()} ({len(menu)})"
+
+
+def _slug(heading: str) -> str:
+    """The anchor that Markdown viewers give a heading."""
+    return re.sub(r"[^\w-]", "", heading.lower().replace(" ", "-"))
+
+
+def _menu(nodes: Iterable[type[Node]]) -> str:
+    rows = [
+        (
+            f"[{node.id}](#{node.id})", _prose(doc_of(node).splitlines()[0]), _types(node.inputs),
+            _types({name: output.socket for name, output in node.outputs.items()}),
+        )
+        for node in nodes
+    ]
+    return _table(("node", "what it does", "inputs", "outputs"), rows)
+
+
+def _section(node: type[Node]) -> Iterator[str]:
+    yield f"### {node.id}"
+    for paragraph in doc_of(node).split("\n\n"):
+        yield _paragraph(paragraph)
+    outputs = {name: output.socket for name, output in node.outputs.items()}
+    for title, sockets in (("input", node.inputs), ("output", outputs)):
+        noted = {name: socket for name, socket in sockets.items() if socket_note(socket)}
+        if noted:
+            rows = [(f"`{name}`", type_of(socket), _prose(socket_note(socket))) for name, socket in noted.items()]
+            yield _table((title, "type", ""), rows)
+    if node.values:
+        yield _table(("value", "type", "default", "range", "limits", "unit", ""), map(_value, node.values.values()))
+
+
+def _value(value: Value) -> tuple[str, ...]:
+    choices = ", ".join(f"`{choice}`" for choice in value.choices)
+    return (
+        f"`{value.name}`", value.type, _prose(plain_text(value.default)), soft_range(value), hard_range(value),
+        value.unit or "", _prose(". ".join(filter(None, (choices, value.doc)))),
+    )
+
+
+def _types(sockets: Mapping[str, Socket]) -> str:
+    return ", ".join(f"`{name}` {type_of(socket)}" for name, socket in sockets.items())
+
+
+def _table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    lines = [head, ["---"] * len(head), *([cell.replace("|", "\\|") for cell in row] for row in rows)]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def _paragraph(text: str) -> str:
+    """The same for text that could be taken for a list, a quotation or the line under a heading."""
+    return re.sub(r"^(\d+)(?=[.)] )|^(?=[-+=] )", r"\1\\", _prose(text))
+
+
+def _prose(text: str) -> str:
+    """Text that Markdown shows as it is, on one line; what stands between backticks is code already."""
+    parts = " ".join(text.split()).split("`")
+    parts[::2] = [re.sub(r"([\\*_<>\[\]~#]|&(?=\w))", r"\\\1", part) for part in parts[::2]]
+    return "`".join(parts)

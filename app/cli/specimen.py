@@ -1,0 +1,137 @@
+"""Graphs that show one node at work: alone, to be planned, and over a picture, to be looked at."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from ...nodes import Kind, Node, Size, Socket, Source, catalogue
+from ..compiler import Picture, Plan, Probed, Request, compile_graph
+from ..graph import Graph, Input, Output, Port, Settings
+from .options import Lazy
+
+NODE = "node"
+"""The id that the node has in these graphs."""
+
+FULL_HD = (1920, 1080)
+
+CANVAS = (480, 270)
+"""As large as the sample."""
+
+
+def drawn(node: type[Node]) -> tuple[str, ...]:
+    """The outputs that can be rendered: all but cameras."""
+    return tuple(name for name, output in node.outputs.items() if output.socket.kind is not Kind.CAMERA)
+
+
+def planned(node: type[Node], size: Size) -> Plan:
+    """What a node compiles to at its defaults, all that it draws wanted, over pictures of that size. Needs no OpenGL.
+
+    Raises GraphError for a node that draws nothing.
+    """
+    graph = Graph(settings=Settings(size)).add(NODE, node(**_reading(node, "picture.exr")))
+    pictures: dict[str, Picture] = {}
+    for name, socket in node.inputs.items():
+        if socket.optional:
+            continue
+        if socket.kind is Kind.CAMERA:
+            graph = _made(graph, name, "camera", "camera")
+            continue
+        graph = _fed(graph, name, name, Input(socket.kind, socket.channels, default=0.0 if socket.single else None))
+        if not socket.single:
+            pictures[name] = Picture(name, "", socket.kind, socket.channels, in_memory=True)
+    targets = {name: Port(NODE, name) for name in drawn(node)}
+    request, lazy = Request(targets, pictures), Lazy()
+    return compile_graph(graph, request, lambda picture: Probed(size, True, picture.path), colors=lazy.recolor)
+
+
+def over(node: type[Node], sample: Path) -> Graph:
+    """A node at its defaults with everything that it takes to see it, its outputs those of the graph.
+
+    The picture is the sample's color; a picture to lay upon it is a glow. Fields are its depth or luminance, vectors
+    its positions, normals or motion, or random; maps of positions stir the picture.
+    """
+    graph = Graph(settings=Settings(CANVAS)).add(NODE, node(**_reading(node, str(sample))))
+    needed = {name: socket for name, socket in node.inputs.items() if _is_needed(node, socket)}
+    images = [name for name, socket in needed.items() if socket.kind is Kind.IMAGE]
+    base = "image" if "image" in images else next(reversed(images), "")
+    for name, socket in needed.items():
+        if socket.kind is Kind.IMAGE and name != base:
+            graph = _made(graph, name, "ramp", "out", shape="radial", start=(0.3, 0.4), end=(0.75, 0.4),
+                          first=(1.0, 0.35, 0.1, 1.0), second=(0.0, 0.0, 0.0, 0.0))
+        elif socket.kind is Kind.IMAGE:
+            graph = _fed(graph, name, "beauty", _layer(Kind.IMAGE, 4, sample, "Combined"))
+        elif name == "depth":
+            graph = _fed(graph, name, "depth", _layer(Kind.FIELD, 1, sample, "Depth"))
+        elif socket.kind is Kind.FIELD:
+            graph = _made(graph, name, "luminance", "out")
+            graph = _fed(graph, "image", "beauty", _layer(Kind.IMAGE, 4, sample, "Combined"), f"{name}_luminance")
+        elif socket.kind is Kind.VECTOR:
+            graph = _vector(graph, name, socket, sample)
+        elif socket.kind is Kind.CAMERA:
+            graph = _made(graph, name, "camera", "camera")
+        else:
+            graph = _fed(graph, name, name, Input(socket.kind, default=0.5))
+    for name in drawn(node):
+        end = Output(node.outputs[name].socket.kind, node.outputs[name].socket.channels)
+        graph = graph.add_output(name, end).connect(Port(NODE, name), Port("outputs", name))
+    return graph
+
+
+def untouched(sample: Path) -> Graph:
+    """The sample's color as it is."""
+    graph = Graph().add_input("beauty", _layer(Kind.IMAGE, 4, sample, "Combined")).add_output("image", Output())
+    return graph.connect(Port("inputs", "beauty"), Port("outputs", "image"))
+
+
+def _is_needed(node: type[Node], socket: Socket) -> bool:
+    """True if the node shows nothing of what it can do without a link to this input."""
+    idle = socket.default == 0.0 and all(other.optional for other in node.inputs.values())
+    return not socket.optional or idle or socket.kind is Kind.VECTOR or (socket.name == "mask" and not socket.default)
+
+
+def _vector(graph: Graph, name: str, socket: Socket, sample: Path) -> Graph:
+    """Feed a vector."""
+    if socket.channels == 3:
+        key = "position" if name == "position" else "normal"
+        return _fed(graph, name, key, _layer(Kind.VECTOR, 3, sample, key.capitalize()))
+    if socket.channels == 4:
+        return _fed(graph, name, "motion", _layer(Kind.VECTOR, 4, sample, "Vector"))
+    if name not in ("st", "uv"):
+        return _made(graph, name, "noise", "vector")
+    graph, map = _made(graph, name, "combine_vector2", "vector"), f"{name}_combine_vector2"
+    graph = graph.add("positions", _node("combine")).add("stirred", _node("swirl")).add("parts", _node("separate"))
+    graph = graph.add("across", _node("ramp")).add("up", _node("ramp", start=(0.5, 1.0), end=(0.5, 0.0)))
+    links = {
+        "positions.red": "across.value", "positions.green": "up.value", "stirred.image": "positions.out",
+        "parts.image": "stirred.out", f"{map}.x": "parts.red", f"{map}.y": "parts.green",
+    }
+    for target, source in links.items():
+        graph = graph.connect(Port.parse(source), Port.parse(target))
+    return graph
+
+
+def _made(graph: Graph, name: str, kind: str, output: str, **values: Any) -> Graph:
+    """Feed an input of the node by another node."""
+    id = f"{name}_{kind}"
+    return graph.add(id, _node(kind, **values)).connect(Port(id, output), Port(NODE, name))
+
+
+def _fed(graph: Graph, name: str, key: str, end: Input, id: str = NODE) -> Graph:
+    """Feed an input of a node by an input of the graph, which may be there already."""
+    graph = graph if key in graph.inputs else graph.add_input(key, end)
+    return graph.connect(Port("inputs", key), Port(id, name))
+
+
+def _node(kind: str, **values: Any) -> Node:
+    return catalogue()[kind](**values)
+
+
+def _layer(kind: Kind, width: int, sample: Path, layer: str) -> Input:
+    return Input(kind, width, str(sample), layer)
+
+
+def _reading(node: type[Node], path: str) -> dict[str, Any]:
+    """The picture there as a value, for a node that reads pictures."""
+    paths = (name for name, value in node.values.items() if value.type == "path")
+    return dict.fromkeys(paths, path) if issubclass(node, Source) else {}

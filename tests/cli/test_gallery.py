@@ -1,0 +1,126 @@
+"""`halation gallery`: contact sheets, and the one that the README shows.
+
+After a change that is meant to be seen, or with new nodes, renew docs/images:
+    HALATION_RENEW=1 python -m pytest tests/cli/test_gallery.py
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from types import MappingProxyType
+
+import cv2
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+from halation import nodes, presets
+from halation.app.cli import gallery, specimen
+from halation.app.graph import problems
+from halation.app.media.sheet import write_sheet
+from halation.app.renderer import Renderer
+from halation.nodes import Kind, Node, catalogue
+from halation.presets import sample
+
+RENEW = bool(os.environ.get("HALATION_RENEW"))
+IMAGES = Path(__file__).parents[2] / "docs" / "images"
+EVERY = 9
+
+
+def described(file: Path) -> list[str]:
+    """What a sheet says that it shows."""
+    return oiio.ImageBuf(str(file)).spec()["ImageDescription"].split(", ")
+
+
+def test_it_writes_two_sheets(cli, graphs, tmp_path, monkeypatch):
+    few = MappingProxyType({id: catalogue()[id] for id in ("exposure", "luminance_statistics", "noise")})
+    monkeypatch.setattr(presets, "paths", lambda: (graphs("one.json"), graphs("two.json")))
+    monkeypatch.setattr(nodes, "catalogue", lambda: few)
+    folder = tmp_path / "a" / "b"
+    result = cli("gallery", "-o", folder)
+    assert (result.code, result.out) == (0, "")
+    assert {item.name for item in folder.iterdir()} == {"nodes.jpg", "presets.jpg"}
+    assert described(folder / "nodes.jpg") == [*few] and described(folder / "presets.jpg") == ["one", "two"]
+    lines = result.err.splitlines()
+    assert len(lines) == 3 and lines[1].startswith("presets ") and lines[2].endswith(str(folder / "nodes.jpg"))
+    found = cli("gallery", "--output", folder, "--json").json["sheets"]
+    assert [(item["sheet"], item["pictures"]) for item in found] == [
+        (str(folder / "presets.jpg"), ["one", "two"]), (str(folder / "nodes.jpg"), [*few]),
+    ]
+
+
+def test_it_says_where_it_cannot_write(cli, shot):
+    result = cli("gallery", "-o", shot / "out")
+    assert result.code == 1 and result.err.startswith(f"halation: {shot / 'out'}: the folder cannot be made (")
+
+
+@pytest.mark.parametrize("id", catalogue())
+def test_every_node_has_all_that_it_needs(id):
+    graph = specimen.over(catalogue()[id], sample())
+    assert [problem for problem in problems(graph) if problem.severity == "error"] == []
+    assert (*graph.outputs,) == specimen.drawn(catalogue()[id])
+    needed = {name for name, socket in catalogue()[id].inputs.items() if not socket.optional}
+    assert needed <= {target.socket for target in graph.links if target.node == specimen.NODE}
+
+
+def test_what_a_node_makes_is_made_visible(renderer: Renderer) -> None:
+    """Light through the view, what is finished as it is, data by its range, numbers in words."""
+    def made(id: str) -> np.ndarray:
+        return gallery.picture_of(catalogue()[id], renderer, sample())
+
+    assert made("tone_map").mean() > 0.1
+    assert np.allclose(made("ramp")[100, (0, -1)], [[0.0] * 3, [1.0] * 3], atol=0.01)
+    distance = made("distance_field")
+    assert distance.min() == 0.0 and distance.max() == 1.0 and np.ptp(distance, axis=2).max() == 0.0
+    assert made("luminance_statistics").max() > 0.7 > 0.1 > np.median(made("luminance_statistics"))
+    assert gallery.light_of(Kind.VECTOR, np.array([[[0.0, 0.0, 1.0]]], np.float32)) == pytest.approx(
+        np.array([[[0.214, 0.214, 1.0]]]), abs=1e-3
+    )
+
+
+def written(sheet: gallery.Sheet, folder: Path) -> np.ndarray:
+    """A sheet as its JPEG shows it."""
+    write_sheet(folder / "sheet.jpg", sheet.light)
+    return cv2.imread(str(folder / "sheet.jpg")).astype(np.float32)
+
+
+def compare(name: str, made: np.ndarray, where: np.ndarray) -> None:
+    """Mean difference below 6/255 around every point: other devices round differently."""
+    difference = np.abs(cv2.imread(str(IMAGES / f"{name}.jpg")).astype(np.float32) - made).max(2) * where
+    assert cv2.blur(difference, (99, 99)).max() < 6.0, "it looks otherwise now: look at it, then renew it"
+
+
+@pytest.fixture(scope="module", autouse=RENEW)
+def renewed(renderer: Renderer) -> None:
+    for name, make in (("nodes", gallery.node_sheet), ("presets", gallery.preset_sheet)):
+        sheet = make(renderer)
+        write_sheet(IMAGES / f"{name}.jpg", sheet.light, ", ".join(sheet.names))
+
+
+def test_the_sheet_of_presets_is_current(renderer: Renderer, tmp_path: Path) -> None:
+    sheet = gallery.preset_sheet(renderer)
+    assert described(IMAGES / "presets.jpg") == [*sheet.names]
+    compare("presets", written(sheet, tmp_path), np.ones(sheet.light.shape[:2]))
+    assert (IMAGES / "presets.jpg").stat().st_size < 600_000
+
+
+def test_the_sheet_of_nodes_is_current(
+    renderer: Renderer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It may lack nodes that are newer. Every ninth picture is made again and compared; the others stay black."""
+    ids = tuple(described(IMAGES / "nodes.jpg"))
+    assert {*ids} <= {*catalogue()} and (IMAGES / "nodes.jpg").stat().st_size < 1_500_000
+    picture_of, black, small = gallery.picture_of, np.zeros((270, 480, 3)), np.zeros((144, 256, 3))
+
+    def blank(node: type[Node], *rest: object) -> np.ndarray:
+        return black if node.id == ids[0] else small
+
+    def some(node: type[Node], engine: Renderer, sample: Path) -> np.ndarray:
+        return picture_of(node, engine, sample) if node.id in ids[::EVERY] else blank(node)
+
+    sheets: list[gallery.Sheet] = []
+    for maker in (blank, some):
+        monkeypatch.setattr(gallery, "picture_of", maker)
+        sheets.append(gallery.node_sheet(renderer, ids=ids))
+    where = (sheets[0].light != sheets[1].light).any(2)
+    compare("nodes", written(sheets[1], tmp_path), where)
