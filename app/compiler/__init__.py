@@ -14,6 +14,7 @@ from .ir import Memory, Picture
 from .library import Library, installed, parse
 from .lower import lower
 from .plan import FIRST_TABLE, Pass, Plan, Shader, Surface, Upload
+from .raster import ATTRIBUTES, Mesh, Meshes, no_meshes
 from .recolor import ColorProgram, Colors, Table, no_colors
 from .request import Probe, Probed, Request
 from .schedule import schedule
@@ -21,15 +22,17 @@ from .target import NULL, Form, Precision, Target
 from .upstream import Upstream
 
 __all__ = [
-    "FIRST_TABLE", "MAX_WEIGHTS", "NULL", "ColorProgram", "Colors", "Form", "Library", "Memory", "Pass", "Picture",
-    "Plan", "Precision", "Probe", "Probed", "Request", "Shader", "Surface", "Table", "Target", "Upload", "Upstream",
-    "as_json", "compile_graph", "dot", "explain", "installed", "no_colors", "parse",
+    "ATTRIBUTES", "FIRST_TABLE", "MAX_WEIGHTS", "NULL", "ColorProgram", "Colors", "Form", "Library", "Memory", "Mesh",
+    "Meshes", "Pass", "Picture", "Plan", "Precision", "Probe", "Probed", "Request", "Shader", "Surface", "Table",
+    "Target", "Upload", "Upstream", "as_json", "compile_graph", "dot", "explain", "installed", "no_colors",
+    "no_meshes", "parse",
 ]
 
 
 def compile_graph(
     graph: Graph, request: Request, probe: Probe, *, target: Target = NULL, precision: Precision | None = None,
-    library: Library | None = None, colors: Colors = no_colors, fusion: bool = True,
+    library: Library | None = None, colors: Colors = no_colors,
+    meshes: Meshes = no_meshes, fusion: bool = True,
 ) -> Plan:
     """Compile what `request` wants of `graph` for `target`.
 
@@ -37,6 +40,6 @@ def compile_graph(
     be read, DeviceError for one that is too large, ShaderError for a node and its GLSL that do not agree.
     """
     library = library or installed()
-    program = lower(graph, request, library, probe, colors)
+    program = lower(graph, request, library, probe, colors, meshes)
     passes = fuse(program, target, enabled=fusion)
     return schedule(program, passes, library, target, precision or target.precision)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -18,9 +18,11 @@ from ...nodes import (
     Image,
     Kernel,
     Kind,
+    Motion,
     Node,
     Pixels,
     Plain,
+    Scene,
     Size,
     Socket,
     Viewpoint,
@@ -42,11 +44,13 @@ from .ir import (
     Memory,
     Parameter,
     Picture,
+    Raster,
     Reduce,
     Ref,
     Shape,
 )
 from .library import Function, Library
+from .raster import CHANNELS, Mesh
 from .recolor import ColorProgram
 
 
@@ -64,20 +68,21 @@ class Made:
 
 @dataclass(frozen=True)
 class Outside:
-    """What a node may ask of the world: the pixels of a file, and the program of a change of color."""
+    """What a node may ask of the world: pixels of a file, the program of a change of color, triangles of a scene."""
 
     read: Callable[[Picture], Ref]
     recolor: Callable[[ColorChange], ColorProgram]
+    mesh: Callable[[Scene], Mesh]
 
 
 class Recorder:
     """Implements `Draw` for one node: `resolved` holds what its inputs are linked to."""
 
     def __init__(
-        self, owner: str, node: Filter, size: Size, resolved: Mapping[str, Ref | Constant], linked: frozenset[str],
-        builder: Builder, library: Library, outside: Outside, memory: Memory | None,
+        self, owner: str, node: Filter, size: Size, frame: int, resolved: Mapping[str, Ref | Constant],
+        linked: frozenset[str], builder: Builder, library: Library, outside: Outside, memory: Memory | None,
     ) -> None:
-        self.size = size
+        self.size, self.frame = size, frame
         self._owner, self._node = owner, node
         self._resolved, self._linked = resolved, linked
         self._builder, self._library, self._outside = builder, library, outside
@@ -134,25 +139,10 @@ class Recorder:
 
     def blur(self, image: Pixels, sigma: float | tuple[float, float], edge: Edge = "clamp") -> Drawn:
         sigmas = sigma if isinstance(sigma, tuple) else (sigma, sigma)
-        axes = [gaussian.plan_axis(max(0.0, one)) for one in sigmas]
-        made = self._pixels(image)
-        full = made.size
-        firsts = [0, 0]
-        spans = [gaussian.spans(plan, length, edge) for plan, length in zip(axes, full, strict=True)]
-        for axis, plan in enumerate(axes):
-            for step, (first, length) in zip(plan.steps, spans[axis][0], strict=True):
-                weights, start = gaussian.decimation(step)
-                made = self._convolve(made, axis, weights, step, first * step + start - firsts[axis], edge, length)
-                firsts[axis] = first
-        for axis, plan in enumerate(axes):
-            if plan.rest > 0.0:
-                weights = gaussian.weights(plan.rest)
-                made = self._convolve(made, axis, weights, 1, -(len(weights) // 2), spans[axis][1], made.size[axis])
-        for axis, plan in reversed(list(enumerate(axes))):
-            if plan.factor > 1:
-                apron = -firsts[axis] * plan.factor
-                made = self._enlarge(made, axis, plan.factor, apron, full[axis], spans[axis][1])
-        return made
+        return self._blurred(image, [gaussian.plan_axis(max(0.0, one)) for one in sigmas], edge)
+
+    def spread(self, image: Pixels, weights: tuple[float, ...], edge: Edge = "clamp") -> Drawn:
+        return self._blurred(image, [gaussian.plan_weights(weights)] * 2, edge)
 
     def convolve(
         self, image: Pixels, weights: tuple[float, ...], axis: Literal["x", "y"], edge: Edge = "clamp"
@@ -192,6 +182,16 @@ class Recorder:
         shape = self._shape(None, self.size)
         ref = transforms.place(self._builder, source, self._owner, shape, matrix, kernel, edge)
         return Made(ref, shape)
+
+    def raster(
+        self, scene: Scene, motions: tuple[Motion, Motion, Motion], cameras: tuple[Camera, Camera, Camera], near: float
+    ) -> Mapping[str, Drawn]:
+        shapes = tuple(Shape(self.size, channels, data) for channels, data, _ in CHANNELS.values())
+        rows = tuple(part for camera in cameras for part in camera.rows)
+        moved = tuple(part for motion in motions for part in motion)
+        op = Raster(shapes, self._owner, self._outside.mesh(scene), rows, moved, near)
+        first = self._builder.add(op)
+        return {name: Made(Ref(first.op, at), shapes[at]) for at, name in enumerate(CHANNELS)}
 
     def reduce(self, image: Pixels, operation: Literal["sum", "max"]) -> Drawn:
         made = self._pixels(image)
@@ -255,6 +255,26 @@ class Recorder:
                 operand = Constant(_plain(item))
             found.append(Parameter(glsl, operand))
         return tuple(found)
+
+    def _blurred(self, image: Pixels, axes: Sequence[gaussian.Axis], edge: Edge) -> Made:
+        made = self._pixels(image)
+        full = made.size
+        firsts = [0, 0]
+        spans = [gaussian.spans(plan, length, edge) for plan, length in zip(axes, full, strict=True)]
+        for axis, plan in enumerate(axes):
+            for step, (first, length) in zip(plan.steps, spans[axis][0], strict=True):
+                weights, start = gaussian.decimation(step)
+                made = self._convolve(made, axis, weights, step, first * step + start - firsts[axis], edge, length)
+                firsts[axis] = first
+        for axis, plan in enumerate(axes):
+            if plan.weights:
+                origin = -(len(plan.weights) // 2)
+                made = self._convolve(made, axis, plan.weights, 1, origin, spans[axis][1], made.size[axis])
+        for axis, plan in reversed(list(enumerate(axes))):
+            if plan.factor > 1:
+                apron = -firsts[axis] * plan.factor
+                made = self._enlarge(made, axis, plan.factor, apron, full[axis], spans[axis][1])
+        return made
 
     def _convolve(
         self, made: Made, axis: int, weights: tuple[float, ...], stride: int, origin: int, edge: Edge, length: int

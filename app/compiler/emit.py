@@ -12,10 +12,11 @@ from dataclasses import dataclass
 from ...nodes import glsl_type
 from . import bodies
 from .fuse import Fused
-from .ir import Call, Convolve, Gather, Op, Program, Reduce, Ref, Shape
+from .ir import Call, Convolve, Gather, Op, Program, Raster, Reduce, Ref, Shape
 from .library import Library, Text, words
 from .names import Names, convert, glsl_channels
 from .plan import LINES_PER_FILE, Shader, Uniform
+from .raster import CHANNELS, fragment_lines, vertex_text
 from .target import Target
 
 LOCAL_SIZE = 64
@@ -38,6 +39,8 @@ class Emitted:
 def emit(program: Program, fused: Fused, library: Library, target: Target, texels: Mapping[Ref, str]) -> Emitted:
     """Write the program of one pass. `texels` are the formats of what it reads and writes."""
     root = program.ops[fused.root]
+    if isinstance(root, Raster):
+        return _drawn(program, root, fused, library)
     by_image = target.loads_images and len(fused.reads) + len(fused.writes) <= target.max_images
     names = Names(program, {ref: number for number, ref in enumerate(fused.reads)}, target.form, by_image)
     halves = [texels[ref].endswith("16f") for ref in fused.writes]
@@ -78,6 +81,19 @@ def emit(program: Program, fused: Fused, library: Library, target: Target, texel
         tuple((name, value) for name, _, value in names.uniforms),
         bodies.padded_weights(root, sliding) if isinstance(root, Convolve) else (), _groups(root, sliding),
     )
+
+
+def _drawn(program: Program, root: Raster, fused: Fused, library: Library) -> Emitted:
+    """The program that draws meshes."""
+    text = library.closure(("primitive/raster",), root.owner)[0]
+    wanted = [tuple(CHANNELS)[ref.output] for ref in fused.writes]
+    lines = fragment_lines(text.body, wanted)
+    shader = Shader("\n".join(lines) + "\n", "fragment", ("generated",), False, vertex_text(text.body))
+    uniforms: tuple[tuple[str, Uniform], ...] = (
+        ("cameras", root.cameras), ("motions", root.motions), ("near", root.near), ("grid", root.size),
+        ("proxy", program.scale),
+    )
+    return Emitted(shader, uniforms, (), (0, 0))
 
 
 def _preamble(target: Target) -> list[str]:

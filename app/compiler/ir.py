@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 from ...nodes import Edge, Kind, Size
 from ..graph import Port
+from .raster import Mesh
 from .recolor import ColorProgram, Table
 
 
@@ -216,6 +217,16 @@ class Reduce(Op):
 
     def reads(self) -> Iterator[Ref]:
         return iter((self.image,))
+
+
+@dataclass(frozen=True)
+class Raster(Op):
+    """Meshes, drawn into the channels of `CHANNELS`. `cameras` and `motions` are rows: now, before, after."""
+
+    mesh: Mesh
+    cameras: tuple[float, ...]
+    motions: tuple[float, ...]
+    near: float
 
 
 BLOCK = 16

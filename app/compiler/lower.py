@@ -19,6 +19,8 @@ from ...nodes import (
     LookupFile,
     Node,
     Pointwise,
+    Scene,
+    SceneFile,
     Size,
     Socket,
     Value,
@@ -34,20 +36,26 @@ from .expand import Flat, expand, nothing, stand_in
 from .ir import Builder, Call, Choice, Constant, Operand, Parameter, Picture, Program, Ref, Shape
 from .library import Library
 from .pictures import Pictures
+from .raster import Mesh, Meshes
 from .recolor import ColorProgram, Colors
 from .request import Probe, Request
 
 
-def lower(graph: Graph, request: Request, library: Library, probe: Probe, colors: Colors) -> Program:
+def lower(
+    graph: Graph, request: Request, library: Library, probe: Probe, colors: Colors, meshes: Meshes
+) -> Program:
     """Lower what `request` wants of `graph`. Raises GraphError where the graph is not fit to render."""
-    return _Lowering(graph, request, library, probe, colors).run()
+    return _Lowering(graph, request, library, probe, colors, meshes).run()
 
 
 class _Lowering:
     """The work in progress: `results` says what every port visited so far stands for."""
 
-    def __init__(self, graph: Graph, request: Request, library: Library, probe: Probe, colors: Colors) -> None:
-        self.graph, self.request, self.library, self.colors = graph, request, library, colors
+    def __init__(
+        self, graph: Graph, request: Request, library: Library, probe: Probe, colors: Colors, meshes: Meshes
+    ) -> None:
+        self.graph, self.request, self.library = graph, request, library
+        self.colors, self.meshes = colors, meshes
         self.flat: Flat = expand(graph)
         self.builder = Builder()
         self.pictures = Pictures(graph, self.flat, request, probe, self.builder)
@@ -284,7 +292,7 @@ class _Lowering:
         for name in linked:
             filled[name] = self._as_pixels(path, node.inputs[name], operands[name], size)
         recorder = Recorder(
-            path, node, size, filled, linked, self.builder, self.library, self._outside(path),
+            path, node, size, self.request.frame, filled, linked, self.builder, self.library, self._outside(path),
             self.request.memories.get(path),
         )
         drawn = node.passes(recorder)
@@ -319,4 +327,9 @@ class _Lowering:
         def read(picture: Picture) -> Ref:
             return self.pictures.read(replace(picture, path=self.pictures.located(picture.path, path)), path)
 
-        return Outside(read, recolor)
+        def mesh(scene: Scene) -> Mesh:
+            if isinstance(scene, SceneFile):
+                scene = replace(scene, path=self.pictures.located(scene.path, path))
+            return self.meshes(scene)
+
+        return Outside(read, recolor, mesh)

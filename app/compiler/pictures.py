@@ -49,7 +49,7 @@ class Pictures:
                 yield picture, f"{port}"
         for path, node in self._flat.nodes.items():
             for value in node.values.values() if isinstance(node, Source) else ():
-                if value.type == "path" and getattr(node, value.name):
+                if value.holds == "picture" and value.type == "path" and getattr(node, value.name):
                     yield Picture(self.located(getattr(node, value.name), path), "", Kind.IMAGE, 4), path
 
     def _scaled(self, size: Size) -> Size:

@@ -9,6 +9,7 @@ from typing import Literal
 from ...nodes import Size
 from ..graph import Port
 from .ir import Memory, Picture
+from .raster import Mesh
 from .recolor import Table
 from .target import Form, Target
 
@@ -72,6 +73,8 @@ class Shader:
     form: Form
     files: tuple[str, ...]
     reads_images: bool
+    vertex: str = ""
+    """The vertex shader of a pass that draws meshes; others cover the whole picture."""
 
     def locate(self, line: int) -> tuple[str, int]:
         """The file and line that a driver means by `line`."""
@@ -93,7 +96,7 @@ class Pass:
     """One draw or dispatch. Textures are bound in order as t0, t1, ...; targets as o0, o1, ...
 
     `groups` are work groups of a compute pass. `weights` fill its uniform block, if any. `tables` are bound from unit
-    `FIRST_TABLE` on.
+    `FIRST_TABLE` on. With a `mesh` its triangles are drawn.
     """
 
     nodes: tuple[str, ...]
@@ -105,6 +108,7 @@ class Pass:
     weights: tuple[float, ...]
     groups: tuple[int, int]
     tables: tuple[Table, ...] = ()
+    mesh: Mesh | None = None
 
 
 @dataclass(frozen=True)

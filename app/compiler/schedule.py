@@ -10,7 +10,7 @@ from ...nodes import Size
 from ..errors import DeviceError
 from .emit import Emitted, emit
 from .fuse import Fused, kept_refs
-from .ir import Call, History, Memory, Program, Read, Ref, Shape
+from .ir import Call, History, Memory, Op, Program, Raster, Read, Ref, Shape
 from .library import Library
 from .plan import Depth, Pass, Plan, Surface, Upload, texel, texture_bytes
 from .target import Precision, Target
@@ -25,7 +25,7 @@ def schedule(
     for ref in needed:
         _check_size(program.ops[ref.op].shapes[ref.output].size, program.ops[ref.op].owner, target)
     for fused in passes:
-        _check_outputs(len(fused.writes), program.ops[fused.root].owner, target)
+        _check_outputs(len(fused.writes), program.ops[fused.root], target)
     texels = {ref: _texel(program, ref, precision) for ref in needed}
     emitted = [emit(program, fused, library, target, texels) for fused in passes]
     keys = _keys(program, passes, emitted, needed)
@@ -64,12 +64,12 @@ def _check_size(size: Size, owner: str, target: Target) -> None:
         )
 
 
-def _check_outputs(count: int, owner: str, target: Target) -> None:
-    most = target.max_images if target.form == "compute" else target.max_targets
+def _check_outputs(count: int, op: Op, target: Target) -> None:
+    most = target.max_images if target.form == "compute" and not isinstance(op, Raster) else target.max_targets
     if count > most:
         raise DeviceError(
-            f"node '{owner}': {target.renderer} writes {most} pictures at once, not {count}; link fewer of its outputs",
-            node=owner,
+            f"node '{op.owner}': {target.renderer} writes {most} pictures at once, not {count}; "
+            "link fewer of its outputs", node=op.owner,
         )
 
 
@@ -97,10 +97,15 @@ def _keys(
             keys[ref] = op.key
     for fused, item in zip(passes, emitted, strict=True):
         inputs = [keys[ref] for ref in fused.reads]
-        made = _hash(item.shader.source, item.uniforms, item.weights, inputs)
+        made = _hash(item.shader.source, item.uniforms, item.weights, inputs, _digest(program.ops[fused.root]))
         for number, ref in enumerate(fused.writes):
             keys[ref] = f"{made}.{number}"
     return keys
+
+
+def _digest(op: Op) -> str:
+    """What is drawn, where that is neither text nor a picture."""
+    return op.mesh.digest if isinstance(op, Raster) else ""
 
 
 def _hash(*parts: object) -> str:
@@ -163,4 +168,5 @@ def _pass(program: Program, fused: Fused, item: Emitted, numbers: Mapping[Ref, i
         tuple(numbers[ref] for ref in fused.reads), tuple(numbers[ref] for ref in fused.writes),
         item.uniforms, item.weights, item.groups,
         tuple(dict.fromkeys(table for op in ops if isinstance(op, Call) for table in op.tables)),
+        next((op.mesh for op in ops if isinstance(op, Raster)), None),
     )

@@ -127,17 +127,17 @@ def described(handle: oiio.ImageInput, path: str) -> ImageInfo:
 def _part(index: int, spec: oiio.ImageSpec) -> Part:
     formats = spec.channelformats or (spec.format,) * spec.nchannels
     return Part(
-        index, _text(spec.get_string_attribute("oiio:subimagename")), tuple(map(_text, spec.channelnames)),
+        index, text(spec.get_string_attribute("oiio:subimagename")), tuple(map(text, spec.channelnames)),
         tuple(_DTYPES.get(str(item), "float32") for item in formats), space(spec),
     )
 
 
 def space(spec: oiio.ImageSpec) -> str:
     """The color space that the header names, "data" for none at all, "" where it says nothing."""
-    return _text(spec.get_string_attribute("oiio:ColorSpace") or spec.get_string_attribute("colorInteropID"))
+    return text(spec.get_string_attribute("oiio:ColorSpace") or spec.get_string_attribute("colorInteropID"))
 
 
-def _text(name: str) -> str:
+def text(name: str) -> str:
     """A name that can be printed, whatever bytes were in the file."""
     return name.encode("utf-8", "replace").decode()
 

@@ -15,10 +15,18 @@ from ..errors import InputError
 
 _FAMILIES = (("r", "g", "b", "a"), ("red", "green", "blue", "alpha"), ("y", "a"), ("x", "y", "z", "w"), ("u", "v", "a"))
 _BEAUTY = ("combined", "beauty", "rgba", "rgb", "c", "ci")
-_DATA = re.compile(
-    r"crypto.*|.*depth.*|z|.*position|p|.*normals?|n|ng|.*motion.*|.*velocity|vector|.*mattes?|.*masks?|uvs?|st"
-    r"|((object|material|prim|node|render)?id)"
-)
+DATA_NAMES = {
+    "cryptomatte": r"crypto.*",
+    "depth": r".*depth.*|z",
+    "position": r".*position|p",
+    "normal": r".*normals?|n|ng",
+    "velocity": r".*motion.*|.*velocity|vector",
+    "matte": r".*mattes?|.*masks?",
+    "uv": r"uvs?|st",
+    "id": r"(object|material|prim|node|render)?id",
+}
+"""What plain names of data look like, by what they may mean: numbers that are not color."""
+_DATA = re.compile("|".join(DATA_NAMES.values()))
 _DEPTH = re.compile(r"z|_*(z_?depth|depth_?z|depth|hitpz|linear_?depth|zfiltered)", re.IGNORECASE)
 
 
@@ -90,7 +98,7 @@ def _named(layer: Layer, name: str, tag: str) -> Layer:
     """The layer under its short name, which also says whether it is data where the header does not."""
     words = tuple(word.casefold() for word in layer.channels)
     colored = any(set(words) <= set(family) for family in _FAMILIES[:3])
-    data = tag == "data" or not colored or (not tag and _DATA.fullmatch(_plain(name).rpartition(".")[2]) is not None)
+    data = tag == "data" or not colored or (not tag and _DATA.fullmatch(plain(name).rpartition(".")[2]) is not None)
     return replace(layer, name=name, data=data)
 
 
@@ -122,7 +130,7 @@ def _sorted(names: Sequence[str], places: Sequence[int]) -> tuple[int, ...]:
     return tuple(sorted(places, key=lambda index: family.index(words[index])) if family else places)
 
 
-def _plain(name: str) -> str:
+def plain(name: str) -> str:
     """A name for comparison: no case, no blanks, underscores or hyphens."""
     return re.sub(r"[\s_-]", "", name.casefold())
 
@@ -133,20 +141,20 @@ def pick(path: str, layers: Sequence[Layer], name: str) -> Layer:
         raise InputError(f"{path}: holds no channels that can be read")
     if not name:
         return _main(layers)
-    wanted = _plain(name)
+    wanted = plain(name)
     tiers: tuple[Callable[[Layer], bool], ...] = (
         lambda layer: name in (layer.full, layer.name),
-        lambda layer: wanted in (_plain(layer.full), _plain(layer.name)),
-        lambda layer: _plain(layer.full).endswith("." + wanted),
-        lambda layer: len(layer.channels) == 1 and _plain(layer.channels[0]) == wanted,
+        lambda layer: wanted in (plain(layer.full), plain(layer.name)),
+        lambda layer: plain(layer.full).endswith("." + wanted),
+        lambda layer: len(layer.channels) == 1 and plain(layer.channels[0]) == wanted,
     )
     for tier in tiers:
         if match := [layer for layer in layers if tier(layer)]:
             return _only(path, name, match)
-    if match := [one for layer in layers for one in _channels(layer) if f".{_plain(one.full)}".endswith("." + wanted)]:
+    if match := [one for layer in layers for one in _channels(layer) if f".{plain(one.full)}".endswith("." + wanted)]:
         return _only(path, name, match)
     choices = [layer.name for layer in layers]
-    near = {_plain(choice): choice for choice in choices}
+    near = {plain(choice): choice for choice in choices}
     guess = difflib.get_close_matches(wanted, near, 1, 0.5)
     hint = f"did you mean '{near[guess[0]]}'? It" if guess else "it"
     raise InputError(f"{path}: has no layer '{name}': {hint} holds {', '.join(choices)}")
@@ -157,7 +165,7 @@ def _main(layers: Sequence[Layer]) -> Layer:
     colors = [layer for layer in layers if not layer.data]
     for word in _BEAUTY:
         for layer in colors:
-            if _plain(layer.name).rpartition(".")[2] == word:
+            if plain(layer.name).rpartition(".")[2] == word:
                 return layer
     return (colors or layers)[0]
 

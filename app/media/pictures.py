@@ -16,8 +16,8 @@ from ..graph import Graph, Input
 if TYPE_CHECKING:
     import numpy as np
 
-    from ...nodes import ColorChange
-    from ..compiler import ColorProgram
+    from ...nodes import ColorChange, Scene
+    from ..compiler import ColorProgram, Mesh
     from .info import ImageInfo
 
     Array = np.ndarray
@@ -67,6 +67,12 @@ class Pictures:
         from .recolor import recolor
 
         return recolor(change)
+
+    def mesh(self, scene: Scene) -> Mesh:
+        """The triangles of a scene. Raises InputError for a file that cannot be read."""
+        from .meshes import load_mesh
+
+        return load_mesh(scene)
 
     def info(self, path: str) -> ImageInfo:
         """A file's header, read once."""

@@ -64,7 +64,8 @@ class Renderer:
         request = Request(wanted.targets, bindings, wanted.size, wanted.scale, wanted.frame, memories)
         return compile_graph(
             graph, request, self.pictures.probe, target=self.device.target, precision=wanted.precision,
-            library=self.library, colors=self.pictures.recolor, fusion=fusion and self._fusion,
+            library=self.library, colors=self.pictures.recolor, meshes=self.pictures.mesh,
+            fusion=fusion and self._fusion,
         )
 
     def render(self, graph: Graph, wanted: Wanted = Wanted()) -> dict[str, Array]:

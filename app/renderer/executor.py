@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import moderngl
 import numpy as np
 
-from ..compiler import FIRST_TABLE, MAX_WEIGHTS, Pass, Plan, Upload
+from ..compiler import FIRST_TABLE, MAX_WEIGHTS, Mesh, Pass, Plan, Upload
 from ..errors import InputError, RenderError
 from .decoding import Array
 from .device import Device
+from .meshes import MeshBuffers
 from .programs import Program, Programs
 from .tables import Tables
 from .textures import Lease, Texture, Textures
@@ -41,6 +42,7 @@ class Executor:
         self.counters = Counters()
         self.closed = False
         self._tables = Tables(device.context)
+        self._meshes = MeshBuffers(device.context)
         self._weights: dict[tuple[float, ...], moderngl.Buffer] = {}
         self._query: moderngl.Query | None = None
 
@@ -50,6 +52,7 @@ class Executor:
         self.textures.clear()
         self.programs.clear()
         self._tables.clear()
+        self._meshes.clear()
         for buffer in self._weights.values():
             buffer.release()
         self._weights.clear()
@@ -108,7 +111,9 @@ class Executor:
                 self._tables.use(table, unit)
             if one.weights:
                 self._weight_buffer(one.weights).bind_to_uniform_block(0)
-            if one.shader.form == "compute":
+            if one.mesh is not None:
+                self._rasterize(one.mesh, program, made)
+            elif one.shader.form == "compute":
                 self._dispatch(plan, one, program, textures, made)
             else:
                 self._draw(one, program.vertices, textures, made)
@@ -166,6 +171,20 @@ class Executor:
             alone.framebuffer = framebuffer
         else:
             framebuffer.release()
+
+    def _rasterize(self, mesh: Mesh, program: Program, made: list[Texture]) -> None:
+        assert isinstance(program.handle, moderngl.Program)
+        context, depth = self.device.context, self.device.context.depth_renderbuffer(made[0].handle.size)
+        framebuffer = context.framebuffer([texture.handle for texture in made], depth)
+        framebuffer.use()
+        framebuffer.clear()
+        context.disable(moderngl.BLEND | moderngl.CULL_FACE)
+        context.enable(moderngl.DEPTH_TEST)
+        self._meshes.draw(mesh, program.handle)
+        context.disable(moderngl.DEPTH_TEST)
+        self.device.idle.use()
+        framebuffer.release()
+        depth.release()
 
     def _weight_buffer(self, weights: tuple[float, ...]) -> moderngl.Buffer:
         known = self._weights.get(weights)

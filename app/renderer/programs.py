@@ -35,7 +35,8 @@ class Program:
         if self.values.get(name) != value and name in self.handle:
             member = self.handle[name]
             if isinstance(member, moderngl.Uniform) and member.array_length > 1:
-                member.write(np.asarray(value, np.float32).tobytes())
+                # Drivers cut off the end of an array that nothing reads.
+                member.write(np.asarray(value, np.float32)[: member.array_length * member.dimension].tobytes())
             else:
                 self.handle[name] = value
             self.values[name] = value
@@ -78,8 +79,9 @@ class Programs:
             if one.shader.form == "compute":
                 program = Program(self._context.compute_shader(one.shader.source), None)
             else:
-                handle = self._context.program(vertex_shader=VERTEX, fragment_shader=one.shader.source)
-                program = Program(handle, self._context.vertex_array(handle, []))
+                vertex = one.shader.vertex
+                handle = self._context.program(vertex_shader=vertex or VERTEX, fragment_shader=one.shader.source)
+                program = Program(handle, None if vertex else self._context.vertex_array(handle, []))
         except moderngl.Error as fault:
             raise _located(one, str(fault)) from None
         weights = program.handle.get("Weights", None)

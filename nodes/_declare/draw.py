@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Literal, Protocol
 
 from .camera import Camera
 from .recolor import ColorChange
+from .scene import Motion, Scene
 from .sockets import Edge, Size, Socket, Viewpoint
 from .values import Plain
 
@@ -36,6 +38,11 @@ class Draw(Protocol):
     @property
     def size(self) -> Size:
         """The size that the node's outputs have unless drawn otherwise."""
+        ...
+
+    @property
+    def frame(self) -> int:
+        """The frame that is rendered."""
         ...
 
     def size_of(self, pixels: Pixels) -> Size:
@@ -70,6 +77,13 @@ class Draw(Protocol):
         """Gaussian of `sigma` working pixels: direct where small, decimated where large."""
         ...
 
+    def spread(self, image: Pixels, weights: tuple[float, ...], edge: Edge = "clamp") -> Drawn:
+        """Correlate along both axes with an odd number of centered weights that fall off smoothly.
+
+        Direct where they are few, decimated where they are many: then within 1e-3 of what a single pixel becomes.
+        """
+        ...
+
     def convolve(
         self, image: Pixels, weights: tuple[float, ...], axis: Literal["x", "y"], edge: Edge = "clamp"
     ) -> Drawn:
@@ -93,6 +107,18 @@ class Draw(Protocol):
 
         The kernel widens where the picture shrinks. What was itself placed with the same edge is placed anew: pixels
         are filtered once, and what left the frame in between is still there.
+        """
+        ...
+
+    def raster(
+        self, scene: Scene, motions: tuple[Motion, Motion, Motion], cameras: tuple[Camera, Camera, Camera], near: float
+    ) -> Mapping[str, Drawn]:
+        """Draw the meshes of a scene as seen by a camera; motions and cameras are those of now, before and after.
+
+        Gives `albedo` and `emission` (opaque where something is), `normal` (unit, towards the camera), `place` (world
+        x, y, z and planar depth), `metal_rough`, `velocity` (pixels since the frame before and until the next, y
+        down), `surface` (u, v, object, material; numbers from 1). Where nothing is, all are 0. What is nearer than
+        `near` is cut off.
         """
         ...
 

@@ -42,8 +42,8 @@ class Doc:
     text: str
 
 
-Holds = Literal["picture", "table"]
-"""What is in a file: pixels, or a table of colors (.cube, .3dl, ...)."""
+Holds = Literal["picture", "table", "scene"]
+"""What is in a file: pixels, a table of colors (.cube, .3dl, ...), or meshes (.glb, .obj, ...)."""
 
 
 @dataclass(frozen=True)
@@ -87,6 +87,7 @@ RGBA = Annotated[tuple[float, float, float, float], Swatch()]
 Position = Annotated[tuple[float, float], Handle()]
 FilePath = Annotated[str, File()]
 TablePath = Annotated[str, File(holds="table")]
+ScenePath = Annotated[str, File(holds="scene")]
 Points = Annotated[tuple[float, ...], Curve()]
 Stops = Annotated[tuple[float, ...], Ramp()]
 Kernel3x3 = tuple[float, float, float, float, float, float, float, float, float]

@@ -1,3 +1,4 @@
+from itertools import accumulate
 from math import floor
 from typing import Annotated, Literal
 
@@ -11,7 +12,8 @@ class BoxBlur(Filter):
     """Blur evenly with a box: hard-edged and fast at any radius. Repeated, it comes close to a Gaussian.
 
     A box is 2 radius + 1 pixels wide; a radius between whole numbers counts its two end pixels in part. Wide boxes are
-    put together from blocks, with what sticks out taken off again: exact, at a cost that hardly grows with the radius.
+    put together from blocks, with what sticks out taken off again: exact. Three boxes that reach over 70 pixels are
+    applied to a smaller picture, within 1e-3 of what a single pixel becomes. The cost hardly grows with the radius.
     Three boxes: Wells 1986, "Efficient Synthesis of Gaussian Filters by Cascaded Uniform Filters".
     """
 
@@ -31,6 +33,8 @@ class BoxBlur(Filter):
     def passes(self, draw: Draw) -> Drawn:
         times = {"box": 1, "tent": 2, "iterated": 3}[self.kind]
         radius = self.radius / times
+        if self.kind == "iterated":
+            return draw.spread(self.image, _weights(radius, times), self.edge)
         if 2.0 * self.radius < _DIRECT:
             weights = _weights(radius, times)
             return draw.convolve(draw.convolve(self.image, weights, "x", self.edge), weights, "y", self.edge)
@@ -79,12 +83,12 @@ def _blocks(width: int) -> tuple[int, int]:
 def _weights(radius: float, times: int) -> tuple[float, ...]:
     """A box of `radius` pixels, spread by itself `times` - 1 times."""
     whole = floor(radius)
-    box = [radius - whole, *[1.0] * (2 * whole + 1), radius - whole]
-    found = [1.0]
+    part, found = radius - whole, [1.0]
     for _ in range(times):
-        spread = [0.0] * (len(found) + len(box) - 1)
-        for i, one in enumerate(found):
-            for j, other in enumerate(box):
-                spread[i + j] += one * other / (2.0 * radius + 1.0)
-        found = spread
-    return tuple(found)
+        ends, last = [*accumulate(found, initial=0.0)], len(found)
+        found = [
+            (1.0 - part) * (ends[min(i, last)] - ends[min(max(i - 2 * whole - 1, 0), last)])
+            + part * (ends[min(i + 1, last)] - ends[max(i - 2 * whole - 2, 0)])
+            for i in range(last + 2 * whole + 2)
+        ]
+    return tuple(weight / (2.0 * radius + 1.0) ** times for weight in found)

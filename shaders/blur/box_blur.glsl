@@ -21,12 +21,12 @@ vec4 box_blur(int axis, int shift, int whole, float part, int stride, int count,
     middle[axis] = block + count / 2;
     vec4 mean = windows_at(middle) * (float(count * stride) / total);
 
-    int start = min(first, block_first), starts = abs(block_first - first);
+    int start = min(first, block_first), off = abs(block_first - first);
     float missing = (first < block_first ? 1.0 : -1.0) / total;
-    for (int i = 0; i < starts; ++i) mean += missing * box_blur_pixel(axis, shift + start + i);
-    start = min(end, block_end), starts = abs(end - block_end);
+    for (int i = 0; i < off; ++i) mean += missing * box_blur_pixel(axis, shift + start + i);
+    start = min(end, block_end), off = abs(end - block_end);
     missing = (block_end < end ? 1.0 : -1.0) / total;
-    for (int i = 0; i < starts; ++i) mean += missing * box_blur_pixel(axis, shift + start + i);
+    for (int i = 0; i < off; ++i) mean += missing * box_blur_pixel(axis, shift + start + i);
     if (part > 0.0)
         mean += (box_blur_pixel(axis, shift + first - 1) + box_blur_pixel(axis, shift + end)) * (part / total);
     return mean;

@@ -39,12 +39,34 @@ def test_a_box_equals_numpy(run, hdr, edge, radius, size):
     close(found, spread(picture, radius, "box", edge.scipy))
 
 
-@pytest.mark.parametrize("kind", ["tent", "iterated"])
-@pytest.mark.parametrize("radius", [6.0, 7.3, 80.0, 219.5])
+@pytest.mark.parametrize(("kind", "radius"), [
+    *(("tent", radius) for radius in (6.0, 7.3, 80.0, 219.5)), *(("iterated", radius) for radius in (6.0, 7.3, 68.0)),
+])
 def test_repeated_boxes_equal_numpy(run, hdr, edge, radius, kind):
     picture = hdr(33, 21)
     found = run(BoxBlur(kind=kind, radius=radius, edge=edge.name), {"image": picture})
     close(found, spread(picture, radius, kind, edge.scipy))
+
+
+@pytest.mark.parametrize("radius", [73.0, 80.0, 144.4, 219.5, 600.0])
+@pytest.mark.parametrize("size", [(64, 32), (33, 21)])
+def test_three_wide_boxes_nearly_equal_numpy(run, hdr, edge, radius, size):
+    picture = hdr(*size)
+    expected = spread(picture, radius, "iterated", edge.scipy)
+    error = run(BoxBlur(kind="iterated", radius=radius, edge=edge.name), {"image": picture}) - expected
+    assert np.abs(error).max() <= 3e-4 * expected.max()
+
+
+@pytest.mark.parametrize("radius", [72.0, 100.5, 144.0, 200.0, 290.0])
+@pytest.mark.parametrize("phase", [0, 1, 3])
+def test_three_wide_boxes_nearly_equal_numpy_around_a_single_pixel(run, radius, phase):
+    side = int(radius) + 20
+    picture = np.zeros((side, side, 4), np.float32)
+    picture[2 + phase, 4 + phase] = 1.0
+    found = run(BoxBlur(kind="iterated", radius=radius, edge="black"), {"image": picture})
+    expected = spread(picture, radius, "iterated", "constant")
+    assert np.abs(found - expected).max() <= 1e-3 * expected.max()
+    assert found.min() >= 0.0
 
 
 @pytest.mark.parametrize("radius", [5, 23, 24, 100])

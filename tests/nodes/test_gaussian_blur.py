@@ -6,6 +6,9 @@ import math
 
 import numpy as np
 import pytest
+from halation.app.graph import Graph, Input, Output, Port
+from halation.app.renderer import Wanted
+from halation.nodes import Kind
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from scipy.ndimage import correlate1d, gaussian_filter
 
@@ -156,6 +159,22 @@ def test_two_blurs_add_their_variances(run):
     twice = run(GaussianBlur(sigma=16.0), {"image": run(GaussianBlur(sigma=12.0), {"image": picture})})
     once = run(GaussianBlur(sigma=20.0), {"image": picture})
     assert np.abs(twice - once).max() <= 1e-3 * once.max()
+
+
+def test_the_work_hardly_grows_with_sigma(renderer, edge):
+    """Pixels read by all passes over a large picture: at a sigma of 200, at most 1.5 times those at 20."""
+    graph = Graph().add_input("image", Input(Kind.IMAGE, 4)).add_output("out", Output(Kind.IMAGE, 4))
+    picture = np.zeros((1080, 1920, 4), np.float32)
+
+    def reads(sigma: float) -> int:
+        made = graph.add("blur", GaussianBlur(sigma=sigma, edge=edge.name))
+        made = made.connect(Port("inputs", "image"), Port("blur", "image"))
+        made = made.connect(Port("blur", "out"), Port("outputs", "out"))
+        plan = renderer.compile(made, Wanted({"image": picture}))
+        sizes = [plan.surfaces[one.targets[0]].size for one in plan.passes]
+        return sum(w * h * (len(one.weights) or 4) for one, (w, h) in zip(plan.passes, sizes, strict=True))
+
+    assert reads(200.0) <= 1.5 * reads(20.0)
 
 
 def test_sigma_zero_changes_nothing(run, hdr):

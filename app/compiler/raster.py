@@ -1,0 +1,99 @@
+"""The pass that draws meshes: seven channels of what the camera sees, in one go."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from ...nodes import Scene
+from ..errors import UsageError
+
+ATTRIBUTES: Mapping[str, int] = {
+    "place": 3, "normal": 3, "uv": 2, "albedo": 3, "emission": 3, "metal_rough": 2, "object_material_moving": 3,
+}
+"""What a vertex holds, in order, and how many floats of each."""
+
+CHANNELS: Mapping[str, tuple[int, bool, str]] = {
+    "albedo": (4, False, "vec4(v_albedo, 1.0)"),
+    "normal": (3, True, "raster_facing(v_normal, v_place, cameras)"),
+    "place": (4, True, "vec4(v_place, v_now.z)"),
+    "emission": (4, False, "vec4(v_emission, 1.0)"),
+    "metal_rough": (2, True, "v_metal_rough"),
+    "velocity": (4, True, "raster_velocity(v_now, v_before, v_after, vec2(grid) / proxy)"),
+    "surface": (4, True, "vec4(v_uv, v_object_material)"),
+}
+"""What is drawn: channels, whether it is data, and the GLSL that computes it. Where nothing is, all is 0."""
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Triangles: float32 [vertices, floats of ATTRIBUTES], uint32 [3 * triangles]. Equal digests, equal triangles."""
+
+    digest: str
+    vertices: object = field(compare=False, repr=False)
+    indices: object = field(compare=False, repr=False)
+
+
+class Meshes(Protocol):
+    """Gets the triangles of a scene. Raises InputError for a file that cannot be read."""
+
+    def __call__(self, scene: Scene) -> Mesh: ...
+
+
+def no_meshes(scene: Scene) -> Mesh:
+    """For plans of graphs that draw no meshes."""
+    raise UsageError(f"{scene}: nothing was given to read it with")
+
+
+def vertex_text(library: str) -> str:
+    """The vertex shader: where every vertex is now, was and will be, in the world and in the picture."""
+    inputs = "\n".join(f"in {_glsl(count)} {name};" for name, count in ATTRIBUTES.items())
+    return f"""#version 410 core
+{library}
+uniform vec4[9] cameras;
+uniform vec4[9] motions;
+uniform float near;
+{inputs}
+{_varyings("out")}
+void main() {{
+    bool moving = object_material_moving.z > 0.5;
+    vec3 before = moving ? raster_moved(motions, 3, place) : place;
+    vec3 after = moving ? raster_moved(motions, 6, place) : place;
+    v_place = moving ? raster_moved(motions, 0, place) : place;
+    v_normal = moving ? raster_turned(motions, normal) : normal;
+    v_now = raster_seen(cameras, 0, v_place);
+    v_before = raster_seen(cameras, 3, before);
+    v_after = raster_seen(cameras, 6, after);
+    v_uv = uv, v_albedo = albedo, v_emission = emission, v_metal_rough = metal_rough;
+    v_object_material = object_material_moving.xy;
+    gl_Position = raster_clip(v_now, near);
+}}
+"""
+
+
+def fragment_lines(library: str, wanted: list[str]) -> Iterator[str]:
+    """The fragment shader, which writes the channels that are wanted, in order."""
+    yield from ("#version 410 core", library, "uniform vec4[9] cameras;", "uniform ivec2 grid;", "uniform float proxy;")
+    yield _varyings("in")
+    for number, _ in enumerate(wanted):
+        yield f"layout(location = {number}) out vec4 o{number};"
+    yield "void main() {"
+    for number, name in enumerate(wanted):
+        channels, _, text = CHANNELS[name]
+        whole = text if channels == 4 else f"vec4({text}, {', '.join(['0.0'] * (4 - channels))})"
+        yield f"    o{number} = {whole};"
+    yield "}"
+
+
+def _varyings(way: str) -> str:
+    smooth = {
+        "v_place": 3, "v_normal": 3, "v_now": 3, "v_before": 3, "v_after": 3, "v_uv": 2, "v_albedo": 3, "v_emission": 3,
+        "v_metal_rough": 2,
+    }
+    lines = [f"{way} {_glsl(count)} {name};" for name, count in smooth.items()]
+    return "\n".join([*lines, f"flat {way} vec2 v_object_material;"])
+
+
+def _glsl(count: int) -> str:
+    return ("float", "vec2", "vec3", "vec4")[count - 1]

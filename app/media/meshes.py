@@ -1,0 +1,127 @@
+"""Triangles of scenes: those that are built in, and those of files."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from hashlib import blake2b
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...nodes import BuiltInScene, Scene
+from ..compiler import ATTRIBUTES, Mesh
+from ..errors import InputError
+from .info import fingerprint
+from .stages import BUILT_IN, Piece
+
+Array = np.ndarray
+_COLUMNS = sum(ATTRIBUTES.values())
+_MOST_TRIANGLES = 20_000_000
+_Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+"""From a world whose y points up to one whose z does, as Blender's importers turn it."""
+
+
+def load_mesh(scene: Scene) -> Mesh:
+    """The triangles of a scene, z up.
+
+    Raises:
+        InputError: the file is missing, holds no triangles, or cannot be read.
+    """
+    return _load(scene, "" if isinstance(scene, BuiltInScene) else fingerprint(scene.path))
+
+
+@lru_cache(maxsize=8)
+def _load(scene: Scene, mark: str) -> Mesh:
+    if isinstance(scene, BuiltInScene):
+        return _joined(BUILT_IN[scene.name]())
+    pieces = _pieces(scene.path)
+    if scene.up == "y":
+        pieces = [piece.turned(_Y_UP) for piece in pieces]
+    return _joined(pieces)
+
+
+def _joined(pieces: list[Piece]) -> Mesh:
+    """All pieces as one; objects and materials count from 1."""
+    vertices: list[Array] = []
+    indices: list[Array] = []
+    materials: dict[tuple[float, ...], int] = {}
+    start = 0
+    for number, piece in enumerate(pieces, 1):
+        material = materials.setdefault(piece.material, len(materials) + 1)
+        block = np.empty((len(piece.places), _COLUMNS), np.float32)
+        constant = (*piece.albedo, *piece.emission, piece.metal, piece.rough, number, material, float(piece.moving))
+        block[:, 0:3], block[:, 3:6], block[:, 6:8], block[:, 8:] = piece.places, piece.normals, piece.uvs, constant
+        vertices.append(block)
+        indices.append(piece.triangles.astype(np.uint32).ravel() + np.uint32(start))
+        start += len(block)
+    whole, order = np.concatenate(vertices), np.concatenate(indices)
+    digest = blake2b(whole.tobytes(), digest_size=16)
+    digest.update(order.tobytes())
+    return Mesh(digest.hexdigest(), whole, order)
+
+
+def _pieces(path: str) -> list[Piece]:
+    """The meshes of a file where they stand."""
+    import trimesh
+
+    if not Path(path).is_file():
+        raise InputError(f"{path}: there is no such file: choose a .glb, .gltf, .obj, .ply or .stl")
+    try:
+        scene: Any = trimesh.load_scene(path)
+        found = [_piece(scene, name) for name in scene.graph.nodes_geometry]
+    except InputError:
+        raise
+    except Exception as fault:
+        reason = (str(fault).strip() or type(fault).__name__).splitlines()[0]
+        raise InputError(f"{path}: is no mesh that can be read: {reason}") from fault
+    pieces = [piece for piece in found if piece is not None]
+    if not pieces:
+        raise InputError(f"{path}: holds no triangles")
+    if sum(len(piece.triangles) for piece in pieces) > _MOST_TRIANGLES:
+        raise InputError(f"{path}: holds more than {_MOST_TRIANGLES:,} triangles: thin it out first")
+    return pieces
+
+
+def _piece(scene: Any, node: str) -> Piece | None:
+    matrix, geometry = scene.graph[node]
+    mesh = scene.geometry[geometry]
+    if len(getattr(mesh, "faces", ())) == 0:
+        return None
+    mesh = mesh.copy()
+    mesh.apply_transform(matrix)
+    visual = getattr(mesh, "visual", None)
+    uvs, material = getattr(visual, "uv", None), getattr(visual, "material", None)
+    return Piece(
+        np.asarray(mesh.vertices), np.asarray(mesh.vertex_normals), np.asarray(mesh.faces),
+        np.zeros((len(mesh.vertices), 2)) if uvs is None else np.asarray(uvs)[:, :2],
+        albedo=_color(visual, material), emission=_factor(material, "emissiveFactor", (0.0, 0.0, 0.0)),
+        metal=_number(material, "metallicFactor", 0.0), rough=_number(material, "roughnessFactor", 0.6), moving=True,
+    )
+
+
+def _color(visual: Any, material: Any) -> tuple[float, float, float]:
+    """The base color: scene-linear in glTF; the other formats mean sRGB."""
+    from .color import as_float, decode_srgb
+
+    base = getattr(material, "baseColorFactor", None)
+    if base is not None:
+        linear = as_float(np.asarray(base)[:3])
+    else:
+        base = getattr(material or visual, "main_color", None)
+        linear = decode_srgb(as_float(np.asarray((204, 204, 204) if base is None else base, np.uint8)[:3]))
+    red, green, blue = (float(part) for part in linear)
+    return red, green, blue
+
+
+def _factor(material: Any, name: str, default: tuple[float, float, float]) -> tuple[float, float, float]:
+    given = getattr(material, name, None)
+    if given is None:
+        return default
+    red, green, blue = (float(part) for part in np.asarray(given)[:3])
+    return red, green, blue
+
+
+def _number(material: Any, name: str, default: float) -> float:
+    given = getattr(material, name, None)
+    return default if given is None else float(given)

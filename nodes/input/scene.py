@@ -1,0 +1,114 @@
+import math
+from collections.abc import Mapping
+from typing import Annotated, Literal
+
+from .._declare import (
+    BuiltInScene,
+    Camera,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Image,
+    Motion,
+    Output,
+    SceneFile,
+    ScenePath,
+    Slider,
+    Source,
+    Vector,
+    Viewpoint,
+    look_at,
+)
+
+_NEAR = 0.01
+"""What is nearer than this part of the distance to the target is cut off."""
+
+
+class Scene(Source):
+    """Draw meshes into every channel that effects want: albedo, normals, depth, position, velocity, ids and more.
+
+    All in one pass. The camera orbits its target. What can move (all of a file, the red ball of the stage) turns about
+    the world's upright axis and drifts. Positions are in world units, z up; depth is measured along the camera's axis,
+    1e10 where nothing is; velocity is in pixels, y down: since the frame before, and until the next. Pixels are
+    sampled in their middle, so edges are hard and data is exact.
+    """
+
+    scene: Annotated[Literal["stage", "corner", "blocks", "file"], Doc(
+        "A still life, a corner of a room, a town, or the meshes of a file."
+    )] = "stage"
+    file: Annotated[ScenePath, Doc("Meshes: .glb, .gltf, .obj, .ply or .stl, with their materials' plain colors.")] = ""
+    up: Annotated[Literal["y", "z"], Doc("The axis that points up in the file: y in glTF and OBJ.")] = "y"
+    target: Annotated[
+        tuple[float, float, float], Slider(-10.0, 10.0, unit="scene"), Doc("What the camera looks at.")
+    ] = (0.1, 0.2, 0.75)
+    distance: Annotated[float, Slider(
+        0.5, 50.0, unit="scene", minimum=1e-3, maximum=1e6, doc="How far away the camera is."
+    )] = 6.5
+    azimuth: Annotated[float, Slider(
+        -180.0, 180.0, unit="deg", doc="Where the camera stands around the target; at 0 it looks along y."
+    )] = 8.0
+    elevation: Annotated[float, Slider(
+        -89.0, 89.0, unit="deg", minimum=-90.0, maximum=90.0, doc="How high it stands."
+    )] = 14.0
+    focal: Annotated[float, Slider(
+        12.0, 200.0, unit="ratio", minimum=1.0, maximum=10000.0, doc="Focal length in mm, on a sensor 36 mm wide."
+    )] = 50.0
+    orbit: Annotated[float, Slider(-10.0, 10.0, unit="deg", doc="How far the camera goes around, each frame.")] = 0.0
+    turn: Annotated[float, Slider(-30.0, 30.0, unit="deg", doc="How far what can move turns, each frame.")] = 0.0
+    drift: Annotated[
+        tuple[float, float, float], Slider(-0.5, 0.5, unit="scene"), Doc("How far what can move goes, each frame.")
+    ] = (0.0, 0.0, 0.0)
+
+    color = Output(Image(doc="Lit by one soft lamp and the sky, to see what is there."))
+    albedo = Output(Image())
+    normal = Output(Vector(doc="Unit length, in the world, towards the camera."))
+    position = Output(Vector(doc="In the world."))
+    depth = Output(Field(doc="Along the camera's axis; 1e10 where nothing is."))
+    emission = Output(Image())
+    material = Output(Vector(width=2, doc="Metal and roughness, 0..1."))
+    velocity = Output(Vector(width=4, doc="Pixels since the frame before, and until the next; y down."))
+    uv = Output(Vector(width=2))
+    object_id = Output(Field(doc="A whole number for every object, from 1."))
+    material_id = Output(Field(doc="A whole number for every material, from 1."))
+    camera = Output(Viewpoint())
+    camera_before = Output(Viewpoint(doc="Where the camera was in the frame before."))
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn | Camera]:
+        scene = SceneFile(self.file, self.up) if self.scene == "file" else BuiltInScene(self.scene)
+        width, height = draw.size
+        times = (draw.frame, draw.frame - 1, draw.frame + 1)
+        now, before, after = (self._camera(time, width / height) for time in times)
+        first, second, third = (self._motion(time) for time in times)
+        drawn = draw.raster(scene, (first, second, third), (now, before, after), _NEAR * self.distance)
+        place, surface = drawn["place"], drawn["surface"]
+        return {
+            "color": draw.point(
+                "scene_color", albedo=drawn["albedo"], normal=drawn["normal"], emission=drawn["emission"],
+                eye=now.forward,
+            ),
+            "albedo": drawn["albedo"], "normal": drawn["normal"], "emission": drawn["emission"],
+            "position": draw.point("scene_position", result=Vector(), place=place),
+            "depth": draw.point("scene_depth", result=Field(), place=place),
+            "material": drawn["metal_rough"], "velocity": drawn["velocity"],
+            "uv": draw.point("scene_uv", result=Vector(width=2), surface=surface),
+            "object_id": draw.point("scene_object", result=Field(), surface=surface),
+            "material_id": draw.point("scene_material", result=Field(), surface=surface),
+            "camera": now, "camera_before": before,
+        }
+
+    def _camera(self, frame: int, aspect: float) -> Camera:
+        turn, tilt = self.azimuth + self.orbit * (frame - 1), self.elevation
+        away = (
+            math.sin(turn) * math.cos(tilt) * self.distance, -math.cos(turn) * math.cos(tilt) * self.distance,
+            math.sin(tilt) * self.distance,
+        )
+        x, y, z = (place + part for place, part in zip(self.target, away, strict=True))
+        across = self.focal / 36.0
+        return look_at((x, y, z), self.target, (across, across * aspect))
+
+    def _motion(self, frame: int) -> Motion:
+        frames = frame - 1
+        c, s = math.cos(self.turn * frames), math.sin(self.turn * frames)
+        x, y, z = (part * frames for part in self.drift)
+        return (c, -s, 0.0, x, s, c, 0.0, y, 0.0, 0.0, 1.0, z)
