@@ -6,7 +6,7 @@ from random import Random
 
 import numpy as np
 from halation.app.graph import Graph, Input, Output, Port, conversion, signature
-from halation.nodes import Kind, Node, Source, catalogue
+from halation.nodes import Kind, Node, Source, catalogue, look_at
 
 SIZE = (37, 23)
 CLASSES = [node for node in catalogue().values() if not issubclass(node, Source)]
@@ -29,9 +29,13 @@ def random_node(rng: Random) -> Node:
 
 
 def random_graph(seed: int, length: int = 10) -> Graph:
-    """A graph of `length` nodes over an image, a field and a vector; every loose end is an output."""
+    """A graph of `length` nodes over pictures of every type and a camera; every loose end is an output."""
     rng = Random(seed)
-    graph = Graph(inputs={"image": Input(Kind.IMAGE), "field": Input(Kind.FIELD), "vector": Input(Kind.VECTOR, 2)})
+    graph = Graph(inputs={
+        "image": Input(Kind.IMAGE), "field": Input(Kind.FIELD), "vector": Input(Kind.VECTOR, 2),
+        "normal": Input(Kind.VECTOR, 3), "motion": Input(Kind.VECTOR, 4),
+        "camera": Input(Kind.CAMERA, default=look_at((1.0, -5.0, 2.0), (0.0, 0.0, 0.5), (1.2, 1.9)).rows),
+    })
     for index in range(length):
         name = f"n{index}"
         graph = graph.add(name, random_node(rng))
@@ -48,7 +52,10 @@ def random_graph(seed: int, length: int = 10) -> Graph:
                 # Late nodes are more likely, so that chains grow long.
                 graph = graph.connect(fitting[-1 - int(len(fitting) * rng.random() ** 3)], Port(name, target))
     read = set(graph.links.values())
-    loose = [port for port in sources(graph, "") if port not in read and port.node != "inputs"]
+    loose = [
+        port for port in sources(graph, "")
+        if port not in read and port.node != "inputs" and graph.source(port).kind is not Kind.CAMERA
+    ]
     for number, port in enumerate(loose[-4:]):
         socket = graph.source(port)
         kind = {Kind.NUMBER: Kind.FIELD, Kind.COLOR: Kind.IMAGE}.get(socket.kind, socket.kind)
@@ -74,4 +81,6 @@ def pictures(seed: int) -> dict[str, np.ndarray]:
         "image": rng.gamma(0.6, 1.0, (height, width, 4)).astype(np.float32),
         "field": rng.random((height, width), np.float32),
         "vector": rng.normal(0.0, 1.0, (height, width, 2)).astype(np.float32),
+        "normal": rng.normal(0.0, 1.0, (height, width, 3)).astype(np.float32),
+        "motion": rng.normal(0.0, 2.0, (height, width, 4)).astype(np.float32),
     }

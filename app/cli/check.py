@@ -70,23 +70,25 @@ def _compiled(graph: Graph) -> Iterator[tuple[int, Problem]]:
     from ..errors import HalationError, InputError
     from ..graph import Problem
 
-    lazy = Lazy()
     unread: dict[str, InputError] = {}
 
-    def probe(picture: Picture) -> Probed:
-        if not picture.in_memory:
-            try:
-                return lazy.probe(picture)
-            except InputError as fault:
-                unread[str(fault)] = fault
-        return Probed(graph.settings.size or _SIZE, False, picture.path)
+    class Forgiving(Lazy):
+        """Goes on after a picture that cannot be read."""
+
+        def probe(self, picture: Picture) -> Probed:
+            if not picture.in_memory:
+                try:
+                    return super().probe(picture)
+                except InputError as fault:
+                    unread[str(fault)] = fault
+            return Probed(graph.settings.size or _SIZE, False, picture.path)
 
     bindings = {
         name: Picture(name, "", item.kind, item.socket().channels, in_memory=True)
         for name, item in graph.inputs.items() if not item.file and item.default is None
     }
     try:
-        compiler.compile_graph(graph, compiler.Request(bindings=bindings), probe, colors=lazy.recolor)
+        compiler.compile_graph(graph, compiler.Request(bindings=bindings), Forgiving())
     except HalationError as fault:
         yield fault.exit_code, Problem("", "", str(fault))
     for fault in unread.values():

@@ -40,9 +40,7 @@ def explain(
         parsing.targets(opened_graph, node), lazy.bind(opened_graph, inputs or ()), parsing.size(size),
         parsing.scale(scale),
     )
-    plan = compiler.compile_graph(
-        opened_graph, request, lazy.probe, target=target, precision=depth, colors=lazy.recolor
-    )
+    plan = compiler.compile_graph(opened_graph, request, lazy, target=target, precision=depth)
     if as_json:
         print_json(compiler.as_json(plan))
     else:

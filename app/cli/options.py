@@ -14,8 +14,8 @@ from . import parsing
 from .outcome import note
 
 if TYPE_CHECKING:
-    from ...nodes import ColorChange
-    from ..compiler import ColorProgram, Picture, Probed
+    from ...nodes import ColorChange, Scene
+    from ..compiler import ColorProgram, Mesh, Picture, Probed
     from ..graph import Graph
     from ..media.pictures import Pictures
 
@@ -106,7 +106,7 @@ def report_problems(path: Path, graph: Graph) -> None:
 
 
 class Lazy:
-    """Pictures for graphs that may have none: what decodes them is loaded when the first is asked for."""
+    """The world outside of graphs that may not need it: what reads files is loaded when the first is asked for."""
 
     @cached_property
     def pictures(self) -> Pictures:
@@ -127,3 +127,7 @@ class Lazy:
     def recolor(self, change: ColorChange) -> ColorProgram:
         """The program of a change of color."""
         return self.pictures.recolor(change)
+
+    def mesh(self, scene: Scene) -> Mesh:
+        """The triangles of a scene."""
+        return self.pictures.mesh(scene)

@@ -14,6 +14,7 @@ from .edit import edit
 from .explain import explain
 from .fmt import fmt
 from .gallery import gallery
+from .info import info
 from .nodes import nodes
 from .outcome import EXIT_CODES, failed, guarded, settle
 from .render import render
@@ -22,7 +23,7 @@ app = typer.Typer(
     name="halation", add_completion=False, rich_markup_mode=None, epilog=EXIT_CODES,
     help="A node-graph compositor for screen-space effects.",
 )
-for command in (edit, render, check, explain, nodes, fmt, demo, gallery):
+for command in (edit, render, check, explain, info, nodes, fmt, demo, gallery):
     app.command()(guarded(command))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from ...nodes import Kind, Node, Size, Socket, Source, catalogue
@@ -17,6 +18,20 @@ FULL_HD = (1920, 1080)
 
 CANVAS = (480, 270)
 """As large as the sample."""
+
+_DATA = MappingProxyType({"depth": "Depth", "ids": "Object Index"})
+"""Layers of the sample that fields of these names are for."""
+
+
+class _SameSize(Lazy):
+    """A world in which all pictures have the same size."""
+
+    def __init__(self, size: Size) -> None:
+        self._size = size
+
+    def probe(self, picture: Picture) -> Probed:
+        """Nothing is read."""
+        return Probed(self._size, True, picture.path)
 
 
 def drawn(node: type[Node]) -> tuple[str, ...]:
@@ -41,15 +56,14 @@ def planned(node: type[Node], size: Size) -> Plan:
         if not socket.single:
             pictures[name] = Picture(name, "", socket.kind, socket.channels, in_memory=True)
     targets = {name: Port(NODE, name) for name in drawn(node)}
-    request, lazy = Request(targets, pictures), Lazy()
-    return compile_graph(graph, request, lambda picture: Probed(size, True, picture.path), colors=lazy.recolor)
+    return compile_graph(graph, Request(targets, pictures), _SameSize(size))
 
 
 def over(node: type[Node], sample: Path) -> Graph:
     """A node at its defaults with everything that it takes to see it, its outputs those of the graph.
 
-    The picture is the sample's color; a picture to lay upon it is a glow. Fields are its depth or luminance, vectors
-    its positions, normals or motion, or random; maps of positions stir the picture.
+    The picture is the sample's color; a picture to lay upon it is a glow. Fields are its depth, ids or luminance,
+    vectors its positions, normals or motion, or random; maps of positions stir the picture.
     """
     graph = Graph(settings=Settings(CANVAS)).add(NODE, node(**_reading(node, str(sample))))
     needed = {name: socket for name, socket in node.inputs.items() if _is_needed(node, socket)}
@@ -61,8 +75,8 @@ def over(node: type[Node], sample: Path) -> Graph:
                           first=(1.0, 0.35, 0.1, 1.0), second=(0.0, 0.0, 0.0, 0.0))
         elif socket.kind is Kind.IMAGE:
             graph = _fed(graph, name, "beauty", _layer(Kind.IMAGE, 4, sample, "Combined"))
-        elif name == "depth":
-            graph = _fed(graph, name, "depth", _layer(Kind.FIELD, 1, sample, "Depth"))
+        elif name in _DATA:
+            graph = _fed(graph, name, name, _layer(Kind.FIELD, 1, sample, _DATA[name]))
         elif socket.kind is Kind.FIELD:
             graph = _made(graph, name, "luminance", "out")
             graph = _fed(graph, "image", "beauty", _layer(Kind.IMAGE, 4, sample, "Combined"), f"{name}_luminance")

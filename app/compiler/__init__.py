@@ -13,33 +13,32 @@ from .fuse import fuse
 from .ir import Memory, Picture
 from .library import Library, installed, parse
 from .lower import lower
+from .outside import Outside, Probed
 from .plan import FIRST_TABLE, Pass, Plan, Shader, Surface, Upload
-from .raster import ATTRIBUTES, Mesh, Meshes, no_meshes
-from .recolor import ColorProgram, Colors, Table, no_colors
-from .request import Probe, Probed, Request
+from .raster import ATTRIBUTES, Mesh
+from .recolor import ColorProgram, Table
+from .request import Request
 from .schedule import schedule
 from .target import NULL, Form, Precision, Target
 from .upstream import Upstream
 
 __all__ = [
-    "ATTRIBUTES", "FIRST_TABLE", "MAX_WEIGHTS", "NULL", "ColorProgram", "Colors", "Form", "Library", "Memory", "Mesh",
-    "Meshes", "Pass", "Picture", "Plan", "Precision", "Probe", "Probed", "Request", "Shader", "Surface", "Table",
-    "Target", "Upload", "Upstream", "as_json", "compile_graph", "dot", "explain", "installed", "no_colors",
-    "no_meshes", "parse",
+    "ATTRIBUTES", "FIRST_TABLE", "MAX_WEIGHTS", "NULL", "ColorProgram", "Form", "Library", "Memory", "Mesh",
+    "Outside", "Pass", "Picture", "Plan", "Precision", "Probed", "Request", "Shader", "Surface", "Table", "Target",
+    "Upload", "Upstream", "as_json", "compile_graph", "dot", "explain", "installed", "parse",
 ]
 
 
 def compile_graph(
-    graph: Graph, request: Request, probe: Probe, *, target: Target = NULL, precision: Precision | None = None,
-    library: Library | None = None, colors: Colors = no_colors,
-    meshes: Meshes = no_meshes, fusion: bool = True,
+    graph: Graph, request: Request, outside: Outside, *, target: Target = NULL, precision: Precision | None = None,
+    library: Library | None = None, fusion: bool = True,
 ) -> Plan:
     """Compile what `request` wants of `graph` for `target`.
 
-    Raises GraphError for a graph that cannot be rendered, InputError (from `probe` or `colors`) for a file that cannot
+    Raises GraphError for a graph that cannot be rendered, InputError (from `outside`) for a file that cannot
     be read, DeviceError for one that is too large, ShaderError for a node and its GLSL that do not agree.
     """
     library = library or installed()
-    program = lower(graph, request, library, probe, colors, meshes)
+    program = lower(graph, request, library, outside)
     passes = fuse(program, target, enabled=fusion)
     return schedule(program, passes, library, target, precision or target.precision)

@@ -67,8 +67,8 @@ class Made:
 
 
 @dataclass(frozen=True)
-class Outside:
-    """What a node may ask of the world: pixels of a file, the program of a change of color, triangles of a scene."""
+class Files:
+    """What a node names beyond the graph: pixels of a file, the program of a change of color, triangles of a scene."""
 
     read: Callable[[Picture], Ref]
     recolor: Callable[[ColorChange], ColorProgram]
@@ -80,12 +80,12 @@ class Recorder:
 
     def __init__(
         self, owner: str, node: Filter, size: Size, frame: int, resolved: Mapping[str, Ref | Constant],
-        linked: frozenset[str], builder: Builder, library: Library, outside: Outside, memory: Memory | None,
+        linked: frozenset[str], builder: Builder, library: Library, files: Files, memory: Memory | None,
     ) -> None:
         self.size, self.frame = size, frame
         self._owner, self._node = owner, node
         self._resolved, self._linked = resolved, linked
-        self._builder, self._library, self._outside = builder, library, outside
+        self._builder, self._library, self._files = builder, library, files
         self._memory = memory
         self._shader = shader(node)
         self.remembered: Ref | None = None
@@ -173,7 +173,7 @@ class Recorder:
         return self._transformed(made, 0, width, (middle[0], picture.size[0]))
 
     def recolor(self, image: Pixels, change: ColorChange) -> Drawn:
-        made, program = self._pixels(image), self._outside.recolor(change)
+        made, program = self._pixels(image), self._files.recolor(change)
         color = (Parameter("vec4", made.ref),)
         return self._made(Call((made.shape,), self._owner, program.text.name, program.function, color, (), program))
 
@@ -189,7 +189,7 @@ class Recorder:
         shapes = tuple(Shape(self.size, channels, data) for channels, data, _ in CHANNELS.values())
         rows = tuple(part for camera in cameras for part in camera.rows)
         moved = tuple(part for motion in motions for part in motion)
-        op = Raster(shapes, self._owner, self._outside.mesh(scene), rows, moved, near)
+        op = Raster(shapes, self._owner, self._files.mesh(scene), rows, moved, near)
         first = self._builder.add(op)
         return {name: Made(Ref(first.op, at), shapes[at]) for at, name in enumerate(CHANNELS)}
 
@@ -213,7 +213,7 @@ class Recorder:
         self.remembered = pixels.ref
 
     def read(self, path: str, layer: str, result: Socket) -> Drawn:
-        ref = self._outside.read(Picture(path, layer, result.kind, result.channels))
+        ref = self._files.read(Picture(path, layer, result.kind, result.channels))
         return Made(ref, self._builder.shape(ref))
 
     # --- parts ---------------------------------------------------------------------------------------------------

@@ -31,34 +31,30 @@ from ...nodes import (
 from ..errors import GraphError, HalationError, ShaderError
 from ..graph import INPUTS, OUTPUTS, Graph, Port, did_you_mean
 from . import constants
-from .draws import Made, Outside, Recorder, choices, shader
+from .draws import Files, Made, Recorder, choices, shader
 from .expand import Flat, expand, nothing, stand_in
 from .ir import Builder, Call, Choice, Constant, Operand, Parameter, Picture, Program, Ref, Shape
 from .library import Library
+from .outside import Outside
 from .pictures import Pictures
-from .raster import Mesh, Meshes
-from .recolor import ColorProgram, Colors
-from .request import Probe, Request
+from .raster import Mesh
+from .recolor import ColorProgram
+from .request import Request
 
 
-def lower(
-    graph: Graph, request: Request, library: Library, probe: Probe, colors: Colors, meshes: Meshes
-) -> Program:
+def lower(graph: Graph, request: Request, library: Library, outside: Outside) -> Program:
     """Lower what `request` wants of `graph`. Raises GraphError where the graph is not fit to render."""
-    return _Lowering(graph, request, library, probe, colors, meshes).run()
+    return _Lowering(graph, request, library, outside).run()
 
 
 class _Lowering:
     """The work in progress: `results` says what every port visited so far stands for."""
 
-    def __init__(
-        self, graph: Graph, request: Request, library: Library, probe: Probe, colors: Colors, meshes: Meshes
-    ) -> None:
-        self.graph, self.request, self.library = graph, request, library
-        self.colors, self.meshes = colors, meshes
+    def __init__(self, graph: Graph, request: Request, library: Library, outside: Outside) -> None:
+        self.graph, self.request, self.library, self.outside = graph, request, library, outside
         self.flat: Flat = expand(graph)
         self.builder = Builder()
-        self.pictures = Pictures(graph, self.flat, request, probe, self.builder)
+        self.pictures = Pictures(graph, self.flat, request, outside, self.builder)
         self.results: dict[Port, Operand] = {}
         self.memories: dict[str, Ref] = {}
 
@@ -170,7 +166,8 @@ class _Lowering:
                     "to a picture: give it a file, or bind it by name"
                 )
             else:
-                raise GraphError(f"node '{path}': input '{name}' is not linked: link a picture to it")
+                wanted = "camera" if socket.kind is Kind.CAMERA else "picture"
+                raise GraphError(f"node '{path}': input '{name}' is not linked: link a {wanted} to it")
         return found, frozenset(linked)
 
     def _node(self, path: str) -> None:
@@ -292,7 +289,7 @@ class _Lowering:
         for name in linked:
             filled[name] = self._as_pixels(path, node.inputs[name], operands[name], size)
         recorder = Recorder(
-            path, node, size, self.request.frame, filled, linked, self.builder, self.library, self._outside(path),
+            path, node, size, self.request.frame, filled, linked, self.builder, self.library, self._files(path),
             self.request.memories.get(path),
         )
         drawn = node.passes(recorder)
@@ -316,13 +313,13 @@ class _Lowering:
         made = self.builder.shape(ref)
         return ref if made.channels == socket.channels else self.pictures.converted(ref, socket, made.size, owner)
 
-    def _outside(self, path: str) -> Outside:
+    def _files(self, path: str) -> Files:
         """The files that a node names, which lie beside the graph file that it came from."""
 
         def recolor(change: ColorChange) -> ColorProgram:
             if isinstance(change, LookupFile):
                 change = replace(change, path=self.pictures.located(change.path, path))
-            return self.colors(change)
+            return self.outside.recolor(change)
 
         def read(picture: Picture) -> Ref:
             return self.pictures.read(replace(picture, path=self.pictures.located(picture.path, path)), path)
@@ -330,6 +327,6 @@ class _Lowering:
         def mesh(scene: Scene) -> Mesh:
             if isinstance(scene, SceneFile):
                 scene = replace(scene, path=self.pictures.located(scene.path, path))
-            return self.meshes(scene)
+            return self.outside.mesh(scene)
 
-        return Outside(read, recolor, mesh)
+        return Files(read, recolor, mesh)

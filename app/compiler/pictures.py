@@ -12,7 +12,8 @@ from ..errors import HalationError
 from ..graph import INPUTS, Graph, Input, Port
 from .expand import Flat
 from .ir import Accessor, Builder, Call, Constant, Gather, Operand, Parameter, Picture, Read, Ref, Shape
-from .request import Probe, Probed, Request
+from .outside import Outside, Probed
+from .request import Request
 
 DEFAULT_CANVAS: Size = (1920, 1080)
 
@@ -20,9 +21,9 @@ DEFAULT_CANVAS: Size = (1920, 1080)
 class Pictures:
     """Adds what is read from outside, and changes of size and type, to the operations in `builder`."""
 
-    def __init__(self, graph: Graph, flat: Flat, request: Request, probe: Probe, builder: Builder) -> None:
+    def __init__(self, graph: Graph, flat: Flat, request: Request, outside: Outside, builder: Builder) -> None:
         self._settled = graph.settings.size
-        self._flat, self._request, self._probe, self._builder = flat, request, probe, builder
+        self._flat, self._request, self._outside, self._builder = flat, request, outside, builder
 
     @cached_property
     def canvas(self) -> Size:
@@ -35,7 +36,7 @@ class Pictures:
 
     def _probed(self, picture: Picture, owner: str) -> Probed:
         try:
-            return self._probe(picture)
+            return self._outside.probe(picture)
         except HalationError as error:
             error.node = owner
             raise
@@ -57,7 +58,9 @@ class Pictures:
         return (max(1, round(size[0] * scale)), max(1, round(size[1] * scale)))
 
     def bound(self, port: Port, socket: Input) -> Picture | None:
-        """The picture bound to a graph input, else its default file."""
+        """The picture bound to a graph input, else its default file. A camera is none."""
+        if socket.kind is Kind.CAMERA:
+            return None
         kind, width = socket.kind, socket.socket().channels
         bound = self._request.bindings.get(port.socket) if port.node == INPUTS else None
         if bound is not None:

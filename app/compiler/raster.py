@@ -4,10 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Protocol
-
-from ...nodes import Scene
-from ..errors import UsageError
 
 ATTRIBUTES: Mapping[str, int] = {
     "place": 3, "normal": 3, "uv": 2, "albedo": 3, "emission": 3, "metal_rough": 2, "object_material_moving": 3,
@@ -33,17 +29,6 @@ class Mesh:
     digest: str
     vertices: object = field(compare=False, repr=False)
     indices: object = field(compare=False, repr=False)
-
-
-class Meshes(Protocol):
-    """Gets the triangles of a scene. Raises InputError for a file that cannot be read."""
-
-    def __call__(self, scene: Scene) -> Mesh: ...
-
-
-def no_meshes(scene: Scene) -> Mesh:
-    """For plans of graphs that draw no meshes."""
-    raise UsageError(f"{scene}: nothing was given to read it with")
 
 
 def vertex_text(library: str) -> str:

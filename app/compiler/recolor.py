@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Protocol
 
-from ...nodes import ColorChange
-from ..errors import UsageError
 from .library import Text
 
 
@@ -33,14 +30,3 @@ class ColorProgram:
     function: str
     text: Text = field(compare=False, repr=False)
     tables: tuple[Table, ...]
-
-
-class Colors(Protocol):
-    """Writes the program of a change. Raises InputError for a file that cannot be read, UsageError for a name."""
-
-    def __call__(self, change: ColorChange) -> ColorProgram: ...
-
-
-def no_colors(change: ColorChange) -> ColorProgram:
-    """For plans of graphs that change no colors."""
-    raise UsageError(f"{change}: no color library was given to compile it")

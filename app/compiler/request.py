@@ -1,4 +1,4 @@
-"""What a compilation is asked for, and what it may ask about pictures."""
+"""What a compilation is asked for."""
 
 from __future__ import annotations
 
@@ -6,27 +6,11 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Protocol
 
 from ...nodes import Size
 from ..errors import UsageError
 from ..graph import Port
 from .ir import Memory, Picture
-
-
-@dataclass(frozen=True)
-class Probed:
-    """What is known of a picture before it is read."""
-
-    size: Size
-    half: bool
-    fingerprint: str
-
-
-class Probe(Protocol):
-    """Looks at a picture's header. Raises InputError for what cannot be read."""
-
-    def __call__(self, picture: Picture) -> Probed: ...
 
 
 @dataclass(frozen=True)

@@ -63,9 +63,8 @@ class Renderer:
         memories = self.runner.memories if wanted.follows else {}
         request = Request(wanted.targets, bindings, wanted.size, wanted.scale, wanted.frame, memories)
         return compile_graph(
-            graph, request, self.pictures.probe, target=self.device.target, precision=wanted.precision,
-            library=self.library, colors=self.pictures.recolor, meshes=self.pictures.mesh,
-            fusion=fusion and self._fusion,
+            graph, request, self.pictures, target=self.device.target, precision=wanted.precision,
+            library=self.library, fusion=fusion and self._fusion,
         )
 
     def render(self, graph: Graph, wanted: Wanted = Wanted()) -> dict[str, Array]:

@@ -3,16 +3,11 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.compiler import Picture, Plan, Probed, Request, compile_graph
+from halation.app.compiler import Picture, Plan, Request, compile_graph
 from halation.app.graph import Graph
-from halation.app.media.recolor import recolor
+from headers import Headers
 
 SIZE = (37, 23)
-
-
-def probe(picture: Picture) -> Probed:
-    """Every picture has the same size."""
-    return Probed(SIZE, False, picture.path)
 
 
 @pytest.fixture(scope="session")
@@ -25,6 +20,6 @@ def plan():
             name: Picture(name, "", item.kind, item.socket().channels, in_memory=True)
             for name, item in graph.inputs.items()
         }
-        return compile_graph(graph, Request(bindings=bindings, **asked), probe, colors=recolor, **options)
+        return compile_graph(graph, Request(bindings=bindings, **asked), Headers(SIZE), **options)
 
     return planned

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.compiler import Picture, Probed, Request
+from halation.app.compiler import Picture, Request
 from halation.app.compiler.library import Library, parse
 from halation.app.compiler.lower import lower
 from halation.app.errors import GraphError
 from halation.app.graph import Graph, Group, Input, Output, Port
 from halation.nodes import Camera, Draw, Drawn, Field, Filter, Image, Kind, Viewpoint, look_at
 from halation.nodes.input.camera import Camera as CameraNode
+from headers import Headers
 
 SEEN: list[Camera | None] = []
 
@@ -31,7 +32,7 @@ def seen(graph: Graph) -> Camera | None:
     library = Library({"primitive/convert": parse("primitive/convert", "")})
     bindings = {"image": Picture("image", "", Kind.IMAGE, 4, in_memory=True)}
     asked = Request({"out": Port("watcher", "out")}, bindings)
-    lower(graph, asked, library, lambda picture: Probed((32, 18), False, "x"), lambda change: None)
+    lower(graph, asked, library, Headers((32, 18)))
     return SEEN[0]
 
 

@@ -8,6 +8,7 @@ from halation.app.graph import Control, Graph, Group, Input, Output, Port, Setti
 from halation.nodes import Kind, catalogue
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.input.checker import Checker
+from headers import Headers
 
 NODES = catalogue()
 IMAGE = {"image": Input(Kind.IMAGE)}
@@ -159,7 +160,7 @@ def plan_without_bindings(made: Graph, inputs):
 
     from halation.app.compiler import Request, compile_graph
 
-    return compile_graph(replace(made, inputs=inputs, settings=SETTINGS), Request(), lambda _: None)
+    return compile_graph(replace(made, inputs=inputs, settings=SETTINGS), Request(), Headers((8, 6)))
 
 
 def test_zeros_of_both_signs_are_one(plan):

@@ -10,6 +10,7 @@ from halation.nodes import Kind, catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.saturation import Saturation
+from headers import Headers
 
 NODES = catalogue()
 
@@ -119,13 +120,14 @@ def test_an_error_says_which_node_is_at_fault(plan, made, node):
 def test_a_picture_that_cannot_be_read_is_the_fault_of_its_input():
     from halation.app.compiler import Request, compile_graph
 
-    def probe(picture):
-        raise InputError(f"{picture.path}: it is not there")
+    class Nowhere(Headers):
+        def probe(self, picture):
+            raise InputError(f"{picture.path}: it is not there")
 
     for nodes, links in (({}, {}), ({"c": NODES["checker"]()}, {"outputs.image": "c.out"})):
         made = graph(nodes, {"outputs.image": "inputs.image"} | links, inputs={"image": Input(file="a.exr")})
         with pytest.raises(InputError) as caught:
-            compile_graph(made, Request(), probe)
+            compile_graph(made, Request(), Nowhere((8, 6)))
         assert caught.value.node == "inputs.image"
 
 

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from conftest import graph_of
 from halation.app.compiler import installed
-from halation.app.graph import Port
+from halation.app.graph import Graph, Port
 from halation.app.renderer import Wanted
-from halation.nodes import Filter, Kind, Node, Pointwise, Source, catalogue
+from halation.nodes import Filter, Kind, Node, Pointwise, Source, catalogue, look_at
 
 ROOT = Path(__file__).parents[2]
 NODES = list(catalogue().values())
@@ -123,9 +123,16 @@ def picture(node: type[Node], name: str, size: tuple[int, int], rng: np.random.G
     return rng.gamma(0.7, 1.0, (height, width, node.inputs[name].channels)).astype(np.float32)
 
 
+def fed(node: Node, arrays: dict[str, np.ndarray]) -> Graph:
+    """A graph of one node with these pictures, and a camera wherever one is taken."""
+    camera = look_at((0.0, -5.0, 1.5), (0.0, 0.0, 1.0), (1.4, 2.5))
+    cameras = {name: camera for name, socket in type(node).inputs.items() if socket.kind is Kind.CAMERA}
+    return graph_of(node, arrays | cameras)
+
+
 def outputs_of(renderer, node: type[Node], arrays, **options):
     targets = {name: Port("node", name) for name in node.outputs}
-    return renderer.render(graph_of(node(), arrays), Wanted(arrays, targets, precision="float", **options))
+    return renderer.render(fed(node(), arrays), Wanted(arrays, targets, precision="float", **options))
 
 
 @rendered
@@ -134,7 +141,7 @@ def test_it_renders_finite_at_defaults(renderer, node, size):
     rng = np.random.default_rng(5)
     arrays = {
         name: picture(node, name, size, rng) if not socket.single else np.full((1, 1), 0.4, np.float32)
-        for name, socket in node.inputs.items()
+        for name, socket in node.inputs.items() if socket.kind is not Kind.CAMERA
     }
     found = outputs_of(renderer, node, arrays, **({} if arrays else {"size": size}))
     for name, output in node.outputs.items():
@@ -159,7 +166,7 @@ def test_nothing_that_is_no_number_comes_out(renderer, node):
         array[0, 0, 0] = np.nan
         array[18, 22] = 3e38
     changed = node(**neutral_off(node))
-    graph = graph_of(changed, arrays)
+    graph = fed(changed, arrays)
     targets = {name: Port("node", name) for name in node.outputs}
     found = renderer.render(graph, Wanted(arrays, targets, precision="float"))
     for name in node.outputs:
@@ -194,7 +201,7 @@ def test_its_choices_all_compile(renderer, node):
     targets = {name: Port("node", name) for name in node.outputs}
     for value in node.values.values():
         for choice in value.choices[1:]:
-            graph = graph_of(node(**{value.name: choice}), arrays)
+            graph = fed(node(**{value.name: choice}), arrays)
             found = renderer.render(graph, Wanted(arrays, targets, (9, 7), precision="float"))
             for name, array in found.items():
                 assert np.isfinite(array).all(), (value.name, choice, name)

@@ -47,7 +47,9 @@ ALIKE_FROM_AFAR = MappingProxyType({
         "emboss.out", "local_tone_map.out",
     ),
     "it measures the darkest and the brightest pixel, which a proxy averages away": ("photoreceptor_tone_map.out",),
-    "it is what passes a threshold, and an average passes it less": ("star.glow", "streaks.glow"),
+    "it is what passes a threshold, and an average passes it less": (
+        "kernel_glare.glow", "star.glow", "streaks.glow",
+    ),
     "it is read between pixels many times over, which softens it by pixels of the proxy": (
         "ghosts.glow", "sun_beams.glow",
     ),
@@ -58,8 +60,10 @@ ALIKE_FROM_AFAR = MappingProxyType({
 
 UNLIKE = MappingProxyType({
     "its lines are one or two pixels wide at any size": (
-        "canny.lines", "canny.out", "edge_detect.magnitude", "edge_detect.out",
+        "canny.lines", "canny.out", "edge_detect.magnitude", "edge_detect.out", "geometry_edges.border",
+        "geometry_edges.crease", "geometry_edges.gap",
     ),
+    "its lines are narrower than two pixels of the proxy, and fainter for that": ("geometry_edges.edges",),
     "what scatters within a pixel counts as sharp, and pixels of a proxy are larger": ("eye_glare.glow",),
     "every pixel is another number": ("blue_noise.out", "blue_noise.value", "blue_noise.vector"),
 })
@@ -94,6 +98,7 @@ def picture(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "Normal": layer("Normal", Kind.VECTOR, 3, (WIDTH, HEIGHT)),
         "Position": layer("Position", Kind.VECTOR, 3, (WIDTH, HEIGHT)),
         "Vector": layer("Vector", Kind.VECTOR, 4, (WIDTH, HEIGHT)),
+        "Object Index": layer("Object Index", Kind.FIELD, 1, (WIDTH, HEIGHT))[..., None],
     }
     formats = dict.fromkeys(layers, "float") | {"Combined": "half"}
     return write_exr(tmp_path_factory.mktemp("picture") / "soft.exr", layers, formats)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from random import Random
 
 import pytest
-from halation.app.compiler import Picture, Probed, Request, compile_graph
+from halation.app.compiler import Picture, Request, compile_graph
 from halation.app.document import dumps, loads
 from halation.app.editor.edits import clipboard, paths, wiring
 from halation.app.editor.edits.grouping import grouped
@@ -14,8 +14,8 @@ from halation.app.editor.edits.room import roomy
 from halation.app.editor.edits.ungrouping import ungrouped
 from halation.app.errors import GraphError
 from halation.app.graph import Control, Graph, Group, Port, signature
-from halation.app.media.recolor import recolor
 from halation.nodes import catalogue
+from headers import Headers
 from random_graphs import SIZE, random_graph
 
 SEEDS = range(60)
@@ -27,9 +27,7 @@ def keys(graph: Graph) -> dict[str, str]:
         name: Picture(name, "", item.kind, item.socket().channels, in_memory=True)
         for name, item in graph.inputs.items()
     }
-    plan = compile_graph(
-        graph, Request(bindings=bindings), lambda picture: Probed(SIZE, False, picture.path), colors=recolor
-    )
+    plan = compile_graph(graph, Request(bindings=bindings), Headers(SIZE))
     return {name: plan.surfaces[surface].key for name, surface in plan.outputs.items()}
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.compiler import Picture, Probed, Request, compile_graph
+from halation.app.compiler import Picture, Request, compile_graph
 from halation.app.editor.session import Session
 from halation.app.errors import GraphError
 from halation.app.graph import Graph, Input, Output, Port
 from halation.nodes import catalogue
+from headers import Headers
 from toy_nodes import TOYS, chain
 
 
@@ -92,7 +93,7 @@ def test_what_the_compiler_is_asked_for():
     def key(target: Port | None) -> str:
         assert target is not None
         request = Request({"x": target}, {"image": Picture("image", "", Input().kind, 4, in_memory=True)})
-        plan = compile_graph(session.root, request, lambda picture: Probed((8, 6), False, picture.path))
+        plan = compile_graph(session.root, request, Headers((8, 6)))
         return plan.surfaces[plan.outputs["x"]].key
 
     wanted = {name: key(port(name)) for name in ("inputs.image", "a.out", "b.out", "c.out")}

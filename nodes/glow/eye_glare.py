@@ -1,0 +1,70 @@
+import math
+from collections.abc import Mapping
+from typing import Annotated, Literal
+
+from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, Output, Slider, Vector
+
+_SMOOTH = 0.2
+"""Degrees over which nothing of the glare changes much, but near its middle."""
+
+_NEAR = (6.0, 14.0)
+"""Where a smaller size takes over, in pixels of it."""
+
+_DATA = Vector(width=4)
+
+
+class EyeGlare(Filter):
+    """Let lights glare as they do in the human eye, with rays and a colored halo.
+
+    Spencer, Shirley, Zimmerman and Greenberg (1995): at an angle t in degrees the eye scatters per steradian
+    `20.91 / (t + 0.02)^3` and `72.37 / (t + 0.02)^2`, and in the dark, for every wavelength, a halo of
+    `436.9 (568/nm) exp(-19.75 (t - 3 nm/568)^2)`. The light that is not scattered stays sharp. Every pixel gives away
+    what it scatters, so no light is made or lost, and an even picture stays as it is. `glow` is the scattered light
+    alone. Alpha is kept.
+    """
+
+    image = Image()
+    vision: Annotated[Literal["photopic", "mesopic", "scotopic"], Doc(
+        "What the eye is used to: daylight, dusk or night. The wider the pupil, the more halo."
+    )] = "scotopic"
+    field_of_view: Annotated[float, Slider(
+        5.0, 120.0, unit="deg", minimum=0.1, maximum=180.0,
+        doc="How high the picture stands in the eye. Smaller angles make the glare larger.",
+    )] = 40.0
+    rays: Annotated[Fraction, Doc("How far the glare breaks up into rays, the ciliary corona.")] = 0.5
+    strength: Annotated[float, Slider(
+        0.0, 1.0, unit="ratio", minimum=0.0, doc="1 is what the eye does."
+    )] = 1.0
+
+    out = Output()
+    glow = Output()
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        width, height = draw.size
+        degrees = math.degrees(self.field_of_view) / height
+        factor = 2 ** max(0, min(4, math.floor(math.log2(_SMOOTH / degrees))))
+        reach = math.ceil(_NEAR[1] * factor)
+        light = draw.point("eye_glare_light", self.image)
+        if factor == 1 or 2 * reach > max(width, height):
+            glare = draw.convolve_2d(light, self._kernel(draw, degrees, 1, (width, height), whole=True))
+        else:
+            small = (math.ceil(width / factor) + 2, math.ceil(height / factor) + 2)
+            shrunk = draw("eye_glare_shrink", image=light, size=small, edge="black", result=_DATA, factor=factor)
+            kernel = self._kernel(draw, degrees, factor, small)
+            kernel = draw("eye_glare_sharpen", kernel=kernel, size=kernel.size, result=_DATA)
+            far = draw.convolve_2d(shrunk, kernel)
+            near = draw.convolve_2d(light, self._kernel(draw, degrees, 1, (reach, reach), factor))
+            glare = draw("eye_glare_grow", near=near, far=far, result=_DATA, factor=factor)
+        out = draw.point("eye_glare", self.image, glare=glare, strength=self.strength)
+        return {"out": out, "glow": draw.point("eye_glare_glow", self.image, glare=glare, strength=self.strength)}
+
+    def _kernel(
+        self, draw: Draw, degrees: float, cell: int, reach: tuple[int, int], factor: int = 0, whole: bool = False
+    ) -> Drawn:
+        halo = draw("eye_glare_halo", size=(2048, 1), result=_DATA)
+        first, last = (0.0, 0.0) if whole else ((factor or cell) * part for part in _NEAR)
+        # "from" and "to" are words of Python's or of GLSL's: they travel as one.
+        return draw(
+            "eye_glare_kernel", halo=halo, size=(2 * reach[0] - 1, 2 * reach[1] - 1), result=_DATA,
+            vision=self.vision, pitch=degrees, cell=cell, fade=(first, last), rays=self.rays,
+        )

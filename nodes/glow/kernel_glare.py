@@ -1,0 +1,111 @@
+import math
+from collections.abc import Mapping
+from typing import Annotated, Literal
+
+from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Size, Slider, Vector
+
+_NO_LIMIT = 65504.0
+
+_RINGS = 200.0
+"""Half the height of an iris' pattern in units of its Fourier transform: its first dark ring lies at 2 percent."""
+
+_BLUEST = 550.0 / 400.0
+"""How much further than green light the pattern of an iris is read for violet."""
+
+_FACTORS = {"full": (1, 1), "half": (2, 500), "quarter": (4, 250)}
+"""How much smaller light is spread at most, and the lines to leave: proxies and small pictures lose no more."""
+
+_DATA = Vector(width=4)
+
+
+class KernelGlare(Filter):
+    """Turn every light into a picture: a starburst, a heart, dirt on a lens.
+
+    Convolves with the picture linked to `kernel`: its middle lies on the light, its alpha is not used, and its sum is
+    brought to a luminance of 1, so that color tints but no light is made. Without a link it is the starburst of an
+    iris: Fraunhofer's diffraction at a regular polygon, the sum over all wavelengths of the square of its Fourier
+    transform. It has as many rays as blades, twice as many if their number is odd. `glow` is the glare alone. Alpha is
+    kept.
+    """
+
+    image = Image()
+    kernel = Image(0.0, own_size=True, doc="What a point of light becomes. Without a link, a starburst.")
+    size: Annotated[float, Slider(
+        0.01, 1.5, unit="height", minimum=0.0, maximum=4.0, doc="Height of the kernel."
+    )] = 0.8
+    blades: Annotated[int, Slider(3, 12, unit="count", minimum=3, maximum=32, doc="Of the iris.")] = 6
+    rotation: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="Turns the iris counterclockwise.")] = 15.0
+    falloff: Annotated[float, Slider(
+        0.3, 1.0, unit="ratio", minimum=0.1, maximum=2.0,
+        doc="How fast the iris' rays fade: 1 is physical, below the light of weak lamps reaches further too.",
+    )] = 0.7
+    intensity: Annotated[
+        float, Slider(0.0, 1.0, unit="ratio", minimum=0.0, doc="How much glare reaches the picture.")
+    ] = 0.2
+    mode: Annotated[
+        Literal["mix", "add"], Doc("Mix moves light into the glare and keeps the sum; add puts the glare on top.")
+    ] = "mix"
+    threshold: Annotated[
+        float, Slider(0.0, 10.0, unit="scene", minimum=0.0, doc="Only light above this luminance glares.")
+    ] = 1.0
+    knee: Annotated[Fraction, Doc("Softness of the threshold: the part of it over which light fades in.")] = 0.5
+    limit: Annotated[float, Slider(
+        1.0, 1000.0, unit="scene", minimum=0.0, maximum=_NO_LIMIT,
+        doc="The luminance that glares at most, for suns and noise; 65504 sets no limit.",
+    )] = _NO_LIMIT
+    quality: Annotated[Literal["full", "half", "quarter"], Doc(
+        "The size at which light is spread. Half is nearly four times as fast as full, and softens rays by a pixel; "
+        "small pictures are always spread in full."
+    )] = "half"
+
+    out = Output()
+    glow = Output()
+
+    def output_size(self, inputs: Mapping[str, Size], canvas: Size) -> Size:
+        return inputs.get("image", canvas)
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        factor, lines = _FACTORS[self.quality]
+        while factor > 1 and draw.size[1] < factor * lines:
+            factor //= 2
+        light = draw.point(
+            "kernel_glare_light", self.image, threshold=self.threshold, knee=self.knee, limit=self.limit
+        )
+        kernel = self._kernel(draw, self.size / factor)
+        if factor == 1:
+            glare = draw.convolve_2d(light, kernel)
+        else:
+            small = (math.ceil(draw.size[0] / factor) + 2, math.ceil(draw.size[1] / factor) + 2)
+            shrunk = draw("kernel_glare_shrink", image=light, size=small, edge="black", result=_DATA, factor=factor)
+            spread = draw.convolve_2d(shrunk, kernel)
+            glare = draw("kernel_glare_grow", small=spread, result=_DATA, factor=factor)
+        glow = draw.point("kernel_glare_glow", self.image, glare=glare)
+        out = draw.point(
+            "kernel_glare", self.image, light=light, glare=glare, intensity=self.intensity, mode=self.mode
+        )
+        return {"out": out, "glow": glow}
+
+    def _kernel(self, draw: Draw, height: float) -> Drawn:
+        """The kernel at a height in pixels; it has a middle pixel."""
+        linked = draw.linked(self.kernel)
+        if linked:
+            width, full = draw.size_of(self.kernel)
+            size = (_odd(height * width / full), _odd(height))
+            kernel = draw("kernel_glare_fit", self.kernel, size=size, result=_DATA)
+        else:
+            kernel = self._iris(draw, (_odd(height), _odd(height)))
+        total = draw.reduce(kernel, "sum")
+        return draw.point("kernel_glare_normalized", kernel=kernel, sum=total, white=not linked, result=_DATA)
+
+    def _iris(self, draw: Draw, size: Size) -> Drawn:
+        wide = _odd(size[1] * _BLUEST + 2.0)
+        iris = draw(
+            "kernel_glare_iris", size=(wide, wide), result=Field(), pitch=2.0 * _RINGS / size[1], blades=self.blades,
+            angle=-self.rotation, falloff=self.falloff,
+        )
+        return draw("kernel_glare_dispersed", iris=iris, size=size, result=_DATA)
+
+
+def _odd(length: float) -> int:
+    """The nearest odd number of pixels."""
+    return 2 * round((length - 1.0) / 2.0) + 1 if length > 1.0 else 1

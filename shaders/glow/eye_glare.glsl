@@ -1,0 +1,92 @@
+#include "lib/glare.glsl"
+#include "lib/noise.glsl"
+#include "lib/spectrum.glsl"
+
+const float eye_glare_halo_end = 6.0;  // degrees that the table of the halo spans: all of it
+
+// How much of the terms f1, f2 and f3 there is by light, dim light and night (Spencer et al. 1995). What is left is f0,
+// the light that is not scattered.
+const vec3 eye_glare_shares[3] = vec3[](vec3(0.478, 0.138, 0.0), vec3(0.478, 0.138, 0.016), vec3(0.478, 0.207, 0.033));
+
+vec4 eye_glare_light(vec4 image) { return glare_light(image); }
+
+// The light of a smaller picture: sums, not averages. Outside lies black.
+vec4 eye_glare_shrink(int factor) {
+    ivec2 first = glare_first(factor);
+    vec4 sum = vec4(0.0);
+    for (int y = 0; y < 2 * factor; ++y)
+        for (int x = 0; x < 2 * factor; ++x) sum += glare_share(ivec2(x, y), factor) * image_at(first + ivec2(x, y));
+    return sum;
+}
+
+// The lenticular halo f3 per steradian for white light, by angle: a ring for every wavelength.
+vec4 eye_glare_halo() {
+    float angle = (float(pixel.x) + 0.5) / float(extent.x) * eye_glare_halo_end;
+    vec3 sum = vec3(0.0), white = vec3(0.0);
+    for (float nm = 400.0; nm <= 700.0; nm += 5.0) {
+        vec3 color = spectrum_color(nm);
+        float away = angle - 3.0 * nm / 568.0;
+        sum += color * 436.9 * (568.0 / nm) * exp(-19.75 * away * away);
+        white += color;
+    }
+    return vec4(sum / white, 0.0);
+}
+
+// What is scattered by an angle in degrees, per steradian.
+vec3 eye_glare_scattered(float angle, vec3 shares) {
+    float away = angle + 0.02;
+    vec3 halo = shares.z > 0.0 && angle < eye_glare_halo_end
+        ? halo_near(vec2(angle / eye_glare_halo_end * float(halo_size.x), 0.5)).rgb : vec3(0.0);
+    return vec3(shares.x * 20.91 / (away * away * away) + shares.y * 72.37 / (away * away)) + shares.z * halo;
+}
+
+// The rays of the ciliary corona, 1 on average. Rays finer than pixels are left out.
+float eye_glare_rays(vec2 way, float pixels, float rays) {
+    float sum = 0.0, away = length(way);
+    vec2 toward = way / away;
+    for (float count = 30.0; count < 200.0; count *= 2.5) {
+        float width = 6.2831853 * away / (pixels * count);
+        vec3 place = vec3(toward * count / 6.2831853, 0.6 * log(away) + count);
+        sum += smoothstep(2.0, 5.0, width) * gradient_noise(place, uvec3(0u)).x;
+    }
+    return 1.0 + rays * clamp(2.0 * sum, -1.0, 1.0);
+}
+
+// How much of the light of a pixel goes to another one, `cell` pixels of `pitch` degrees to a pixel of the kernel. Within
+// `fade` what is spread at full size goes over to a smaller one. Light that stays in its pixel is left out.
+vec4 eye_glare_kernel(int vision, float pitch, int cell, vec2 fade, float rays) {
+    vec2 way = float(cell) * vec2(pixel - extent / 2);
+    float away = length(way);
+    if (away == 0.0) return vec4(0.0);
+    bool whole = fade.x == fade.y;
+    float share = whole ? 1.0 : smoothstep(fade.x, fade.y, away);
+    if (cell == 1 && !whole) share = 1.0 - share;
+    if (share == 0.0) return vec4(0.0);
+    // Near the middle it is steep, and a pixel is many samples.
+    int n = cell == 1 ? int(clamp(96.0 / away, 2.0, 64.0)) : 1;
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < n * n; ++i) {
+        vec2 inside = (vec2(i % n, i / n) + 0.5) / float(n) - 0.5;
+        sum += eye_glare_scattered(pitch * length(way + inside), eye_glare_shares[vision]);
+    }
+    float steradians = radians(pitch) * radians(pitch);
+    vec3 kernel = sum / float(n * n) * steradians * share * eye_glare_rays(pitch * way, pitch * float(cell), rays);
+    return vec4(kernel, dot(kernel, vec3(1.0 / 3.0)));
+}
+
+// Take back what the tents of a smaller size blur: to the second order, a third of a squared pixel.
+vec4 eye_glare_sharpen() {
+    vec4 around = kernel_at(pixel + ivec2(1, 0)) + kernel_at(pixel - ivec2(1, 0))
+        + kernel_at(pixel + ivec2(0, 1)) + kernel_at(pixel - ivec2(0, 1));
+    return kernel_at(pixel) - (around - 4.0 * kernel_at(pixel)) / 6.0;
+}
+
+vec4 eye_glare_grow(int factor) { return near_at(pixel) + far_near(glare_grown(factor)); }
+
+vec4 eye_glare_glow(vec4 image, vec4 glare, float strength) { return vec4(strength * glare.rgb, finite(image.a)); }
+
+// Every pixel gives away what it scatters within the picture; what would leave the picture stays.
+vec4 eye_glare(vec4 image, vec4 glare, float strength) {
+    vec3 scattered = glare.rgb - glare.a * glare_light(image).rgb;
+    return vec4(finite(image.rgb) + strength * scattered, finite(image.a));
+}

@@ -1,0 +1,40 @@
+// What passes of data mean: depth is planar and positive, normals have length 1, and both say where nothing is.
+#include "lib/finite.glsl"
+
+const float GEOMETRY_FAR = 1e9;       // deeper is background, which renderers write as 1e10 or infinity
+const float GEOMETRY_NOTHING = 1e10;  // what we write there
+const float GEOMETRY_LEAST = 0.1;     // a shorter normal is an average of hardly anything: background too
+
+bool is_surface(float depth) { return is_finite(depth) && depth > 0.0 && depth < GEOMETRY_FAR; }
+
+// 1 / depth, which is affine on every plane, and 0 on the background.
+float nearness(float depth) { return is_surface(depth) ? 1.0 / depth : 0.0; }
+
+// Where renderers see nothing, they write the origin.
+bool is_place(vec3 position) { return is_finite(position) && position != vec3(0.0); }
+
+// Of length 1 where antialiasing has shortened it, 0 on the background.
+vec3 unit_normal(vec3 normal) {
+    float size = is_finite(normal) ? length(normal) : 0.0;
+    return size > GEOMETRY_LEAST && size < GEOMETRY_FAR ? normal / size : vec3(0.0);
+}
+
+// By how much of itself nearness grows from a pixel to the next, from what it is one and two pixels before and after.
+// It is affine on planes: on the side where it bends far more than on the other, another surface begins.
+float nearness_slope(float here, vec2 one, vec2 two) {
+    const float most = 1e9, rounding = 1e-6;
+    if (one.x <= 0.0 && one.y <= 0.0) return 0.0;
+    one = min(one / here, most), two = min(two / here, most);
+    vec2 bend = abs(two - 2.0 * one + 1.0);
+    bend = mix(bend, abs(one - 1.0), equal(two, vec2(0.0))) + rounding;
+    float before = bend.x / (bend.x + bend.y);
+    float after = 0.5 * (smoothstep(0.1, 0.35, before) + smoothstep(0.65, 0.9, before));
+    if (one.x <= 0.0) after = 1.0;
+    if (one.y <= 0.0) after = 0.0;
+    return mix(1.0 - one.x, one.y - 1.0, after);
+}
+
+// How much a surface faces whoever looks along a ray: 1 straight on, 0 where it turns away, and on the background.
+float facing_ratio(vec3 normal, vec3 ray) {
+    return clamp(-dot(unit_normal(normal), ray) / max(length(ray), 1e-9), 0.0, 1.0);
+}

@@ -1,0 +1,17 @@
+"""A world for compiling: pictures are headers of one size, colors and meshes are real."""
+
+from __future__ import annotations
+
+from halation.app.compiler import Picture, Probed
+from halation.app.media.pictures import Pictures
+
+
+class Headers(Pictures):
+    """Every picture has the same size; no file is read for it."""
+
+    def __init__(self, size: tuple[int, int]) -> None:
+        super().__init__()
+        self.size = size
+
+    def probe(self, picture: Picture) -> Probed:
+        return Probed(self.size, False, picture.path)
