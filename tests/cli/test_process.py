@@ -90,16 +90,6 @@ def test_without_display_home_or_a_place_for_caches(ten, tmp_path):
     assert len(result.stderr.splitlines()) == 2, result.stderr
 
 
-def test_ten_nodes_within_a_second(ten, tmp_path):
-    """Start to end, shaders compiled before, on whatever this machine is: the best of five is what it can do."""
-    times = []
-    for _ in range(5):
-        started = time.perf_counter()
-        assert halation("render", ten, "-o", tmp_path / "out.exr").returncode == 0
-        times.append(time.perf_counter() - started)
-    assert min(times) < 1.0, times
-
-
 @pytest.fixture
 def long(ten):
     """A graph that keeps any machine busy for seconds: hundreds of wide blurs of a large picture."""
