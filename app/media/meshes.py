@@ -16,6 +16,8 @@ from .info import fingerprint
 from .stages import BUILT_IN, Piece
 
 Array = np.ndarray
+MESH_ENDINGS = frozenset({".glb", ".gltf", ".obj", ".ply", ".stl"})
+
 _COLUMNS = sum(ATTRIBUTES.values())
 _MOST_TRIANGLES = 20_000_000
 _Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])

@@ -32,9 +32,13 @@ FIRST = "first color layer"
 
 def browse(declaration: Value, then: Callable[[Path], object]) -> Browse:
     """The question for a file of the kind that a value takes."""
-    if declaration.holds == "table":
-        return Browse("Choose a Color Table", "table", then)
-    return Browse("Choose an Image", "image", then)
+    match declaration.holds:
+        case "table":
+            return Browse("Choose a Color Table", "table", then)
+        case "scene":
+            return Browse("Choose Meshes", "scene", then)
+        case "picture":
+            return Browse("Choose an Image", "image", then)
 
 
 class FileField:
@@ -131,7 +135,7 @@ class FileField:
     def _fault(self, rows: Rows, value: str, declaration: Value) -> str:
         """Why the file cannot be read, as far as is known."""
         path = self._full(rows, value)
-        if declaration.holds == "table":
+        if declaration.holds != "picture":
             return self.known.fault(path)
         header = self.known.header(path)
         return header if isinstance(header, str) else ""

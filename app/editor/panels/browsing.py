@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from time import localtime, strftime
 
+from ...media.meshes import MESH_ENDINGS
 from ...media.recolor import table_endings
 from ...media.thumbnail import readable
 from ..dialogs import Browse
@@ -108,6 +109,8 @@ def endings(browse: Browse) -> frozenset[str]:
         return readable()
     if browse.purpose == "table":
         return table_endings()
+    if browse.purpose == "scene":
+        return MESH_ENDINGS
     return frozenset({".json" if browse.purpose == "graph" else Path(browse.name).suffix.lower() or ".exr"})
 
 

@@ -75,7 +75,7 @@ DARK = Palette(
     categories=MappingProxyType({
         "": _hex("4a4a52"), "input": _hex("7a4a3a"), "output": _hex("7a4a3a"), "color": _hex("73642a"),
         "tone": _hex("7a5a2e"), "blur": _hex("3f5f7f"), "filter": _hex("3f5f7f"), "glow": _hex("8a4f2a"),
-        "light": _hex("7d6a24"),
+        "light": _hex("7d6a24"), "lens": _hex("5b5378"),
         "distort": _hex("4a6b4a"), "edge": _hex("2f6b6b"), "geometry": _hex("3d5378"), "merge": _hex("5a4a7a"),
         "channel": _hex("4f5560"),
         "measure": _hex("2f6258"), "noise": _hex("6b3f5f"), "stylize": _hex("6b3f5f"), "group": _hex("3a6a48"),
@@ -91,7 +91,7 @@ LIGHT = Palette(
     categories=MappingProxyType({
         "": _hex("c3c3cb"), "input": _hex("e3bfae"), "output": _hex("e3bfae"), "color": _hex("e6d79a"),
         "tone": _hex("e6c99a"), "blur": _hex("aecbe6"), "filter": _hex("aecbe6"), "glow": _hex("f0c09a"),
-        "light": _hex("ecd88a"),
+        "light": _hex("ecd88a"), "lens": _hex("cdc3e8"),
         "distort": _hex("b9d9b9"), "edge": _hex("a3d6d6"), "geometry": _hex("b4c3ec"), "merge": _hex("c9bce6"),
         "channel": _hex("c6ccd6"),
         "measure": _hex("a8d6cb"), "noise": _hex("e0b9d3"), "stylize": _hex("e0b9d3"), "group": _hex("aed9ba"),
