@@ -156,21 +156,8 @@ class Recorder:
 
     def convolve_2d(self, image: Pixels, kernel: Pixels) -> Drawn:
         picture, spread = self._pixels(image), self._pixels(kernel)
-        width, height = (
-            fourier.padded_length(*lengths) for lengths in zip(picture.size, spread.size, strict=True)
-        )
-        a, b = (
-            self._transformed(self._transformed(made, 0, width), 1, height) for made in (picture, spread)
-        )
-        shape = Shape((width, height), 4, data=True)
-        accessors = (Accessor("image", "vec4", a.ref), Accessor("kernel", "vec4", b.ref))
-        scale = Parameter("float", Constant(1.0 / (width * height)))
-        product = self._made(
-            Gather((shape,), self._owner, "primitive/fourier", "fourier_product", accessors, (scale,))
-        )
-        middle = (spread.size[0] // 2, spread.size[1] // 2)
-        made = self._transformed(product, 1, height, (middle[1], picture.size[1]))
-        return self._transformed(made, 0, width, (middle[0], picture.size[0]))
+        ref = fourier.convolution(self._builder, picture.ref, spread.ref, self._owner)
+        return Made(ref, self._builder.shape(ref))
 
     def recolor(self, image: Pixels, change: ColorChange) -> Drawn:
         made, program = self._pixels(image), self._files.recolor(change)
@@ -282,30 +269,6 @@ class Recorder:
         size = (length, made.size[1]) if axis == 0 else (made.size[0], length)
         shape = Shape(size, made.shape.channels, made.shape.data)
         return self._made(Convolve((shape,), self._owner, made.ref, axis, weights, stride, origin, edge))
-
-    def _transformed(self, made: Made, axis: int, length: int, wanted: tuple[int, int] | None = None) -> Made:
-        """Transform along an axis; with `wanted` (the first pixel and how many) the other way."""
-        stages = fourier.stages(length, made.size[axis])
-        for stage in stages:
-            first, count = wanted if wanted and stage is stages[-1] else (0, length)
-            size = (count, made.size[1]) if axis == 0 else (made.size[0], count)
-            apart = length // stage.radix
-            begins = not wanted and stage is stages[0]
-            # The numbers that loops run to are part of the text, so that drivers unroll them.
-            parameters = [Parameter("int", Choice(axis)), Parameter("int", Choice(stage.terms))]
-            if begins:
-                parameters += [Parameter("int", Constant(number)) for number in (stage.radix, apart)]
-            else:
-                parameters += [Parameter("int", Constant(number)) for number in (stage.span, apart, first)]
-                parameters.append(Parameter("float", Constant(1.0 if wanted else -1.0)))
-            made = self._made(
-                Gather(
-                    (Shape(size, 4, data=True),), self._owner, "primitive/fourier",
-                    "fourier_first" if begins else "fourier_stage", (Accessor("image", "vec4", made.ref),),
-                    tuple(parameters), "black" if begins else "clamp",
-                )
-            )
-        return made
 
     def _enlarge(self, made: Made, axis: int, factor: int, apron: int, length: int, edge: Edge) -> Made:
         size = (length, made.size[1]) if axis == 0 else (made.size[0], length)

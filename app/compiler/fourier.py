@@ -1,10 +1,12 @@
-"""Lengths and stages of the fast Fourier transform that convolves two pictures. See primitive/fourier.glsl."""
+"""Convolves two pictures by the fast Fourier transform: its lengths, stages and passes. See primitive/fourier.glsl."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 from functools import cache
+
+from .ir import Accessor, Builder, Choice, Constant, Gather, Parameter, Ref, Shape
 
 _PRIMES = (2, 3, 5)
 
@@ -13,6 +15,9 @@ _PASS = 14
 
 _MOST = 20
 """Reads of a stage at most: the driver unrolls them."""
+
+
+_SHADER = "primitive/fourier"
 
 
 @dataclass(frozen=True)
@@ -25,6 +30,24 @@ class Stage:
     radix: int
     span: int
     terms: int
+
+
+def convolution(builder: Builder, image: Ref, kernel: Ref, owner: str) -> Ref:
+    """A picture convolved with another one around its middle, black outside."""
+    picture, spread = builder.shape(image).size, builder.shape(kernel).size
+    width, height = (padded_length(*lengths) for lengths in zip(picture, spread, strict=True))
+    spectra = [_transform(builder, _transform(builder, made, 0, width, owner), 1, height, owner)
+               for made in (image, kernel)]
+    product = builder.add(
+        Gather(
+            (Shape((width, height), 4, data=True),), owner, _SHADER, "fourier_product",
+            tuple(Accessor(name, "vec4", made) for name, made in zip(("image", "kernel"), spectra, strict=True)),
+            (Parameter("float", Constant(1.0 / (width * height))),),
+        )
+    )
+    across, down = spread[0] // 2, spread[1] // 2
+    made = _transform(builder, product, 1, height, owner, (down, picture[1]))
+    return _transform(builder, made, 0, width, owner, (across, picture[0]))
 
 
 def padded_length(picture: int, kernel: int) -> int:
@@ -70,3 +93,30 @@ def _rest(length: int) -> int:
         while length % prime == 0:
             length //= prime
     return length
+
+
+def _transform(
+    builder: Builder, made: Ref, axis: int, length: int, owner: str, wanted: tuple[int, int] | None = None
+) -> Ref:
+    """Transform along an axis; with `wanted` (the first pixel and how many) the other way."""
+    passes = stages(length, builder.shape(made).size[axis])
+    for stage in passes:
+        size = builder.shape(made).size
+        first, count = wanted if wanted and stage is passes[-1] else (0, length)
+        size = (count, size[1]) if axis == 0 else (size[0], count)
+        apart = length // stage.radix
+        begins = not wanted and stage is passes[0]
+        # The numbers that loops run to are part of the text, so that drivers unroll them.
+        parameters = [Parameter("int", Choice(axis)), Parameter("int", Choice(stage.terms))]
+        if begins:
+            parameters += [Parameter("int", Constant(number)) for number in (stage.radix, apart)]
+        else:
+            parameters += [Parameter("int", Constant(number)) for number in (stage.span, apart, first)]
+            parameters.append(Parameter("float", Constant(1.0 if wanted else -1.0)))
+        made = builder.add(
+            Gather(
+                (Shape(size, 4, data=True),), owner, _SHADER, "fourier_first" if begins else "fourier_stage",
+                (Accessor("image", "vec4", made),), tuple(parameters), "black" if begins else "clamp",
+            )
+        )
+    return made
