@@ -14,7 +14,7 @@ from . import parsing
 from .outcome import note
 
 if TYPE_CHECKING:
-    from ...nodes import ColorChange, Scene
+    from ...nodes import ColorChange, Render, Scene
     from ..compiler import ColorProgram, Mesh, Picture, Probed
     from ..graph import Graph
     from ..media.pictures import Pictures
@@ -127,6 +127,10 @@ class Lazy:
     def recolor(self, change: ColorChange) -> ColorProgram:
         """The program of a change of color."""
         return self.pictures.recolor(change)
+
+    def render(self, path: str) -> Render:
+        """What the file of a render holds."""
+        return self.pictures.render(path)
 
     def mesh(self, scene: Scene) -> Mesh:
         """The triangles of a scene."""

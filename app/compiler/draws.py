@@ -22,6 +22,7 @@ from ...nodes import (
     Node,
     Pixels,
     Plain,
+    Render,
     Scene,
     Size,
     Socket,
@@ -68,11 +69,12 @@ class Made:
 
 @dataclass(frozen=True)
 class Files:
-    """What a node names beyond the graph: pixels of a file, the program of a change of color, triangles of a scene."""
+    """What a node names beyond the graph: pixels, changes of color, triangles, and what a render holds."""
 
     read: Callable[[Picture], Ref]
     recolor: Callable[[ColorChange], ColorProgram]
     mesh: Callable[[Scene], Mesh]
+    render: Callable[[str], Render]
 
 
 class Recorder:
@@ -198,6 +200,9 @@ class Recorder:
     def remember(self, pixels: Drawn) -> None:
         assert isinstance(pixels, Made)
         self.remembered = pixels.ref
+
+    def render(self, path: str) -> Render:
+        return self._files.render(path)
 
     def read(self, path: str, layer: str, result: Socket) -> Drawn:
         ref = self._files.read(Picture(path, layer, result.kind, result.channels))

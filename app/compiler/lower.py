@@ -119,6 +119,10 @@ class _Lowering:
             group = port.node.removesuffix("/" + OUTPUTS)
             fault = f"group '{group}': nothing inside it is linked to its output '{port.socket}'"
             raise GraphError(fault, node=group)
+        node = self.flat.nodes.get(port.node)
+        if node is not None and port.socket in node.outputs:
+            fault = f"node '{port.node}': its file holds nothing for its output '{port.socket}'"
+            raise GraphError(fault, node=port.node)
         if socket is None:
             raise GraphError(
                 f"'{port}' does not exist: link to an output of a node or to an input of the graph", node=port.node
@@ -329,4 +333,6 @@ class _Lowering:
                 scene = replace(scene, path=self.pictures.located(scene.path, path))
             return self.outside.mesh(scene)
 
-        return Files(read, recolor, mesh)
+        return Files(
+            read, recolor, mesh, lambda file: self.outside.render(self.pictures.located(file, path))
+        )

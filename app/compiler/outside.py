@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
-from ...nodes import ColorChange, Scene, Size
+from ...nodes import ColorChange, Render, Scene, Size
 from .ir import Picture
 from .raster import Mesh
 from .recolor import ColorProgram
@@ -29,6 +29,10 @@ class Outside(Protocol):
 
     def recolor(self, change: ColorChange) -> ColorProgram:
         """Write the program of a change of color. Raises UsageError for a space that nobody knows."""
+        ...
+
+    def render(self, path: str) -> Render:
+        """Find out which layer of a file is what, how its numbers are meant, and where the camera was."""
         ...
 
     def mesh(self, scene: Scene) -> Mesh:

@@ -8,6 +8,7 @@ planar depth all three rows are least squares of their own.
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -27,6 +28,7 @@ _SEED = 20
 _CLOSE = 1.0
 _GOOD = 0.5
 _REPEATED = 0.01
+_NO_PINHOLE = "no pinhole camera sees these positions where the picture has them"
 _MIXER = np.array([1.0, 2.0**0.5, 3.0**0.5])
 
 
@@ -75,14 +77,11 @@ def solve_camera(position: Array, depth: Array | None = None) -> Solved:
     seen = _seen(np.asarray(position), None if depth is None else np.asarray(depth))
     if len(seen.places) < _FEWEST:
         raise InputError("too few pixels have a position")
-    matrix = _fitted(seen)
+    matrix = _fitted(seen.of(_agreed(seen)))
     error = seen.error(matrix)
-    if np.count_nonzero(error < _CLOSE) < 0.5 * len(error):
-        matrix = _fitted(seen.of(seen.error(_agreed(seen)) < 1.5 * _CLOSE))
-        error = seen.error(matrix)
     close = error < max(_CLOSE, 6.0 * float(np.median(error)))
     if float(np.median(error)) > _GOOD or np.count_nonzero(close) < 0.5 * len(error):
-        raise InputError("no pinhole camera sees these positions where the picture has them")
+        raise InputError(_NO_PINHOLE)
     camera = Camera(tuple(float(part) for part in matrix.ravel()))
     return Solved(camera, float(np.median(error[close])), float(np.percentile(error[close], 99)), float(close.mean()))
 
@@ -141,7 +140,7 @@ def _seen(position: Array, depth: Array | None) -> _Seen:
 def _fitted(seen: _Seen) -> Array:
     """The matrix with the least error, found again and again without what fits badly."""
     if len(seen.places) < _FEWEST:
-        raise InputError("no pinhole camera sees these positions where the picture has them")
+        raise InputError(_NO_PINHOLE)
     weights = np.ones(len(seen.places))
     matrix, kept = np.empty((3, 4)), seen
     for _ in range(_STEPS):
@@ -160,8 +159,7 @@ def _linear(seen: _Seen, weights: Array) -> Array:
     """The matrix of least squares; its third row is of unit length, so that d is in world units."""
     middle = seen.places[:, :3].mean(axis=0)
     spread = float(seen.places[:, :3].std()) or 1.0
-    shift = np.eye(4)
-    shift[:3] = np.concatenate([np.eye(3), -middle[:, None]], axis=1) / spread
+    shift = _shift(middle, spread)
     places = seen.places @ shift.T
     at = 2.0 * seen.at - 1.0
     solved = _direct(places, at, weights) if seen.depths is None else _with_depth(places, at, seen.depths)
@@ -198,15 +196,22 @@ def _equations(places: Array, at: Array) -> Array:
 
 
 def _agreed(seen: _Seen) -> Array:
+    """True for places that one camera sees: all, if a first fit is good, else those that most agree on."""
+    with contextlib.suppress(InputError):
+        good = seen.error(_fitted(seen)) < _CLOSE
+        if np.count_nonzero(good) > 0.9 * len(good):
+            return good
+    return seen.error(_consensus(seen)) < 1.5 * _CLOSE
+
+
+def _consensus(seen: _Seen) -> Array:
     """The matrix through six places that most others agree with (Fischler and Bolles, 1981)."""
     random = np.random.default_rng(_SEED)
     draws = random.integers(0, len(seen.places), (_DRAWS, 6))
     middle = np.median(seen.places[:, :3], axis=0)
     spread = float(np.median(np.abs(seen.places[:, :3] - middle))) or 1.0
-    places = np.concatenate([(seen.places[:, :3] - middle) / spread, seen.places[:, 3:]], axis=1)
-    _, _, rows = np.linalg.svd(_equations(places[draws], seen.at[draws]))
-    shift = np.eye(4)
-    shift[:3] = np.concatenate([np.eye(3), -middle[:, None]], axis=1) / spread
+    shift = _shift(middle, spread)
+    _, _, rows = np.linalg.svd(_equations(seen.places[draws] @ shift.T, seen.at[draws]))
     judges = seen.of(random.permutation(len(seen.places))[:_JUDGES])
     best, most = np.eye(3, 4), -1
     for row in rows[:, -1]:
@@ -216,6 +221,13 @@ def _agreed(seen: _Seen) -> Array:
         if count > most:
             best, most = matrix, count
     return best
+
+
+def _shift(middle: Array, spread: float) -> Array:
+    """The 4 x 4 matrix that brings places around the origin, for the sake of rounding."""
+    return np.diag([1.0 / spread] * 3 + [1.0]) @ np.concatenate(
+        [np.eye(4, 3), np.append(-middle, 1.0)[:, None]], axis=1
+    )
 
 
 def header_camera(attributes: Mapping[str, object], size: Size) -> Camera | None:

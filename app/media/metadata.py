@@ -41,7 +41,7 @@ def read_metadata(path: str | Path) -> dict[str, int | float | str | Attribute]:
     with opened(path) as handle:
         found: dict[str, int | float | str | Attribute] = {}
         for item in handle.spec().extra_attribs:
-            if _STRUCTURAL.fullmatch(item.name):
+            if is_structural(item.name):
                 continue
             try:
                 value: Any = item.value
@@ -51,10 +51,15 @@ def read_metadata(path: str | Path) -> dict[str, int | float | str | Attribute]:
         return found
 
 
+def is_structural(name: str) -> bool:
+    """True for attributes that describe how a file is stored, which another picture made from it will not be."""
+    return _STRUCTURAL.fullmatch(name) is not None
+
+
 def add_metadata(spec: oiio.ImageSpec, metadata: Mapping[str, Any], format: str) -> None:
     """Put attributes into a header to be written, as far as the format can hold them."""
     for name, value in metadata.items():
-        if _STRUCTURAL.fullmatch(name):
+        if is_structural(name):
             continue
         if format == "png" and not isinstance(value, str):  # PNG holds text only
             value = str(value.value if isinstance(value, Attribute) else value)

@@ -18,7 +18,7 @@ class Role(StrEnum):
     """What a layer is."""
 
     BEAUTY = "beauty"
-    NOISY = "noisy"
+    NOISY = "noisy_beauty"
     """The picture before it was denoised."""
     LIGHT_GROUP = "light_group"
     """The part of the picture that some of the lights make."""
@@ -115,7 +115,7 @@ SCHEMES: Mapping[Renderer, Scheme] = MappingProxyType({
     Renderer.BLENDER: _scheme(
         r"BlenderMultiChannel=.*|Software=Blender.*|cycles\..*",
         beauty="Combined",
-        noisy="Noisy_Image",
+        noisy_beauty="Noisy_Image",
         depth="Depth",
         mist="Mist",
         normal="Normal",
@@ -182,7 +182,7 @@ SCHEMES: Mapping[Renderer, Scheme] = MappingProxyType({
     Renderer.VRAY: _scheme(
         r"vrayInfo/.*|vfb2_layers_json=.*|Software=V-?Ray.*",
         beauty="RGBA RGB rgb_color effectsResult",
-        depth="VRayZDepth zDepth Z_Depth Z",
+        depth="VRayZDepth zDepth Z",
         mist="atmosphere VRayAtmosphere",
         normal="VRayNormals normals VRayBumpNormals bump_normals",
         position="VRayWorldPosition worldPosition VRaySamplerInfo SamplerInfo",
@@ -300,7 +300,7 @@ SCHEMES: Mapping[Renderer, Scheme] = MappingProxyType({
     ),
     Renderer.NUKE: _scheme(
         r"nuke/.*|Software=.*\bNuke\b.*",
-        beauty="rgba rgb RGBA RGB",
+        beauty="rgba rgb",
         depth="depth",
         normal="N normal",
         position="P worldpos Position",

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 
 from .layers import Layer, is_depth, plain
@@ -20,6 +20,7 @@ _CRYPTOMATTES = (
     ("material", Role.CRYPTOMATTE_MATERIAL), ("mtl", Role.CRYPTOMATTE_MATERIAL), ("asset", Role.CRYPTOMATTE_ASSET),
     ("object", Role.CRYPTOMATTE_OBJECT), ("node", Role.CRYPTOMATTE_OBJECT),
 )
+_EYES = ("left", "right")
 _MANIFEST = re.compile(r"cryptomatte/\w+/name")
 _VECTORS = (Role.NORMAL, Role.POSITION, Role.VELOCITY)
 
@@ -39,7 +40,7 @@ class Grounds(IntEnum):
 class Pass:
     """A layer and its role, which is None where `candidates` says what it may be, or nothing is known.
 
-    `rank` counts what would be better layers for the same role.
+    `rank` counts what would be better layers for the same role; `group` is the view or view layer that it belongs to.
     """
 
     layer: Layer
@@ -48,11 +49,7 @@ class Pass:
     reason: str
     candidates: tuple[Role, ...] = ()
     rank: int = 0
-
-    @property
-    def group(self) -> str:
-        """The view or view layer that it belongs to, "" where there is only one."""
-        return self.layer.name.rpartition(".")[0]
+    group: str = ""
 
 
 @dataclass(frozen=True)
@@ -83,7 +80,9 @@ def passes_of(
 ) -> tuple[Pass, ...]:
     """What every layer is."""
     manifests = {plain(str(value)) for name, value in attributes.items() if _MANIFEST.fullmatch(name)}
-    found = [_pass(layer, renderer, manifests) for layer in layers]
+    several = attributes.get("multiView")
+    views = {*_EYES, *(str(view).casefold() for view in (several if isinstance(several, tuple) else ()))}
+    found = [_pass(layer, renderer, manifests, views) for layer in layers]
     if not any(item.role is Role.BEAUTY for item in found):
         found = list(_with_beauty(found))
     return tuple(found)
@@ -105,16 +104,20 @@ def chosen(passes: Iterable[Pass], role: Role) -> tuple[Pass, ...]:
     return tuple(item for item in claims if claim(item) == best)
 
 
-def _pass(layer: Layer, renderer: Renderer | None, manifests: set[str]) -> Pass:
-    last = layer.name.rpartition(".")[2]
+def _pass(layer: Layer, renderer: Renderer | None, manifests: set[str], views: set[str]) -> Pass:
+    """Its name is the last word that is no view: OpenEXR has `view.channel` and `layer.view.channel`."""
+    words = layer.name.split(".")
+    named = [word for word in words if word.casefold() not in views]
+    last = named[-1] if named else "".join(layer.channels)
+    group = ".".join([*named[:-1], *(word for word in words if word.casefold() in views)])
     word = plain(last)
     for found in (
         _cryptomatte(layer, manifests), _by_table(layer, word, renderer), _light_group(layer, last),
         _by_pattern(layer, word), _by_shape(layer, word),
     ):
         if found is not None:
-            return found
-    return Pass(layer, None, Grounds.NONE, "its name says nothing that is known")
+            return replace(found, group=group)
+    return Pass(layer, None, Grounds.NONE, "its name says nothing that is known", group=group)
 
 
 def _cryptomatte(layer: Layer, manifests: set[str]) -> Pass | None:
@@ -192,7 +195,8 @@ def _with_beauty(passes: Sequence[Pass]) -> Iterator[Pass]:
     for item in passes:
         if free and item is free[0]:
             only = "only" if len(free) == 1 else "first"
-            yield Pass(item.layer, Role.BEAUTY, Grounds.SHAPE, f"the {only} layer of color that is nothing else")
+            reason = f"the {only} layer of color that is nothing else"
+            yield replace(item, role=Role.BEAUTY, grounds=Grounds.SHAPE, reason=reason)
         else:
             yield item
 

@@ -16,7 +16,7 @@ from ..graph import Graph, Input
 if TYPE_CHECKING:
     import numpy as np
 
-    from ...nodes import ColorChange, Scene
+    from ...nodes import ColorChange, Render, Scene
     from ..compiler import ColorProgram, Mesh
     from .info import ImageInfo
 
@@ -67,6 +67,12 @@ class Pictures:
         from .recolor import recolor
 
         return recolor(change)
+
+    def render(self, path: str) -> Render:
+        """What the file of a render holds. Raises InputError for one that cannot be read."""
+        from .renders import find_render
+
+        return find_render(path)
 
     def mesh(self, scene: Scene) -> Mesh:
         """The triangles of a scene. Raises InputError for a file that cannot be read."""

@@ -22,6 +22,7 @@ from .curves import MAX_POINTS, curve_at, curve_knots, ramp_at, ramp_knots
 from .draw import Affine, Argument, Draw, Drawn, Kernel, Pixels
 from .node import Filter, Node, Pointwise, Source, Temporal
 from .recolor import ColorChange, LookupFile, SpaceChange
+from .render import Meaning, Render
 from .scene import BuiltInScene, Motion, Scene, SceneFile, StageName
 from .sockets import Color, Edge, Field, Image, Kind, Number, Output, Size, Socket, Vector, Viewpoint, glsl_type
 from .values import (
@@ -51,8 +52,8 @@ from .values import (
 __all__ = [
     "MAX_POINTS", "RGBA", "Affine", "Argument", "BuiltInScene", "Camera", "Color", "ColorChange", "Curve", "Doc",
     "Draw", "Drawn", "Edge", "Field", "File", "FilePath", "Filter", "Fraction", "Handle", "Holds", "Image", "Kernel",
-    "Kernel3x3", "Kind", "LookupFile", "Motion", "Node", "Number", "Output", "Pixels", "Plain", "Points", "Pointwise",
-    "Position", "Ramp", "Scene", "SceneFile", "ScenePath", "Size", "Slider", "Socket", "Source", "SpaceChange",
-    "StageName", "Stops", "Swatch", "TablePath", "Temporal", "Unit", "Value", "Vector", "Viewpoint", "curve_at",
-    "curve_knots", "glsl_type", "look_at", "ramp_at", "ramp_knots", "working_factor",
+    "Kernel3x3", "Kind", "LookupFile", "Meaning", "Motion", "Node", "Number", "Output", "Pixels", "Plain", "Points",
+    "Pointwise", "Position", "Ramp", "Render", "Scene", "SceneFile", "ScenePath", "Size", "Slider", "Socket",
+    "Source", "SpaceChange", "StageName", "Stops", "Swatch", "TablePath", "Temporal", "Unit", "Value", "Vector",
+    "Viewpoint", "curve_at", "curve_knots", "glsl_type", "look_at", "ramp_at", "ramp_knots", "working_factor",
 ]

@@ -7,6 +7,7 @@ from typing import Literal, Protocol
 
 from .camera import Camera
 from .recolor import ColorChange
+from .render import Render
 from .scene import Motion, Scene
 from .sockets import Edge, Size, Socket, Viewpoint
 from .values import Plain
@@ -132,6 +133,10 @@ class Draw(Protocol):
 
     def remember(self, pixels: Drawn) -> None:
         """Keep these pixels for the next frame. For `Temporal` nodes."""
+        ...
+
+    def render(self, path: str) -> Render:
+        """What the file of a render turns out to hold. For `Source` nodes."""
         ...
 
     def read(self, path: str, layer: str, result: Socket) -> Drawn:

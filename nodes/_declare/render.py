@@ -1,0 +1,32 @@
+"""What the file of a render turns out to hold."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+from .camera import Camera
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """How numbers of a layer are meant: times `scale` plus `offset`, channel by channel, they are of this kind.
+
+    Depth is "planar", "radial", "inverse", "negative" or "normalized"; vectors refer to "world", "camera" (x right, y
+    up, z towards the viewer) or "camera_ahead" axes; motion is "from_previous" or "to_next", in pixels, y down.
+    """
+
+    kind: str
+    scale: tuple[float, ...] = (1.0,)
+    offset: tuple[float, ...] = (0.0,)
+
+
+@dataclass(frozen=True)
+class Render:
+    """Names of layers and their meanings by role ("depth", "normal", ...), and the camera if anything tells it."""
+
+    layers: Mapping[str, str]
+    channels: Mapping[str, int]
+    meanings: Mapping[str, Meaning] = field(default_factory=lambda: MappingProxyType[str, Meaning]({}))
+    camera: Camera | None = None

@@ -1,0 +1,20 @@
+from collections.abc import Mapping
+from typing import Annotated
+
+from .._declare import Camera, Doc, Draw, FilePath, Output, Source, Viewpoint
+
+
+class SolveCamera(Source):
+    """Find the camera that a render was made with: solved from its positions, or as its header names it.
+
+    The projection is fitted to the position of every pixel by linear least squares, in double precision; `halation info
+    FILE` says how many pixels it is off.
+    """
+
+    path: Annotated[FilePath, Doc("A render with a position layer, or with a camera in its header.")] = ""
+
+    camera = Output(Viewpoint())
+
+    def passes(self, draw: Draw) -> Mapping[str, Camera]:
+        camera = draw.render(self.path).camera
+        return {"camera": camera} if camera else {}
