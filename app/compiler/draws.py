@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from hashlib import blake2b
 from typing import Literal
 
 from ...nodes import (
@@ -46,6 +47,7 @@ from .ir import (
     Parameter,
     Picture,
     Raster,
+    Read,
     Reduce,
     Ref,
     Shape,
@@ -201,6 +203,17 @@ class Recorder:
         assert isinstance(pixels, Made)
         self.remembered = pixels.ref
 
+    def table(self, numbers: tuple[float, ...], width: int) -> Drawn:
+        rows = max(1, -(-len(numbers) // (4 * width)))
+        filled = numbers + (0.0,) * (4 * width * rows - len(numbers))
+        table = tuple(
+            tuple(filled[at : at + 4] for at in range(row, row + 4 * width, 4))
+            for row in range(0, len(filled), 4 * width)
+        )
+        shape = Shape((width, rows), 4, data=True)
+        picture = Picture("numbers", "", Kind.VECTOR, 4, in_memory=True, pixels=table)
+        return self._made(Read((shape,), self._owner, picture, blake2b(repr(table).encode()).hexdigest(), half=False))
+
     def render(self, path: str) -> Render:
         return self._files.render(path)
 
@@ -210,7 +223,7 @@ class Recorder:
 
     # --- parts ---------------------------------------------------------------------------------------------------
 
-    def _made(self, op: Call | Gather | Convolve | Reduce) -> Made:
+    def _made(self, op: Call | Gather | Convolve | Read | Reduce) -> Made:
         return Made(self._builder.add(op), op.shapes[0])
 
     def _shape(self, result: Socket | None, size: Size) -> Shape:

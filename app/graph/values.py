@@ -6,7 +6,7 @@ import math
 from itertools import pairwise
 from typing import Any, cast
 
-from ...nodes import MAX_POINTS, Plain, Value
+from ...nodes import LIGHT_NUMBERS, MAX_LIGHTS, MAX_POINTS, LightKind, Plain, Value
 
 _INT32 = 2**31
 _FLOAT32 = 3.4028234663852886e38
@@ -29,7 +29,9 @@ def coerced(value: Value, given: object) -> Plain | None:
         case "color" | "vector" | "matrix":
             return numbers(given, 4 if value.type == "color" else value.length)
         case "curve" | "ramp":
-            return _points(given, value.length)
+            return _points(given, value.length, 2)
+        case "lights":
+            return _points(given, value.length, 0)
 
 
 def numbers(given: object, length: int) -> tuple[float, ...] | None:
@@ -41,12 +43,12 @@ def numbers(given: object, length: int) -> tuple[float, ...] | None:
     return found if len(found) == len(parts) == length else None
 
 
-def _points(given: object, width: int) -> tuple[float, ...] | None:
-    """A list of at least two points of `width` numbers each, else None."""
+def _points(given: object, width: int, least: int) -> tuple[float, ...] | None:
+    """A list of at least so many points of `width` numbers each, else None."""
     if not isinstance(given, list | tuple):
         return None
     parts = cast("tuple[Any, ...]", given)
-    return numbers(parts, len(parts)) if len(parts) >= 2 * width and len(parts) % width == 0 else None
+    return numbers(parts, len(parts)) if len(parts) >= least * width and len(parts) % width == 0 else None
 
 
 def expected(value: Value) -> str:
@@ -68,6 +70,8 @@ def expected(value: Value) -> str:
             return f"a list of {value.length} numbers"
         case "curve":
             return "a list of x, y for every point, at least two"
+        case "lights":
+            return f"a list of {LIGHT_NUMBERS} numbers for every light"
         case "ramp":
             return "a list of t, red, green, blue, alpha for every stop, at least two"
 
@@ -92,7 +96,9 @@ def value_fault(value: Value, given: object) -> str | None:
 
 
 def _order_fault(value: Value, plain: tuple[float, ...]) -> str | None:
-    """Why the points of a curve or ramp do not follow each other from 0 to 1, or None."""
+    """Why the points of a curve or ramp do not follow each other from 0 to 1, or lights are none; else None."""
+    if value.type == "lights":
+        return _lights_fault(plain)
     if value.type not in ("curve", "ramp"):
         return None
     places = plain[:: value.length]
@@ -105,6 +111,16 @@ def _order_fault(value: Value, plain: tuple[float, ...]) -> str | None:
     for before, after in pairwise(places):
         if after < before or (after == before and value.type == "curve"):
             return f"{name} = {after:g} follows {before:g}: list the points from left to right"
+    return None
+
+
+def _lights_fault(plain: tuple[float, ...]) -> str | None:
+    kinds = {float(kind) for kind in LightKind}
+    if len(plain) > MAX_LIGHTS * LIGHT_NUMBERS:
+        return f"{len(plain) // LIGHT_NUMBERS} lights are too many: it takes at most {MAX_LIGHTS}"
+    for place, kind in enumerate(plain[::LIGHT_NUMBERS]):
+        if kind not in kinds:
+            return f"light {place + 1} is of kind {kind:g}: 0 is a point, 1 a spot, 2 a sun, 3 a sphere"
     return None
 
 

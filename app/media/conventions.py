@@ -15,7 +15,7 @@ from .naming import Renderer, Role
 
 
 class DepthKind(StrEnum):
-    """What a depth layer holds. Once `Convention.scale` and `offset` are applied, all but radial and inverse are planar."""
+    """What a depth layer holds. `Convention.scale` and `offset` make all of it planar but what is radial or inverse."""
 
     PLANAR = "planar"
     """The distance along the axis of the camera."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 import difflib
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ..errors import InputError
@@ -111,16 +111,29 @@ def _split(part: Part, several: bool) -> Iterable[Layer]:
         prefix = channel.rpartition(".")[0]
         key = prefix + "." if prefix else "" if channel.casefold() in family else channel
         groups.setdefault(key, []).append(index)
+    groups = dict(_without_strangers(part.channels, groups))
     named = several and part.name
     for key, places in groups.items():
         indices = _sorted(part.channels, places)
         short = tuple(part.channels[index].rpartition(".")[2] for index in indices)
-        full = key[:-1] if key.endswith(".") else "".join(short)
-        if named and not key.endswith("."):
+        full = key[:-1] if key.endswith(".") else key or "".join(short)
+        if named and "." not in key:
             full = part.name if len(groups) == 1 or not key else f"{part.name}.{full}"
         formats = {part.formats[index] for index in indices}
         kept = formats.pop() if len(formats) == 1 else "float32"
         yield Layer("", short, part.index, indices, kept, False, full)
+
+
+def _without_strangers(
+    names: Sequence[str], groups: Mapping[str, list[int]]
+) -> Iterable[tuple[str, list[int]]]:
+    """The groups; what stands beside the colors of one is its own, such as the depth of a view (`left.R`, `left.Z`)."""
+    for key, places in groups.items():
+        words = {index: names[index].rpartition(".")[2].casefold() for index in places}
+        colors = next((family for family in _FAMILIES[:2] if set(family[:3]) <= set(words.values())), ())
+        own = [index for index in places if words[index] in colors] if colors and key else list(places)
+        yield key, own
+        yield from ((names[index], [index]) for index in places if index not in own)
 
 
 def _sorted(names: Sequence[str], places: Sequence[int]) -> tuple[int, ...]:

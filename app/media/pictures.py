@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from hashlib import blake2b
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Any, cast
 
 from ...nodes import Kind
 from ..compiler import Picture, Probed
@@ -54,7 +54,11 @@ class Pictures:
     def load(self, picture: Picture) -> Array:
         """Its pixels as [height, width, channels] of float16 or float32."""
         if picture.in_memory:
-            return widened(cast("Array", picture.pixels), picture.kind, picture.width)
+            import numpy as np
+
+            pixels: Any = picture.pixels
+            array = np.array(pixels, np.float32) if isinstance(pixels, tuple) else pixels
+            return widened(array, picture.kind, picture.width)
         from .read import read
 
         pixels = read(picture.path, picture.layer, picture.kind, picture.width)

@@ -123,7 +123,8 @@ class Survey:
             solved = solve_camera(position)
         except InputError as fault:
             return FoundCamera(named, f"named by the header ({fault})" if named else str(fault))
-        return FoundCamera(solved.camera, f"solved from the positions{self._check(named, solved.camera, position)}", solved)
+        check = self._check(named, solved.camera, position)
+        return FoundCamera(solved.camera, f"solved from the positions{check}", solved)
 
     def _check(self, named: Camera | None, solved: Camera, position: Array) -> str:
         """What there is to say of a camera in the header beside one that was solved."""

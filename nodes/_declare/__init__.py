@@ -20,6 +20,7 @@ from __future__ import annotations
 from .camera import Camera, look_at
 from .curves import MAX_POINTS, curve_at, curve_knots, ramp_at, ramp_knots
 from .draw import Affine, Argument, Draw, Drawn, Kernel, Pixels
+from .lights import LIGHT_NUMBERS, MAX_LIGHTS, Light, LightKind, lights_of, numbers_of
 from .node import Filter, Node, Pointwise, Source, Temporal
 from .recolor import ColorChange, LookupFile, SpaceChange
 from .render import Meaning, Render
@@ -35,6 +36,8 @@ from .values import (
     Handle,
     Holds,
     Kernel3x3,
+    LightList,
+    Lights,
     Plain,
     Points,
     Position,
@@ -50,10 +53,12 @@ from .values import (
 )
 
 __all__ = [
-    "MAX_POINTS", "RGBA", "Affine", "Argument", "BuiltInScene", "Camera", "Color", "ColorChange", "Curve", "Doc",
-    "Draw", "Drawn", "Edge", "Field", "File", "FilePath", "Filter", "Fraction", "Handle", "Holds", "Image", "Kernel",
-    "Kernel3x3", "Kind", "LookupFile", "Meaning", "Motion", "Node", "Number", "Output", "Pixels", "Plain", "Points",
-    "Pointwise", "Position", "Ramp", "Render", "Scene", "SceneFile", "ScenePath", "Size", "Slider", "Socket",
-    "Source", "SpaceChange", "StageName", "Stops", "Swatch", "TablePath", "Temporal", "Unit", "Value", "Vector",
-    "Viewpoint", "curve_at", "curve_knots", "glsl_type", "look_at", "ramp_at", "ramp_knots", "working_factor",
+    "LIGHT_NUMBERS", "MAX_LIGHTS", "MAX_POINTS", "RGBA", "Affine", "Argument", "BuiltInScene", "Camera", "Color",
+    "ColorChange", "Curve", "Doc", "Draw", "Drawn", "Edge", "Field", "File", "FilePath", "Filter", "Fraction",
+    "Handle", "Holds", "Image", "Kernel", "Kernel3x3", "Kind", "Light", "LightKind", "LightList", "Lights",
+    "LookupFile", "Meaning", "Motion", "Node", "Number", "Output", "Pixels", "Plain", "Points", "Pointwise",
+    "Position", "Ramp", "Render", "Scene", "SceneFile", "ScenePath", "Size", "Slider", "Socket", "Source",
+    "SpaceChange", "StageName", "Stops", "Swatch", "TablePath", "Temporal", "Unit", "Value", "Vector", "Viewpoint",
+    "curve_at", "curve_knots", "glsl_type", "lights_of", "look_at", "numbers_of", "ramp_at", "ramp_knots",
+    "working_factor",
 ]

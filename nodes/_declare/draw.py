@@ -135,6 +135,10 @@ class Draw(Protocol):
         """Keep these pixels for the next frame. For `Temporal` nodes."""
         ...
 
+    def table(self, numbers: tuple[float, ...], width: int) -> Drawn:
+        """Numbers as a picture of four channels, `width` pixels to a row, for functions that read them anywhere."""
+        ...
+
     def render(self, path: str) -> Render:
         """What the file of a render turns out to hold. For `Source` nodes."""
         ...

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal, get_args, get_origin
 
 from .curves import MAX_POINTS
+from .lights import LIGHT_NUMBERS
 from .sockets import glsl_type
 
 Unit = Literal["px", "height", "deg", "EV", "ratio", "count", "s", "scene"]
@@ -82,6 +83,11 @@ class Ramp:
     """The value is a color ramp of stops `t, r, g, b, a, ...`, scene-linear, t never falling: see `ramp_at`."""
 
 
+@dataclass(frozen=True)
+class Lights:
+    """The value is a list of lights, 16 numbers each: see `Light`."""
+
+
 Fraction = Annotated[float, Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0)]
 RGBA = Annotated[tuple[float, float, float, float], Swatch()]
 Position = Annotated[tuple[float, float], Handle()]
@@ -90,9 +96,12 @@ TablePath = Annotated[str, File(holds="table")]
 ScenePath = Annotated[str, File(holds="scene")]
 Points = Annotated[tuple[float, ...], Curve()]
 Stops = Annotated[tuple[float, ...], Ramp()]
+LightList = Annotated[tuple[float, ...], Lights()]
 Kernel3x3 = tuple[float, float, float, float, float, float, float, float, float]
 
-ValueType = Literal["float", "int", "bool", "choice", "color", "vector", "matrix", "curve", "ramp", "path", "text"]
+ValueType = Literal[
+    "float", "int", "bool", "choice", "color", "vector", "matrix", "curve", "ramp", "lights", "path", "text"
+]
 Plain = float | int | bool | str | tuple[float, ...]
 """What a value may be: JSON scalars and flat lists of numbers."""
 
@@ -105,7 +114,7 @@ class Value:
     type: ValueType
     default: Plain
     length: int = 1
-    """How many numbers: of a curve per point, of a ramp per stop."""
+    """How many numbers: of a curve per point, of a ramp per stop, of lights per light."""
     choices: tuple[str, ...] = ()
     low: float = float("-inf")
     high: float = float("inf")
@@ -174,4 +183,6 @@ def _tuple_type(name: str, parts: tuple[Any, ...], notes: tuple[Any, ...]) -> di
     for note in notes:
         if isinstance(note, Curve | Ramp):
             return {"type": "curve", "length": 2} if isinstance(note, Curve) else {"type": "ramp", "length": 5}
-    raise TypeError(f"value '{name}': a list of any length is a Curve or a Ramp")
+        if isinstance(note, Lights):
+            return {"type": "lights", "length": LIGHT_NUMBERS}
+    raise TypeError(f"value '{name}': a list of any length is a Curve or a Ramp, or Lights")

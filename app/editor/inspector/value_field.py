@@ -9,6 +9,7 @@ from .choice_field import choice_field, toggle_field
 from .color_field import color_field
 from .curve_field import HEIGHT, curve_field
 from .fields import Edit, Fields
+from .lights_field import lights_field
 from .number_field import matrix_field, number_field, vector_field
 from .ramp_field import BAND, HANDLES, ramp_field
 from .text_field import text_field
@@ -38,6 +39,8 @@ def value_field(
             draw = curve_field
         case "ramp":
             draw = ramp_field
+        case "lights":
+            draw = lights_field
         case "path" | "text":
             draw = text_field
     imgui.begin_group()

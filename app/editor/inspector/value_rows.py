@@ -54,9 +54,8 @@ class ValueRows:
             mixed = any(graph.value(one) != value for one in ports[1:])
             edit = self._field(rows, ports, declaration, value, width - mark, mixed)
             rows.record(key)
-            menu |= declaration.type not in ("curve", "ramp") and imgui.is_item_hovered() and imgui.is_mouse_released(
-                imgui.MouseButton_.right
-            )
+            released = imgui.is_item_hovered() and imgui.is_mouse_released(imgui.MouseButton_.right)
+            menu |= released and declaration.type not in ("curve", "ramp", "lights")
             if edit:
                 rows.act(lambda: apply(session, ports, declaration, edit))
             if declaration.handle:
@@ -212,7 +211,7 @@ def _worded(declaration: Value) -> str:
             return "on" if default else "off"
         case "choice" | "text" | "path":
             return str(default)
-        case "curve" | "ramp":
+        case "curve" | "ramp" | "lights":
             return ""
         case _:
             assert isinstance(default, tuple)
