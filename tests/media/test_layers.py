@@ -107,6 +107,15 @@ def test_channels_in_natural_order(channels: tuple[str, ...], expected: dict[str
     assert {layer.name: layer.indices for layer in header(one(*channels)).layers} == expected
 
 
+def test_the_depth_of_a_view_is_a_layer_of_its_own() -> None:
+    stereo = header(one(*"ABGRZ", *(f"left.{letter}" for letter in "ABGRZ"), "forward.u", "forward.v", "st.u", "st.w"))
+    assert {layer.name: (layer.indices, layer.data) for layer in stereo.layers} == {
+        "RGBA": ((3, 2, 1, 0), False), "Z": ((4,), True), "left": ((8, 7, 6, 5), False), "left.Z": ((9,), True),
+        "forward": ((10, 11), True), "st": ((12, 13), True),
+    }
+    assert find_layer(stereo, "left.z").indices == (9,)
+
+
 def test_parts_name_channels_that_have_no_prefix() -> None:
     parts = [one(*"RGB", name="left", index=0), one(*"RGBZ", name="right", index=1), one("Z", index=2)]
     assert [(layer.name, layer.part) for layer in layers_of(parts)] == [

@@ -95,5 +95,13 @@ def test_beyond_where_a_barrel_turns_back_nothing_is_seen(run):
     assert not out[distance > 0.56].any() and np.all(out[distance < 0.4] == 1.0)
 
 
+@pytest.mark.parametrize("edge", ["clamp", "mirror", "reflect", "wrap"])
+def test_what_is_shown_there_is_of_the_picture(run, hdr, edge):
+    """Far outside, edges still give a color that the picture has."""
+    picture = hdr(61, 41)
+    made = run(LensDistortion(k1=-0.5, focal=0.5, edge=edge), {"image": picture})
+    assert made.max() <= 1.001 * picture.max() and made.min() >= 0.0
+
+
 def test_a_straight_lens_vanishes():
     assert LensDistortion(k1=0.0).identity() == "image" and LensDistortion(k1=0.0, zoom=1.1).identity() is None

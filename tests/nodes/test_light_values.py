@@ -9,7 +9,8 @@ from halation.app.graph.values import coerced, value_fault
 from halation.nodes import Filter, Image, Light, LightKind, LightList, lights_of, numbers_of
 
 TWO = (
-    Light(), Light(LightKind.SPOT, (1.0, 2.0, 3.0), (0.0, 1.0, 0.0), (1.0, 0.5, 0.0), -3.0, 8.0, 10.0, 25.0, 0.2, False),
+    Light(),
+    Light(LightKind.SPOT, (1.0, 2.0, 3.0), (0.0, 1.0, 0.0), (1.0, 0.5, 0.0), -3.0, 8.0, 10.0, 25.0, 0.2, False),
 )
 
 

@@ -35,7 +35,10 @@ AFAR = 0.02
 """Mean difference of light, 0..1, between averages over a sixteenth of the width."""
 
 ALIKE_FROM_AFAR = MappingProxyType({
-    "it weighs the next pixels, which are farther away in a proxy": ("convolve3x3.out",),
+    "it weighs the next pixels, which are farther away in a proxy": (
+        "convolve3x3.out", "curvature.cavity", "curvature.mean", "curvature.ridge", "facing.facing", "rim_light.out",
+        "rim_light.rim",
+    ),
     "its pattern is as fine as pixels of the proxy": (
         "crosshatch.out", "film_grain.out", "halftone.out", "worley.cell",
     ),
@@ -55,6 +58,7 @@ ALIKE_FROM_AFAR = MappingProxyType({
     ),
     "a box is a whole number of pixels wide, and one more than twice the radius": ("box_blur.out",),
     "the tone that is most frequent is one of fewer": ("oil.out",),
+    "strong colors meet at hard edges, which are those of single pixels in a proxy": ("id_mask.colors",),
 })
 """Outputs that differ in fine detail at half size, by the reason why."""
 
