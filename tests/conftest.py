@@ -58,7 +58,8 @@ def run(renderer: Renderer) -> Run:
 
     def rendered(
         subject: Node | Graph, inputs: Mapping[str, Array | Camera] | None = None, *,
-        size: tuple[int, int] | None = None, output: str = "out", scale: float = 1.0, precision: str = "float", engine: Renderer | None = None,
+        size: tuple[int, int] | None = None, output: str = "out", scale: float = 1.0, precision: str = "float",
+        engine: Renderer | None = None,
     ) -> Array:
         given = inputs or {}
         cameras = {name: item for name, item in given.items() if isinstance(item, Camera)}
