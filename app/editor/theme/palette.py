@@ -75,7 +75,7 @@ DARK = Palette(
     categories=MappingProxyType({
         "": _hex("4a4a52"), "input": _hex("7a4a3a"), "output": _hex("7a4a3a"), "color": _hex("73642a"),
         "tone": _hex("7a5a2e"), "blur": _hex("3f5f7f"), "filter": _hex("3f5f7f"), "glow": _hex("8a4f2a"),
-        "light": _hex("7d6a24"), "lens": _hex("5b5378"),
+        "light": _hex("6f5d1c"), "lens": _hex("5b5378"),
         "distort": _hex("4a6b4a"), "edge": _hex("2f6b6b"), "geometry": _hex("3d5378"), "merge": _hex("5a4a7a"),
         "channel": _hex("4f5560"),
         "measure": _hex("2f6258"), "noise": _hex("6b3f5f"), "stylize": _hex("6b3f5f"), "group": _hex("3a6a48"),
