@@ -50,7 +50,8 @@ def _page(found: Survey) -> Iterator[str]:
     counts = f"{_count(len(header.parts), 'part')}, {_count(len(header.info.layers), 'layer')}"
     yield f"{header.info.path}\n  {width} x {height}, {header.info.format}, {counts}"
     yield f"  made by {found.maker.renderer or 'an unknown program'}: {found.maker.reason}"
-    yield from _section("parts", [_part_row(part) for part in header.parts])
+    used = {layer.part for layer in header.info.layers}
+    yield from _section("parts", [_part_row(part, part.index in used) for part in header.parts])
     yield from _section("layers", [
         (
             item.layer.name, "".join(item.layer.channels), _SHORT.get(item.layer.format, item.layer.format),
@@ -60,7 +61,7 @@ def _page(found: Survey) -> Iterator[str]:
     ])
     yield from _section("to be decided", _open_rows(found))
     yield from _section("conventions", [
-        (role.words, rule.words, "measured" if rule.measured else "assumed", rule.reason)
+        (role.words, rule.words, "measured" if rule.measured else "assumed" if rule.kind else "open", rule.reason)
         for role, rule in found.conventions.items()
     ])
     yield from _section("camera", _camera_rows(found))
@@ -78,13 +79,14 @@ def _section(title: str, rows: Sequence[Sequence[str]]) -> Iterator[str]:
         yield f"  {'  '.join(cells)}".rstrip()
 
 
-def _part_row(part: PartHeader) -> tuple[str, ...]:
+def _part_row(part: PartHeader, used: bool) -> tuple[str, ...]:
     channels = " ".join(name.rpartition(".")[2] for name in part.channels)
     what = channels if len(part.channels) <= 4 else f"{len(part.channels)} channels"
     types = "/".join(dict.fromkeys(part.formats))
     window = "" if part.data == part.display else f"data {_window(part.data)} of {_window(part.display)}"
     name = f"{part.name} ({part.view})" if part.view else part.name
-    return str(part.index), name, what, types, part.compression, part.storage, part.tag, window
+    left_out = "" if used else "left out: of another size"
+    return str(part.index), name, what, types, part.compression, part.storage, part.tag, window, left_out
 
 
 def _window(window: tuple[int, int, int, int]) -> str:

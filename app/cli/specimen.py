@@ -6,7 +6,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from ...nodes import Kind, Node, Size, Socket, Source, catalogue
+from ...nodes import Kind, Matte, Node, Render, Size, Socket, Source, catalogue
 from ..compiler import Picture, Plan, Probed, Request, compile_graph
 from ..graph import Graph, Input, Output, Port, Settings
 from .options import Lazy
@@ -22,6 +22,12 @@ CANVAS = (480, 270)
 _DATA = MappingProxyType({"depth": "Depth", "ids": "Object Index"})
 """Layers of the sample that fields of these names are for."""
 
+_ROLES = (
+    "beauty", "albedo", "emission", "occlusion", "position", "object_id", "material_id", "uv", "depth", "normal",
+    "velocity",
+)
+"""Layers that a render may have."""
+
 
 class _SameSize(Lazy):
     """A world in which all pictures have the same size."""
@@ -32,6 +38,11 @@ class _SameSize(Lazy):
     def probe(self, picture: Picture) -> Probed:
         """Nothing is read."""
         return Probed(self._size, True, picture.path)
+
+    def render(self, path: str) -> Render:
+        """Every layer that a node may ask for is there."""
+        mattes = tuple(f"CryptoObject{rank:02}" for rank in range(3))
+        return Render({role: role for role in _ROLES}, dict.fromkeys(_ROLES, 4), mattes=(Matte("object", mattes, {}),))
 
 
 def drawn(node: type[Node]) -> tuple[str, ...]:
@@ -83,10 +94,11 @@ def over(node: type[Node], sample: Path) -> Graph:
         elif socket.kind is Kind.VECTOR:
             graph = _vector(graph, name, socket, sample)
         elif socket.kind is Kind.CAMERA:
-            graph = _made(graph, name, "camera", "camera")
+            graph = _made(graph, name, "solve_camera", "camera", path=str(sample))
         else:
             graph = _fed(graph, name, name, Input(socket.kind, default=0.5))
-    for name in drawn(node):
+    # A file may not hold all that its reader could show.
+    for name in drawn(node)[:1] if issubclass(node, Source) else drawn(node):
         end = Output(node.outputs[name].socket.kind, node.outputs[name].socket.channels)
         graph = graph.add_output(name, end).connect(Port(NODE, name), Port("outputs", name))
     return graph

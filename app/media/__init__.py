@@ -4,12 +4,14 @@ from .color import displays, to_display, views
 from .info import ImageInfo, content_hash, find_layer, fingerprint, info
 from .layers import Layer
 from .metadata import Attribute, read_metadata
+from .naming import Role
 from .read import Pixels, Want, read, read_many
 from .recolor import gpu_view
+from .survey import Survey, survey
 from .write import check_destination, write
 
 __all__ = [
-    "Attribute", "ImageInfo", "Layer", "Pixels", "Want", "check_destination", "content_hash", "displays",
-    "find_layer", "fingerprint", "gpu_view", "info", "read", "read_many", "read_metadata", "to_display", "views",
-    "write",
+    "Attribute", "ImageInfo", "Layer", "Pixels", "Role", "Survey", "Want", "check_destination", "content_hash",
+    "displays", "find_layer", "fingerprint", "gpu_view", "info", "read", "read_many", "read_metadata", "survey",
+    "to_display", "views", "write",
 ]

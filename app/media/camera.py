@@ -24,6 +24,7 @@ _FAR = 1e9
 _DRAWS = 160
 _JUDGES = 1500
 _STEPS = 4
+_SLICE = 128
 _SEED = 20
 _CLOSE = 1.0
 _GOOD = 0.5
@@ -173,10 +174,18 @@ def _linear(seen: _Seen, weights: Array) -> Array:
 
 def _direct(places: Array, at: Array, weights: Array) -> Array:
     """Without depth: the direction in which the equations of all pixels come closest to zero."""
-    _, sizes, rows = np.linalg.svd(np.linalg.qr(_equations(places * weights[:, None], at), mode="r"))
+    _, sizes, rows = np.linalg.svd(_triangle(_equations(places * weights[:, None], at)))
     if sizes[-2] < 1e-6 * sizes[0] or sizes[-1] > 0.3 * sizes[-2]:
         raise InputError("the positions lie in one plane, or are too coarse, which leaves the camera open")
     return rows[-1].reshape(3, 4)
+
+
+def _triangle(rows: Array) -> Array:
+    """R of the QR decomposition of many rows, slice by slice: for all at once, threads cost more than they save."""
+    while len(rows) > 2 * _SLICE:
+        slices = np.pad(rows, ((0, -len(rows) % _SLICE), (0, 0))).reshape(-1, _SLICE, rows.shape[1])
+        rows = np.asarray(np.linalg.qr(slices, mode="r")).reshape(-1, rows.shape[1])
+    return np.asarray(np.linalg.qr(rows, mode="r"))
 
 
 def _with_depth(places: Array, at: Array, depths: Array) -> Array:
@@ -198,7 +207,7 @@ def _equations(places: Array, at: Array) -> Array:
 def _agreed(seen: _Seen) -> Array:
     """True for places that one camera sees: all, if a first fit is good, else those that most agree on."""
     with contextlib.suppress(InputError):
-        good = seen.error(_fitted(seen)) < _CLOSE
+        good = seen.error(_linear(seen, np.ones(len(seen.places)))) < _CLOSE
         if np.count_nonzero(good) > 0.9 * len(good):
             return good
     return seen.error(_consensus(seen)) < 1.5 * _CLOSE

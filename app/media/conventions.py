@@ -124,9 +124,14 @@ _FALLBACKS: Mapping[Role, Convention] = MappingProxyType({
 
 
 def habit(role: Role, name: str, renderer: Renderer | None) -> Convention | None:
-    """What the renderer is known to write under this name, else what most do; None for roles that need no telling."""
+    """What the renderer is known to write under this name; of an unknown one, what all do that have it.
+
+    Else what most renderers do; None for roles that need no telling.
+    """
     word = plain(name.rpartition(".")[2])
-    for item in _HABITS:
-        if item.role is role and item.renderer is renderer and word in item.names.split():
-            return item.convention
-    return _FALLBACKS.get(role)
+    found = [
+        item.convention for item in _HABITS
+        if item.role is role and renderer in (None, item.renderer) and word in item.names.split()
+    ]
+    agreed = len({(item.kind, item.scale) for item in found}) == 1
+    return found[0] if agreed else _FALLBACKS.get(role)

@@ -210,6 +210,8 @@ def velocity_by_cameras(velocity: Array, position: Array, here: Camera, before: 
     places, stored = np.pad(places[keep], ((0, 0), (0, 1)), constant_values=1.0), stored[keep]
     now, then = (_seen(camera, places) for camera in (here, before))
     moved = (now - then) * (width, height)
+    there = np.isfinite(moved).all(axis=1)
+    moved, stored = moved[there], stored[there]
     ratios: list[float] = []
     for axis in (0, 1):
         moves = np.abs(moved[:, axis]) > _STILL
@@ -229,7 +231,8 @@ def velocity_by_cameras(velocity: Array, position: Array, here: Camera, before: 
 
 def _seen(camera: Camera, places: Array) -> Array:
     seen = places @ np.reshape(camera.rows, (3, 4)).T
-    return seen[:, :2] / seen[:, 2:]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return seen[:, :2] / seen[:, 2:]
 
 
 def _unit(ratios: tuple[float, float], size: tuple[int, int]) -> tuple[tuple[float, float], str]:
@@ -252,7 +255,7 @@ def velocity_by_pictures(velocity: Array, here: Array, before: Array) -> Convent
     rows, columns, stored = rows[keep], columns[keep], stored[keep]
     if len(stored) < _FEWEST:
         return None
-    now = np.log1p(np.maximum(here[rows, columns, :3].astype(np.float64), 0.0))
+    now = np.log1p(np.maximum(_light(here, rows, columns), 0.0))
     off: dict[tuple[float, float], float] = {}
     for sign in ((1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)):
         then = _at(before, columns - sign[0] * stored[:, 0], rows - sign[1] * stored[:, 1])
@@ -261,7 +264,7 @@ def velocity_by_pictures(velocity: Array, here: Array, before: Array) -> Convent
     first, second = sorted(off, key=lambda sign: off[sign])[:2]
     if off[second] < _LIKELY * off[first] or off[second] == 0.0:
         return None
-    way = "current minus previous" if first[0] > 0.0 else "previous minus current"
+    way = "along with the motion" if first[0] > 0.0 else "against the motion"
     up = "down" if first[0] == first[1] else "up"
     return Convention(Motion.FROM_PREVIOUS, f"{way} in pixels, y {up}: so the frame before fits best", True, first)
 
@@ -272,6 +275,10 @@ def _at(picture: Array, x: Array, y: Array) -> Array:
     left, top = np.floor(x).astype(int), np.floor(y).astype(int)
     right, low = (left + 1).clip(max=picture.shape[1] - 1), (top + 1).clip(max=picture.shape[0] - 1)
     s, t = (x - left)[:, None], (y - top)[:, None]
-    rgb = picture[..., :3]
-    upper = rgb[top, left] * (1.0 - s) + rgb[top, right] * s
-    return upper * (1.0 - t) + (rgb[low, left] * (1.0 - s) + rgb[low, right] * s) * t
+    upper = _light(picture, top, left) * (1.0 - s) + _light(picture, top, right) * s
+    return upper * (1.0 - t) + (_light(picture, low, left) * (1.0 - s) + _light(picture, low, right) * s) * t
+
+
+def _light(picture: Array, rows: Array, columns: Array) -> Array:
+    """Pixels of a picture; what is not finite is black."""
+    return np.nan_to_num(picture[rows, columns, :3].astype(np.float64), nan=0.0, posinf=0.0, neginf=0.0)

@@ -78,6 +78,13 @@ class Role(StrEnum):
         return self.value.replace("_", " ")
 
 
+PLURAL = frozenset({
+    Role.LIGHT_GROUP, Role.MATTE, Role.VARIANCE, Role.CRYPTOMATTE, Role.CRYPTOMATTE_OBJECT, Role.CRYPTOMATTE_MATERIAL,
+    Role.CRYPTOMATTE_ASSET,
+})
+"""Roles that many layers may have side by side."""
+
+
 class Renderer(StrEnum):
     """Who made the file."""
 

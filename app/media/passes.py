@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import IntEnum
+from types import MappingProxyType
 
 from .layers import Layer, is_depth, plain
 from .naming import HINTS, PATTERNS, SCHEMES, Renderer, Role
@@ -40,7 +41,8 @@ class Grounds(IntEnum):
 class Pass:
     """A layer and its role, which is None where `candidates` says what it may be, or nothing is known.
 
-    `rank` counts what would be better layers for the same role; `group` is the view or view layer that it belongs to.
+    `rank` counts what would be better layers for the same role; `name` is the word that says what it is,
+    `group` the view or view layer that it belongs to.
     """
 
     layer: Layer
@@ -49,6 +51,7 @@ class Pass:
     reason: str
     candidates: tuple[Role, ...] = ()
     rank: int = 0
+    name: str = ""
     group: str = ""
 
 
@@ -76,13 +79,18 @@ def maker_of(attributes: Mapping[str, object], layers: Sequence[Layer]) -> Maker
 
 
 def passes_of(
-    layers: Sequence[Layer], attributes: Mapping[str, object], renderer: Renderer | None
+    layers: Sequence[Layer], attributes: Mapping[str, object], renderer: Renderer | None,
+    seen_by: Mapping[int, str] = MappingProxyType({}),
 ) -> tuple[Pass, ...]:
-    """What every layer is."""
+    """What every layer is; `seen_by` names the views of those parts that are of one."""
     manifests = {plain(str(value)) for name, value in attributes.items() if _MANIFEST.fullmatch(name)}
     several = attributes.get("multiView")
-    views = {*_EYES, *(str(view).casefold() for view in (several if isinstance(several, tuple) else ()))}
-    found = [_pass(layer, renderer, manifests, views) for layer in layers]
+    views = [str(view).casefold() for view in several] if isinstance(several, tuple) else []
+    readings = [_read(layer, views, seen_by.get(layer.part, "")) for layer in layers]
+    found = [
+        replace(_pass(layer, word, renderer, manifests), name=word, group=group)
+        for layer, (word, group) in zip(layers, readings, strict=True)
+    ]
     if not any(item.role is Role.BEAUTY for item in found):
         found = list(_with_beauty(found))
     return tuple(found)
@@ -104,20 +112,31 @@ def chosen(passes: Iterable[Pass], role: Role) -> tuple[Pass, ...]:
     return tuple(item for item in claims if claim(item) == best)
 
 
-def _pass(layer: Layer, renderer: Renderer | None, manifests: set[str], views: set[str]) -> Pass:
-    """Its name is the last word that is no view: OpenEXR has `view.channel` and `layer.view.channel`."""
+def _read(layer: Layer, views: Sequence[str], view: str) -> tuple[str, str]:
+    """The word that says what a layer is, and the view or view layer that it belongs to.
+
+    OpenEXR has `view.channel` and `layer.view.channel`, the first of `views` goes without saying, and parts that are
+    of a `view` often end in its name.
+    """
+    known = {*_EYES, *views}
     words = layer.name.split(".")
-    named = [word for word in words if word.casefold() not in views]
+    mine = [word.casefold() for word in words if word.casefold() in known] or ([view.casefold()] if view else [])
+    ending = re.compile(rf"(?<=.)[_ -]?{re.escape(view)}$" if view else r"(?!)", re.IGNORECASE)
+    named = [ending.sub("", word) for word in words if word.casefold() not in known]
     last = named[-1] if named else "".join(layer.channels)
-    group = ".".join([*named[:-1], *(word for word in words if word.casefold() in views)])
-    word = plain(last)
+    above = [word for word in named[:-1] if plain(word) != plain(last)]
+    return last, ".".join([*above, *(name for name in mine if name != (views or [""])[0])])
+
+
+def _pass(layer: Layer, name: str, renderer: Renderer | None, manifests: set[str]) -> Pass:
+    word = plain(name)
     for found in (
-        _cryptomatte(layer, manifests), _by_table(layer, word, renderer), _light_group(layer, last),
+        _cryptomatte(layer, manifests), _by_table(layer, word, renderer), _light_group(layer, name),
         _by_pattern(layer, word), _by_shape(layer, word),
     ):
         if found is not None:
-            return replace(found, group=group)
-    return Pass(layer, None, Grounds.NONE, "its name says nothing that is known", group=group)
+            return found
+    return Pass(layer, None, Grounds.NONE, "its name says nothing that is known")
 
 
 def _cryptomatte(layer: Layer, manifests: set[str]) -> Pass | None:
@@ -180,6 +199,8 @@ def _by_shape(layer: Layer, word: str) -> Pass | None:
     if letters == "z":
         return Pass(layer, Role.DEPTH, Grounds.SHAPE, "its only channel is Z")
     hints = tuple(role for role, hint in HINTS.items() if hint.fullmatch(word))
+    if hints == (Role.MATTE,) and len(layer.channels) == 1:
+        return Pass(layer, Role.MATTE, Grounds.SHAPE, "one channel, and a word for matte in its name")
     if hints:
         return Pass(layer, None, Grounds.NONE, f"its name has a word for {_listed([r.words for r in hints])}", hints)
     if letters == "xyz":

@@ -1,10 +1,11 @@
-"""Renders as nodes ask for them: layers by role, what their numbers mean, and the camera."""
+"""Renders as nodes ask for them: layers by role, what their numbers mean, the camera, and cryptomattes."""
 
 from __future__ import annotations
 
 from types import MappingProxyType
 
 from ...nodes import Meaning, Render
+from .mattes import mattes_of
 from .survey import survey
 
 
@@ -23,4 +24,5 @@ def find_render(path: str) -> Render:
             role.value: Meaning(rule.kind, rule.scale, rule.offset) for role, rule in found.conventions.items()
         }),
         found.camera.camera,
+        mattes_of(found),
     )

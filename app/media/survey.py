@@ -9,7 +9,7 @@ The header is read at once, pixels when conventions or the camera are first aske
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from pathlib import Path
 from types import MappingProxyType
@@ -19,11 +19,11 @@ from ..errors import InputError
 from . import evidence
 from .camera import Solved, header_camera, residual_of, solve_camera
 from .color import Array
-from .conventions import Convention, Space, habit
+from .conventions import Convention, Motion, Space, habit
 from .header import Header, read_header
 from .info import fingerprint
 from .layers import Layer
-from .naming import Role
+from .naming import PLURAL, Role
 from .passes import Maker, Pass, chosen, maker_of, passes_of
 from .read import Want, read_many
 
@@ -73,7 +73,7 @@ class Survey:
     @cached_property
     def rivals(self) -> Mapping[Role, tuple[Layer, ...]]:
         """The roles that several layers claim alike, which leaves them to the user."""
-        claims = {role: chosen(self.passes, role) for role in self.roles}
+        claims = {role: chosen(self.passes, role) for role in self.roles if role not in PLURAL}
         return {role: tuple(item.layer for item in best) for role, best in claims.items() if len(best) > 1}
 
     @property
@@ -101,8 +101,8 @@ class Survey:
         return _Findings(MappingProxyType(conventions), camera)
 
     def _habit(self, role: Role) -> Convention | None:
-        layer = self.layer(role)
-        return habit(role, layer.name, self.maker.renderer) if layer else None
+        best = chosen(self.passes, role)
+        return habit(role, best[0].name, self.maker.renderer) if len(best) == 1 else None
 
     def _pixels(self) -> dict[Role, Array]:
         """The layers that conventions and the camera are found in."""
@@ -157,8 +157,7 @@ class Survey:
         velocity = pixels.get(Role.VELOCITY)
         if velocity is None or velocity.shape[2] < 2 or self.before is None:
             return None
-        rule = None
-        there = self.before.camera
+        rule, there, usual = None, self.before.camera, self._habit(Role.VELOCITY)
         if camera.camera and camera.solved and there.camera and there.solved:
             rule = evidence.velocity_by_cameras(velocity, pixels[Role.POSITION], camera.camera, there.camera)
         picture = self.before.layer(Role.BEAUTY)
@@ -166,9 +165,10 @@ class Survey:
             want = Want(picture.full, Kind.VECTOR, len(picture.channels))
             (earlier,) = read_many(self.before.header.info.path, [want])
             rule = evidence.velocity_by_pictures(velocity, pixels[Role.BEAUTY], earlier.array)
-        usual = self._habit(Role.VELOCITY)
+            if rule is not None and usual is not None and usual.kind == Motion.TO_NEXT:
+                rule = replace(rule, kind=usual.kind)  # what pictures show is much the same before and after
         if rule is not None and usual is not None and usual.scale[:2] == rule.scale:
-            return Convention(rule.kind, rule.reason, True, usual.scale)  # the other two channels as usual, too
+            return replace(rule, scale=usual.scale)  # the other two channels as usual, too
         return rule
 
 
@@ -192,5 +192,6 @@ def survey(path: str | Path, before: str | Path | None = None) -> Survey:
 def _survey(path: str, mark: str, before: tuple[str, str] | None) -> Survey:
     header = read_header(path)
     maker = maker_of(header.attributes, header.info.layers)
-    passes = passes_of(header.info.layers, header.attributes, maker.renderer)
+    views = {part.index: part.view for part in header.parts}
+    passes = passes_of(header.info.layers, header.attributes, maker.renderer, views)
     return Survey(header, maker, passes, _survey(*before, None) if before else None)

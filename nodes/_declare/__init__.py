@@ -23,7 +23,7 @@ from .draw import Affine, Argument, Draw, Drawn, Kernel, Pixels
 from .lights import LIGHT_NUMBERS, MAX_LIGHTS, Light, LightKind, lights_of, numbers_of
 from .node import Filter, Node, Pointwise, Source, Temporal
 from .recolor import ColorChange, LookupFile, SpaceChange
-from .render import Meaning, Render
+from .render import Matte, Meaning, Render
 from .scene import BuiltInScene, Motion, Scene, SceneFile, StageName
 from .sockets import Color, Edge, Field, Image, Kind, Number, Output, Size, Socket, Vector, Viewpoint, glsl_type
 from .values import (
@@ -56,7 +56,7 @@ __all__ = [
     "LIGHT_NUMBERS", "MAX_LIGHTS", "MAX_POINTS", "RGBA", "Affine", "Argument", "BuiltInScene", "Camera", "Color",
     "ColorChange", "Curve", "Doc", "Draw", "Drawn", "Edge", "Field", "File", "FilePath", "Filter", "Fraction",
     "Handle", "Holds", "Image", "Kernel", "Kernel3x3", "Kind", "Light", "LightKind", "LightList", "Lights",
-    "LookupFile", "Meaning", "Motion", "Node", "Number", "Output", "Pixels", "Plain", "Points", "Pointwise",
+    "LookupFile", "Matte", "Meaning", "Motion", "Node", "Number", "Output", "Pixels", "Plain", "Points", "Pointwise",
     "Position", "Ramp", "Render", "Scene", "SceneFile", "ScenePath", "Size", "Slider", "Socket", "Source",
     "SpaceChange", "StageName", "Stops", "Swatch", "TablePath", "Temporal", "Unit", "Value", "Vector", "Viewpoint",
     "curve_at", "curve_knots", "glsl_type", "lights_of", "look_at", "numbers_of", "ramp_at", "ramp_knots",

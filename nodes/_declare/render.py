@@ -23,6 +23,18 @@ class Meaning:
 
 
 @dataclass(frozen=True)
+class Matte:
+    """A cryptomatte: what it tells apart ("object", "material", "asset" or ""), its layers, the most covering first.
+
+    `ids` are those of its manifest by name, empty where the file has none: bits of the floats in the layers.
+    """
+
+    kind: str
+    layers: tuple[str, ...]
+    ids: Mapping[str, int]
+
+
+@dataclass(frozen=True)
 class Render:
     """Names of layers and their meanings by role ("depth", "normal", ...), and the camera if anything tells it."""
 
@@ -30,3 +42,4 @@ class Render:
     channels: Mapping[str, int]
     meanings: Mapping[str, Meaning] = field(default_factory=lambda: MappingProxyType[str, Meaning]({}))
     camera: Camera | None = None
+    mattes: tuple[Matte, ...] = ()

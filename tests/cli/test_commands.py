@@ -246,7 +246,7 @@ def test_version(cli):
 def test_help(cli):
     result = cli("--help")
     assert result.code == 0 and result.out.count("130  interrupted") == 1
-    for command in ("render", "check", "explain", "nodes", "fmt", "demo", "gallery"):
+    for command in ("render", "check", "explain", "info", "nodes", "fmt", "demo", "gallery"):
         assert f"\n  {command} " in result.out
         page = cli(command, "--help")
         assert page.code == 0 and "--json" in page.out and page.out.startswith(f"Usage: halation {command} ")
@@ -263,7 +263,7 @@ def test_the_reference_knows_every_flag_and_exit_code(cli):
     for command, text in chapters.items():
         flags = set(re.findall(r"(--[a-z]+)", cli(command, "--help").out)) - {"--help", "--json", "--input"}
         assert flags <= set(re.findall(r"--[a-z]+", text)), command
-    assert set(chapters) == {"edit", "render", "check", "explain", "nodes", "fmt", "demo", "gallery"}
+    assert set(chapters) == {"edit", "render", "check", "explain", "info", "nodes", "fmt", "demo", "gallery"}
     assert set(re.findall(r"^(\d+)  ", cli("--help").out.replace("\n  ", "\n"), re.M)) <= set(
         re.findall(r"^\| (\d+) \|", page, re.M)
     )

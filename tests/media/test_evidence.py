@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
+
 import numpy as np
 import pytest
+from halation.app.errors import InputError
 from halation.app.media import evidence
 from halation.app.media.camera import solve_camera
 from halation.app.media.conventions import Convention, DepthKind, Motion, Space, habit
@@ -185,6 +188,37 @@ def test_two_pictures_tell_motion(sign: tuple[float, float]) -> None:
     assert evidence.velocity_by_pictures(stored, np.ones((HEIGHT, WIDTH, 3)), np.ones((HEIGHT, WIDTH, 3))) is None
 
 
+# --- anything ----------------------------------------------------------------------------------------------------
+
+
+ODD = np.array([0.0, -0.0, 1.0, -1.0, 1e-45, 1e-38, 1e38, -1e38, np.inf, -np.inf, np.nan, 1e10, 0.5], np.float32)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_whatever_numbers_there_are_nothing_breaks(seed: int) -> None:
+    """Finite or not, of any size, in pictures of any shape; warnings are errors here."""
+    random = np.random.default_rng(seed)
+    height, width = random.integers(1, 60, 2)
+
+    def numbers(channels: int) -> np.ndarray:
+        usual = random.normal(size=(height, width, channels)) * 10.0 ** random.integers(-30, 9)
+        share = random.choice([0.0, 0.2, 0.5, 1.0])
+        odd = random.random((height, width, channels)) < share
+        return np.where(odd, random.choice(ODD, (height, width, channels)), usual).astype(np.float32)
+
+    depth, position, velocity = numbers(1)[..., 0], numbers(3), numbers(4)
+    found = [
+        evidence.depth_by_position(depth, position, CAMERA), evidence.depth_alone(depth),
+        evidence.normal_by_position(numbers(3), position, CAMERA), evidence.position_space(CAMERA, position),
+        evidence.velocity_by_cameras(velocity, position, CAMERA, BEFORE),
+        evidence.velocity_by_pictures(velocity, numbers(3), numbers(3)),
+    ]
+    assert all(rule is None or np.isfinite([*rule.scale, *rule.offset]).all() for rule in found)
+    for known in (None, depth):
+        with contextlib.suppress(InputError):
+            assert np.isfinite(solve_camera(position, known).camera.rows).all()
+
+
 # --- what is known of renderers -----------------------------------------------------------------------------------
 
 
@@ -194,7 +228,9 @@ def test_two_pictures_tell_motion(sign: tuple[float, float]) -> None:
         (Role.DEPTH, "ViewLayer.Depth", Renderer.BLENDER, "planar"), (Role.DEPTH, "hitdist", Renderer.KARMA, "radial"),
         (Role.DEPTH, "Pz", Renderer.KARMA, "negative"), (Role.DEPTH, "depth", Renderer.NUKE, "inverse"),
         (Role.DEPTH, "VRayZDepth", Renderer.VRAY, ""), (Role.DEPTH, "dd", Renderer.MITSUBA, "radial"),
-        (Role.DEPTH, "Z", None, "planar"), (Role.NORMAL, "N", Renderer.ARNOLD, "world"),
+        (Role.DEPTH, "Z", None, "planar"), (Role.DEPTH, "hitdist", None, "radial"),
+        (Role.VELOCITY, "forward", None, "to_next"), (Role.POSITION, "P", None, "world"),
+        (Role.NORMAL, "N", Renderer.ARNOLD, "world"),
         (Role.NORMAL, "Ng_camera", Renderer.KARMA, "camera"), (Role.NORMAL, "Nn", Renderer.RENDERMAN, "camera_ahead"),
         (Role.POSITION, "__Pworld", Renderer.RENDERMAN, "world"), (Role.VELOCITY, "Vector", Renderer.BLENDER,
                                                                    "from_previous"),

@@ -12,14 +12,16 @@ import OpenImageIO as oiio
 import pytest
 from halation.app.errors import InputError
 from halation.app.media.naming import Renderer, Role
+from halation.app.media.read import Want, read_many
 from halation.app.media.survey import Survey, survey
-from halation.nodes import Camera
+from halation.nodes import Camera, Kind
 from halation.nodes._declare.camera import look_at
 from raycast import Seen, seen
 
 ROOT = Path(__file__).parents[2]
 NEON = ROOT / "presets/samples/neon.exr"
 CROP = ROOT / "tests/data/blender45_multilayer.exr"
+NEON_BEFORE = ROOT / "tests/data/blender50_frame_before.exr"
 WIDTH, HEIGHT = 96, 54
 CAMERA = look_at((2.0, -7.0, 2.5), (0.3, 2.0, 1.5), (1.1, 1.1 * WIDTH / HEIGHT))
 BEFORE = look_at((1.9, -7.1, 2.45), (0.33, 2.0, 1.47), (1.1, 1.1 * WIDTH / HEIGHT))
@@ -74,6 +76,22 @@ def test_blender(path: Path) -> None:
     assert found.conventions[Role.VELOCITY].scale == (-1.0, 1.0, -1.0, 1.0)
     assert found.camera.solved is not None and found.camera.solved.residual < 1e-3
     assert found.camera.camera.eye == pytest.approx((-0.2347826, -8.5043478, 2.2043478), abs=3e-6)
+
+
+def test_the_motion_of_blender_is_proved_by_a_crop_of_the_frame_before() -> None:
+    found = survey(NEON, NEON_BEFORE)
+    motion = found.conventions[Role.VELOCITY]
+    assert (motion.kind, motion.measured, motion.scale) == ("from_previous", True, (-1.0, 1.0, -1.0, 1.0))
+    position, vector = (
+        pixels.array.astype(np.float64)
+        for pixels in read_many(NEON, [Want("Position", Kind.VECTOR, 3), Want("Vector", Kind.VECTOR, 4)])
+    )
+    rows = np.reshape(survey(NEON_BEFORE).camera.camera.rows, (3, 4))
+    then = position @ rows[:, :3].T + rows[:, 3]
+    y, x = np.mgrid[0:270, 0:480] + 0.5
+    moved = np.stack([x, y], axis=-1) - then[..., :2] / then[..., 2:] * (480, 270)
+    apart = np.abs(vector[..., :2] * motion.scale[:2] - moved)
+    assert np.median(apart) < 1e-3 and np.percentile(apart, 75) < 1e-3  # the ball moves by itself
 
 
 def test_arnold_with_a_camera_in_its_header(tmp_path: Path) -> None:
@@ -162,6 +180,9 @@ def test_pictures_tell_motion_where_positions_are_missing(tmp_path: Path) -> Non
     now = written(tmp_path / "2.exr", {"rgba.RGB": picture(x - 3.0, y - 2.0), "motionvector.XY": vectors})
     then = written(tmp_path / "1.exr", {"rgba.RGB": picture(x, y)})
     assert survey(now, then).conventions[Role.VELOCITY].scale == (-1.0, 1.0)
+    ahead = written(tmp_path / "3.exr", {"rgba.RGB": picture(x - 3.0, y - 2.0), "forward.UV": -vectors})
+    found = survey(ahead, then).conventions[Role.VELOCITY]
+    assert (found.kind, found.scale, found.measured) == ("to_next", (1.0, -1.0), True)
 
 
 def test_the_frame_before_must_have_the_same_size(tmp_path: Path) -> None:
