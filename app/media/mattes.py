@@ -50,7 +50,8 @@ def _manifest(attributes: Mapping[str, object], key: str, folder: Path) -> dict[
     try:
         said = attributes.get(f"cryptomatte/{key}/manifest")
         beside = attributes.get(f"cryptomatte/{key}/manif_file")
-        text = (folder / str(beside)).read_text(encoding="utf-8") if said is None and beside else str(said or "{}")
+        file = folder / Path(str(beside)).name
+        text = file.read_text(encoding="utf-8") if said is None and beside else str(said or "{}")
         found = json.loads(text)
         names = cast("dict[str, object]", found if isinstance(found, dict) else {})
         return {name: int(str(number), 16) for name, number in names.items()}

@@ -4,6 +4,7 @@
 const float GEOMETRY_FAR = 1e9;       // deeper is background, which renderers write as 1e10 or infinity
 const float GEOMETRY_NOTHING = 1e10;  // what we write there
 const float GEOMETRY_LEAST = 0.1;     // a shorter normal is an average of hardly anything: background too
+const float GEOMETRY_WHOLE = 0.98;    // a shorter normal is an average of several surfaces
 
 bool is_surface(float depth) { return is_finite(depth) && depth > 0.0 && depth < GEOMETRY_FAR; }
 
@@ -19,6 +20,9 @@ vec3 unit_normal(vec3 normal) {
     return size > GEOMETRY_LEAST && size < GEOMETRY_FAR ? normal / size : vec3(0.0);
 }
 
+// True where antialiasing has averaged the normals of several surfaces, and on the background.
+bool is_mixed(vec3 normal) { return length(normal) < GEOMETRY_WHOLE; }
+
 // By how much of itself nearness grows from a pixel to the next, from what it is one and two pixels before and after.
 // It is affine on planes: on the side where it bends far more than on the other, another surface begins.
 float nearness_slope(float here, vec2 one, vec2 two) {
@@ -32,9 +36,4 @@ float nearness_slope(float here, vec2 one, vec2 two) {
     if (one.x <= 0.0) after = 1.0;
     if (one.y <= 0.0) after = 0.0;
     return mix(1.0 - one.x, one.y - 1.0, after);
-}
-
-// How much a surface faces whoever looks along a ray: 1 straight on, 0 where it turns away, and on the background.
-float facing_ratio(vec3 normal, vec3 ray) {
-    return clamp(-dot(unit_normal(normal), ray) / max(length(ray), 1e-9), 0.0, 1.0);
 }

@@ -30,7 +30,8 @@ IMAGES = Path(__file__).parents[2] / "docs" / "images"
 PRESETS = {path.stem: path for path in paths()}
 ASKED = {"soft_bloom", "cinematic_grade", "night_street", "emboss_and_edges", "dreamy_glow", "underwater"}
 FINE = {
-    "canny", "convolve3x3", "crosshatch", "crt", "difference_of_gaussians", "edge_detect", "film_grain", "halftone",
+    "canny", "convolve3x3", "crosshatch", "crt", "difference_of_gaussians", "edge_detect", "film_grain",
+    "geometry_edges", "halftone",
 }
 """Their lines, dots and grains are a pixel or two wide, so a proxy shows them bolder or not at all."""
 

@@ -1,0 +1,42 @@
+from .._declare import Camera, Draw, Drawn, Field, Filter, Output, Vector, Viewpoint
+
+
+class CameraVelocity(Filter):
+    """Find how far every pixel moves in the picture because the camera does, from depth and the cameras of two frames.
+
+    What stands still is placed in the world and seen by the other camera, as in TU Wien's "Screenspace Effects". What
+    has no depth is sky: only turning moves it. In pixels of the full-size picture, x to the right and y down: x and y
+    are now minus the frame before, z and w the frame after minus now; without a camera after, as if it went on evenly.
+    """
+
+    depth = Field(doc="Planar distance along the way the camera looks.")
+    camera = Viewpoint(doc="The camera now.")
+    before = Viewpoint(doc="The camera of the frame before.")
+    after = Viewpoint(0.0, doc="The camera of the frame after.")
+
+    velocity = Output(Vector(width=4))
+
+    def passes(self, draw: Draw) -> Drawn:
+        now, before, after = (draw.camera(one) for one in (self.camera, self.before, self.after))
+        stay = (0.0,) * 12
+        return draw.point(
+            "camera_velocity", self.depth, result=Vector(width=4),
+            before=_change(now, before) if now and before else stay,
+            after=_change(now, after) if now and after else stay, ahead=after is not None,
+        )
+
+
+def _change(now: Camera, other: Camera) -> tuple[float, ...]:
+    """What the other camera adds to (u d, v d, d) that now sees: rows of a 3 x 4 matrix for (u d, v d, d, 1).
+
+    As a difference, in 64 bits, so that a still camera makes no motion at all and a slow one loses no digits.
+    """
+    rays = now.inverse
+    rows: list[float] = []
+    for axis in range(3):
+        ahead, offset = other.rows[4 * axis : 4 * axis + 3], other.rows[4 * axis + 3]
+        row = [sum(part * rays[4 * index + column] for index, part in enumerate(ahead)) for column in range(4)]
+        row[axis] -= 1.0
+        row[3] += offset
+        rows += row
+    return tuple(rows)

@@ -1,0 +1,46 @@
+from collections.abc import Mapping
+from typing import Annotated
+
+from .._declare import Draw, Drawn, Field, Filter, Output, Slider, Vector, Viewpoint
+
+
+class Curvature(Filter):
+    """Find ridges and cavities: how strongly surfaces bend towards the viewer and away.
+
+    The mean curvature, half the trace of the shape operator: how normals turn against how places move from pixel to
+    pixel, never across a gap in depth. Exact on balls, 1 / radius. Places come from position, or from depth and camera;
+    from normals alone, the view is taken for parallel and lengths count picture heights.
+    """
+
+    normal = Vector(width=3, doc="Directions of surfaces.")
+    position = Vector(0.0, width=3, doc="Places in the world.")
+    depth = Field(0.0, doc="Distance from the camera, in place of positions.")
+    camera = Viewpoint(0.0, doc="Without one, normals alone are the camera's own: x right, y up, z towards it.")
+    radius: Annotated[float, Slider(
+        0.01, 10.0, unit="scene", minimum=0.0, doc="A ball of this radius reads 1; larger ones less."
+    )] = 0.25
+    reach: Annotated[float, Slider(
+        1.0, 10.0, unit="px", minimum=0.0, maximum=100.0, doc="How far away the pixels lie that are compared."
+    )] = 1.0
+
+    ridge = Output(Field(doc="How strongly it bends outwards, 0..1."))
+    cavity = Output(Field(doc="How strongly it bends inwards, 0..1."))
+    mean = Output(Field(doc="Mean curvature per unit of length: above 0 on ridges, below 0 in cavities."))
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        camera, reach, field = draw.camera(self.camera), max(round(self.reach), 1), Field()
+        places = self.position if draw.linked(self.position) else None
+        if places is None and camera and draw.linked(self.depth):
+            places = draw.point("curvature_place", self.depth, result=Vector(width=3), rays=camera.inverse)
+        if places:
+            mean = draw("curvature_found", self.normal, places=places, result=field, reach=reach)
+        else:
+            mean = draw(
+                "curvature_alone", self.normal, result=field, reach=reach,
+                right=camera.right if camera else (1.0, 0.0, 0.0), down=camera.down if camera else (0.0, -1.0, 0.0),
+                forward=camera.forward if camera else (0.0, 0.0, -1.0),
+            )
+        ridge, cavity = (
+            draw.point("curvature", result=field, mean=mean, radius=radius) for radius in (self.radius, -self.radius)
+        )
+        return {"ridge": ridge, "cavity": cavity, "mean": mean}

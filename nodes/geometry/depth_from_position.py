@@ -1,0 +1,19 @@
+from .._declare import Draw, Drawn, Field, Filter, Output, Vector, Viewpoint
+
+
+class DepthFromPosition(Filter):
+    """Find how deep every pixel lies in the picture, from its place in the world and the camera.
+
+    The depth is planar, in world units, along the way the camera looks. It is 1e10 where there is nothing: at 0, 0, 0,
+    which renderers write there, and behind the camera.
+    """
+
+    position = Vector(width=3, doc="Places in the world.")
+    camera = Viewpoint(doc="The camera that the positions were rendered with.")
+
+    depth = Output(Field())
+
+    def passes(self, draw: Draw) -> Drawn:
+        camera = draw.camera(self.camera)
+        rows = camera.rows if camera else (0.0,) * 12
+        return draw.point("depth_from_position", self.position, result=Field(), rows=rows)

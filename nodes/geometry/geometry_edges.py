@@ -1,0 +1,68 @@
+from collections.abc import Mapping
+from math import ceil, log2
+from typing import Annotated
+
+from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Output, Slider, Vector
+
+_SEAM = 2.0
+"""Width of a bare edge in pixels: one on either side of the seam."""
+
+
+class GeometryEdges(Filter):
+    """Find where surfaces end, fold and meet, as lines of any width: by depth, normals and ids, whichever are linked.
+
+    Depth: how much 1 / depth bends along a row or column, relative to the nearest of three pixels. It is affine on
+    every plane, so that flat surfaces make no edge however steep they lie; between two surfaces it reads
+    1 - near / far. Normals: the angle between neighbors. Ids: any difference. Lines run along seams between pixels.
+    """
+
+    depth = Field(0.0, doc="Distance from the camera.")
+    normal = Vector(0.0, width=3, doc="Directions of surfaces.")
+    ids = Field(0.0, doc="Numbers of objects or materials.")
+    width: Annotated[float, Slider(
+        0.0, 20.0, unit="px", minimum=0.0, maximum=1000.0, doc="Width of the lines, the same near and far."
+    )] = 2.0
+    depth_amount: Annotated[Fraction, Doc("How strong lines by depth are.")] = 1.0
+    depth_threshold: Annotated[float, Slider(
+        0.0, 0.5, unit="ratio", minimum=0.0, doc="Gaps that are a smaller part of the depth make no line."
+    )] = 0.05
+    crease_amount: Annotated[Fraction, Doc("How strong lines by normals are.")] = 1.0
+    crease_threshold: Annotated[float, Slider(
+        0.0, 90.0, unit="deg", minimum=0.0, maximum=180.0, doc="Folds by smaller angles make no line."
+    )] = 35.0
+    id_amount: Annotated[Fraction, Doc("How strong lines between ids are.")] = 1.0
+    softness: Annotated[Fraction, Doc(
+        "Lines gain strength up to so much above their threshold, as a part of it. Lines wider than 2 pixels are hard."
+    )] = 0.5
+
+    edges = Output(Field(doc="How much of each pixel lines cover, 0..1."))
+    gap = Output(Field(doc="Between surfaces, as a part of the depth."))
+    crease = Output(Field(doc="Between neighboring normals, in degrees; 180 at the background."))
+    border = Output(Field(doc="1 where an id meets another one."))
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        field = Field()
+        found = draw("geometry_edges_found", self.depth, self.normal, self.ids, result=Vector(width=3))
+        edges = draw.point(
+            "geometry_edges", result=field, found=found,
+            amounts=(self.depth_amount, self.crease_amount, self.id_amount), gap=self.depth_threshold,
+            crease=self.crease_threshold, softness=self.softness, cover=min(self.width / _SEAM, 1.0),
+        )
+        if self.width > _SEAM:
+            edges = self._widened(draw, edges)
+        return {
+            "edges": edges,
+            "gap": draw.point("geometry_edges_gap", result=field, found=found),
+            "crease": draw.point("geometry_edges_crease", result=field, found=found),
+            "border": draw.point("geometry_edges_border", result=field, found=found),
+        }
+
+    def _widened(self, draw: Draw, edges: Drawn) -> Drawn:
+        """What lies within half the width of a seam, by the distance to the bare edges' contour."""
+        beyond = (self.width - _SEAM) / 2.0
+        reach = ceil(beyond) + 2
+        columns = draw.point("geometry_edges_seeds", result=Vector(width=2), edges=edges)
+        for level in reversed(range(ceil(log2(reach + 1)))):
+            columns = draw("geometry_edges_columns", seeds=columns, result=Vector(width=2), reach=2**level)
+        contour = draw("geometry_edges_distance", mask=edges, columns=columns, result=Field(), reach=reach)
+        return draw.point("geometry_edges_line", result=Field(), contour=contour, beyond=beyond)

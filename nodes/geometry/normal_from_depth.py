@@ -1,0 +1,33 @@
+from collections.abc import Mapping
+from typing import Annotated
+
+from .._declare import Draw, Drawn, Field, Filter, Output, Slider, Vector, Viewpoint
+
+
+class NormalFromDepth(Filter):
+    """Find which way every surface faces, from its depth and the camera, for renders without a normal pass.
+
+    1 / depth is affine on planes, so its slopes are those of the tangent plane. They are taken from the side on which
+    they go on straight for two pixels, as in Wu 2021 ("Accurate Normal Reconstruction from Depth Buffer"): edges stay
+    sharp. `curvature` is the mean curvature in 1 / world units: above 0 where a surface bulges (1 / r on a ball), below
+    0 in its hollows. Where there is nothing, both are 0.
+    """
+
+    depth = Field(doc="Planar distance along the way the camera looks.")
+    camera = Viewpoint(doc="The camera that the depth was rendered with.")
+    reach: Annotated[float, Slider(
+        1.0, 8.0, unit="px", minimum=1.0, maximum=64.0, doc="How far apart normals are compared for the curvature."
+    )] = 2.0
+
+    normal = Output(Vector(width=3, doc="Of length 1, in the world, towards the camera."))
+    curvature = Output(Field())
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        camera = draw.camera(self.camera)
+        rows, rays = (camera.rows, camera.inverse) if camera else ((0.0,) * 12, (0.0,) * 12)
+        normal = draw("normal_from_depth", self.depth, edge="black", result=Vector(width=3), rows=rows)
+        curvature = draw(
+            "normal_from_depth_curvature", self.depth, normal=normal, edge="black", result=Field(), rays=rays,
+            reach=max(round(self.reach), 1),
+        )
+        return {"normal": normal, "curvature": curvature}

@@ -1,0 +1,19 @@
+from .._declare import Draw, Drawn, Field, Filter, Output, Vector, Viewpoint
+
+
+class PositionFromDepth(Filter):
+    """Find where in the world every pixel lies, from its depth and the camera.
+
+    The place is `eye + depth * ray`, in world units: as exact as the depth. Where there is nothing, it is 0, 0, 0, as
+    renderers write it.
+    """
+
+    depth = Field(doc="Planar distance along the way the camera looks.")
+    camera = Viewpoint(doc="The camera that the depth was rendered with.")
+
+    position = Output(Vector(width=3))
+
+    def passes(self, draw: Draw) -> Drawn:
+        camera = draw.camera(self.camera)
+        rays = camera.inverse if camera else (0.0,) * 12
+        return draw.point("position_from_depth", self.depth, result=Vector(width=3), rays=rays)

@@ -1,0 +1,61 @@
+from collections.abc import Mapping
+
+from .._declare import Draw, Drawn, Field, Filter, Image, Number, Output, Socket, Vector
+
+
+class RebuildBeauty(Filter):
+    """Put the picture together again from its light passes, each of which can be graded before.
+
+    Color * (direct + indirect) for diffuse, glossy and transmission, plus volume, emission, environment and whatever
+    else there is: the sum that Cycles makes. A color that is not linked counts as white, for renderers whose light is
+    colored already. With the render itself as beauty, it says how far the sum is off.
+    """
+
+    beauty = Image(0.0, doc="The render, to compare with and for its alpha.")
+    diffuse_color = Image(1.0)
+    diffuse_direct = Image(0.0)
+    diffuse_indirect = Image(0.0)
+    glossy_color = Image(1.0, doc="Glossy is also called specular.")
+    glossy_direct = Image(0.0)
+    glossy_indirect = Image(0.0)
+    transmission_color = Image(1.0)
+    transmission_direct = Image(0.0)
+    transmission_indirect = Image(0.0)
+    volume_direct = Image(0.0)
+    volume_indirect = Image(0.0)
+    emission = Image(0.0)
+    environment = Image(0.0)
+    other = Image(0.0, doc="Light that has no place above: subsurface, coat, sheen.")
+
+    out = Output()
+    difference = Output(Field(doc="How far the sum is from beauty: the largest of the three channels; 0 without it."))
+    error = Output(Number(doc="The largest difference anywhere."))
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        total = draw.point("rebuild_beauty_none", result=Vector(width=4))
+        for color, direct, indirect in self._lobes():
+            if draw.linked(direct) or draw.linked(indirect):
+                total = draw.point(
+                    "rebuild_beauty_lobe", result=Vector(width=4), total=total, color=color, direct=direct,
+                    indirect=indirect,
+                )
+        for light in (self.volume_direct, self.volume_indirect, self.emission, self.environment, self.other):
+            if draw.linked(light):
+                total = draw.point("rebuild_beauty_light", result=Vector(width=4), total=total, light=light)
+        known = draw.linked(self.beauty)
+        difference = draw.point(
+            "rebuild_beauty_difference", result=Field(), total=total, beauty=self.beauty, known=known
+        )
+        return {
+            "out": draw.point("rebuild_beauty", total=total, beauty=self.beauty, known=known),
+            "difference": difference,
+            "error": draw.point("rebuild_beauty_error", result=Number(), most=draw.reduce(difference, "max")),
+        }
+
+    def _lobes(self) -> tuple[tuple[Socket, Socket, Socket], ...]:
+        """Color, direct and indirect light of each."""
+        return (
+            (self.diffuse_color, self.diffuse_direct, self.diffuse_indirect),
+            (self.glossy_color, self.glossy_direct, self.glossy_indirect),
+            (self.transmission_color, self.transmission_direct, self.transmission_indirect),
+        )

@@ -1,0 +1,43 @@
+import math
+from collections.abc import Mapping
+from typing import Annotated
+
+from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Vector, Viewpoint
+
+
+class RimLight(Filter):
+    """Add light along the rims of surfaces, where they turn away from the camera.
+
+    The rim is (1 - n.v)^power: n is the normal, v the way to the camera. It can come from all around or from one side.
+    It is added on what the mask and the picture's alpha cover.
+    """
+
+    image = Image()
+    normal = Vector(width=3, doc="Directions of surfaces.")
+    camera = Viewpoint(0.0, doc="Without one, normals are the camera's own: x right, y up, z towards it.")
+    mask = Field(1.0, doc="Where the light falls: flat ground seen aslant is all rim.")
+    color: Annotated[RGBA, Doc("Color of the light; its alpha scales it.")] = (1.0, 0.85, 0.7, 1.0)
+    intensity: Annotated[float, Slider(0.0, 10.0, unit="ratio", doc="How strong it is.")] = 2.0
+    power: Annotated[float, Slider(
+        0.5, 10.0, unit="ratio", minimum=0.0, maximum=1000.0, doc="Higher makes the rim narrower."
+    )] = 3.0
+    focus: Annotated[Fraction, Doc("0: from all around; 1: from one side alone.")] = 0.0
+    angle: Annotated[float, Slider(
+        -180.0, 180.0, unit="deg", doc="The side it comes from: 0 is right, 90 above."
+    )] = 45.0
+
+    out = Output()
+    rim = Output(Field(doc="How much of the light every pixel takes, 0..1, whatever the mask."))
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        camera = draw.camera(self.camera)
+        rays = camera.inverse if camera else (0.0,) * 10 + (-1.0, 0.0)
+        right, down = (camera.right, camera.down) if camera else ((1.0, 0.0, 0.0), (0.0, -1.0, 0.0))
+        across, up = math.cos(self.angle), math.sin(self.angle)
+        side = tuple(across * a - up * b for a, b in zip(right, down, strict=True))
+        rim = draw(
+            "rim_light_rim", self.normal, result=Field(), rays=rays, power=self.power, focus=self.focus, side=side
+        )
+        gain = self.intensity * self.color[3]
+        light = tuple(gain * part for part in self.color[:3])
+        return {"out": draw.point("rim_light", self.image, rim=rim, mask=self.mask, light=light), "rim": rim}

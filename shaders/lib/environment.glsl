@@ -1,0 +1,41 @@
+// Pictures of all that surrounds a scene, by longitude and latitude: up is at the top. With z up, x is in the middle
+// and y a quarter to the left, as in Blender; with y up, z is in the middle and x a quarter to the left, as in OpenEXR.
+
+const float ENVIRONMENT_PI = 3.14159265;
+
+// Where a direction lies, as fractions of the picture; `turn` turns the surroundings counterclockwise, seen from above.
+vec2 environment_uv(vec3 way, bool y_up, float turn) {
+    if (y_up) way = way.zxy;
+    float longitude = way.xy == vec2(0.0) ? 0.0 : atan(way.y, way.x);
+    float below = acos(clamp(way.z, -1.0, 1.0));
+    return vec2(fract(0.5 - (longitude - turn) / (2.0 * ENVIRONMENT_PI)), below / ENVIRONMENT_PI);
+}
+
+// The direction of a place in the picture.
+vec3 environment_way(vec2 uv, bool y_up, float turn) {
+    float longitude = (0.5 - uv.x) * 2.0 * ENVIRONMENT_PI + turn, below = uv.y * ENVIRONMENT_PI;
+    vec3 way = vec3(sin(below) * vec2(cos(longitude), sin(longitude)), cos(below));
+    return y_up ? way.yzx : way;
+}
+
+// The solid angle of a pixel in a row of such a picture.
+float environment_angle(int row, ivec2 size) {
+    float height = ENVIRONMENT_PI / float(size.y);
+    float below = float(row) * height;
+    return (cos(below) - cos(below + height)) * 2.0 * ENVIRONMENT_PI / float(size.x);
+}
+
+// The pixel that stands for one beyond the edge: around the world, and over a pole to its other side.
+ivec2 environment_texel(ivec2 at, ivec2 size) {
+    if (at.y < 0 || at.y >= size.y) at = ivec2(at.x + size.x / 2, at.y < 0 ? -1 - at.y : 2 * size.y - 1 - at.y);
+    return ivec2(at.x - size.x * int(floor((float(at.x) + 0.5) / float(size.x))), clamp(at.y, 0, size.y - 1));
+}
+
+// One of the four pixels around a direction, and how much it counts.
+ivec2 environment_corner(vec2 uv, int corner, ivec2 size, out float weight) {
+    vec2 at = uv * vec2(size) - 0.5, part = at - floor(at);
+    ivec2 beyond = ivec2(corner & 1, corner >> 1);
+    vec2 near = mix(1.0 - part, part, vec2(beyond));
+    weight = near.x * near.y;
+    return environment_texel(ivec2(floor(at)) + beyond, size);
+}

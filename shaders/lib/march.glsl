@@ -1,0 +1,191 @@
+// Rays through the picture, against what the picture shows of the world (McGuire and Mara 2014). Along a ray, position in
+// the picture and nearness (1 / depth) are both affine in `at` = t / depth, t the distance from where the ray starts; on a
+// plane, nearness is affine in the position. So every pixel is a small plane that rays meet exactly, and no plane hides
+// itself. Cells of 4, 16 and 64 pixels say what they hold at most, so that rays leap over what is empty (Uludag 2014).
+#include "lib/camera.glsl"
+#include "lib/geometry.glsl"
+
+const int MARCH_LEVELS = 3;
+const float MARCH_LIFT = 1e-4;     // rays start by so much of the depth before the surface
+const float MARCH_NUDGE = 1e-3;    // pixels: beyond a border by so much, the next cell begins
+const float MARCH_ENDLESS = 1e18;
+
+struct March {
+    vec2 from, pace;   // position in pixels where it starts, and how it moves with `at`
+    float near, gain;  // the same of nearness
+    float at, last, nudge;
+    int level;         // cells have 4^level pixels to a side
+    float gap;         // how far behind what is seen it passes
+    bool endless;      // at `last`, it is infinitely far
+    float sure;        // 1 where it met what is seen, less the deeper it came into something from the side
+};
+
+float march_near(March ray, float at) { return ray.near + ray.gain * at; }
+vec2 march_place(March ray) { return ray.from + ray.pace * ray.at; }
+
+// How far from its start it has come, in world units.
+float march_distance(March ray) { return ray.at / max(march_near(ray, ray.at), 1e-30); }
+
+// Where it leaves a box.
+float march_leaves(March ray, vec2 low, vec2 high) {
+    vec2 wall = mix(low, high, greaterThan(ray.pace, vec2(0.0)));
+    vec2 way = mix((wall - ray.from) / ray.pace, vec2(MARCH_ENDLESS), equal(ray.pace, vec2(0.0)));
+    return min(way.x, way.y);
+}
+
+// A ray from what lies so deep at `uv`, as long as `reach` world units, or endless. It starts with the next pixel.
+March march_start(const vec4 rows[3], vec2 uv, float depth, vec3 way, float reach, bool endless, vec2 size) {
+    vec3 moved = vec3(dot(rows[0].xyz, way), dot(rows[1].xyz, way), dot(rows[2].xyz, way));
+    March ray;
+    depth *= 1.0 - MARCH_LIFT;
+    ray.from = uv * size;
+    ray.pace = (moved.xy - uv * moved.z) * size;
+    ray.near = 1.0 / depth;
+    ray.gain = -moved.z / depth;
+    float whole = depth + reach * moved.z;
+    ray.last = whole > 0.0 ? reach / whole : MARCH_ENDLESS;
+    if (endless) ray.last = moved.z > 0.0 ? 1.0 / moved.z : MARCH_ENDLESS;
+    float border = march_leaves(ray, vec2(0.0), size);
+    ray.endless = endless && moved.z > 0.0 && ray.last < border;
+    ray.last = min(ray.last, border);
+    ray.nudge = MARCH_NUDGE / max(max(abs(ray.pace.x), abs(ray.pace.y)), 1e-12);
+    vec2 own = floor(ray.from);
+    ray.at = max(march_leaves(ray, own, own + 1.0), 0.0);
+    ray.level = 0;
+    ray.gap = 0.0;
+    ray.sure = 0.0;
+    return ray;
+}
+
+// The cell that it is in.
+ivec2 march_cell(March ray, ivec2 size) {
+    vec2 ahead = ray.from + ray.pace * (ray.at + ray.nudge);
+    return ivec2(clamp(floor(ahead), vec2(0.0), vec2(size - 1))) >> (2 * ray.level);
+}
+
+ivec2 march_cells(ivec2 size, int level) { return (size + (1 << (2 * level)) - 1) >> (2 * level); }
+
+// Where the picture of all surfaces keeps a cell: pixels as they are, and below them the larger cells, side by side.
+ivec2 march_texel(ivec2 cell, ivec2 size, int level) {
+    for (int i = 1; i < level; ++i) cell.x += march_cells(size, i).x;
+    return level > 0 ? cell + ivec2(0, size.y) : cell;
+}
+
+float march_gap(float near, float surface) { return max(1.0 / max(near, 1e-30) - 1.0 / max(surface, 1e-30), 0.0); }
+
+// One cell further. `seen` is what it holds: the nearness in the middle of a pixel and by how much that grows to the right
+// and down, or the most and the least of a larger cell. True where the ray ends on something.
+bool march_step(inout March ray, ivec2 cell, vec3 seen, float thickness) {
+    const float rounding = 1e-6;
+    vec2 low = vec2(cell << (2 * ray.level)), high = low + float(1 << (2 * ray.level));
+    float next = min(max(march_leaves(ray, low, high), ray.at + ray.nudge), ray.last);
+    float near_now = march_near(ray, ray.at), near_next = march_near(ray, next);
+    if (ray.level > 0) {
+        bool before = min(near_now, near_next) > seen.x || seen.x <= 0.0;
+        bool hidden = max(near_now, near_next) < seen.y / (1.0 + thickness * seen.y);
+        if (!before && !hidden) {
+            --ray.level;
+            return false;
+        }
+        ray.gap = hidden ? thickness : 0.0;
+    } else if (seen.x <= 0.0) {
+        ray.gap = 0.0;
+    } else {
+        vec2 middle = low + 0.5;
+        float now = seen.x + dot(seen.yz, ray.from + ray.pace * ray.at - middle);
+        float then = seen.x + dot(seen.yz, ray.from + ray.pace * next - middle);
+        float ahead = near_now - now, after = near_next - then, least = -rounding * seen.x;
+        if (ahead >= least && after < least) {
+            ray.at = mix(ray.at, next, clamp(ahead / (ahead - after), 0.0, 1.0));
+            ray.sure = 1.0;
+            return true;
+        }
+        if (ahead < least) {
+            // It came in from the side, or from behind something nearer, if what is seen is suddenly another surface.
+            float gap = march_gap(near_now, now), slant = (abs(seen.y) + abs(seen.z)) / (seen.x * seen.x);
+            ray.sure = clamp(2.0 - 2.0 * gap / max(thickness, 1e-9), 0.0, 1.0);
+            if ((ray.gap == 0.0 || ray.gap > gap + slant) && ray.sure > 0.0) return true;
+        }
+        ray.gap = after < least ? march_gap(near_next, then) : 0.0;
+    }
+    ray.at = next;
+    ray.level = min(ray.level + 1, MARCH_LEVELS);
+    return false;
+}
+
+// The three draws of the picture of all surfaces. The first reads `depth`.
+vec3 march_planes() {
+    float here = nearness(depth_at(pixel));
+    if (here == 0.0) return vec3(0.0);
+    vec2 slope;
+    for (int axis = 0; axis < 2; ++axis) {
+        ivec2 next = axis == 0 ? ivec2(1, 0) : ivec2(0, 1);
+        vec2 one = vec2(nearness(depth_at(pixel - next)), nearness(depth_at(pixel + next)));
+        vec2 two = vec2(nearness(depth_at(pixel - 2 * next)), nearness(depth_at(pixel + 2 * next)));
+        slope[axis] = nearness_slope(here, one, two);
+        // What bends as much as it slopes to both sides is an edge, or thinner than pixels: then it faces the eye.
+        vec2 bend = mix(abs(two - 2.0 * one + here), abs(one - here), equal(two, vec2(0.0))) / here;
+        slope[axis] *= clamp(2.0 - min(bend.x, bend.y) / max(abs(slope[axis]), 1e-9), 0.0, 1.0);
+    }
+    // No plane reaches behind the eye within its pixel.
+    return here * vec3(1.0, clamp(slope, -1.0, 1.0));
+}
+
+// The most and the least of what planes are anywhere in 4 x 4 pixels; the background counts as 0.
+vec3 march_bounds() {
+    vec2 found = vec2(0.0, 1e30);
+    for (int i = 0; i < 16; ++i) {
+        ivec2 at = 4 * pixel + ivec2(i & 3, i >> 2);
+        if (any(greaterThanEqual(at, planes_size))) continue;
+        vec3 plane = planes_at(at);
+        float most = 0.5 * (abs(plane.y) + abs(plane.z));
+        found = vec2(max(found.x, plane.x + most), min(found.y, max(plane.x - most, 0.0)));
+    }
+    return vec3(found, 0.0);
+}
+
+vec3 march_surfaces() {
+    ivec2 size = planes_size;
+    if (pixel.y < size.y) return all(lessThan(pixel, size)) ? planes_at(pixel) : vec3(0.0);
+    ivec2 cell = pixel - ivec2(0, size.y);
+    int level = 1;
+    while (level < MARCH_LEVELS && cell.x >= march_cells(size, level).x) cell.x -= march_cells(size, level++).x;
+    if (any(greaterThanEqual(cell, march_cells(size, level)))) return vec3(0.0);
+    int side = 1 << (2 * (level - 1));
+    vec2 found = vec2(0.0, 1e30);
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+            ivec2 at = side * cell + ivec2(x, y);
+            if (any(greaterThanEqual(at, bounds_size))) continue;
+            vec2 bound = bounds_at(at).xy;
+            found = vec2(max(found.x, bound.x), min(found.y, bound.y));
+        }
+    return vec3(found, 0.0);
+}
+
+// Follows a ray through the picture of all `surfaces`, at most so many steps. True where it meets one of them, and where
+// it gets away to infinity in a pixel that shows nothing: then it is `endless` still.
+bool march(inout March ray, ivec2 size, float thickness, int steps) {
+    for (int i = 0; i < steps && ray.at < ray.last; ++i) {
+        ivec2 cell = march_cell(ray, size);
+        if (march_step(ray, cell, surfaces_at(march_texel(cell, size, ray.level)), thickness)) {
+            ray.endless = false;
+            return true;
+        }
+    }
+    if (ray.at < ray.last || !ray.endless || ray.gap > 0.0) return false;
+    ray.sure = 1.0;
+    return surfaces_at(ivec2(clamp(march_place(ray), vec2(0.0), vec2(size - 1)))).x <= 0.0;
+}
+
+// The normal, towards the camera, of the plane of a pixel.
+vec3 march_normal(const vec4 rows[3], ivec2 at, ivec2 size) {
+    vec3 plane = surfaces_at(at);
+    return plane.x > 0.0 ? camera_normal(rows, camera_uv(at, size), plane.yz / plane.x * vec2(size)) : vec3(0.0);
+}
+
+// A direction that leaves the plane of a pixel: where normals are smoothed, rays would hide below it.
+vec3 march_out(vec3 way, vec3 plane) {
+    const float least = 2e-3;
+    return normalize(way + max(least - dot(way, plane), 0.0) * plane);
+}
