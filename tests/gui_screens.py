@@ -14,8 +14,8 @@ from halation.app.editor.dialogs import Browse, Question
 from halation.app.editor.editor import Editor
 from halation.app.editor.services.recovery import Recovery
 from halation.app.graph import Control, Graph, Input, Output, Port, Settings
-from halation.nodes import Kind, catalogue
-from toy_nodes import Tint
+from halation.nodes import Kind, Light, LightKind, catalogue, numbers_of
+from toy_nodes import Lamps, Tint
 
 SAMPLES = presets.paths()[0].parent / "samples"
 Screens = Iterator[str]
@@ -58,8 +58,12 @@ def window(ui: Ui) -> Screens:
 
 def inspector(ui: Ui) -> Screens:
     """What can be selected."""
-    ui.session.edit("Add", ui.session.graph.add("curves", Tint()))
-    for id in ("grade", "noise", "bloom", "vignette", "tone_map", "convolve3x3", "plate", "curves"):
+    lamps = Lamps(lights=numbers_of(tuple(
+        Light(kind, color=(1.0, 0.2 * kind, 0.1), intensity=4.0 - 3.0 * kind, on=kind != LightKind.SUN)
+        for kind in (LightKind.SPOT, LightKind.SUN, *LightKind, *LightKind)
+    )))
+    ui.session.edit("Add", ui.session.graph.add("curves", Tint()).add("lamps", lamps))
+    for id in ("grade", "noise", "bloom", "vignette", "tone_map", "convolve3x3", "plate", "curves", "lamps"):
         ui.session.select([id])
         ui.wait(3)
         yield f"inspector_{id}"

@@ -16,6 +16,9 @@ from halation.nodes import (
     Image,
     Kernel3x3,
     Kind,
+    Light,
+    LightKind,
+    LightList,
     Node,
     Number,
     Points,
@@ -25,6 +28,7 @@ from halation.nodes import (
     Source,
     Stops,
     Vector,
+    numbers_of,
 )
 from halation.nodes import Output as Made
 
@@ -103,8 +107,15 @@ class Tint(Filter):
     ramp: Stops = (0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0)
 
 
+class Lamps(Filter):
+    """A list of lights."""
+
+    image = Image()
+    lights: LightList = numbers_of((Light(),))
+
+
 TOYS: dict[str, type[Node]] = {
-    kind.id: kind for kind in (Gain, Soften, Blend, Split, Slope, Flow, Meter, Photo, Tint)
+    kind.id: kind for kind in (Gain, Soften, Blend, Split, Slope, Flow, Meter, Photo, Tint, Lamps)
 }
 
 
@@ -163,6 +174,11 @@ def random_value(rng: Random, kind: type[Node], name: str) -> Any:
         return tuple(
             part for place in places for part in (place / 8, *(rng.uniform(-9.0, 9.0) for _ in range(value.length - 1)))
         )
+    if value.type == "lights":
+        return numbers_of(tuple(
+            Light(rng.choice([*LightKind]), intensity=rng.uniform(-9.0, 9.0), on=rng.random() < 0.5)
+            for _ in range(rng.randint(0, 3))
+        ))
     return tuple(rng.uniform(-1e3, 1e3) for _ in range(value.length))
 
 

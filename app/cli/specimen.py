@@ -113,7 +113,8 @@ def untouched(sample: Path) -> Graph:
 def _is_needed(node: type[Node], socket: Socket) -> bool:
     """True if the node shows nothing of what it can do without a link to this input."""
     idle = socket.default == 0.0 and all(other.optional for other in node.inputs.values())
-    return not socket.optional or idle or socket.kind is Kind.VECTOR or (socket.name == "mask" and not socket.default)
+    lies = socket.kind is Kind.VECTOR and socket.name != "material"  # the sample has none of that
+    return not socket.optional or idle or lies or (socket.name == "mask" and not socket.default)
 
 
 def _vector(graph: Graph, name: str, socket: Socket, sample: Path) -> Graph:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from ...nodes import Edge, Kind, Size
+from ...nodes import Camera, Edge, Kind, Size
 from ..graph import Port
 from .raster import Mesh
 from .recolor import ColorProgram, Table
@@ -262,5 +262,7 @@ class Program:
     """What to remember for the next frame, by node."""
     results: Mapping[Port, Ref]
     """What outputs of nodes and groups, and inputs of graphs, stand for, in the order in which they were lowered."""
+    cameras: Mapping[Port, Camera]
+    """What inputs of nodes that take a camera were given."""
     scale: float
     frame: int

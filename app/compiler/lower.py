@@ -57,6 +57,7 @@ class _Lowering:
         self.pictures = Pictures(graph, self.flat, request, outside, self.builder)
         self.results: dict[Port, Operand] = {}
         self.memories: dict[str, Ref] = {}
+        self.cameras: dict[Port, Camera] = {}
 
     def run(self) -> Program:
         targets = dict(self.request.targets) or {name: Port(OUTPUTS, name) for name in self.graph.outputs}
@@ -72,7 +73,8 @@ class _Lowering:
         outputs = {name: self._finished(port, name, self._shown(targets[name], port)) for name, port in sources.items()}
         return Program(
             tuple(self.builder.ops), MappingProxyType(outputs), MappingProxyType(self.memories),
-            MappingProxyType(self._materialized()), self.request.scale, self.request.frame,
+            MappingProxyType(self._materialized()), MappingProxyType(self.cameras), self.request.scale,
+            self.request.frame,
         )
 
     def _materialized(self) -> dict[Port, Ref]:
@@ -178,6 +180,10 @@ class _Lowering:
         node = self.flat.nodes[path]
         constants.check_values(path, node)
         operands, linked = self._inputs(path, node)
+        self.cameras |= {
+            Port(path, name): Camera(rows) for name in linked if node.inputs[name].kind is Kind.CAMERA
+            and isinstance(given := operands[name], Constant) and isinstance(rows := given.value, tuple) and any(rows)
+        }
         wires: dict[str, Operand] = {}
         for name in node.values:
             source = self.flat.source(Port(path, name))

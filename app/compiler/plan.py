@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from ...nodes import Size
+from ...nodes import Camera, Size
 from ..graph import Port
 from .ir import Memory, Picture
 from .raster import Mesh
@@ -125,6 +125,8 @@ class Plan:
 
     Nodes are paths such as `glow/bloom`; the inputs of a group are `glow/inputs`. What was fused away is not there.
     """
+    cameras: Mapping[Port, Camera]
+    """What inputs of nodes that take a camera were given."""
     memories: Mapping[str, Memory]
     """What temporal nodes will want of this frame, by node."""
     slots: tuple[int, ...]

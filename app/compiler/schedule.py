@@ -44,6 +44,7 @@ def schedule(
         tuple(_pass(program, fused, item, numbers) for fused, item in zip(passes, emitted, strict=True)),
         MappingProxyType({name: numbers[ref] for name, ref in program.outputs.items()}),
         MappingProxyType({port: numbers[ref] for port, ref in program.results.items() if ref in numbers}),
+        program.cameras,
         MappingProxyType({
             node: Memory(keys[ref], _shape(program, ref), texels[ref].endswith("16f"))
             for node, ref in program.memories.items()

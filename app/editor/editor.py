@@ -65,6 +65,8 @@ class Editor:
     """True while a value is being dragged: pictures may be coarse until it is let go."""
     places: dict[str, Rectangle] = field(default_factory=dict[str, Rectangle])
     """Where things were drawn last, by name: for tests and hints."""
+    lights: dict[str, int] = field(default_factory=dict[str, int])
+    """The light that is selected of every value that lists some: the inspector shows it, the viewer marks it."""
     requests: set[str] = field(default_factory=set[str])
     """What the window shall do next: "reset layout", "screenshot", "show Renders" or another panel."""
     scope: Scope = "graph"

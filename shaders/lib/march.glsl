@@ -8,9 +8,11 @@
 const int MARCH_LEVELS = 3;
 const float MARCH_LIFT = 1e-4;     // rays start by so much of the depth before the surface
 const float MARCH_NUDGE = 1e-3;    // pixels: beyond a border by so much, the next cell begins
+const float MARCH_INSIDE = 2.0;    // pixels, from the edge of something
 const float MARCH_ENDLESS = 1e18;
 
 struct March {
+    vec2 slope;        // how nearness grows, to the right and down, where it starts
     vec2 from, pace;   // position in pixels where it starts, and how it moves with `at`
     float near, gain;  // the same of nearness
     float at, last, nudge;
@@ -51,6 +53,7 @@ March march_start(const vec4 rows[3], vec2 uv, float depth, vec3 way, float reac
     ray.nudge = MARCH_NUDGE / max(max(abs(ray.pace.x), abs(ray.pace.y)), 1e-12);
     vec2 own = floor(ray.from);
     ray.at = max(march_leaves(ray, own, own + 1.0), 0.0);
+    ray.slope = vec2(0.0);
     ray.level = 0;
     ray.gap = 0.0;
     ray.sure = 0.0;
@@ -101,10 +104,22 @@ bool march_step(inout March ray, ivec2 cell, vec3 seen, float thickness) {
             return true;
         }
         if (ahead < least) {
-            // It came in from the side, or from behind something nearer, if what is seen is suddenly another surface.
-            float gap = march_gap(near_now, now), slant = (abs(seen.y) + abs(seen.z)) / (seen.x * seen.x);
+            // It came in from the side, or from behind something nearer, if what is seen is suddenly another surface: by
+            // more than that and the ray itself may change within a pixel.
+            float gap = march_gap(near_now, now), step = abs(ray.gain) * ray.nudge / MARCH_NUDGE;
+            float crack = (abs(seen.y) + abs(seen.z)) / (seen.x * seen.x) + step / (near_now * near_now);
             ray.sure = clamp(2.0 - 2.0 * gap / max(thickness, 1e-9), 0.0, 1.0);
-            if ((ray.gap == 0.0 || ray.gap > gap + slant) && ray.sure > 0.0) return true;
+            // Beyond an edge next to where it starts, a surface that turns away hides nothing: its plane goes on too far.
+            if (ray.at < 3.0 * ray.nudge / MARCH_NUDGE && gap <= 2.0 * crack) {
+                vec2 away = middle - ray.from;
+                bool outward = seen.x < ray.near + dot(ray.slope, away) && ray.near < seen.x - dot(seen.yz, away);
+                if (outward) ray.sure = 0.0;
+            }
+            if ((ray.gap == 0.0 || ray.gap > gap + crack) && ray.sure > 0.0) {
+                // Well within it, if it is not just a crease: between pixels, colors of two surfaces would mix.
+                if (gap > crack) ray.at = min(ray.at + MARCH_INSIDE / MARCH_NUDGE * ray.nudge, ray.last);
+                return true;
+            }
         }
         ray.gap = after < least ? march_gap(near_next, then) : 0.0;
     }
@@ -127,8 +142,7 @@ vec3 march_planes() {
         vec2 bend = mix(abs(two - 2.0 * one + here), abs(one - here), equal(two, vec2(0.0))) / here;
         slope[axis] *= clamp(2.0 - min(bend.x, bend.y) / max(abs(slope[axis]), 1e-9), 0.0, 1.0);
     }
-    // No plane reaches behind the eye within its pixel.
-    return here * vec3(1.0, clamp(slope, -1.0, 1.0));
+    return here * vec3(1.0, slope);
 }
 
 // The most and the least of what planes are anywhere in 4 x 4 pixels; the background counts as 0.
@@ -166,6 +180,7 @@ vec3 march_surfaces() {
 // Follows a ray through the picture of all `surfaces`, at most so many steps. True where it meets one of them, and where
 // it gets away to infinity in a pixel that shows nothing: then it is `endless` still.
 bool march(inout March ray, ivec2 size, float thickness, int steps) {
+    ray.slope = surfaces_at(ivec2(ray.from)).yz;
     for (int i = 0; i < steps && ray.at < ray.last; ++i) {
         ivec2 cell = march_cell(ray, size);
         if (march_step(ray, cell, surfaces_at(march_texel(cell, size, ray.level)), thickness)) {

@@ -51,6 +51,15 @@ def test_a_camera_is_known_to_the_node_that_takes_it() -> None:
     assert seen(watched()) is None
 
 
+def test_the_plan_says_which_cameras_nodes_were_given(plan) -> None:
+    graph = watched().add("camera", NODE).connect(Port("camera", "camera"), Port("watcher", "camera"))
+    wanted = {"out": Port("watcher", "out")}
+    SEEN.clear()
+    assert plan(graph, targets=wanted).cameras == {Port("watcher", "camera"): SEEN[0]}
+    assert SEEN[0] is not None
+    assert plan(graph.mute("camera", True), targets=wanted).cameras == {}
+
+
 def test_it_goes_into_groups_and_out_of_them() -> None:
     inner = Graph().add("camera", NODE).add_output("camera", Output(Kind.CAMERA))
     inner = inner.connect(Port("camera", "camera"), Port("outputs", "camera"))

@@ -9,8 +9,10 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation import presets
+from halation.app import document
 from halation.app.editor.viewer.geometry import Sight
-from halation.app.graph import Port
+from halation.app.graph import Graph, Output, Port, Settings
+from halation.nodes import Light, LightKind, catalogue, lights_of, numbers_of
 
 PRESET = next(path for path in presets.paths() if path.stem == "film_halation")
 WIDTH, HEIGHT = 480, 270
@@ -193,6 +195,31 @@ def test_a_position_is_dragged_on_the_picture_as_one_step(gui) -> None:
         assert ui.session.value(Port("vignette", "center")) == (0.5, 0.5)
 
     gui(body, PRESET)
+
+
+def test_a_light_is_dragged_on_the_picture(gui, tmp_path: Path) -> None:
+    node, start = catalogue(), Light(place=(0.0, 0.0, 1.0))
+    graph = Graph(settings=Settings((64, 36))).add_output("image", Output())
+    graph = graph.add("lit", node["deferred_lighting"](lights=numbers_of((Light(LightKind.SUN), start))))
+    graph = graph.add("camera", node["camera"](eye=(0.0, -5.0, 1.0), target=(0.0, 0.0, 1.0)))
+    graph = graph.connect(Port("camera", "camera"), Port("lit", "camera"))
+    document.save(graph.connect(Port("lit", "out"), Port("outputs", "image")), tmp_path / "graph.json")
+
+    def body(ui) -> None:
+        ui.session.select(["lit"])
+        ui.settled()
+        steps = len(ui.session.history.steps)
+        ui.drag("handle lit.lights 1", inside(ui, 0.7, 0.5))
+        ui.settled()
+        sun, light = lights_of(ui.session.value(Port("lit", "lights")))
+        assert sun == Light(LightKind.SUN)
+        assert light.place == pytest.approx((0.2 * 5.0 * 36.0 / 50.0, 0.0, 1.0), abs=0.1)
+        assert len(ui.session.history.steps) == steps + 1
+        assert "field lit.lights 1 reach" in ui.editor.places
+        ui.keys("Ctrl+Z")
+        assert lights_of(ui.session.value(Port("lit", "lights")))[1] == start
+
+    gui(body, tmp_path / "graph.json")
 
 
 def test_the_table_measures_rectangles_and_markers(gui) -> None:

@@ -10,6 +10,7 @@ from typing import Literal
 from ....nodes import Kind, Node, Plain, Socket, Value
 from ...errors import GraphError
 from ...graph import Graph, Group, Item, Port, Unknown, signature
+from ..inspector.lights import counted
 from ..inspector.numbers import SUFFIX, bar, shown
 from .geometry import Rect
 
@@ -234,6 +235,8 @@ def _shown(value: Value, plain: Plain) -> tuple[Shown, ...]:
         return (Shown(PurePath(str(plain)).name),)
     if value.type in ("choice", "text"):
         return (Shown(words(str(plain))),)
+    if value.type == "lights" and isinstance(plain, tuple):
+        return (Shown(counted(plain)),)
     if value.type in ("vector", "matrix") and isinstance(plain, tuple):
         return tuple(Shown(shown(part, value), bar(part, value)) for part in plain)
     if value.type in ("float", "int") and isinstance(plain, int | float):

@@ -86,7 +86,7 @@ def _words(sketch: Sketch, rect: Rect, row: Row, color: int) -> None:
         sketch.triangle((x - 4, y - size / 2), (x + 4, y - size / 2), (x, y + size), sketch.ink.dim)
         right -= 14.0
     text = row.shown[0].text
-    if not text or kind in ("vector", "matrix", "curve", "ramp", "lights"):
+    if not text or kind in ("vector", "matrix", "curve", "ramp"):
         text, color = {"path": "no file", "text": ""}.get(kind, "in the inspector"), sketch.ink.faint
     room = right - rect[0] - PAD
     label = sketch.short(row.label, room * 0.5)

@@ -31,9 +31,12 @@ WIDTH = 17.0
 
 def color_field(
     fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False,
-    eyedropper: bool = True,
+    eyedropper: bool = True, alpha: bool = True,
 ) -> Edit | None:
-    """A swatch that opens the picker; the numbers beside it where there is room. All numbers are scene-linear."""
+    """A swatch that opens the picker; the numbers beside it where there is room. All numbers are scene-linear.
+
+    Without `alpha` that is not shown, and stays as it is or is to be ignored.
+    """
     color = _rgba(value)
     numbers = not label and width > imgui.get_font_size() * 12.0
     side = imgui.get_frame_height() * 1.2
@@ -53,15 +56,17 @@ def color_field(
     if numbers:
         gap = imgui.get_style().item_inner_spacing.x
         imgui.same_line(0.0, gap)
-        found = row_of_numbers(fields, id, color, _LIGHT, width - side - gap, _NAMES, mixed)
+        found = row_of_numbers(fields, id, color, _LIGHT, width - side - gap, _NAMES if alpha else _NAMES[:3], mixed)
     imgui.set_next_window_pos(_inside(rect), imgui.Cond_.appearing)
     if imgui.begin_popup(f"picker {id}"):
-        found = color_picker(fields, f"{id} picker", color, eyedropper) or found
+        found = color_picker(fields, f"{id} picker", color, eyedropper, alpha) or found
         imgui.end_popup()
     return found
 
 
-def color_picker(fields: Fields, id: str, color: RGBA, eyedropper: bool = True) -> Edit | None:
+def color_picker(
+    fields: Fields, id: str, color: RGBA, eyedropper: bool = True, alpha: bool = True
+) -> Edit | None:
     """Wheel and triangle of display colors, intensity, linear numbers, hexadecimal digits, copy, paste, eyedropper."""
     width, side = imgui.get_font_size() * WIDTH, imgui.get_font_size() * 5.5
     owner, stops = id.removesuffix(" picker"), fields.stops
@@ -76,12 +81,12 @@ def color_picker(fields: Fields, id: str, color: RGBA, eyedropper: bool = True) 
     fields.part(f"{id} stops", owner, from_stops)
     fields.part(f"{id} light", owner, lambda edit: edit)
     fields.part(f"{id} hex", owner, from_hex)
-    found = _wheel(fields, id, color, width)
+    found = _wheel(fields, id, color, width, alpha)
     _label(fields, "Intensity", side)
     if edit := number_field(fields, f"{id} stops", stops, _STOPS, width - side):
         found = from_stops(edit)
         fields.stops = float(edit.value) if isinstance(edit.value, int | float) else stops
-    numbers = row_of_numbers(fields, f"{id} light", color, _LIGHT, width, _NAMES)
+    numbers = row_of_numbers(fields, f"{id} light", color, _LIGHT, width, _NAMES if alpha else _NAMES[:3])
     _label(fields, "sRGB hex", side)
     room = width - side - (3 if eyedropper else 2) * (imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x)
     text = text_field(fields, f"{id} hex", hexadecimal(color), _TEXT, room)
@@ -114,11 +119,11 @@ def draw_swatch(fields: Fields, rect: Rect, color: RGBA, hovered: bool = False) 
     lines.add_rect(rect[:2], rect[2:], u32(palette.accent if hovered else palette.border), rounding)
 
 
-def _wheel(fields: Fields, id: str, color: RGBA, width: float) -> Edit | None:
+def _wheel(fields: Fields, id: str, color: RGBA, width: float, alpha: bool) -> Edit | None:
     flag = imgui.ColorEditFlags_
     flags = sum(int(part) for part in (
-        flag.picker_hue_wheel, flag.no_inputs, flag.no_side_preview, flag.no_label, flag.alpha_bar, flag.no_options,
-        flag.float, flag.no_tooltip,
+        flag.picker_hue_wheel, flag.no_inputs, flag.no_side_preview, flag.no_label, flag.no_options, flag.float,
+        flag.no_tooltip, flag.alpha_bar if alpha else flag.no_alpha,
     ))
     shown = dimmed(color, fields.stops)
     imgui.set_next_item_width(width)

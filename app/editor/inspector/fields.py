@@ -80,9 +80,15 @@ class Fields:
     stops: float = 0.0
     """The intensity that the open color picker shows, in EV."""
     before: Plain = 0.0
-    """The curve or ramp as it was before it was dragged."""
+    """The curve, ramp or lights as they were before they were dragged."""
     point: tuple[str, int] = ("", -1)
     """The curve or ramp field whose point of that number is selected."""
+    lights: dict[str, int] = field(default_factory=dict[str, int])
+    """The editor's: the light that is selected, by its field."""
+    lights_shown: dict[str, int] = field(default_factory=dict[str, int])
+    """The light that each field has scrolled to."""
+    lights_gesture: str = ""
+    """The merge token of the drag that `before` is of, for lights."""
     filter: str = ""
     """What was typed to find a choice."""
     gesture: int = 0

@@ -37,7 +37,7 @@ class Inspector:
     def draw(self, editor: Editor) -> None:
         """Draw into the current window."""
         fields = self._fields
-        fields.palette, fields.places = editor.palette, editor.places
+        fields.palette, fields.places, fields.lights = editor.palette, editor.places, editor.lights
         self._values.begin()
         dragged = fields.dragging
         fields.begin(imgui.is_mouse_down(imgui.MouseButton_.left))

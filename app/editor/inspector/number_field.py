@@ -23,9 +23,13 @@ NO_VALUE = "—"
 
 
 def number_field(
-    fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False
+    fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False,
+    suffix: str | None = None,
 ) -> Edit | None:
-    """One number. Shift drags finely, Ctrl in round steps; Escape brings back what was there before."""
+    """One number. Shift drags finely, Ctrl in round steps; Escape brings back what was there before.
+
+    `suffix` stands behind it instead of the declared unit.
+    """
     assert isinstance(value, int | float)
     fields.order.append(id)
     if fields.wanted == id:
@@ -46,7 +50,8 @@ def number_field(
         fields.pressed = ""
     now = edit.value if edit else value
     assert isinstance(now, int | float)
-    _draw(fields, rect, now, declaration, label, mixed and edit is None, hovered, active)
+    unit = SUFFIX[declaration.unit] if suffix is None else suffix
+    _draw(fields, rect, now, declaration, unit, label, mixed and edit is None, hovered, active)
     return edit
 
 
@@ -83,7 +88,8 @@ def _wheeled(fields: Fields, id: str, value: float, declaration: Value) -> Edit 
 
 
 def _draw(
-    fields: Fields, rect: Rect, value: float, declaration: Value, label: str, mixed: bool, hovered: bool, active: bool
+    fields: Fields, rect: Rect, value: float, declaration: Value, unit: str, label: str, mixed: bool, hovered: bool,
+    active: bool,
 ) -> None:
     palette, pad = fields.palette, imgui.get_style().frame_padding.x * 0.75
     background(palette, rect, hovered=hovered, active=active)
@@ -96,7 +102,7 @@ def _draw(
         lines.add_rect_filled(rect[:2], rect[2:], u32(color), rounding)
         lines.pop_clip_rect()
     inner = (rect[0] + pad, rect[1], rect[2] - pad, rect[3])
-    text, suffix = NO_VALUE if mixed else shown(value, declaration), "" if mixed else SUFFIX[declaration.unit]
+    text, suffix = NO_VALUE if mixed else shown(value, declaration), "" if mixed else unit
     room = inner[2] - inner[0]
     unit_width = imgui.calc_text_size(" " + suffix).x if suffix else 0.0
     text_width = imgui.calc_text_size(text).x

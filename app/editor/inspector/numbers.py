@@ -154,6 +154,24 @@ def described(declaration: Value, default: str) -> str:
     return "\n".join([*lines, f"Default: {default}"] if default else lines)
 
 
+def worded(declaration: Value) -> str:
+    """The default, as a tooltip says it; "" where that is too much."""
+    default = declaration.default
+    match declaration.type:
+        case "float" | "int":
+            assert isinstance(default, int | float)
+            return shown(default, declaration)
+        case "bool":
+            return "on" if default else "off"
+        case "choice" | "text" | "path":
+            return str(default)
+        case "curve" | "ramp" | "lights":
+            return ""
+        case _:
+            assert isinstance(default, tuple)
+            return ", ".join(f"{part:g}" for part in default)
+
+
 def _limits(declaration: Value) -> str:
     low, high = declaration.minimum, declaration.maximum
     if math.isinf(low) and math.isinf(high):

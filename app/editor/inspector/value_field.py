@@ -9,7 +9,7 @@ from .choice_field import choice_field, toggle_field
 from .color_field import color_field
 from .curve_field import HEIGHT, curve_field
 from .fields import Edit, Fields
-from .lights_field import lights_field
+from .lights_field import lights_field, lights_height
 from .number_field import matrix_field, number_field, vector_field
 from .ramp_field import BAND, HANDLES, ramp_field
 from .text_field import text_field
@@ -49,7 +49,7 @@ def value_field(
     return edit
 
 
-def height_of(declaration: Value) -> float:
+def height_of(declaration: Value, value: Plain) -> float:
     """How high the field of a value is in pixels, while nothing in it is selected."""
     frame, line, gap = imgui.get_frame_height(), imgui.get_font_size(), imgui.get_style().item_spacing.y
     match declaration.type:
@@ -59,5 +59,7 @@ def height_of(declaration: Value) -> float:
             return line * HEIGHT + gap + frame
         case "ramp":
             return line * (BAND + HANDLES) + gap + frame
+        case "lights":
+            return lights_height(value)
         case _:
             return frame

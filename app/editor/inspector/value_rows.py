@@ -15,7 +15,8 @@ from ..toolkit.places import item_rect
 from .applying import Ports, apply, as_text, default_of, from_text, reset
 from .fields import Edit, Fields
 from .file_field import FileField
-from .numbers import described, shown
+from .light_rows import light_rows
+from .numbers import described, worded
 from .value_field import value_field
 
 if TYPE_CHECKING:
@@ -64,6 +65,8 @@ class ValueRows:
                 self._mark(rows, port, control)
             if declaration.type == "path" and isinstance(value, str):
                 self.files.about(rows, value, declaration, _layer_of(graph, port, declaration))
+            if declaration.type == "lights" and isinstance(value, tuple):
+                light_rows(rows, key, value, lambda edit: apply(session, ports, declaration, edit))
         if self.fields.eyedropper == key:
             editor.viewer.picking = key
         self._targets[key] = ports, declaration
@@ -195,24 +198,6 @@ def _layer_of(graph: Graph, port: Port, declaration: Value) -> str:
 
 
 def _tip(declaration: Value, control: str | None) -> str:
-    lines = described(declaration, _worded(declaration))
+    lines = described(declaration, worded(declaration))
     hints = "Double click: reset. Right click: more."
     return "\n".join(part for part in (lines, f"Control: {control}" if control else "", hints) if part)
-
-
-def _worded(declaration: Value) -> str:
-    """The default, as a tooltip says it; "" where that is too much."""
-    default = declaration.default
-    match declaration.type:
-        case "float" | "int":
-            assert isinstance(default, int | float)
-            return shown(default, declaration)
-        case "bool":
-            return "on" if default else "off"
-        case "choice" | "text" | "path":
-            return str(default)
-        case "curve" | "ramp" | "lights":
-            return ""
-        case _:
-            assert isinstance(default, tuple)
-            return ", ".join(f"{part:g}" for part in default)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from ....nodes import Kind, Size
+from ....nodes import Camera, Kind, Size
 from ...compiler import Library, Plan
 from ...errors import HalationError
 from ...graph import Graph, Port
@@ -102,6 +102,7 @@ class Preview:
         self._seconds: dict[str, float] = {}
         self._timings: dict[str, Timing] = {}
         self._full_sizes: dict[Port, Size] = {}
+        self._cameras: dict[Port, Camera] = {}
         self.faults: Mapping[str, str] = MappingProxyType({})
         """What is wrong, by path of the node or input (`glow/bloom`, `inputs.beauty`); "" where no node is at fault."""
         self.paused = False
@@ -167,6 +168,7 @@ class Preview:
         self._thumbnails.clear()
         self._seconds.clear()
         self._timings = {}
+        self._cameras.clear()
         self._runner.textures.forget()
 
     def close(self) -> None:
@@ -189,6 +191,10 @@ class Preview:
     def thumbnail(self, path: str) -> tuple[Handle, bool] | None:
         """The last small picture of a node, and whether it is what the node shows now."""
         return self._thumbnails.find(path, self._wish.mark) if self._wish else None
+
+    def camera(self, port: Port) -> Camera | None:
+        """The camera that an input of a node was given when pictures were computed last, by the node's path."""
+        return self._cameras.get(port)
 
     @property
     def thumbnails(self) -> frozenset[str]:
@@ -264,6 +270,7 @@ class Preview:
         kept = self._runner.lease()
         try:
             plan = self.renderer.compile(wish.graph, wanted)
+            self._cameras |= plan.cameras
             self._job = _Job(ports, plan, self._runner.steps(plan, kept, timings=timings), kept, timings)
         except HalationError as error:
             self._failed(now, ports, error)

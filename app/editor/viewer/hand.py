@@ -91,7 +91,7 @@ class Hand:
 
     def _show_cursor(self) -> None:
         what = self._hold.aim if self._hold else self.aim
-        if what.what == "handle":
+        if what.what in ("handle", "light"):
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
         elif what.what == "pan" and self._hold and self._hold.moved:
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Literal
 from ...graph import Port
 from .geometry import Box, Grip, Point, Sight, box_dragged, box_grip, ordered, wipe_angle, wipe_grip
 from .handles import handles
+from .lights import Lamp, lamps, put
 
 if TYPE_CHECKING:
     from ..editor import Editor
 
-What = Literal["pan", "handle", "wipe", "region", "new region", "measure", "pick"]
+What = Literal["pan", "handle", "light", "wipe", "region", "new region", "measure", "pick"]
 
 ARM = 56.0
 """Length of the wipe's turning handle at UI scale 1."""
@@ -29,6 +30,7 @@ class Aim:
     what: What
     grip: Grip = ""
     port: Port | None = None
+    lamp: Lamp | None = None
 
 
 def aim(editor: Editor, sight: Sight, at: Point, scale: float = 1.0, *, ctrl: bool = False) -> Aim:
@@ -43,6 +45,9 @@ def aim(editor: Editor, sight: Sight, at: Point, scale: float = 1.0, *, ctrl: bo
     for handle in handles(editor.session):
         if math.dist(at, sight.place(handle.at)) <= reach * 1.6:
             return Aim("handle", port=handle.port)
+    for lamp in reversed(lamps(editor)):
+        if math.dist(at, sight.place(lamp.at)) <= reach * 1.6:
+            return Aim("light", lamp=lamp)
     if viewer.compare == "wipe" and sight.under(at):
         grip = wipe_grip(at, sight.place(viewer.wipe), viewer.wipe_angle, ARM * scale, reach)
         if grip:
@@ -71,6 +76,8 @@ class Hold:
         """Take hold of what is aimed at."""
         hold, (x, y) = cls(aim, at), sight.fraction(at)
         held = next((one.at for one in handles(editor.session) if one.port == aim.port), None)
+        if aim.lamp is not None:
+            held, editor.lights[str(aim.lamp.port)] = aim.lamp.at, aim.lamp.index
         if aim.what == "wipe" and aim.grip == "line":
             held = editor.viewer.wipe
         if held is not None:
@@ -90,6 +97,8 @@ class Hold:
                     viewer.zoom, viewer.pan = moved.zoom, moved.pan
             case "handle" if self.moved:
                 self._move_handle(editor, (x + self.offset[0], y + self.offset[1]))
+            case "light" if self.moved and self.aim.lamp is not None:
+                put(editor, self.aim.lamp, (x + self.offset[0], y + self.offset[1]))
             case "wipe" if self.aim.grip == "angle":
                 viewer.wipe_angle = wipe_angle(at, sight.place(viewer.wipe))
             case "wipe":
@@ -107,7 +116,7 @@ class Hold:
     def release(self, editor: Editor, sight: Sight, at: Point) -> None:
         """Let go."""
         viewer = editor.viewer
-        if self.aim.what == "handle":
+        if self.aim.what in ("handle", "light"):
             editor.session.seal()
         elif self.aim.what == "new region":
             viewer.drawing_region = False

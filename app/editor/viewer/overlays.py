@@ -1,4 +1,4 @@
-"""What is drawn over the picture: grid, region, wipe, handles, markers, messages."""
+"""What is drawn over the picture: grid, region, wipe, handles, lights, markers, messages."""
 
 from __future__ import annotations
 
@@ -7,11 +7,14 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
+from ..inspector.colors import swatch
+from ..inspector.lights import title
 from ..theme.palette import RGB
 from ..theme.style import u32, ui_scale
 from .geometry import GRID_FROM, Box, Point, Sight, wipe_direction
 from .handles import handles
 from .holding import ARM
+from .lights import ahead, lamps
 
 if TYPE_CHECKING:
     from ..editor import Editor
@@ -36,6 +39,7 @@ def draw_overlays(editor: Editor, sight: Sight) -> None:
     if viewer.compare == "wipe" and editor.session.viewed("B") is not None:
         _wipe(editor, lines, sight)
     _handles(editor, lines, sight)
+    _lamps(editor, lines, sight)
 
 
 def _grid(lines: imgui.ImDrawList, sight: Sight) -> None:
@@ -109,6 +113,24 @@ def _handles(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None:
         if near:
             _label(lines, (x, y + 20 * scale), str(handle.port))
         editor.places[f"handle {handle.port}"] = _around((x, y), 6.0 * scale)
+
+
+def _lamps(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None:
+    """A disk in the color of each light, a line to where a spot shines."""
+    mouse, scale = imgui.get_mouse_pos(), ui_scale()
+    for lamp in lamps(editor):
+        at = sight.place(lamp.at)
+        near = math.dist((mouse.x, mouse.y), at) <= 10.0 * scale
+        ring = editor.palette.accent if near or lamp.chosen else _WHITE
+        if (end := ahead(lamp)) is not None:
+            for color, width in ((u32(_BLACK, 0.6), 3.0), (u32(ring), 1.5)):
+                lines.add_line(at, sight.place(end), color, width * scale)
+        lines.add_circle_filled(at, 7.5 * scale, u32(_BLACK, 0.6))
+        lines.add_circle_filled(at, 6.0 * scale, u32(ring))
+        lines.add_circle_filled(at, 4.5 * scale, u32(swatch(lamp.light.color) if lamp.light.on else _BLACK))
+        if near:
+            _label(lines, (at[0], at[1] + 20 * scale), title(lamp.light, lamp.index))
+        editor.places[f"handle {lamp.port} {lamp.index}"] = _around(at, 6.0 * scale)
 
 
 def _marker(lines: imgui.ImDrawList, at: Point, text: str) -> None:

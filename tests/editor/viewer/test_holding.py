@@ -8,15 +8,41 @@ from halation.app.editor.session import Session
 from halation.app.editor.viewer.geometry import Sight
 from halation.app.editor.viewer.handles import handles
 from halation.app.editor.viewer.holding import ARM, Hold, aim
+from halation.app.editor.viewer.lights import MOST, ahead, lamps, project, unproject
 from halation.app.editor.viewer.state import ViewerState
 from halation.app.graph import Port
+from halation.nodes import (
+    Filter,
+    Image,
+    Light,
+    LightKind,
+    LightList,
+    Viewpoint,
+    catalogue,
+    lights_of,
+    look_at,
+    numbers_of,
+)
 
 SIGHT = Sight((0.0, 0.0), (800, 400), (400, 200), zoom=2.0)
+CAMERA = look_at((0.0, -5.0, 0.0), (0.0, 0.0, 0.0), (1.0, 2.0))
+MIDDLE, BEHIND, SIDE = Light(place=(0.0, 0.0, 0.0)), Light(place=(0.0, -9.0, 0.0)), Light(place=(1.0, 0.0, 0.0))
+
+
+class Lit(Filter):
+    """Lights that a camera sees."""
+
+    image = Image()
+    camera = Viewpoint(0.0)
+    lights: LightList = numbers_of((MIDDLE, BEHIND, Light(LightKind.SUN), SIDE))
 
 
 @pytest.fixture
 def editor() -> Any:
-    return SimpleNamespace(session=Session(), viewer=ViewerState(), dragging=False, attempt=lambda act: act())
+    return SimpleNamespace(
+        session=Session({**catalogue(), "lamps": Lit}), viewer=ViewerState(), dragging=False, lights={},
+        preview=SimpleNamespace(camera={Port("lamps", "camera"): CAMERA}.get), attempt=lambda act: act(),
+    )
 
 
 def drag(editor: Any, start: tuple[float, float], end: tuple[float, float], **keys: bool) -> str:
@@ -55,6 +81,65 @@ def test_drags_in_a_row_are_steps_of_their_own(editor: Any) -> None:
     drag(editor, (200.0, 100.0), (400.0, 100.0))
     editor.session.undo()
     assert editor.session.value(Port(ramp, "start")) == pytest.approx((0.25, 0.25))
+
+
+def lit(editor: Any, *lights: Light) -> Port:
+    """A node with lights that a camera is linked to, selected."""
+    session = editor.session
+    graph = session.graph.add("lamps", Lit(lights=numbers_of(lights)) if lights else Lit())
+    graph = graph.add("camera", catalogue()["camera"]()).connect(Port("camera", "camera"), Port("lamps", "camera"))
+    session.edit("Add", graph)
+    session.select(["lamps"])
+    return Port("lamps", "lights")
+
+
+def test_lights_in_front_of_the_camera_can_be_dragged(editor: Any) -> None:
+    port = lit(editor)
+    assert [(lamp.index, lamp.at) for lamp in lamps(editor)] == [
+        (3, pytest.approx((0.7, 0.5))), (0, pytest.approx((0.5, 0.5))),
+    ]
+    steps = editor.session.history.position
+    assert drag(editor, (561.0, 201.0), (401.0, 101.0)) == "light"
+    light = lights_of(editor.session.value(port))[3]
+    assert light.place == pytest.approx((0.0, 0.0, 0.625), abs=1e-4) and editor.dragging
+    assert editor.lights == {"lamps.lights": 3} and lamps(editor)[-1].chosen
+    assert editor.session.history.position == steps + 1
+    editor.session.undo()
+    assert lights_of(editor.session.value(port))[3] == SIDE
+
+
+def test_without_a_camera_lights_have_no_handles(editor: Any) -> None:
+    lit(editor)
+    editor.session.disconnect(Port("lamps", "camera"))
+    assert lamps(editor) == ()
+    editor.session.undo()
+    editor.preview.camera = lambda port: None
+    assert lamps(editor) == ()
+    editor.session.select_none()
+    assert lamps(editor) == ()
+
+
+def test_of_many_lights_the_selected_one_has_a_handle(editor: Any) -> None:
+    lit(editor, *(MIDDLE,) * MOST, SIDE)
+    assert [lamp.index for lamp in lamps(editor)] == [0]
+    editor.lights["lamps.lights"] = MOST
+    assert [lamp.index for lamp in lamps(editor)] == [MOST]
+    lit_port = Port("lamps", "lights")
+    editor.session.set(lit_port, ())
+    assert lamps(editor) == ()
+
+
+def test_a_spot_shows_where_it_shines_to(editor: Any) -> None:
+    lit(editor, Light(LightKind.SPOT, (0.0, 0.0, 0.0), (0.0, 0.0, -3.0)), MIDDLE)
+    point, spot = lamps(editor)
+    assert ahead(spot) == pytest.approx((0.5, 0.5 + 0.6 * 2.0 / 5.0)) and ahead(point) is None
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0, 0.0), (1.0, 2.0, -3.0), (-4.0, 50.0, 7.0)])
+def test_places_on_the_picture_and_back(place: tuple[float, float, float]) -> None:
+    seen = project(CAMERA, place)
+    assert seen is not None and unproject(CAMERA, *seen) == pytest.approx(place, abs=1e-4)
+    assert project(CAMERA, (0.0, -5.0, 1.0)) is None
 
 
 def test_the_wipe_is_moved_and_turned(editor: Any) -> None:

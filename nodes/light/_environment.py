@@ -1,0 +1,20 @@
+"""What lights from all sides share."""
+
+from .._declare import Draw, Drawn, Pixels, Size, Vector
+
+DATA = Vector(width=4)
+
+SKY = (128, 64)
+"""What matte surfaces make of the surroundings needs no finer picture of them."""
+
+_IRRADIANCE = (64, 32)
+
+
+def shrunk(draw: Draw, id: str, environment: Pixels, size: Size) -> Drawn:
+    """The surroundings at another size, by a function of node `id`: every pixel is the mean of what it covers."""
+    return draw(f"{id}_sky", environment=environment, size=size, result=DATA)
+
+
+def irradiance(draw: Draw, id: str, sky: Drawn) -> Drawn:
+    """Of every direction, the light over pi that a surface gets which faces there."""
+    return draw(f"{id}_irradiance", sky=sky, size=_IRRADIANCE, result=DATA)

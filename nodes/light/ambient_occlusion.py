@@ -1,0 +1,84 @@
+from collections.abc import Mapping
+from typing import Annotated, Literal
+
+from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Vector, Viewpoint
+from ._occlusion import DATA, FACTORS, SAMPLES, measured, settled
+
+
+class AmbientOcclusion(Filter):
+    """Darken corners, creases and contacts: how much of an even sky every surface sees within a radius.
+
+    From depth, better with normals. 1 is open. Multiply ambient or indirect light with it, never lamps or glow. Modes:
+    gtao, the cosine-weighted share of the sky between two horizons (Jimenez et al. 2016); hbao, the share of solid
+    angle between them (Bavoil et al. 2008); bitmask, gtao in 32 sectors, behind which light passes where objects are
+    thin (Therrien et al. 2023); hemisphere and crytek, how many points of the half or whole ball around a point are
+    behind what is seen (Mittring 2007; Chapman's hemisphere); alchemy, an obscurance that fades with distance (McGuire
+    et al. 2011). `out` is the same as a picture, tinted by light that bounces between walls of the albedo.
+    """
+
+    depth = Field(doc="Planar distance along the way the camera looks.")
+    normal = Vector(0.0, width=3, doc="In the world. Without a link, from depth.")
+    camera = Viewpoint(doc="The camera that the depth was rendered with.")
+    albedo = Image((0.5, 0.5, 0.5, 1.0), doc="Color of the surfaces, for the tint. Without a link, a mid gray.")
+    mode: Annotated[Literal["gtao", "hbao", "bitmask", "hemisphere", "crytek", "alchemy"], Doc(
+        "How occlusion is measured. Bitmask is best for grass, hair and wires, gtao for all else."
+    )] = "gtao"
+    radius: Annotated[float, Slider(
+        0.01, 5.0, unit="scene", minimum=1e-6, maximum=1e6, doc="How far light is blocked, in world units."
+    )] = 1.0
+    falloff: Annotated[Fraction, Doc(
+        "The outer part of the radius over which occlusion fades out: 0 is a hard end. For gtao and hbao."
+    )] = 0.5
+    thickness: Annotated[float, Slider(
+        0.01, 5.0, unit="scene", minimum=0.0, maximum=1e9,
+        doc="How far objects go on behind what is seen of them. For bitmask, hemisphere and crytek."
+    )] = 0.5
+    power: Annotated[float, Slider(
+        0.25, 4.0, unit="ratio", minimum=0.01, maximum=16.0, doc="Contrast: 1 is physical, more is darker."
+    )] = 1.0
+    multi_bounce: Annotated[bool, Doc(
+        "Brighten and tint `out` by the light that walls hand on to each other (Jimenez et al. 2016)."
+    )] = False
+    quality: Annotated[Literal["preview", "quality", "reference"], Doc(
+        "3 x 3, 4 x 8 or 16 x 16 slices and steps: 18, 64 or 512 points of depth to a pixel."
+    )] = "quality"
+    resolution: Annotated[Literal["full", "half"], Doc(
+        "Half measures every other pixel of every other row: four times as fast, fine detail is lost."
+    )] = "full"
+    denoise: Annotated[bool, Doc(
+        "Average 4 x 4 pixels of the same surface, which makes up for their few samples: edges stay."
+    )] = True
+
+    out = Output(Image(doc="The color that ambient light is multiplied with."))
+    occlusion = Output(Field(doc="1 where all is open, 0 where nothing is."))
+    bent_normal = Output(Vector(width=3, doc="Where most light comes from: unit, in the world."))
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        camera = draw.camera(self.camera)
+        rows, rays = (camera.rows, camera.inverse) if camera else ((0.0,) * 12, (0.0,) * 12)
+        normal = draw(
+            "ambient_occlusion_normal", self.depth, self.normal, edge="black", result=Vector(width=3), rows=rows
+        )
+        factor = FACTORS[self.resolution]
+        size = measured(draw.size, factor)
+        slices, steps = SAMPLES[self.quality]
+        if self.mode in ("gtao", "hbao", "bitmask"):
+            open_ = draw(
+                "ambient_occlusion_horizons", depth=self.depth, normal=normal, size=size, result=DATA, mode=self.mode,
+                rows=rows, rays=rays, factor=factor, slices=slices, steps=steps, radius=self.radius,
+                falloff=self.falloff, thickness=self.thickness, matched=self.denoise,
+            )
+        else:
+            open_ = draw(
+                "ambient_occlusion_points", depth=self.depth, normal=normal, size=size, result=DATA, mode=self.mode,
+                rows=rows, rays=rays, factor=factor, points=2 * slices * steps, radius=self.radius,
+                thickness=self.thickness, matched=self.denoise,
+            )
+        open_ = settled(draw, "ambient_occlusion", self.depth, normal, open_, rays, factor, self.denoise)
+        return {
+            "out": draw.point(
+                "ambient_occlusion", open=open_, albedo=self.albedo, power=self.power, multi_bounce=self.multi_bounce
+            ),
+            "occlusion": draw.point("ambient_occlusion_value", open=open_, power=self.power, result=Field()),
+            "bent_normal": draw.point("ambient_occlusion_bent", open=open_, result=Vector(width=3)),
+        }

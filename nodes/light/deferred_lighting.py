@@ -1,0 +1,206 @@
+import math
+from collections.abc import Iterable, Mapping
+from typing import Annotated, Literal
+
+from .._declare import (
+    MAX_LIGHTS,
+    RGBA,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Fraction,
+    Image,
+    Light,
+    LightKind,
+    LightList,
+    Output,
+    Slider,
+    Stops,
+    Vector,
+    Viewpoint,
+    lights_of,
+    numbers_of,
+    ramp_at,
+)
+
+TILE = 16
+"""Pixels across a tile."""
+
+FEW = 8
+"""Up to so many lights, each pixel asks all of them: sorting them into tiles costs more than it saves."""
+
+_BITS = 24
+"""Lights to a channel of a texel: as many as a float holds exactly."""
+
+_RIG = (
+    Light(LightKind.SPHERE, (-3.5, -5.0, 4.5), color=(1.0, 0.78, 0.55), intensity=80.0, size=0.6),
+    Light(LightKind.SPOT, (5.0, -3.5, 3.0), (-0.78, 0.55, -0.3), (0.35, 0.6, 1.0), 45.0, inner=12.0, outer=40.0),
+    Light(LightKind.SPHERE, (1.8, 3.2, 3.6), color=(1.0, 0.35, 0.6), intensity=20.0, size=0.3),
+    Light(LightKind.SUN, direction=(0.25, 0.35, -0.9), color=(0.55, 0.7, 1.0), intensity=0.25),
+)
+"""A warm key from the left, a cool spot from the right, a rim from behind and the moon."""
+
+_NEON = (
+    0.0, 1.0, 0.1, 0.35, 1.0, 0.25, 1.0, 0.4, 0.08, 1.0, 0.5, 0.1, 0.9, 0.8, 1.0, 0.75, 0.12, 0.35, 1.0, 1.0,
+    1.0, 0.65, 0.12, 1.0, 1.0,
+)
+"""Pink, orange, teal, blue, violet."""
+
+_Place = tuple[float, float, float]
+
+
+class DeferredLighting(Filter):
+    """Light a render anew from its albedo, normals and positions, with up to 1024 lights of your own.
+
+    Points, spots, suns and balls; those with negative intensity take light away. Surfaces scatter light as Lambert
+    says, and mirror it by GGX facets (Walter et al. 2007, Heitz 2014, Schlick 1994) or Phong's lobe (Lafortune and
+    Willems 1994); balls by the point nearest to the mirrored ray (Karis 2013). Light falls off with the square of the
+    distance, times (1 - (d / reach)^4)^2 where a reach is given: among many lights, those that have one are the fast
+    ones. A swarm adds many small lights at once. Nothing casts shadows. `out` is diffuse and specular light and
+    emission.
+    """
+
+    albedo = Image((0.6, 0.6, 0.6, 1.0), doc="Color of the surfaces. Without a link, clay.")
+    normal = Vector(0.0, width=3, doc="In the world. Without a link, from depth and camera.")
+    depth = Field(0.0, doc="Planar distance along the way the camera looks, if there is no position.")
+    position = Vector(0.0, width=3, doc="In the world. Without a link, from depth and camera.")
+    camera = Viewpoint(0.0, doc="Without one, highlights look as if every surface were seen straight on.")
+    material = Vector((0.0, 0.0), width=2, doc="Metal and roughness, 0..1, in place of the two values.")
+    emission = Image((0.0, 0.0, 0.0, 0.0), doc="Added as it is.")
+    occlusion = Field(1.0, doc="How open surfaces are, 0..1: the ambient light is multiplied with it, no other.")
+    model: Annotated[Literal["ggx", "phong"], Doc("The shape of highlights.")] = "ggx"
+    roughness: Annotated[Fraction, Doc("How wide highlights are: 0 polished, 1 dull.")] = 0.4
+    metal: Annotated[Fraction, Doc("1 mirrors in the color of the albedo, and scatters nothing.")] = 0.0
+    specular: Annotated[Fraction, Doc("How much other surfaces mirror: 8 percent at 1, seen straight on.")] = 0.5
+    lights: Annotated[LightList, Doc("Places are in the world, intensities in W/sr, those of suns in W/m2.")] = (
+        numbers_of(_RIG)
+    )
+    intensity: Annotated[float, Slider(0.0, 4.0, unit="ratio", doc="Scales all lights, those of the swarm too.")] = 1.0
+    ambient: Annotated[RGBA, Doc("Light from everywhere; its alpha scales it.")] = (0.35, 0.5, 0.8, 1.0)
+    ambient_intensity: Annotated[float, Slider(0.0, 2.0, unit="ratio", doc="How strong it is.")] = 0.06
+    swarm: Annotated[int, Slider(
+        0, 128, unit="count", minimum=0, maximum=MAX_LIGHTS, doc="How many point lights are strewn about."
+    )] = 0
+    swarm_place: Annotated[
+        _Place, Slider(-10.0, 10.0, unit="scene"), Doc("The middle of the box that the swarm fills evenly.")
+    ] = (0.0, 0.0, 0.8)
+    swarm_spread: Annotated[
+        _Place, Slider(0.0, 10.0, unit="scene"), Doc("From its middle to its sides.")
+    ] = (5.0, 4.0, 0.7)
+    swarm_colors: Annotated[Stops, Doc("What the swarm's colors are taken from, evenly.")] = _NEON
+    swarm_intensity: Annotated[float, Slider(-10.0, 10.0, unit="scene", doc="Of each of them, in W/sr.")] = 2.0
+    swarm_reach: Annotated[float, Slider(
+        0.0, 10.0, unit="scene", minimum=0.0, doc="The distance at which their light has faded out; 0 for none."
+    )] = 3.0
+    swarm_seed: Annotated[int, Slider(0, 100, unit="count", doc="Another number strews them otherwise.")] = 0
+
+    out = Output()
+    diffuse = Output(Image(doc="The light that surfaces scatter."))
+    specular_light = Output(Image(doc="The light that they mirror."))
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        camera, placed = draw.camera(self.camera), draw.linked(self.position)
+        rows, rays = (camera.rows, camera.inverse) if camera else ((0.0,) * 12, (0.0,) * 12)
+        place = draw.point(
+            "deferred_lighting_place", self.depth, self.position, result=Vector(width=4), rays=rays, placed=placed
+        )
+        normal = self.normal if draw.linked(self.normal) else draw(
+            "deferred_lighting_normal", self.depth, edge="black", result=Vector(width=3), rows=rows
+        )
+        lights = [light for light in lights_of(self.lights) if light.on]
+        lights += self._swarm(MAX_LIGHTS - len(lights))
+        texels = max(1, -(-len(lights) // (4 * _BITS)))
+        tiled = len(lights) > FEW and any(_ball(light)[3] < math.inf for light in lights)
+        words = self._tiles(draw, place, lights, texels) if tiled else draw.table(_all(len(lights), texels), texels)
+        table = draw.table(tuple(part for light in lights for part in _packed(light, self.intensity)), 3)
+        ambient = tuple(self.ambient_intensity * self.ambient[3] * part for part in self.ambient[:3])
+
+        def lit(scattered: float, mirrored: float) -> Drawn:
+            return draw(
+                "deferred_lighting_lit", self.albedo, self.material, self.occlusion, normal=normal, place=place,
+                lights=table, words=words, model=self.model, texels=texels, tiled=tiled, share=(scattered, mirrored),
+                mapped=draw.linked(self.material), metal=self.metal, roughness=self.roughness,
+                specular=self.specular, ambient=ambient, seen=camera is not None,
+                eye=camera.eye if camera else (0.0,) * 3,
+            )
+
+        return {
+            "out": draw.point("deferred_lighting", lit=lit(1.0, 1.0), emission=self.emission),
+            "diffuse": lit(1.0, 0.0), "specular_light": lit(0.0, 1.0),
+        }
+
+    def _tiles(self, draw: Draw, place: Drawn, lights: list[Light], texels: int) -> Drawn:
+        """Which lights can reach which tile: see the GLSL."""
+        width, height = (-(-length // TILE) for length in draw.size)
+        low, high = (
+            draw("deferred_lighting_corner", place=place, size=(width, height), result=Vector(width=4), side=side)
+            for side in (1.0, -1.0)
+        )
+        balls = draw.table(tuple(part for light in lights for part in _ball(light, 1e18)), 1)
+        return draw(
+            "deferred_lighting_tile", low=low, high=high, balls=balls, size=(width * texels, height),
+            result=Vector(width=4), count=len(lights), texels=texels,
+        )
+
+    def _swarm(self, most: int) -> Iterable[Light]:
+        """Evenly in the box: Roberts's R3 sequence (2018), whose steps are powers of the root of x^4 = x + 1."""
+        count, root = min(self.swarm, most), 1.2207440846057596
+        for number in range(count):
+            at = number + 1 + 7919 * self.swarm_seed
+            x, y, z = (
+                middle + side * (2.0 * ((0.5 + at * root**-power) % 1.0) - 1.0)
+                for middle, side, power in zip(self.swarm_place, self.swarm_spread, (1, 2, 3), strict=True)
+            )
+            red, green, blue, alpha = ramp_at(self.swarm_colors, (number + 0.5) / count)
+            yield Light(
+                place=(x, y, z), color=(red, green, blue), intensity=alpha * self.swarm_intensity,
+                reach=self.swarm_reach,
+            )
+
+
+def _packed(light: Light, gain: float) -> tuple[float, ...]:
+    """What the GLSL reads of a light, as three texels.
+
+    The place, or the way to a sun; 1 / reach^2. The color times the intensity; the radius, -1 for a sun. What takes the
+    way to the light to a cosine between the cones of a spot.
+    """
+    kind = light.kind
+    red, green, blue = (gain * light.intensity * part for part in light.color)
+    x, y, z = _unit(light.direction)
+    window = 1.0 / light.reach**2 if light.reach > 0.0 and kind is not LightKind.SUN else 0.0
+    size = max(light.size, 1e-4) if kind is LightKind.SPHERE else -1.0 if kind is LightKind.SUN else 0.0
+    cone = (0.0, 0.0, 0.0, 1.0)
+    if kind is LightKind.SPOT:
+        outer = math.cos(math.radians(light.outer))
+        scale = 1.0 / max(math.cos(math.radians(min(light.inner, light.outer))) - outer, 1e-4)
+        cone = (-x * scale, -y * scale, -z * scale, -outer * scale)
+    place = (-x, -y, -z) if kind is LightKind.SUN else light.place
+    return (*place, window, red, green, blue, size, *cone)
+
+
+def _ball(light: Light, endless: float = math.inf) -> tuple[float, float, float, float]:
+    """A ball, middle and radius, in which all lies that a light can reach. A little larger, as floats are rounded."""
+    if light.reach <= 0.0 or light.kind is LightKind.SUN:
+        return (0.0, 0.0, 0.0, endless)
+    along, radius = 0.0, light.reach
+    if light.kind is LightKind.SPOT and light.outer < 90.0:
+        angle = math.radians(light.outer)
+        along = radius / (2.0 * math.cos(angle)) if angle < math.pi / 4 else radius * math.cos(angle)
+        radius = along if angle < math.pi / 4 else radius * math.sin(angle)
+    x, y, z = (place + along * part for place, part in zip(light.place, _unit(light.direction), strict=True))
+    return (x, y, z, 1.0001 * radius + 1e-6 * max(map(abs, (*light.place, x, y, z))))
+
+
+def _unit(direction: _Place) -> _Place:
+    """Down, where there is none."""
+    size = math.hypot(*direction)
+    x, y, z = direction
+    return (x / size, y / size, z / size) if size > 0.0 else (0.0, 0.0, -1.0)
+
+
+def _all(count: int, texels: int) -> tuple[float, ...]:
+    """The words of a tile that every light can reach."""
+    lengths = (min(max(count - first, 0), _BITS) for first in range(0, 4 * _BITS * texels, _BITS))
+    return tuple(float(2**length - 1) for length in lengths)

@@ -1,0 +1,64 @@
+#include "lib/march.glsl"
+#include "lib/occlusion.glsl"
+
+vec3 contact_shadows_planes() { return march_planes(); }
+vec3 contact_shadows_bounds() { return march_bounds(); }
+vec3 contact_shadows_surfaces() { return march_surfaces(); }
+
+vec3 contact_shadows_normal(const vec4 rows[3], ivec2 at) {
+    vec3 normal = normal_at(at);
+    return is_finite(normal) && !is_mixed(normal) ? unit_normal(normal) : march_normal(rows, at, extent);
+}
+
+// The part of a light that a pixel sees. `to` is the way to a sun, the place of a lamp; `spread` is how wide it is.
+float contact_shadows_open(
+    const vec4 rows[3], const vec4 rays[3], int light, vec3 to, float reach, float spread, float thickness, int count
+) {
+    float near = surfaces_at(pixel).x, open = 0.0;
+    if (near <= 0.0) return 1.0;
+    vec2 uv = camera_uv(pixel, extent), size = vec2(extent);
+    vec3 normal = contact_shadows_normal(rows, pixel), plane = march_normal(rows, pixel, extent);
+    if (light == LIGHT_LAMP) {
+        to -= camera_place(rays, uv, 1.0 / near);
+        reach = min(reach, length(to));
+        to = normalize(to);
+    }
+    if (dot(normal, to) <= 0.0) return 1.0;
+    vec3 across = normalize(cross(to, abs(to.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));
+    const vec2 lattice = vec2(0.75487767, 0.56984029);  // Roberts 2018
+    vec2 noise = occlusion_noise(pixel, true);
+    for (int i = 0; i < count; ++i) {
+        vec2 random = fract(noise + float(i) * lattice);
+        float turn = 2.0 * OCCLUSION_PI * random.x, away = spread * sqrt(random.y);
+        vec3 way = normalize(to + away * (cos(turn) * across + sin(turn) * cross(to, across)));
+        March ray = march_start(rows, uv, 1.0 / near, march_out(way, plane), reach, false, size);
+        // What is met at the far end of the way fades out, so that no shadow ends abruptly.
+        bool met = march(ray, extent, thickness, 512);
+        open += met ? 1.0 - ray.sure * clamp(3.0 - 3.0 * march_distance(ray) / reach, 0.0, 1.0) : 1.0;
+    }
+    return finite(open / float(count));
+}
+
+// Means over 4 x 4 pixels of the same surface: all of the pattern of noise.
+float contact_shadows_denoise(const vec4 rows[3], const vec4 rays[3]) {
+    float depth = 1.0 / surfaces_at(pixel).x, sum = 0.0, total = 0.0;
+    if (surfaces_at(pixel).x <= 0.0) return 1.0;
+    vec3 normal = contact_shadows_normal(rows, pixel), here = depth * camera_ray(rays, camera_uv(pixel, extent));
+    float apart = pixel_pitch(rays, depth, vec2(extent));
+    for (int y = -2; y <= 2; ++y)
+        for (int x = -2; x <= 2; ++x) {
+            ivec2 at = pixel + ivec2(x, y);
+            if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, extent)) || surfaces_at(at).x <= 0.0) continue;
+            vec3 away = camera_ray(rays, camera_uv(at, extent)) / surfaces_at(at).x - here;
+            float weight = (abs(x) == 2 ? 0.5 : 1.0) * (abs(y) == 2 ? 0.5 : 1.0);
+            weight *= at == pixel ? 1.0 : same_surface(normal, contact_shadows_normal(rows, at), away, apart);
+            sum += weight * open_at(at);
+            total += weight;
+        }
+    return finite(sum / total);
+}
+
+vec4 contact_shadows(vec4 image, float shadow, vec4 color) {
+    vec4 safe = finite(image);
+    return vec4(safe.rgb * mix(vec3(1.0), color.rgb, color.a * (1.0 - shadow)), safe.a);
+}

@@ -1,0 +1,133 @@
+#include "geometry/normal_from_depth.glsl"
+#include "lib/alpha.glsl"
+#include "lib/brdf.glsl"
+#include "lib/camera.glsl"
+#include "lib/finite.glsl"
+#include "lib/geometry.glsl"
+
+const int DEFERRED_LIGHTING_TILE = 16;            // pixels across
+const int DEFERRED_LIGHTING_BITS = 24;            // lights to a channel: as many as a float holds exactly
+const float DEFERRED_LIGHTING_EVERYWHERE = 1e18;  // beyond all places
+const float DEFERRED_LIGHTING_SMOOTH = 0.0016;    // the least alpha: highlights of lights without size stay finite
+
+struct LitSurface {
+    vec3 place, normal, view, mirror, f0;
+    float nv, alpha;
+};
+
+// The place in the world, and in w whether anything is there.
+vec4 deferred_lighting_place(float depth, vec3 position, vec4 rays[3], bool placed) {
+    vec3 place = placed ? position : camera_place(rays, camera_uv(pixel, extent), depth);
+    bool there = is_finite(place) && all(lessThan(abs(place), vec3(GEOMETRY_FAR)));
+    return there && (placed ? is_place(place) : is_surface(depth)) ? vec4(place, 1.0) : vec4(0.0);
+}
+
+vec3 deferred_lighting_normal(const vec4 rows[3]) { return normal_from_depth(rows); }
+
+// --- tiles ---------------------------------------------------------------------------------------------------------
+
+// The corner of the box around all places of a tile that is lowest along every axis; with a side of -1, the highest.
+vec4 deferred_lighting_corner(float side) {
+    vec3 least = vec3(DEFERRED_LIGHTING_EVERYWHERE);
+    for (int y = 0; y < DEFERRED_LIGHTING_TILE; ++y)
+        for (int x = 0; x < DEFERRED_LIGHTING_TILE; ++x) {
+            vec4 place = place_at(pixel * DEFERRED_LIGHTING_TILE + ivec2(x, y));
+            if (place.w > 0.0) least = min(least, side * place.xyz);
+        }
+    return vec4(side * least, 0.0);
+}
+
+// Which lights can reach a tile: bit b of channel c of the tile's texel k stands for light 24 (4 k + c) + b.
+vec4 deferred_lighting_tile(int count, int texels) {
+    ivec2 tile = ivec2(pixel.x / texels, pixel.y);
+    vec3 low = low_at(tile).xyz, high = high_at(tile).xyz;
+    vec4 words = vec4(0.0);
+    if (low.x > high.x) return words;
+    int first = 4 * DEFERRED_LIGHTING_BITS * (pixel.x % texels);
+    for (int c = 0; c < 4; ++c, first += DEFERRED_LIGHTING_BITS) {
+        uint bits = 0u;
+        for (int b = 0; b < min(DEFERRED_LIGHTING_BITS, count - first); ++b) {
+            vec4 ball = balls_at(ivec2(0, first + b));
+            vec3 apart = max(max(low - ball.xyz, ball.xyz - high), 0.0);
+            if (dot(apart, apart) <= ball.w * ball.w) bits |= 1u << b;
+        }
+        words[c] = float(bits);
+    }
+    return words;
+}
+
+// --- light ---------------------------------------------------------------------------------------------------------
+
+// Add one light: what falls on the surface, and what it mirrors to the eye. A sun is a point one unit away.
+void deferred_lighting_add(int model, int light, LitSurface at, inout vec3 fallen, inout vec3 mirrored) {
+    vec4 origin = lights_at(ivec2(0, light)), glow = lights_at(ivec2(1, light));
+    float size = max(glow.w, 0.0);
+    vec3 way = glow.w < 0.0 ? origin.xyz : origin.xyz - at.place;
+    float square = max(dot(way, way), max(size * size, 1e-8));
+    float reach = square * origin.w, window = max(1.0 - reach * reach, 0.0);
+    if (window == 0.0) return;
+    vec4 cone = lights_at(ivec2(2, light));
+    vec3 l = way / sqrt(square);
+    float spot = clamp(dot(cone.xyz, l) + cone.w, 0.0, 1.0), ball = size * size / square;
+    vec3 power = glow.rgb * (window * window * spot * spot / square);
+    fallen += power * ball_cosine(dot(at.normal, l), min(ball, 0.999999));
+
+    if (size > 0.0) {  // the point of the ball nearest to the mirrored way to the eye (Karis 2013)
+        vec3 off = dot(l, at.mirror) * at.mirror - l;
+        l = normalize(l + off * min(1.0, sqrt(ball) / max(length(off), 1e-9)));
+    }
+    float nl = dot(at.normal, l);
+    if (nl <= 0.0) return;
+    // The highlight widens as variances add up, and pales by as much: what a mirror shows is as bright as the ball.
+    float square_alpha = at.alpha * at.alpha;
+    if (model == MODEL_PHONG) {
+        float paled = square_alpha / (square_alpha + 0.25 * ball * nl);
+        mirrored += power * at.f0 * (phong_lobe(dot(at.mirror, l), at.alpha) * paled * nl);
+    } else {
+        vec3 h = normalize(at.view + l);
+        float vh = max(dot(at.view, h), 1e-4), paled = square_alpha / (square_alpha + 0.25 * ball / vh);
+        float facets = ggx_facets(at.normal, h, at.alpha) * ggx_visible(at.nv, nl, at.alpha);
+        mirrored += power * fresnel(at.f0, vh) * (facets * paled * nl);
+    }
+}
+
+// Every light that the words of a tile name, in order.
+void deferred_lighting_sum(
+    int model, int texels, ivec2 tile, LitSurface at, inout vec3 fallen, inout vec3 mirrored
+) {
+    for (int k = 0, first = 0; k < texels; ++k) {
+        vec4 words = words_at(ivec2(tile.x * texels + k, tile.y));
+        for (int c = 0; c < 4; ++c, first += DEFERRED_LIGHTING_BITS)
+            for (uint bits = uint(words[c]); bits != 0u; bits &= bits - 1u)
+                deferred_lighting_add(model, first + findLSB(bits), at, fallen, mirrored);
+    }
+}
+
+// `share` is how much of the light that surfaces scatter and of the light that they mirror is wanted.
+vec4 deferred_lighting_lit(
+    int model, int texels, bool tiled, vec2 share, bool mapped, float metal, float roughness, float specular,
+    vec3 ambient, bool seen, vec3 eye
+) {
+    vec4 place = place_at(pixel), color = finite(albedo_at(pixel));
+    vec3 normal = unit_normal(normal_at(pixel));
+    if (place.w == 0.0 || normal == vec3(0.0) || color == vec4(0.0)) return vec4(0.0, 0.0, 0.0, color.a);
+    color = straight(color);
+    vec2 material = clamp(mapped ? finite(material_at(pixel)) : vec2(metal, roughness), 0.0, 1.0);
+
+    LitSurface at;
+    at.place = place.xyz, at.normal = normal;
+    at.view = seen ? normalize(eye - place.xyz) : normal;
+    at.mirror = reflect(-at.view, normal);
+    at.nv = clamp(dot(normal, at.view), 1e-4, 1.0);
+    at.alpha = max(material.y * material.y, DEFERRED_LIGHTING_SMOOTH);
+    at.f0 = mix(vec3(0.08 * specular), color.rgb, material.x);
+    vec3 scatter = color.rgb * (1.0 - material.x);
+
+    vec3 sky = ambient * clamp(finite(occlusion_at(pixel)), 0.0, 1.0);
+    vec3 fallen = BRDF_PI * sky, mirrored = sky * ggx_sky(at.f0, at.nv, at.alpha);
+    deferred_lighting_sum(model, texels, tiled ? pixel / DEFERRED_LIGHTING_TILE : ivec2(0), at, fallen, mirrored);
+    vec3 lit = share.x * scatter * fallen / BRDF_PI + share.y * mirrored;
+    return finite(premultiplied(vec4(lit, color.a)));
+}
+
+vec4 deferred_lighting(vec4 lit, vec4 emission) { return finite(vec4(lit.rgb + finite(emission).rgb, lit.a)); }

@@ -1,0 +1,180 @@
+#include "lib/alpha.glsl"
+#include "lib/brdf.glsl"
+#include "lib/camera.glsl"
+#include "lib/environment.glsl"
+#include "lib/finite.glsl"
+#include "lib/geometry.glsl"
+
+const float IMAGE_BASED_LIGHT_BRIGHTEST = 65504.0;  // more would overflow in sums
+const int IMAGE_BASED_LIGHT_SAMPLES = 128;  // of a lobe
+const int IMAGE_BASED_LIGHT_FACETS = 1024;  // of the table of what they mirror
+
+// Means over all that a pixel covers of a larger picture, by solid angle.
+vec4 image_based_light_sky() {
+    ivec2 first = pixel * environment_size / extent, end = max((pixel + 1) * environment_size / extent, first + 1);
+    vec4 sum = vec4(0.0);
+    for (int y = first.y; y < end.y; ++y)
+        for (int x = first.x; x < end.x; ++x) {
+            vec3 light = clamp(environment_at(ivec2(x, y)).rgb, 0.0, IMAGE_BASED_LIGHT_BRIGHTEST);
+            sum += environment_angle(y, environment_size) * vec4(light, 1.0);
+        }
+    return vec4(sum.rgb / sum.a, 1.0);
+}
+
+// The cosine-weighted mean of the sky around the direction of this pixel.
+vec4 image_based_light_irradiance() {
+    vec3 normal = environment_way((vec2(pixel) + 0.5) / vec2(extent), false, 0.0);
+    float turn = 2.0 * ENVIRONMENT_PI / float(sky_size.x);
+    mat2 turned = mat2(cos(turn), -sin(turn), sin(turn), cos(turn));
+    vec4 sum = vec4(0.0);
+    for (int y = 0; y < sky_size.y; ++y) {
+        float below = ENVIRONMENT_PI * (float(y) + 0.5) / float(sky_size.y), angle = environment_angle(y, sky_size);
+        vec2 around = -vec2(cos(0.5 * turn), -sin(0.5 * turn));
+        for (int x = 0; x < sky_size.x; ++x, around = turned * around) {
+            float facing = sin(below) * dot(around, normal.xy) + cos(below) * normal.z;
+            sum += max(facing, 0.0) * angle * vec4(sky_at(ivec2(x, y)).rgb, 1.0);
+        }
+    }
+    return sum / sum.a;
+}
+
+vec3 image_based_light_in_sky(vec2 uv) {
+    vec4 sum = vec4(0.0);
+    float weight;
+    for (int i = 0; i < 4; ++i) {
+        ivec2 at = environment_corner(uv, i, sky_size, weight);
+        sum += weight * sky_at(at);
+    }
+    return sum.rgb;
+}
+
+vec3 image_based_light_in_level0(vec2 uv) {
+    vec4 sum = vec4(0.0);
+    float weight;
+    for (int i = 0; i < 4; ++i) {
+        ivec2 at = environment_corner(uv, i, level0_size, weight);
+        sum += weight * level0_at(at);
+    }
+    return sum.rgb;
+}
+
+vec3 image_based_light_in_level1(vec2 uv) {
+    vec4 sum = vec4(0.0);
+    float weight;
+    for (int i = 0; i < 4; ++i) {
+        ivec2 at = environment_corner(uv, i, level1_size, weight);
+        sum += weight * level1_at(at);
+    }
+    return sum.rgb;
+}
+
+vec3 image_based_light_in_level2(vec2 uv) {
+    vec4 sum = vec4(0.0);
+    float weight;
+    for (int i = 0; i < 4; ++i) {
+        ivec2 at = environment_corner(uv, i, level2_size, weight);
+        sum += weight * level2_at(at);
+    }
+    return sum.rgb;
+}
+
+vec3 image_based_light_in_level3(vec2 uv) {
+    vec4 sum = vec4(0.0);
+    float weight;
+    for (int i = 0; i < 4; ++i) {
+        ivec2 at = environment_corner(uv, i, level3_size, weight);
+        sum += weight * level3_at(at);
+    }
+    return sum.rgb;
+}
+
+vec3 image_based_light_in_level4(vec2 uv) {
+    vec4 sum = vec4(0.0);
+    float weight;
+    for (int i = 0; i < 4; ++i) {
+        ivec2 at = environment_corner(uv, i, level4_size, weight);
+        sum += weight * level4_at(at);
+    }
+    return sum.rgb;
+}
+
+// Between two of five pictures of the sky, each coarser than the one before.
+vec3 image_based_light_level(vec2 uv, float level) {
+    float part = fract(level);
+    if (level < 1.0) return mix(image_based_light_in_level0(uv), image_based_light_in_level1(uv), part);
+    if (level < 2.0) return mix(image_based_light_in_level1(uv), image_based_light_in_level2(uv), part);
+    if (level < 3.0) return mix(image_based_light_in_level2(uv), image_based_light_in_level3(uv), part);
+    if (level < 4.0) return mix(image_based_light_in_level3(uv), image_based_light_in_level4(uv), part);
+    return image_based_light_in_level4(uv);
+}
+
+// The i-th of facets that are spread around z as GGX says (Walter et al. 2007).
+vec3 image_based_light_facet(int i, int count, float alpha) {
+    float part = (float(i) + 0.5) / float(count);
+    float turn = 2.0 * ENVIRONMENT_PI * fract(float(i) * 0.61803399);
+    float lift = sqrt((1.0 - part) / (1.0 + (alpha * alpha - 1.0) * part));
+    return vec3(sqrt(1.0 - lift * lift) * vec2(cos(turn), sin(turn)), lift);
+}
+
+// The mean of the sky that a rough surface reflects which is seen head on, by the GGX distribution of its facets. The
+// fewer samples, the coarser the sky that they read (Krivanek and Colbert 2008): levels halve it.
+vec4 image_based_light_lobe(float roughness) {
+    vec3 normal = environment_way((vec2(pixel) + 0.5) / vec2(extent), false, 0.0);
+    vec3 across = normalize(cross(normal, abs(normal.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));
+    vec3 beside = cross(normal, across), sum = vec3(0.0);
+    float total = 0.0, alpha = roughness * roughness, finest = 2.0 * ENVIRONMENT_PI / float(level0_size.x);
+    for (int i = 0; i < IMAGE_BASED_LIGHT_SAMPLES; ++i) {
+        vec3 facet = image_based_light_facet(i, IMAGE_BASED_LIGHT_SAMPLES, alpha);
+        vec3 way = 2.0 * facet.z * (facet.x * across + facet.y * beside + facet.z * normal) - normal;
+        float weight = dot(way, normal);
+        if (weight <= 0.0) continue;
+        float dense = ggx_facets(vec3(0.0, 0.0, 1.0), facet, alpha) * float(IMAGE_BASED_LIGHT_SAMPLES) / 4.0;
+        float level = clamp(1.0 - 0.5 * log2(dense * finest * finest), 0.0, 4.0);
+        sum += weight * image_based_light_level(environment_uv(way, false, 0.0), level);
+        total += weight;
+    }
+    return vec4(sum / total, 1.0);
+}
+
+// Where it lies in a picture of the sky that was made with z up and without a turn.
+vec2 image_based_light_uv(vec3 way, int up, float rotation) { return environment_uv(way, up == UP_Y, rotation); }
+
+vec4 image_based_light_diffuse(float intensity, float rotation, int up) {
+    vec3 normal = unit_normal(normal_at(pixel));
+    if (normal == vec3(0.0)) return vec4(0.0);
+    vec3 color = clamp(straight(albedo_at(pixel)).rgb, 0.0, 1.0) * (1.0 - clamp(metallic_at(pixel), 0.0, 1.0));
+    vec3 light = image_based_light_in_sky(image_based_light_uv(normal, up, rotation));
+    return finite(vec4(intensity * clamp(occlusion_at(pixel), 0.0, 1.0) * color * light, 1.0));
+}
+
+// How much facets mirror of an even sky: scale and bias of the color that they have head on, by how much the surface faces
+// the eye, across, and its roughness, down (the second half of the split sum).
+vec2 image_based_light_shares() {
+    vec2 at = max(vec2(pixel) / vec2(extent - 1), 1e-3);
+    vec3 view = vec3(sqrt(1.0 - at.x * at.x), 0.0, at.x);
+    float alpha = at.y * at.y;
+    vec2 sum = vec2(0.0);
+    for (int i = 0; i < IMAGE_BASED_LIGHT_FACETS; ++i) {
+        vec3 facet = image_based_light_facet(i, IMAGE_BASED_LIGHT_FACETS, alpha);
+        float seen = dot(view, facet), lit = 2.0 * seen * facet.z - view.z;
+        if (seen <= 0.0 || lit <= 0.0) continue;
+        float part = 4.0 * ggx_visible(at.x, lit, alpha) * lit * seen / facet.z;
+        sum += part * mix(vec2(1.0, 0.0), vec2(0.0, 1.0), fresnel(vec3(0.0), seen).x);
+    }
+    return sum / float(IMAGE_BASED_LIGHT_FACETS);
+}
+
+vec4 image_based_light_reflection(const vec4 rays[3], float intensity, float rotation, int up, float specular) {
+    vec3 normal = unit_normal(normal_at(pixel));
+    if (normal == vec3(0.0)) return vec4(0.0);
+    vec3 view = -normalize(camera_ray(rays, camera_uv(pixel, extent)));
+    float facing = clamp(dot(normal, view), 0.0, 1.0), roughness = clamp(roughness_at(pixel), 0.0, 1.0);
+    float metal = clamp(metallic_at(pixel), 0.0, 1.0);
+    vec3 color = mix(vec3(0.08 * specular), clamp(straight(albedo_at(pixel)).rgb, 0.0, 1.0), metal);
+    vec2 share = shares_near(vec2(facing, roughness) * vec2(shares_size - 1) + 0.5);
+    vec2 uv = image_based_light_uv(reflect(-view, normal), up, rotation);
+    vec3 light = image_based_light_level(uv, 4.0 * roughness) * clamp(color * share.x + share.y, 0.0, 1.0);
+    return finite(vec4(intensity * clamp(occlusion_at(pixel), 0.0, 1.0) * light, 1.0));
+}
+
+vec4 image_based_light(vec4 diffuse, vec4 reflection) { return vec4(diffuse.rgb + reflection.rgb, diffuse.a); }

@@ -1,0 +1,74 @@
+#include "lib/bright.glsl"
+#include "lib/march.glsl"
+#include "lib/occlusion.glsl"
+
+vec3 light_shafts_planes() { return march_planes(); }
+vec3 light_shafts_bounds() { return march_bounds(); }
+vec3 light_shafts_surfaces() { return march_surfaces(); }
+
+// Henyey and Greenstein's, 1 where haze scatters alike to all sides. Light goes on straight at a cosine of 1.
+float light_shafts_phase(float cosine, float ahead) {
+    return (1.0 - ahead * ahead) * pow(1.0 + ahead * ahead - 2.0 * ahead * cosine, -1.5);
+}
+
+// The part of the light that gets to a place on the way to this pixel; `way` is from there to the light.
+float light_shafts_open(const vec4 rows[3], vec2 uv, float depth, vec3 way, float reach, bool endless, float thickness) {
+    March ray = march_start(rows, uv, depth, way, reach, endless, vec2(extent));
+    return march(ray, extent, thickness, 256) && !ray.endless ? 1.0 - ray.sure : 1.0;
+}
+
+// Light that is scattered once on its way, of a light of 1. `to` is the way to a sun, the place of a lamp.
+float light_shafts_haze(
+    const vec4 rows[3], const vec4 rays[3], int light, vec3 to, vec2 source, float density, float ahead, float longest,
+    float thickness, int count
+) {
+    const float least = 0.02;  // a lamp is so large, for ways that lead right through it
+    vec2 uv = camera_uv(pixel, extent);
+    vec3 ray = camera_ray(rays, uv), eye = camera_eye(rays);
+    float stretch = length(ray), near = surfaces_at(pixel).x, end = longest;
+    vec3 view = ray / stretch;
+    if (near > 0.0) end = min(end, stretch / near);
+    if (light == LIGHT_PICTURE) to = normalize(camera_ray(rays, source));
+    float noise = occlusion_noise(pixel, true).x, sum = 0.0;
+
+    if (light != LIGHT_LAMP) {
+        // As many places wherever as much light is scattered.
+        float lost = 1.0 - exp(-density * end);
+        for (int i = 0; i < count; ++i) {
+            float part = (float(i) + noise) / float(count);
+            float away = lost > 1e-4 ? -log(1.0 - part * lost) / density : part * end;
+            sum += light_shafts_open(rows, uv, max(away / stretch, 1e-6), to, longest, true, thickness);
+        }
+        return finite(sum / float(count) * lost * light_shafts_phase(dot(to, view), ahead));
+    }
+    float closest = dot(to - eye, view), side = max(length(to - eye - closest * view), least);
+    vec2 angle = atan(vec2(-closest, end - closest) / side);
+    for (int i = 0; i < count; ++i) {
+        float turn = mix(angle.x, angle.y, (float(i) + noise) / float(count));
+        float away = clamp(closest + side * tan(turn), 0.0, end);
+        vec3 way = to - eye - away * view;
+        float reach = max(length(way), 1e-6);
+        way /= reach;
+        float arrives = exp(-density * (away + reach)) * light_shafts_phase(dot(way, view), ahead);
+        sum += arrives * light_shafts_open(rows, uv, max(away / stretch, 1e-6), way, reach, false, thickness);
+    }
+    return finite(sum / float(count) * density * (angle.y - angle.x) / side);
+}
+
+// Means over 4 x 4 pixels, all of the pattern of noise, of what is about as far away: haze has no other edges.
+float light_shafts_denoise() {
+    float here = surfaces_at(pixel).x, sum = 0.0, total = 0.0;
+    for (int y = -2; y <= 2; ++y)
+        for (int x = -2; x <= 2; ++x) {
+            ivec2 at = pixel + ivec2(x, y);
+            if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, extent))) continue;
+            float weight = (abs(x) == 2 ? 0.5 : 1.0) * (abs(y) == 2 ? 0.5 : 1.0), there = surfaces_at(at).x;
+            weight *= clamp(2.0 - 10.0 * abs(here - there) / max(max(here, there), 1e-30), 0.0, 1.0);
+            sum += weight * haze_at(at);
+            total += weight;
+        }
+    return sum / total;
+}
+
+vec4 light_shafts_alone(vec4 image, float haze, vec3 light) { return glow_alone(vec4(0.0), haze * light); }
+vec4 light_shafts(vec4 image, float haze, vec3 light) { return with_glow(image, haze * light); }

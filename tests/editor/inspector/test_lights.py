@@ -1,0 +1,134 @@
+"""Editing lists of lights, without a window."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+
+import pytest
+from halation.app.editor.inspector.fields import Fields
+from halation.app.editor.inspector.lights import (
+    PARTS,
+    added,
+    changed,
+    count_of,
+    counted,
+    fresh,
+    light_at,
+    moved,
+    parts_of,
+    removed,
+    strength,
+    title,
+    turned,
+)
+from halation.app.editor.inspector.lights_field import selected
+from halation.app.editor.theme.palette import DARK
+from halation.app.graph.values import value_fault
+from halation.nodes import MAX_LIGHTS, Light, LightKind, lights_of, numbers_of
+from hypothesis import given
+from hypothesis import strategies as st
+from toy_nodes import Lamps
+
+LIGHTS = Lamps.values["lights"]
+PART = {part.name: part for part in PARTS}
+A, B, C = (Light(place=(float(index), 0.0, 0.0)) for index in range(3))
+THREE = numbers_of((A, B, C))
+
+edits = st.lists(
+    st.tuples(
+        st.sampled_from(["add", "double", "remove", "move", "turn", "set"]), st.integers(0, 9),
+        st.sampled_from(LightKind), st.sampled_from(PARTS), st.floats(0.0, 90.0),
+    ),
+    max_size=16,
+)
+
+
+@given(edits)
+def test_whatever_is_done_leaves_a_legal_value(edits):
+    numbers, chosen = THREE, 0
+    for act, index, kind, part, number in edits:
+        count = count_of(numbers)
+        at = index % count if count else -1
+        if act == "add":
+            numbers, chosen = added(numbers, at, fresh(kind))
+        elif at < 0:
+            continue
+        elif act == "double":
+            numbers, chosen = added(numbers, at, light_at(numbers, at))
+        elif act == "remove":
+            numbers, chosen = removed(numbers, at)
+        elif act == "move":
+            numbers, chosen = moved(numbers, at, index - 5)
+        elif act == "turn":
+            numbers = changed(numbers, at, turned(light_at(numbers, at), kind))
+        else:
+            old = part.of(light_at(numbers, at))
+            new = tuple(number for _ in old) if isinstance(old, tuple) else number
+            numbers = changed(numbers, at, part.put(light_at(numbers, at), new))
+        assert value_fault(LIGHTS, numbers) is None
+        assert count_of(numbers) == 0 or 0 <= min(chosen, count_of(numbers) - 1) < count_of(numbers)
+
+
+def test_the_list():
+    assert added(THREE, 0, A) == (numbers_of((A, A, B, C)), 1)
+    assert added((), -1, A) == (A.numbers, 0)
+    assert removed(THREE, 1) == (numbers_of((A, C)), 1)
+    assert removed(THREE, 2) == (numbers_of((A, B)), 1)
+    assert removed(A.numbers, 0) == ((), -1)
+    assert moved(THREE, 0, 1) == (numbers_of((B, A, C)), 1)
+    assert moved(THREE, 2, -2) == (numbers_of((C, A, B)), 0)
+    assert moved(THREE, 2, 1) == (THREE, 2)
+    assert changed(THREE, 1, C) == numbers_of((A, C, C))
+    full = A.numbers * MAX_LIGHTS
+    assert added(full, 3, B) == (full, 3) and moved(full, 3, 2) == (full, 5)
+
+
+@pytest.mark.parametrize("kind", LightKind)
+def test_parts(kind):
+    parts = parts_of(kind)
+    assert all(value_fault(part.declaration, part.of(fresh(kind))) is None for part in parts)
+    assert all(part.put(fresh(kind), part.declaration.default) == fresh(kind) for part in parts)
+    assert lights_of(fresh(kind).numbers) == (fresh(kind),)
+
+
+def test_each_kind_has_what_it_needs():
+    names = {kind: {part.name for part in parts_of(kind)} for kind in LightKind}
+    assert names == {
+        LightKind.POINT: {"place", "color", "intensity", "reach"},
+        LightKind.SPOT: {"place", "direction", "color", "intensity", "reach", "inner", "outer"},
+        LightKind.SUN: {"direction", "color", "intensity"},
+        LightKind.SPHERE: {"place", "color", "intensity", "reach", "size"},
+    }
+    assert {field.name for field in fields(Light)} == {*PART, "kind", "on"}
+
+
+def test_what_is_set_of_a_light():
+    assert PART["color"].of(A) == (1.0, 1.0, 1.0, 1.0)
+    assert PART["color"].put(A, (1.0, 2.0, 3.0, 0.5)).color == (1.0, 2.0, 3.0)
+    assert PART["direction"].put(A, (0.0, 0.0, 0.0)) == A
+    assert PART["intensity"].put(A, -4.0).intensity == -4.0
+    assert PART["inner"].put(A, 40.0) == replace(A, inner=40.0, outer=40.0)
+    assert PART["outer"].put(A, 5.0) == replace(A, inner=5.0, outer=5.0)
+    assert (PART["intensity"].unit(LightKind.SUN), PART["intensity"].unit(LightKind.SPOT)) == ("W/m²", "W/sr")
+    assert PART["outer"].unit(LightKind.SPOT) is None
+
+
+def test_another_kind_keeps_what_was_set():
+    assert turned(A, LightKind.SUN) == replace(fresh(LightKind.SUN), place=A.place)
+    assert turned(turned(A, LightKind.SUN), LightKind.POINT) == A
+    bright = replace(A, intensity=7.0)
+    assert turned(bright, LightKind.SUN) == replace(bright, kind=LightKind.SUN)
+
+
+def test_words():
+    assert [counted(()), counted(A.numbers), counted(THREE)] == ["no lights", "1 light", "3 lights"]
+    assert title(Light(LightKind.SPOT), 1) == "Spot 2"
+    numbers = (0.0, -3.0, 0.125, 1234.5, 1e7)
+    assert [strength(replace(A, intensity=number)) for number in numbers] == ["0", "-3", "0.125", "1234", "1e+07"]
+
+
+def test_one_is_selected():
+    state = Fields(DARK)
+    assert selected(state, "a", THREE) == 0 and selected(state, "a", ()) == -1
+    state.lights["a"] = 2
+    assert selected(state, "a", THREE) == 2 and selected(state, "a", A.numbers) == 0
