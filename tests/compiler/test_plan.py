@@ -73,7 +73,7 @@ def test_keys_tell_different_pixels_apart(plan, seed):
         number: (one.shader, one.uniforms, one.textures, one.targets.index(number))
         for one in made.passes for number in one.targets
     }
-    for number, surface in enumerate(made.surfaces):
+    for surface in made.surfaces:
         same = [other for other, item in enumerate(made.surfaces) if item.key == surface.key]
         # The same numbers as color and as data are the same pixels.
         assert len({ways.get(other, other) for other in same}) == 1
