@@ -14,6 +14,7 @@ float light_shafts_phase(float cosine, float ahead) {
 // The part of the light that gets to a place on the way to this pixel; `way` is from there to the light.
 float light_shafts_open(const vec4 rows[3], vec2 uv, float depth, vec3 way, float reach, bool endless, float thickness) {
     March ray = march_start(rows, uv, depth, way, reach, endless, vec2(extent));
+    ray.at = 0.0;  // it starts in the air: what this pixel shows may be in its way
     return march(ray, extent, thickness, 256) && !ray.endless ? 1.0 - ray.sure : 1.0;
 }
 

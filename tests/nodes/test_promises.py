@@ -36,8 +36,11 @@ AFAR = 0.02
 
 ALIKE_FROM_AFAR = MappingProxyType({
     "it weighs the next pixels, which are farther away in a proxy": (
-        "convolve3x3.out", "curvature.cavity", "curvature.mean", "curvature.ridge", "facing.facing", "rim_light.out",
-        "rim_light.rim",
+        "convolve3x3.out", "curvature.cavity", "curvature.mean", "curvature.ridge", "facing.facing",
+        "normal_from_depth.curvature", "normal_from_depth.normal", "rim_light.out", "rim_light.rim",
+    ),
+    "what hides what is read from depth, which has fewer steps in a proxy and is never mixed": (
+        "ambient_occlusion.bent_normal", "ambient_occlusion.occlusion", "directional_occlusion.light",
     ),
     "its pattern is as fine as pixels of the proxy": (
         "crosshatch.out", "film_grain.out", "halftone.out", "worley.cell",

@@ -1,0 +1,130 @@
+"""Contact shadows against rays that numpy casts towards the light, past a box on a floor."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from geometry import rays
+from halation.nodes import look_at
+from halation.nodes.light.contact_shadows import ContactShadows
+
+SIZE = (160, 90)
+LOW, HIGH = np.array([-0.5, 0.0, 0.0]), np.array([0.5, 60.0, 0.8])
+HARD = {"softness": 0.0, "length": 1e3, "thickness": 1e4}
+
+
+def box(eye, way):
+    """Where rays enter the box and leave it; the first is infinite where they miss it."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        one, two = (LOW - eye) / way, (HIGH - eye) / way
+    enter, leave = np.fmin(one, two).max(-1), np.fmax(one, two).min(-1)
+    return np.where((enter < leave) & (leave > 1e-6), enter, np.inf), leave
+
+
+def taken(eye=(0.4, -3.5, 2.2), target=(0.3, 0.3, 0.3), size=SIZE, boxed=True):
+    """Depth, normals and places of the floor and the box, by numpy."""
+    camera = look_at(eye, target, (1.2, 1.2 * size[0] / size[1]))
+    way, eye = rays(camera, *size), np.array(eye)
+    with np.errstate(divide="ignore"):
+        floor = np.where(way[..., 2] < 0, -eye[2] / way[..., 2], np.inf)
+    depth = np.minimum(floor, box(eye, way)[0]) if boxed else floor
+    place = eye + np.where(np.isfinite(depth), depth, 0)[..., None] * way
+    side = np.minimum(np.abs(place - LOW), np.abs(place - HIGH)) + (place > HIGH + 1e-6) + (place < LOW - 1e-6)
+    face = np.eye(3)[side.argmin(-1)] * np.sign(place - (LOW + HIGH) / 2)
+    normal = np.where((depth < floor)[..., None], face, (0.0, 0.0, 1.0)) * np.isfinite(depth)[..., None]
+    return camera, np.where(np.isfinite(depth), depth, 1e10), normal, place
+
+
+def shaded(run, camera, depth, normal=None, output="shadow", **values):
+    inputs = {"depth": depth, "camera": camera} | ({} if normal is None else {"normal": normal})
+    found = run(ContactShadows(**(HARD | values)), inputs, output=output)
+    return found[..., 0] if output == "shadow" else found
+
+
+def dilated(mask, by=1):
+    found = mask.copy()
+    for y in range(-by, by + 1):
+        for x in range(-by, by + 1):
+            found |= np.roll(mask, (y, x), (0, 1))
+    return found
+
+
+@pytest.mark.parametrize("given", [True, False], ids=["normals", "depth alone"])
+@pytest.mark.parametrize("light", ["sun", "lamp"])
+def test_the_shadow_of_a_box(run, light, given):
+    """Within a pixel of where rays to the light meet the box."""
+    camera, depth, normal, place = taken()
+    sun, lamp = np.array([-0.6, -0.35, 0.7]), np.array([-1.5, -1.2, 1.6])
+    way = sun if light == "sun" else lamp - place
+    lifted = place + 1e-4 * normal
+    enter, leave = box(lifted, np.broadcast_to(way, place.shape))
+    dark = np.isfinite(enter) & (leave > 1e-3) & ((light == "sun") | (enter < 1.0))
+    floor = (normal[..., 2] > 0.5) & (place[..., 2] < 1e-6)
+    found = shaded(run, camera, depth, normal if given else None, light=light, direction=tuple(sun), position=tuple(lamp))
+    edge = dilated(dark & floor) & dilated(~dark | ~floor)
+    clear = floor & ~edge
+    assert (clear & dark).sum() > 100 and (clear & ~dark).sum() > 1000
+    assert np.all(found[clear & ~dark] == 1.0)
+    # What lies beyond the picture throws no shadow.
+    met = place + np.where(dark, enter, 0.0)[..., None] * way
+    seen = met @ np.reshape(camera.rows, (3, 4))[:, :3].T + np.reshape(camera.rows, (3, 4))[:, 3]
+    inside = ((seen[..., :2] > 0.02 * seen[..., 2:]) & (seen[..., :2] < 0.98 * seen[..., 2:])).all(-1)
+    assert np.all(found[clear & dark & inside] == 0.0)
+    dark &= inside | (found < 0.5)
+    wrong = floor & ((found < 0.5) != dark)
+    assert wrong.sum() < 0.1 * (edge & floor).sum() + 0.02 * dark.sum()
+
+
+@pytest.mark.parametrize("softness", [0.0, 8.0])
+@pytest.mark.parametrize("height", [0.05, 0.5, 3.0, 40.0])
+def test_planes_are_not_shadowed(run, height, softness):
+    """Whichever way the sun is, from right above to the horizon."""
+    camera, depth, normal, _ = taken((0.0, -4.0, height), (0.0, 0.0, 0.0), boxed=False)
+    for turn in np.radians([0, 40, 90, 160, 180, 270]):
+        for rise in (0.02, 0.3, 2.0):
+            sun = (np.cos(turn), np.sin(turn), rise)
+            for one in (normal, None):
+                found = shaded(run, camera, depth, one, direction=sun, softness=softness)
+                assert np.all(found == 1.0)
+
+
+def test_what_faces_away_and_what_is_nothing_stays(run):
+    camera, depth, normal, _ = taken()
+    assert np.all(shaded(run, camera, depth, normal, direction=(0.0, 0.0, -1.0))[normal[..., 2] > 0.5] == 1.0)
+    for empty in (1e10, np.inf, 0.0, -1.0, np.nan):
+        assert np.all(shaded(run, camera, np.full(depth.shape, empty), softness=5.0) == 1.0)
+
+
+def test_length_and_color(run):
+    """The shadow fades out where the box is too far away, and only the light that is wanted is taken."""
+    camera, depth, normal, place = taken()
+    sun = np.array([-0.6, -0.35, 0.7])
+    values = {"direction": tuple(sun)}
+    whole = shaded(run, camera, depth, normal, **values)
+    short = shaded(run, camera, depth, normal, length=0.3, **values)
+    enter, _ = box(place + 1e-4 * normal, np.broadcast_to(sun / np.linalg.norm(sun), place.shape))
+    # Seen from the camera, what is behind the front of the box is a little wider than the box.
+    floor = (place[..., 2] < 1e-6) & (whole < 0.01) & (place[..., 1] < 0.5)
+    assert np.all(short >= whole - 1e-6)
+    assert np.all(short[floor & (enter > 0.32)] == 1.0) and np.all(short[floor & (enter < 0.12)] < 0.1)
+    out = shaded(run, camera, depth, normal, output="out", color=(0.2, 0.1, 0.0, 0.5), **values)
+    np.testing.assert_allclose(out[..., :3], 1 - 0.5 * (1 - whole)[..., None] * (1 - np.array([0.2, 0.1, 0])), atol=1e-6)
+    assert np.all(out[..., 3] == 1.0)
+
+
+def test_soft_edges_grow_with_the_distance(run):
+    """A disc of light over the box's edge: the width of the half shadow against numpy's rays through the disc."""
+    camera, depth, normal, place = taken(size=(160, 90))
+    sun = np.array([-0.75, 0.0, 0.66])
+    sun /= np.linalg.norm(sun)
+    found = shaded(run, camera, depth, normal, direction=tuple(sun), softness=12.0, quality="reference")
+    across, up = np.array([0.0, 1.0, 0.0]), np.cross(sun, (0.0, 1.0, 0.0))
+    turn, away = np.meshgrid(np.linspace(0, 2 * np.pi, 24, False), np.sqrt((np.arange(12) + 0.5) / 12))
+    spread = np.tan(np.radians(6.0)) * away
+    ways = sun + spread.ravel()[:, None] * (np.cos(turn).ravel()[:, None] * across + np.sin(turn).ravel()[:, None] * up)
+    floor = (normal[..., 2] > 0.5) & (place[..., 2] < 1e-6)
+    part = np.mean([~np.isfinite(box(place + 1e-4 * normal, np.broadcast_to(way, place.shape))[0]) for way in ways], 0)
+    half = floor & (part > 0.1) & (part < 0.9) & (place[..., 1] > 0.1) & (place[..., 1] < 0.5) & (place[..., 0] > 0.6)
+    assert half.sum() > 40
+    error = (found - part)[half]
+    assert abs(error.mean()) < 0.05 and np.sqrt((error**2).mean()) < 0.1

@@ -1,0 +1,173 @@
+"""Directional occlusion against closed forms, and against sums over all directions in numpy."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from halation.nodes import look_at
+from halation.nodes.light.ambient_occlusion import AmbientOcclusion
+from halation.nodes.light.directional_occlusion import DirectionalOcclusion
+
+SIZE = (320, 180)
+
+
+def corner(wall=True, size=SIZE):
+    """Floor and wall: camera, depth, normals, places, and where a radius of 0.5 fits the picture."""
+    width, height = size
+    camera = look_at((5.0, 0.0, 3.0), (1.0, 0.0, 0.6), (30 / 36, 30 / 36 * width / height))
+    y, x = np.mgrid[0:height, 0:width]
+    seen = np.stack([(x + 0.5) / width, (y + 0.5) / height, np.ones(x.shape)], -1)
+    rays = seen @ np.reshape(camera.inverse, (3, 4))[:, :3].T
+    with np.errstate(divide="ignore"):
+        floor, side = (-np.asarray(camera.eye)[axis] / rays[..., axis] for axis in (2, 0))
+    floor, side = (np.where(depth > 0, depth, np.inf) for depth in (floor, side))
+    depth = np.minimum(floor, side) if wall else floor
+    normal = np.where((floor == depth)[..., None], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0])
+    with np.errstate(invalid="ignore"):
+        place = camera.eye + depth[..., None] * rays
+    reach = 0.5 / depth * 30 / 36 * width + 2
+    return camera, depth, normal, place, (x > reach) & (x < width - reach) & (y > reach) & (y < height - reach)
+
+
+def light(run, scene, image=None, environment=None, albedo=None, output="light", **values):
+    camera, depth, normal, *_ = scene
+    given = {"depth": depth, "normal": normal, "camera": camera}
+    given["image"] = np.zeros((*depth.shape, 4)) if image is None else image
+    if environment is not None:
+        given["environment"] = environment
+    if albedo is not None:
+        given["albedo"] = albedo
+    return run(DirectionalOcclusion(**({"radius": 0.5, "falloff": 0.0} | values)), given, output=output)
+
+
+def sky(function, size=(64, 32), y_up=False):
+    """An environment that is a function of direction."""
+    width, height = size
+    v, u = np.meshgrid((np.arange(height) + 0.5) / height, (np.arange(width) + 0.5) / width, indexing="ij")
+    around, below = (0.5 - u) * 2 * np.pi, v * np.pi
+    way = np.stack([np.sin(below) * np.cos(around), np.sin(below) * np.sin(around), np.cos(below)], -1)
+    if y_up:
+        way = way[..., [1, 2, 0]]
+    return np.concatenate([function(way), np.ones((height, width, 1))], -1)
+
+
+def even(*color):
+    return np.broadcast_to(np.float32([*color, 1.0]), (4, 8, 4))
+
+
+def share(c):
+    c = np.clip(c, 0, 1)
+    return 1 - (np.arccos(c) - c * np.sqrt(1 - c * c)) / np.pi
+
+
+@pytest.mark.parametrize("resolution", ["full", "half"])
+def test_an_even_sky_is_albedo_times_light_times_occlusion(run, resolution):
+    scene = corner()
+    albedo = np.broadcast_to(np.float32([0.8, 0.4, 0.1, 1.0]), (*scene[1].shape, 4))
+    found = light(run, scene, environment=even(0.5, 2.0, 3.0), albedo=albedo, resolution=resolution, intensity=1.5)
+    node = AmbientOcclusion(radius=0.5, falloff=0.0, resolution=resolution)
+    open_ = run(node, {"depth": scene[1], "normal": scene[2], "camera": scene[0]}, output="occlusion")
+    expected = open_ * np.array([0.8 * 0.5, 0.4 * 2.0, 0.1 * 3.0]) * 1.5
+    np.testing.assert_allclose(found[..., :3], expected, rtol=2e-4, atol=1e-5)
+    _, _, normal, place, inner = scene
+    away = np.where(normal[..., 2] > 0.5, place[..., 0], place[..., 2])
+    error = (found[..., 0] / 0.6 - share(away / 0.5))[inner]
+    assert abs(error.mean()) < 0.01 and np.sqrt((error**2).mean()) < 0.02
+
+
+@pytest.mark.parametrize("turn", [0.0, 90.0, 217.0])
+def test_half_a_sky_lights_open_ground_by_half(run, turn):
+    half = sky(lambda way: np.repeat((way[..., :1] > 0.0).astype(float), 3, -1))
+    scene = corner(wall=False)
+    found = light(run, scene, environment=half, rotation=turn)[..., 0][np.isfinite(scene[1])]
+    assert abs(found.mean() - 0.5) < 0.005 and np.sqrt(((found - 0.5) ** 2).mean()) < 0.02
+
+
+@pytest.mark.parametrize("resolution", ["full", "half"])
+def test_a_wall_hides_only_its_side_of_the_sky(run, resolution):
+    """Light from before the wall stays half; of light from behind it, as much goes as the wall hides."""
+    scene = corner()
+    place, floor = scene[3], scene[4] & (scene[2][..., 2] > 0.5)
+    for turn, expected in ((0.0, np.full(floor.shape, 0.5)), (180.0, share(place[..., 0] / 0.5) - 0.5)):
+        half = sky(lambda way: np.repeat((way[..., :1] > 0.0).astype(float), 3, -1))
+        error = (light(run, scene, environment=half, rotation=turn, resolution=resolution)[..., 0] - expected)[floor]
+        assert abs(error.mean()) < 0.01 and np.sqrt((error**2).mean()) < 0.02
+
+
+@pytest.mark.parametrize("up", ["z", "y"])
+@pytest.mark.parametrize("turn", [0.0, 40.0])
+def test_colored_light_comes_from_where_it_is(run, up, turn):
+    """Smooth light from all sides on open floor and wall, summed over the sphere in numpy."""
+    def glow(way):
+        return np.stack([1 + way[..., 0], (1 + way[..., 1]) ** 2, np.exp(way[..., 2])], -1)
+
+    found = light(run, corner(wall=False), environment=sky(glow, (128, 64), up == "y"), rotation=turn, up=up)
+    steps = np.linspace(0, 1, 200, endpoint=False) + 0.0025
+    u, v = np.meshgrid(steps, steps)
+    way = np.stack([np.sqrt(u) * np.cos(2 * np.pi * v), np.sqrt(u) * np.sin(2 * np.pi * v), np.sqrt(1 - u)], -1)
+    angle = np.radians(turn)
+    c, s = np.cos(angle), np.sin(angle)
+    x, y, z = np.moveaxis(way, -1, 0)
+    # Turning the surroundings one way is looking at them turned the other way.
+    seen = (c * x + s * y, -s * x + c * y, z) if up == "z" else (c * x - s * z, y, s * x + c * z)
+    expected = glow(np.stack(seen, -1)).mean((0, 1))
+    floor = found[110:160, 80:240, :3]
+    assert np.abs(floor - expected).max() < 0.02 * expected.max()
+
+
+@pytest.mark.parametrize("resolution", ["full", "half"])
+def test_a_wall_bounces_what_it_hides(run, resolution):
+    """C1's complement: where a wall of even light blocks, its light comes from it instead."""
+    _, depth, normal, place, inner = scene = corner()
+    wall = normal[..., 0] > 0.5
+    image = np.zeros((*depth.shape, 4), np.float32)
+    image[wall] = (3.0, 1.0, 0.2, 1.0)
+    found = light(run, scene, image=image, resolution=resolution)
+    blocked = 1 - share(place[..., 0] / 0.5)
+    floor = inner & ~wall
+    for channel, color in enumerate((3.0, 1.0, 0.2)):
+        error = (found[..., channel] / color - blocked)[floor]
+        assert abs(error.mean()) < 0.01 and np.sqrt((error**2).mean()) < 0.02
+    assert np.abs(found[wall][:, :3]).max() < 1e-3  # the floor is black, and a plane does not light itself
+    np.testing.assert_allclose(light(run, scene, image=image, resolution=resolution, bounce=2.0), [2, 2, 2, 1] * found)
+
+
+def test_all_that_comes_in_a_furnace_is_one(run):
+    """Surroundings and surfaces of the same light: what is hidden is made up for, everywhere."""
+    scene = corner()
+    ones = np.ones((*scene[1].shape, 4), np.float32)
+    for values in ({"falloff": 0.0}, {"falloff": 0.7}, {"quality": "preview"}, {"radius": 2.0}):
+        found = light(run, scene, image=ones, environment=even(1.0, 1.0, 1.0), **values)
+        assert np.abs(found - 1.0).max() < 1e-4
+
+
+def test_what_looks_away_gives_no_light(run):
+    """A bright board before a floor that faces the camera only: the floor behind it sees its dark back."""
+    camera, depth, normal, *_ = corner(wall=False)
+    board = np.zeros(depth.shape, bool)
+    board[53:93, 120:200] = True
+    near = np.where(board, depth - 0.2, depth)
+    toward = np.where(board[..., None], [1.0, 0.0, 0.0], normal)
+    image = np.zeros((*depth.shape, 4), np.float32)
+    image[board] = 1.0
+    found = light(run, (camera, near, toward), image=image, radius=1.0)[..., 0]
+    behind, before = found[46:51, 130:190], found[95:100, 130:190]
+    assert behind.max() < 1e-5 < 0.01 < before.mean()
+
+
+def test_the_picture_gets_the_light(run):
+    scene = corner(size=(48, 27))
+    rng = np.random.default_rng(3)
+    image = rng.random((27, 48, 4)).astype(np.float32)
+    given = {"image": image, "environment": even(0.3, 0.4, 0.5)}
+    added, out = light(run, scene, **given), light(run, scene, **given, output="out")
+    np.testing.assert_allclose(out[..., :3], image[..., :3] + added[..., :3] * image[..., 3:], rtol=1e-5)
+    np.testing.assert_array_equal(out[..., 3], image[..., 3])
+
+
+def test_nothing_gets_no_light(run):
+    camera, depth, normal, *_ = corner(size=(48, 27))
+    depth[:, :20] = 1e10
+    scene = camera, depth, normal
+    found = light(run, scene, image=np.ones((27, 48, 4)), environment=even(1.0, 1.0, 1.0))
+    assert not found[:, :20, :3].any() and found[:, 20:, :3].min() > 0.5
