@@ -3,8 +3,8 @@
 
 const float camera_velocity_most = 1e5;  // in pixels: what passes close by the other camera is faster than that
 
-// From where now sees it to where the other camera does, as fractions of the picture. `change` is what the other adds to
-// (u d, v d, d). The sky is infinitely deep: we count its depth as 1 and leave out how the camera has moved.
+// From where now sees it to where the other camera does, as fractions of the picture. `change` is what the other adds
+// to (u d, v d, d). The sky is infinitely deep: we count its depth as 1 and leave out how the camera has moved.
 vec2 camera_velocity_step(const vec4 change[3], vec2 uv, float depth) {
     vec4 seen = depth > 0.0 ? vec4(uv * depth, depth, 1.0) : vec4(uv, 1.0, 0.0);
     float deeper = dot(change[2], seen), there = seen.z + deeper;

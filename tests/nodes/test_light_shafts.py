@@ -130,6 +130,7 @@ def test_a_board_throws_a_shaft(run):
     error = (found - dark) / free
     assert np.sqrt((error[~edge] ** 2).mean()) < 0.015
     steep = np.maximum(*(np.abs(one) for one in np.gradient(dark / free))) > 0.02
+    print(np.argwhere((np.abs(error)>.03)&~edge&~steep).tolist(), np.sqrt((error[~edge] ** 2).mean()), np.abs(error[~edge&~steep]).mean())
     assert np.abs(error[~edge & ~steep]).max() < 0.05
     assert (1 - dark / free)[~edge].max() > 0.2
 

@@ -1,0 +1,211 @@
+import math
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from .._declare import (
+    Argument,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Fraction,
+    Image,
+    Number,
+    Output,
+    Position,
+    Size,
+    Slider,
+    Vector,
+)
+
+_FINEST = {"draft": 4.0, "normal": 6.0, "high": 12.0, "exact": math.inf}
+"""Radius in pixels of the largest disc that is made of the picture's own pixels."""
+
+_ENDLESS = 1e9
+
+_SOFTNESS = 4.0 * 0.354
+"""What averaging and interpolating add to a disc's radius squared, in pixels of the smaller size."""
+
+_MIDDLE = 0.72
+"""A typical radius of a level, as a part of its largest one."""
+
+
+class DepthOfField(Filter):
+    """Focus like a lens: what lies nearer or farther spreads into discs of light (bokeh).
+
+    The circle of confusion is `f / N * f / sensor * width * (1 / focus - 1 / depth)` across, as Cycles' cameras project
+    (pinhole), times `focus / (focus - f)` for a thin lens. Every pixel gathers what scatters over it: what is in front
+    covers it, its own surface shares the rest with what shows behind its soft edge. Large discs are made at half,
+    quarter... size, near and far apart. Light is kept. `coc` is the disc's diameter in pixels of the full-size picture,
+    below 0 nearer than the focus.
+    """
+
+    image = Image()
+    depth = Field(doc="Planar distance along the way the camera looks.")
+    mask = Field(1.0, doc="How much of its blur each pixel gets, 0..1.")
+    focus: Annotated[Literal["point", "distance"], Doc(
+        "Point: what lies there in the picture is sharp. Distance: what is so far away."
+    )] = "point"
+    focus_point: Annotated[Position, Doc("What is sharp, for focus by point.")] = (0.5, 0.5)
+    focus_distance: Annotated[float, Slider(
+        0.1, 100.0, unit="scene", minimum=1e-3, doc="How far away it is sharp, for focus by distance."
+    )] = 8.0
+    f_number: Annotated[float, Slider(
+        0.7, 22.0, unit="ratio", minimum=0.01, maximum=1000.0, doc="Focal length over aperture: less blurs more."
+    )] = 1.4
+    focal: Annotated[float, Slider(
+        8.0, 300.0, unit="ratio", minimum=0.1, maximum=10000.0, doc="Focal length in millimeters."
+    )] = 85.0
+    sensor: Annotated[float, Slider(
+        4.0, 70.0, unit="ratio", minimum=0.1, maximum=1e3, doc="Width of the sensor in millimeters; full frame is 36."
+    )] = 36.0
+    meters: Annotated[float, Slider(
+        0.01, 10.0, unit="ratio", minimum=1e-6, maximum=1e6, doc="How long a unit of the scene is."
+    )] = 1.0
+    convention: Annotated[Literal["thin lens", "pinhole"], Doc(
+        "Thin lens: focusing near magnifies. Pinhole: it does not, as in Cycles."
+    )] = "thin lens"
+    max_blur: Annotated[float, Slider(
+        0.0, 0.1, unit="height", minimum=0.0, maximum=0.5, doc="Larger discs are this large."
+    )] = 0.03
+    aperture: Annotated[Literal["round", "blades"], Doc("The shape of bokeh.")] = "round"
+    blades: Annotated[int, Slider(3, 12, unit="count", minimum=3, maximum=64, doc="Corners of bokeh by blades.")] = 6
+    roundness: Annotated[Fraction, Doc("How far blades bend out to a circle.")] = 0.0
+    rotation: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="How far the blades are turned.")] = 0.0
+    ratio: Annotated[float, Slider(
+        0.5, 2.0, unit="ratio", minimum=0.1, maximum=10.0, doc="Height over width of bokeh: 2 for an anamorphic lens."
+    )] = 1.0
+    cat_eye: Annotated[float, Slider(
+        0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.5, doc="How far the barrel cuts off bokeh in the corners."
+    )] = 0.0
+    quality: Annotated[Literal["draft", "normal", "high", "exact"], Doc(
+        "Discs up to so many pixels across are made at full size: 8, 12, 24, all. Exact costs the square of the blur."
+    )] = "normal"
+
+    out = Output()
+    coc = Output(Field())
+
+    def identity(self) -> str | None:
+        return "image" if self.max_blur == 0.0 else None
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        largest = self.max_blur / 2.0
+        radius = self._radius(draw, largest)
+        image = draw("depth_of_field_clean", self.image, radius=radius, edge="reflect")
+        finest = min(_FINEST[self.quality], largest)
+        levels = max(math.ceil(math.log2(largest / finest)), 0) if finest else 0
+        tile = math.ceil(finest) + 1
+        most = draw(
+            "depth_of_field_most_sharp", radius=radius, size=_blocks(draw.size, tile), result=Field(), edge="reflect",
+            tile=tile, sharpest=finest if levels else _ENDLESS,
+        )
+        reach = draw("depth_of_field_reach", most=most, size=most.size, result=Field())
+        stretch = (max(self.ratio, 1.0), max(1.0 / self.ratio, 1.0))
+        bokeh = self._bokeh(draw, finest, stretch)
+        if not levels:
+            out = draw(
+                "depth_of_field_alone", image=image, radius=radius, reach=reach, **bokeh
+            )
+        else:
+            # Averaging and interpolating spreads light along both axes, and makes smaller discs rounder.
+            widest = (_MIDDLE * finest) ** 2
+            across, down = (
+                math.sqrt((widest - _SOFTNESS) / max(widest / part**2 - _SOFTNESS, 0.25)) for part in stretch
+            )
+            smaller = self._bokeh(draw, finest, (across, down))
+            near, hidden = self._layers(draw, image, radius, smaller, levels, finest, -1.0)
+            far, filled = self._layers(draw, image, radius, smaller, levels, finest, 1.0)
+            rest = self._rest(draw, image, radius, levels, finest)
+            out = draw(
+                "depth_of_field", image=image, radius=radius, reach=reach, near=near, hidden=hidden,
+                far=far, filled=filled, rest=rest, **bokeh, coarsest=2.0**levels,
+            )
+        return {"out": out, "coc": draw.point("depth_of_field_coc", result=Field(), radius=radius)}
+
+    def _radius(self, draw: Draw, largest: float) -> Drawn:
+        """Of the disc of every pixel, below 0 nearer than the focus."""
+        focal = self.focal / 1000.0 / self.meters  # in units of the scene
+        scale = focal / self.f_number * self.focal / self.sensor * draw.size[0] / 2.0
+        bend = focal if self.convention == "thin lens" else 0.0
+        sharp: Argument = 1.0 / self.focus_distance
+        if self.focus == "point":
+            sharp = draw("depth_of_field_sharp", self.depth, size=(1, 1), result=Number(), point=self.focus_point)
+        return draw.point(
+            "depth_of_field_radius", self.depth, self.mask, result=Field(), sharp=sharp, scale=scale, bend=bend,
+            largest=largest,
+        )
+
+    def _bokeh(self, draw: Draw, finest: float, stretch: tuple[float, float]) -> dict[str, Any]:
+        """Of the aperture, squeezed along both axes: what the gathering functions are told of it."""
+        inner, area, middle = 1.0, math.pi, 0
+        if self.aperture == "blades":
+            inner = 1.0 + (math.cos(math.pi / self.blades) - 1.0) * (1.0 - self.roundness)
+            area, middle = self._area(inner), math.ceil(finest) + 1
+        shape = draw(
+            "depth_of_field_blades", size=(2 * middle + 1, 2 * middle + 1), result=Field(), middle=middle,
+            blades=self.blades, roundness=self.roundness, rotation=self.rotation, stretch=stretch,
+        )
+        return {
+            "shape": shape, "tile": math.ceil(finest) + 1, "finest": finest, "aperture": self.aperture,
+            "lens": (inner, area / (stretch[0] * stretch[1]), self.cat_eye), "stretch": stretch,
+        }
+
+    def _area(self, inner: float) -> float:
+        """Of an aperture of blades whose corners are 1 away from its middle, by Simpson's rule over half a blade."""
+        step, sum = math.pi / self.blades / 32, 0.0
+        for i in range(33):
+            edge = inner / (self.roundness + (1.0 - self.roundness) * math.cos(i * step))
+            sum += edge * edge * (1 if i in (0, 32) else 4 if i % 2 else 2)
+        return self.blades * sum * step / 3.0
+
+    def _layers(
+        self, draw: Draw, image: Drawn, radius: Drawn, bokeh: dict[str, Any], levels: int, finest: float, side: float
+    ) -> tuple[Drawn, Drawn]:
+        """Discs that are made at lower sizes, the largest first: their light, and how much of each pixel they cover."""
+        tile = math.ceil(finest) + 1
+        name = "depth_of_field_near" if side < 0.0 else "depth_of_field_far"
+        light = draw("depth_of_field_nothing", size=(1, 1))
+        cover = draw("depth_of_field_nothing", size=(1, 1), result=Field())
+        for level in range(levels, 0, -1):
+            block = 2**level
+            size = _blocks(draw.size, block)
+            bounds: dict[str, Any] = {
+                "block": block, "side": side, "low": finest * block / 2.0,
+                "high": finest * block if level < levels else _ENDLESS,
+            }
+            own = draw("depth_of_field_light", image=image, radius=radius, size=size, edge="reflect", **bounds)
+            extents = draw(
+                "depth_of_field_extents", radius=radius, size=size, result=Vector(width=3), edge="reflect", **bounds
+            )
+            most = draw("depth_of_field_most", extents=extents, size=_blocks(size, tile), result=Field(), tile=tile)
+            reach = draw("depth_of_field_reach", most=most, size=most.size, result=Field())
+            light, cover = (
+                draw(
+                    f"{name}_{what}", own=own, extents=extents, reach=reach, light=light, cover=cover, size=size,
+                    result=result, **bokeh,
+                )
+                for what, result in (("light", None), ("cover", Field()))
+            )
+        return light, cover
+
+    def _rest(self, draw: Draw, image: Drawn, radius: Drawn, levels: int, finest: float) -> Drawn:
+        """What may lie behind what is near and blurred: all the rest, drawn in from where it is seen."""
+        block = 2**levels
+        size = _blocks(draw.size, block)
+        light = draw(
+            "depth_of_field_rest_light", image=image, radius=radius, size=size, edge="reflect", block=block,
+            finest=finest,
+        )
+        weight = draw(
+            "depth_of_field_rest_weight", radius=radius, size=size, edge="reflect", result=Field(), block=block,
+            finest=finest,
+        )
+        return draw(
+            "depth_of_field_rest", image=image, light=light, weight=weight, size=size, reach=math.ceil(finest) + 1,
+            block=float(block),
+        )
+
+
+def _blocks(size: Size, length: int) -> Size:
+    return math.ceil(size[0] / length), math.ceil(size[1] / length)

@@ -1,0 +1,69 @@
+import math
+from typing import Annotated, Literal
+
+from .._declare import Doc, Draw, Drawn, Field, Filter, Image, Pixels, Slider, Vector
+
+
+class MotionBlur(Filter):
+    """Blur what moves along its path, as far as it gets while the shutter is open.
+
+    A gather in the manner of McGuire et al. 2012, Jimenez 2014 and Guertin et al. 2014: the fastest motion around says
+    from where things may pass before a pixel, and for how long each of them covers it; the rest of the time shows what
+    lies on the pixel's own path. Paths are parabolas through the places before, now and after. Where the velocity is
+    0 and nothing passes by, pixels stay as they are.
+    """
+
+    image = Image()
+    velocity = Vector(width=4, doc=(
+        "Pixels of the full-size picture, x right, y down: x and y from the frame before, z and w to the frame after. "
+        "Where z and w are 0, motion goes on evenly."
+    ))
+    depth = Field(0.0, doc="Says what passes before what. Without it, all is equally deep.")
+    shutter: Annotated[float, Slider(
+        0.0, 360.0, unit="deg", minimum=0.0, maximum=720.0,
+        doc="Shutter angle: 360 is open from frame to frame, 180 half the time.",
+    )] = 180.0
+    phase: Annotated[Literal["centered", "start", "end"], Doc(
+        "When the shutter is open: around the frame, from it on (start) or until it (end)."
+    )] = "centered"
+    path: Annotated[Literal["curved", "straight"], Doc(
+        "Straight ignores where things go after the frame."
+    )] = "curved"
+    max_length: Annotated[float, Slider(
+        0.0, 0.2, unit="height", minimum=0.0, maximum=1.0, doc="Longer paths are shortened to this."
+    )] = 0.06
+    samples: Annotated[int, Slider(
+        4, 128, unit="count", minimum=2, maximum=1024,
+        doc="Along a path; where it has more pixels, noise takes the place of those left out.",
+    )] = 64
+
+    def identity(self) -> str | None:
+        return "image" if self.shutter == 0.0 or self.max_length == 0.0 else None
+
+    def passes(self, draw: Draw) -> Drawn:
+        frames = self.shutter / (2.0 * math.pi)
+        opens = {"centered": -0.5, "start": 0.0, "end": -1.0}[self.phase] * frames
+        times, vector = (opens, opens + frames), Vector(width=4)
+        # Around the frame, things get half as far from their place; those on bent paths a little farther.
+        reach = self.max_length * (0.75 if self.phase == "centered" else 1.0)
+        tile = max(math.ceil(reach), 1) + 1
+        width, height = draw.size
+        across, down = math.ceil(width / tile), math.ceil(height / tile)
+        velocity: Pixels = self.velocity
+        if draw.linked(self.depth):
+            velocity = draw("motion_blur_clean", self.velocity, self.depth, result=vector)
+        paths = draw.point(
+            "motion_blur_path", velocity=velocity, result=vector, path=self.path, times=times, longest=self.max_length,
+            reach=reach,
+        )
+        rows = draw(
+            "motion_blur_fastest", paths=paths, size=(across, height), result=vector, axis=0, count=tile, times=times
+        )
+        tiles = draw(
+            "motion_blur_fastest", paths=rows, size=(across, down), result=vector, axis=1, count=tile, times=times
+        )
+        around = draw("motion_blur_around", tiles=tiles, size=(across, down), result=vector, times=times)
+        return draw(
+            "motion_blur", self.image, self.depth, paths=paths, around=around, times=times, tile=tile,
+            samples=self.samples,
+        )

@@ -1,0 +1,367 @@
+#include "lib/geometry.glsl"
+
+// Radii are in pixels of the picture that is drawn; they are below 0 nearer than the focus, and grow with the depth.
+// `lens`: how far the middle of a blade is from the axis, the area, both of an aperture of radius 1, and cat's eyes.
+
+const float depth_of_field_least = 0.5;    // a disc of this radius covers its own pixel only
+const float depth_of_field_seam = 0.85;    // from this part of the radius that is too large, levels cross over
+const float depth_of_field_slack = 1.015;  // pixels are squares: discs of them have not quite the area of discs
+const float depth_of_field_unseen = 0.05;  // weight of what is guessed, beside what is known
+
+// --- circles of confusion ---
+
+float depth_of_field_sharp(vec2 point) {
+    return nearness(depth_at(ivec2(clamp(point, 0.0, 1.0) * vec2(depth_size - 1) + 0.5)));
+}
+
+float depth_of_field_radius(
+    float depth, float mask, float sharp, float scale, float bend, float largest
+) {
+    float radius = scale * (sharp - nearness(depth)) / max(1.0 - bend * sharp, 1e-3);
+    return clamp(clamp(finite(mask), 0.0, 1.0) * radius, -largest, largest);
+}
+
+// The light beyond the picture's border mirrors that within: it is as much.
+ivec2 depth_of_field_fold(ivec2 at, ivec2 size) {
+    at = max(at, -1 - at);
+    return min(at, 2 * size - 1 - at);
+}
+
+float depth_of_field_coc(float radius) { return 2.0 * radius / proxy; }
+
+// Antialiased edges before what is farther carry light of both. If the nearer one is blurred, they would stay as a line
+// around it: they take after the pixels of their own surface that lie further in.
+vec4 depth_of_field_clean() {
+    float radii[25], here = radius_at(pixel);
+    for (int i = 0; i < 25; ++i) radii[i] = radius_at(pixel + ivec2(i % 5, i / 5) - 2);
+    vec4 sum = vec4(0.0);
+    float count = 0.0;
+    bool edge = false;
+    for (int i = 0; i < 9; ++i) {
+        int at = 5 * (i / 3) + i % 3 + 6;
+        bool inside = abs(radii[at] - here) < 1.0;
+        for (int side = 0; side < 4; ++side) {
+            float other = radii[at + int[4](-5, -1, 1, 5)[side]];
+            bool before = here - other >= 1.0;
+            edge = edge || i == 4 && before && abs(other) >= 1.0;
+            inside = inside && !before;
+        }
+        if (!inside) continue;
+        sum += image_at(pixel + ivec2(i % 3, i / 3) - 1);
+        count += 1.0;
+    }
+    return edge && count > 0.0 ? sum / count : image_at(pixel);
+}
+
+// --- levels: how a disc belongs to the size that it is made at ---
+
+float depth_of_field_rise(float radius, float edge) {
+    return clamp((abs(radius) / edge - depth_of_field_seam) / (1.0 - depth_of_field_seam), 0.0, 1.0);
+}
+
+float depth_of_field_member(float radius, float side, float low, float high) {
+    if (radius * side <= 0.0) return 0.0;
+    return depth_of_field_rise(radius, low) * (1.0 - depth_of_field_rise(radius, high));
+}
+
+// The light of a level on one side of the focus, in blocks of pixels.
+vec4 depth_of_field_light(int block, float side, float low, float high) {
+    vec4 sum = vec4(0.0);
+    for (int y = 0; y < block; ++y)
+        for (int x = 0; x < block; ++x) {
+            ivec2 at = block * pixel + ivec2(x, y);
+            sum += depth_of_field_member(radius_at(at), side, low, high) * image_at(at);
+        }
+    return sum / float(block * block);
+}
+
+// How much of each block belongs to a level, the radius there, in blocks, and how much is nearer. Averaging and
+// interpolating spreads light too, by 0.354 square blocks along each axis: discs are drawn so much smaller that their
+// second moment is right.
+vec3 depth_of_field_extents(int block, float side, float low, float high) {
+    float count = 0.0, sum = 0.0, nearer = 0.0;
+    for (int y = 0; y < block; ++y)
+        for (int x = 0; x < block; ++x) {
+            float radius = radius_at(block * pixel + ivec2(x, y));
+            float part = depth_of_field_member(radius, side, low, high);
+            count += part;
+            sum += part * abs(radius);
+            nearer += radius * side <= 0.0 ? 1.0 : 1.0 - depth_of_field_rise(radius, low);
+        }
+    float whole = float(block * block);
+    if (count == 0.0) return vec3(0.0, 0.0, nearer / whole);
+    float radius = sum / count / float(block);
+    float squared = radius * radius + 1.0 / (3.0 * whole) - 4.0 * 0.354;
+    return vec3(count / whole, sqrt(max(squared, depth_of_field_least * depth_of_field_least)), nearer / whole);
+}
+
+// --- tiles: how far to look ---
+
+float depth_of_field_most_sharp(int tile, float sharpest) {
+    float most = 0.0;
+    for (int y = 0; y < tile; ++y)
+        for (int x = 0; x < tile; ++x) {
+            float radius = abs(radius_at(tile * pixel + ivec2(x, y)));
+            most = max(most, radius < sharpest ? radius : 0.0);
+        }
+    return most;
+}
+
+float depth_of_field_most(int tile) {
+    float most = 0.0;
+    for (int y = 0; y < tile; ++y)
+        for (int x = 0; x < tile; ++x) most = max(most, extents_at(tile * pixel + ivec2(x, y)).y);
+    return most;
+}
+
+float depth_of_field_reach() {
+    float most = 0.0;
+    for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x) most = max(most, most_at(pixel + ivec2(x, y)));
+    return most;
+}
+
+// --- the shape of bokeh ---
+
+vec4 depth_of_field_nothing() { return vec4(0.0); }
+
+// How large an aperture must be to reach an offset; its corners lie on the circle.
+float depth_of_field_blades(int middle, int blades, float roundness, float rotation, vec2 stretch) {
+    vec2 away = vec2(pixel - middle) * stretch;
+    float reached = -1e9;
+    for (int i = 0; i < blades; ++i) {
+        float angle = rotation + radians(360.0) * (float(i) + 0.5) / float(blades);
+        reached = max(reached, dot(away, vec2(cos(angle), -sin(angle))));
+    }
+    return mix(reached, length(away), roundness);
+}
+
+// Where the barrel cuts, as seen from a place: the aperture is what two discs have in common that lie so far apart.
+vec2 depth_of_field_eye(vec3 lens, ivec2 at) {
+    vec2 size = vec2(extent);
+    return lens.z * (2.0 * vec2(at) + 1.0 - size) / length(size);
+}
+
+// The area of a disc of radius 1 around this pixel, and of one of any radius, with its soft rim.
+float depth_of_field_unit(vec3 lens) {
+    float apart = min(length(depth_of_field_eye(lens, pixel)), 1.99);
+    return lens.y * (2.0 * acos(0.5 * apart) - 0.5 * apart * sqrt(4.0 - apart * apart)) / radians(180.0);
+}
+
+float depth_of_field_area(float unit, float radius) { return unit * (radius * radius + 1.0 / 12.0); }
+
+// How far inside a disc the pixel `away` from its middle lies. Near the camera the aperture is upside down.
+float depth_of_field_inside(int aperture, vec3 lens, vec2 stretch, vec2 eye, ivec2 away, float radius) {
+    vec2 offset = vec2(away) * stretch;
+    float size = abs(radius), cut = size * (0.25 * size * dot(eye, eye) + abs(dot(offset, eye)));
+    float inside = size - sqrt(dot(offset, offset) + cut);
+    if (aperture == APERTURE_ROUND) return inside;
+    return min(size * lens.x - shape_at((radius < 0.0 ? -away : away) + shape_size / 2), inside);
+}
+
+float depth_of_field_cover(float inside) { return clamp(inside + 0.5, 0.0, 1.0); }
+
+// Half the width of a disc in a row.
+int depth_of_field_chord(float reach, int row) {
+    float outer = reach + 0.5;
+    return int(sqrt(max(outer * outer - float(row * row), 0.0)));
+}
+
+// --- discs made at lower size ---
+
+// What scatters over a block: light, and how much of the block it covers. Beyond the focus, smaller discs are nearer,
+// and what they hide of a surface is taken to be like the rest of it.
+void depth_of_field_scattered(
+    int tile, int aperture, vec3 lens, vec2 stretch, float side, out vec4 sum, out float covered
+) {
+    vec4 front = vec4(0.0), back = vec4(0.0);
+    float fronts = 0.0, backs = 0.0, hidden = 0.0;
+    sum = vec4(0.0);
+    covered = 0.0;
+    float reach = reach_at(pixel / tile), here = extents_at(pixel).y;
+    if (reach == 0.0) return;
+    float unit = depth_of_field_unit(lens), whole = depth_of_field_area(unit, reach);
+    for (int y = -int(reach + 0.5); y <= int(reach + 0.5); ++y) {
+        int chord = depth_of_field_chord(reach, y);
+        for (int x = -chord; x <= chord; ++x) {
+            ivec2 at = depth_of_field_fold(pixel + ivec2(x, y), extent);
+            vec3 extents = extents_at(at);
+            float radius = max(extents.y, depth_of_field_least);
+            vec2 eye = depth_of_field_eye(lens, at);
+            float inside = depth_of_field_inside(aperture, lens, stretch, eye, -ivec2(x, y), side * radius);
+            float weight = depth_of_field_cover(inside) / depth_of_field_area(unit, radius);
+            float before = side > 0.0 && extents.y > 0.0 ? clamp(2.0 * (here - radius) - 0.5, 0.0, 1.0) : 0.0;
+            vec4 light = weight * own_at(at);
+            front += before * light;
+            back += (1.0 - before) * light;
+            fronts += before * weight * extents.x;
+            backs += (1.0 - before) * weight * extents.x;
+            float share = depth_of_field_cover(inside + (reach - radius) * lens.x) / whole;
+            hidden += share * (extents.z + before * extents.x);
+        }
+    }
+    covered = fronts + backs;
+    sum = front + back;
+    if (side < 0.0 || covered == 0.0) return;
+    float nearer = min(fronts, 1.0), rest = (1.0 - nearer) * min(backs / max(1.0 - hidden, 1e-3), 1.0);
+    sum = vec4(0.0);
+    if (fronts > 0.0) sum += front * (nearer / fronts);
+    if (backs > 0.0) sum += back * (rest / backs);
+    covered = nearer + rest;
+}
+
+// What is nearer, and so larger, covers first; what more there is fills up, but no pixel is covered more than once.
+vec4 depth_of_field_near_light(int tile, float finest, int aperture, vec3 lens, vec2 stretch) {
+    vec4 sum;
+    float covered;
+    depth_of_field_scattered(tile, aperture, lens, stretch, -1.0, sum, covered);
+    vec2 at = (vec2(pixel) + 0.5) / 2.0;
+    float left = 1.0 - cover_near(at), part = min(depth_of_field_slack * covered, left);
+    return light_near(at) + (covered > 0.0 ? sum * (part / covered) : vec4(0.0));
+}
+
+float depth_of_field_near_cover(int tile, float finest, int aperture, vec3 lens, vec2 stretch) {
+    vec4 sum;
+    float covered;
+    depth_of_field_scattered(tile, aperture, lens, stretch, -1.0, sum, covered);
+    return min(cover_near((vec2(pixel) + 0.5) / 2.0) + depth_of_field_slack * covered, 1.0);
+}
+
+// Beyond the focus the larger discs are the farther ones.
+vec4 depth_of_field_far_light(int tile, float finest, int aperture, vec3 lens, vec2 stretch) {
+    vec4 sum;
+    float covered;
+    depth_of_field_scattered(tile, aperture, lens, stretch, 1.0, sum, covered);
+    vec2 at = (vec2(pixel) + 0.5) / 2.0;
+    float part = min(depth_of_field_slack * covered, 1.0), more = cover_near(at);
+    vec4 found = covered > 0.0 ? sum * (part / covered) : vec4(0.0);
+    return found + (more > 0.0 ? light_near(at) * (min(more, 1.0 - part) / more) : vec4(0.0));
+}
+
+float depth_of_field_far_cover(int tile, float finest, int aperture, vec3 lens, vec2 stretch) {
+    vec4 sum;
+    float covered;
+    depth_of_field_scattered(tile, aperture, lens, stretch, 1.0, sum, covered);
+    return min(cover_near((vec2(pixel) + 0.5) / 2.0) + depth_of_field_slack * covered, 1.0);
+}
+
+// --- what is behind the near ---
+
+float depth_of_field_kept(float radius, float finest) {
+    return radius < 0.0 ? 1.0 - depth_of_field_rise(radius, finest) : 1.0;
+}
+
+vec4 depth_of_field_rest_light(int block, float finest) {
+    vec4 sum = vec4(0.0);
+    for (int y = 0; y < block; ++y)
+        for (int x = 0; x < block; ++x) {
+            ivec2 at = block * pixel + ivec2(x, y);
+            sum += depth_of_field_kept(radius_at(at), finest) * image_at(at);
+        }
+    return sum / float(block * block);
+}
+
+float depth_of_field_rest_weight(int block, float finest) {
+    float sum = 0.0;
+    for (int y = 0; y < block; ++y)
+        for (int x = 0; x < block; ++x) sum += depth_of_field_kept(radius_at(block * pixel + ivec2(x, y)), finest);
+    return sum / float(block * block);
+}
+
+// Where nothing of it is seen, it is most like what is nearest; where that is too far away, like the picture itself.
+vec4 depth_of_field_rest(int reach, float block) {
+    float here = weight_at(pixel);
+    if (here == 1.0) return light_at(pixel);
+    vec4 sum = vec4(0.0);
+    float total = 0.0;
+    for (int y = -reach; y <= reach; ++y)
+        for (int x = -reach; x <= reach; ++x) {
+            float away = float(x * x + y * y) + 0.25, nearby = 1.0 / (away * away);
+            total += nearby * weight_at(pixel + ivec2(x, y));
+            sum += nearby * light_at(pixel + ivec2(x, y));
+        }
+    return total > 0.0 ? sum / total : image_near((vec2(pixel) + 0.5) * block);
+}
+
+// --- the picture ---
+
+// What smaller discs scatter over a pixel: what is before it, its own surface, and what is behind, as sums of light and
+// of weights. `shares`: how much of the pixel's own disc its own surface takes, and what is behind in smaller and in
+// larger discs: where a surface ends, so much of what is behind it shows.
+void depth_of_field_gathered(
+    int tile, float finest, int aperture, vec3 lens, vec2 stretch, float reach, out vec4 front, out vec4 same,
+    out vec4 behind, out vec3 weights, out vec3 shares
+) {
+    front = same = behind = vec4(0.0);
+    weights = shares = vec3(0.0);
+    float here = radius_at(pixel), own = max(abs(here), depth_of_field_least), unit = depth_of_field_unit(lens);
+    float mine = abs(here) < finest ? 1.0 / depth_of_field_area(unit, own) : 0.0;
+    for (int y = -int(reach + 0.5); y <= int(reach + 0.5); ++y) {
+        int chord = depth_of_field_chord(reach, y);
+        for (int x = -chord; x <= chord; ++x) {
+            ivec2 at = depth_of_field_fold(pixel + ivec2(x, y), extent);
+            float there = radius_at(at), size = max(abs(there), depth_of_field_least);
+            float before = clamp(2.0 * (here - there) - 0.5, 0.0, 1.0);
+            float after = clamp(2.0 * (there - here) - 0.5, 0.0, 1.0), level = 1.0 - before - after;
+            float member = 1.0 - depth_of_field_rise(there, finest);
+            vec2 eye = depth_of_field_eye(lens, at);
+            float signed_size = there < 0.0 ? -size : size;
+            float inside = depth_of_field_inside(aperture, lens, stretch, eye, -ivec2(x, y), signed_size);
+            float weight = member * depth_of_field_cover(inside) / depth_of_field_area(unit, size);
+            float share = mine * depth_of_field_cover(inside + (own - size) * lens.x);
+            float guessed = weight + depth_of_field_unseen * member * share;
+            vec4 light = image_at(at);
+            front += before * weight * light;
+            same += level * weight * light;
+            behind += after * guessed * light;
+            weights += vec3(before * weight, level * weight, after * guessed);
+            shares += share * vec3(level, after * member, after * (1.0 - member));
+        }
+    }
+}
+
+// Everything at full size.
+vec4 depth_of_field_alone(int tile, float finest, int aperture, vec3 lens, vec2 stretch) {
+    float reach = reach_at(pixel / tile);
+    if (reach <= depth_of_field_least) return image_at(pixel);
+    vec4 front, same, behind;
+    vec3 weights, shares;
+    depth_of_field_gathered(
+        tile, 4.0 * finest, aperture, lens, stretch, reach, front, same, behind, weights, shares
+    );
+    vec4 seen = shares.x * same / weights.y;
+    if (shares.y > 0.0) seen = (seen + behind * (shares.y / weights.z)) / (shares.x + shares.y);
+    else seen /= shares.x;
+    return weights.x > 0.0 ? mix(seen, front / weights.x, min(weights.x, 1.0)) : seen;
+}
+
+vec4 depth_of_field(int tile, float finest, int aperture, vec3 lens, vec2 stretch, float coarsest) {
+    vec2 middle = vec2(pixel) + 0.5, at = middle / 2.0;
+    float reach = reach_at(pixel / tile), here = radius_at(pixel), hides = hidden_near(at);
+    float layered = depth_of_field_rise(here, finest);
+    if (reach <= depth_of_field_least && hides == 0.0 && layered == 0.0) return image_at(pixel);
+    vec4 front, same, behind, backdrop = far_near(at);
+    vec3 weights, shares;
+    depth_of_field_gathered(tile, finest, aperture, lens, stretch, reach, front, same, behind, weights, shares);
+    float fills = filled_near(at);
+    vec4 beyond = fills > 0.0 ? backdrop / fills : vec4(0.0);
+
+    // A pixel whose own disc is small: its surface, and what is behind it as far as it shows.
+    vec4 small = vec4(0.0), large = vec4(0.0);
+    if (layered < 1.0) {
+        float far = fills > 0.0 ? shares.z : 0.0;
+        small = shares.x * same / weights.y + far * beyond;
+        if (shares.y > 0.0) small += behind * (shares.y / weights.z);
+        small /= shares.x + shares.y + far;
+    }
+    // One whose own disc is large, so that it is in a layer: what else there is. Behind what is near, some is guessed.
+    if (layered > 0.0) {
+        float guessed = here < 0.0 ? depth_of_field_unseen : 0.0;
+        float total = weights.y + weights.z + fills + guessed;
+        large = same + behind + backdrop + guessed * rest_near(middle / coarsest);
+        large = total > 0.0 ? large / total : image_at(pixel);
+    }
+    vec4 seen = mix(small, large, layered);
+    if (weights.x > 0.0) seen = mix(seen, front / weights.x, min(weights.x, 1.0));
+    return near_near(at) + (1.0 - hides) * seen;
+}
