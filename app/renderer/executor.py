@@ -206,6 +206,8 @@ class Executor:
         """The pixels of a surface as [height, width, channels]."""
         surface = plan.surfaces[number]
         width, height = surface.size
+        if self.device.target.software:  # llvmpipe may read a texture before the draws into it are done
+            self.device.context.finish()
         pixels = np.empty((height, width, surface.components), np.float16 if surface.depth == "f2" else np.float32)
         self.resident(plan, number).handle.read_into(pixels)
         return pixels[..., : surface.channels]
