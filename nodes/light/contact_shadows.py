@@ -33,7 +33,8 @@ class ContactShadows(Filter):
         0.01, 5.0, unit="scene", minimum=1e-5, maximum=1e8, doc="How far away what throws a shadow may be."
     )] = 0.5
     softness: Annotated[float, Slider(
-        0.0, 20.0, unit="deg", minimum=0.0, maximum=60.0, doc="How wide the light is, seen from the surface: the sun 0.5."
+        0.0, 20.0, unit="deg", minimum=0.0, maximum=60.0,
+        doc="How wide the light is, seen from the surface: the sun 0.5.",
     )] = 4.0
     thickness: Annotated[float, Slider(
         0.01, 5.0, unit="scene", minimum=0.0, maximum=1e8,

@@ -34,7 +34,7 @@ class LightShafts(Filter):
     color: Annotated[RGBA, Doc("Color of the light; its alpha scales it.")] = (1.0, 0.85, 0.65, 1.0)
     intensity: Annotated[float, Slider(
         0.0, 20.0, unit="scene", minimum=0.0, doc="Light of the sun, or of the lamp one unit away from it."
-    )] = 2.0
+    )] = 1.0
     density: Annotated[float, Slider(
         0.0, 0.5, unit="scene", minimum=0.0, doc="How much of the light one unit of distance scatters."
     )] = 0.05

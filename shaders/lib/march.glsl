@@ -12,10 +12,11 @@ const float MARCH_INSIDE = 2.0;    // pixels, from the edge of something
 const float MARCH_ENDLESS = 1e18;
 
 struct March {
-    vec2 slope;        // how nearness grows, to the right and down, where it starts
     vec2 from, pace;   // position in pixels where it starts, and how it moves with `at`
     float near, gain;  // the same of nearness
     float at, last, nudge;
+    vec3 plane;        // what the pixel holds that it comes from, or nothing, and
+    vec2 middle;       // the middle of that pixel
     int level;         // cells have 4^level pixels to a side
     float gap;         // how far behind what is seen it passes
     bool endless;      // at `last`, it is infinitely far
@@ -53,7 +54,8 @@ March march_start(const vec4 rows[3], vec2 uv, float depth, vec3 way, float reac
     ray.nudge = MARCH_NUDGE / max(max(abs(ray.pace.x), abs(ray.pace.y)), 1e-12);
     vec2 own = floor(ray.from);
     ray.at = max(march_leaves(ray, own, own + 1.0), 0.0);
-    ray.slope = vec2(0.0);
+    ray.plane = vec3(0.0);
+    ray.middle = own + 0.5;
     ray.level = 0;
     ray.gap = 0.0;
     ray.sure = 0.0;
@@ -91,6 +93,7 @@ bool march_step(inout March ray, ivec2 cell, vec3 seen, float thickness) {
             return false;
         }
         ray.gap = hidden ? thickness : 0.0;
+        ray.plane = vec3(0.0);
     } else if (seen.x <= 0.0) {
         ray.gap = 0.0;
     } else {
@@ -109,12 +112,11 @@ bool march_step(inout March ray, ivec2 cell, vec3 seen, float thickness) {
             float gap = march_gap(near_now, now), step = abs(ray.gain) * ray.nudge / MARCH_NUDGE;
             float crack = (abs(seen.y) + abs(seen.z)) / (seen.x * seen.x) + step / (near_now * near_now);
             ray.sure = clamp(2.0 - 2.0 * gap / max(thickness, 1e-9), 0.0, 1.0);
-            // Beyond an edge next to where it starts, a surface that turns away hides nothing: its plane goes on too far.
-            if (ray.at < 3.0 * ray.nudge / MARCH_NUDGE && gap <= 2.0 * crack) {
-                vec2 away = middle - ray.from;
-                bool outward = seen.x < ray.near + dot(ray.slope, away) && ray.near < seen.x - dot(seen.yz, away);
-                if (outward) ray.sure = 0.0;
-            }
+            // Where two pixels are each behind the plane of the other, there is an edge that bulges. It hides nothing of
+            // what is on its way out: planes just go on too far.
+            vec2 away = middle - ray.middle;
+            bool bulges = seen.x < ray.plane.x + dot(away, ray.plane.yz) && ray.plane.x < seen.x - dot(away, seen.yz);
+            if (bulges && after > ahead && gap <= 2.0 * crack) ray.sure = 0.0;
             if ((ray.gap == 0.0 || ray.gap > gap + crack) && ray.sure > 0.0) {
                 // Well within it, if it is not just a crease: between pixels, colors of two surfaces would mix.
                 if (gap > crack) ray.at = min(ray.at + MARCH_INSIDE / MARCH_NUDGE * ray.nudge, ray.last);
@@ -123,6 +125,7 @@ bool march_step(inout March ray, ivec2 cell, vec3 seen, float thickness) {
         }
         ray.gap = after < least ? march_gap(near_next, then) : 0.0;
     }
+    if (ray.level == 0) ray.plane = seen, ray.middle = low + 0.5;
     ray.at = next;
     ray.level = min(ray.level + 1, MARCH_LEVELS);
     return false;
@@ -180,7 +183,7 @@ vec3 march_surfaces() {
 // Follows a ray through the picture of all `surfaces`, at most so many steps. True where it meets one of them, and where
 // it gets away to infinity in a pixel that shows nothing: then it is `endless` still.
 bool march(inout March ray, ivec2 size, float thickness, int steps) {
-    ray.slope = surfaces_at(ivec2(ray.from)).yz;
+    ray.plane = surfaces_at(ivec2(ray.from));
     for (int i = 0; i < steps && ray.at < ray.last; ++i) {
         ivec2 cell = march_cell(ray, size);
         if (march_step(ray, cell, surfaces_at(march_texel(cell, size, ray.level)), thickness)) {

@@ -1,4 +1,4 @@
-"""Light shafts against the integral of scattered light, in closed form and summed by numpy, and against shadows cast."""
+"""Light shafts against the integral of scattered light, in closed form and by numpy, and against shadows cast."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def test_a_free_lamp(run, forward):
     expected = summed(lamp, 9.0 * stretch, 0.08, forward, places=400)
     inner = np.s_[2:-2, 2:-2]
     np.testing.assert_allclose(found[inner], blurred(expected)[inner], rtol=0.03)
-    # Without losses on the way: (pi / 2 + atan(closest / side)) / side times the density, for endless air (Sun et al. 2005).
+    # Without losses, in endless air: (pi / 2 + atan(closest / side)) / side times the density (Sun et al. 2005).
     thin = haze(run, np.full(SIZE[::-1], 1e10), quality="reference", **(values | {
         "density": 1e-5, "forward": 0.0, "distance": 1e6
     }))[..., 0]
@@ -125,13 +125,13 @@ def test_a_board_throws_a_shaft(run):
     edge = np.zeros(depth.shape, bool)
     edge[9:27, 21:37] = True
     edge[15:21, 27:31] = False
+    edge[[0, 1, -2, -1]], edge[:, [0, 1, -2, -1]] = True, True
     shaded = (dark < 0.9 * free) & ~edge
     assert shaded.sum() > 100
     error = (found - dark) / free
     assert np.sqrt((error[~edge] ** 2).mean()) < 0.015
     steep = np.maximum(*(np.abs(one) for one in np.gradient(dark / free))) > 0.02
-    print(np.argwhere((np.abs(error)>.03)&~edge&~steep).tolist(), np.sqrt((error[~edge] ** 2).mean()), np.abs(error[~edge&~steep]).mean())
-    assert np.abs(error[~edge & ~steep]).max() < 0.05
+    assert np.abs(error[~edge & ~steep]).max() < 0.03
     assert (1 - dark / free)[~edge].max() > 0.2
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from geometry import rays
+from geometry import ball, rays
 from halation.nodes import Camera, look_at
 from halation.nodes.light.screen_reflections import ScreenReflections
 
@@ -94,6 +94,14 @@ def test_planes_do_not_mirror_themselves(run, tilt, turn):
             assert np.all(found == 0.0), far
         rough = mirrored(run, camera, depth, normals, "confidence", sky=False, roughness=0.6, quality="preview")
         assert np.all(rough == 0.0), far
+
+
+@pytest.mark.parametrize("radius", [0.3, 1.0, 2.5])
+def test_balls_do_not_mirror_themselves(run, radius):
+    camera = look_at((0.0, -4.0, 0.5), (0.0, 0.0, 0.0), (1.0, 16 / 9))
+    seen = ball(camera, (0.0, 0.0, 0.0), radius, *SIZE)
+    for given in (seen["normal"], None):
+        assert np.all(mirrored(run, camera, seen["depth"], given, "confidence", sky=False) == 0.0)
 
 
 def test_reflectance_is_schlicks(run):
