@@ -186,8 +186,9 @@ def test_messages_show_up_and_go_at_a_click(gui) -> None:
 def test_the_start_screen_opens_a_preset(gui) -> None:
     def body(ui) -> None:
         assert "start" in ui.editor.dialogs.open
-        ui.click("preset soft_bloom")
-        assert "bloom" in ui.session.graph.nodes
+        ui.shot("start_screen.png")
+        ui.click("preset agx_look")
+        assert "punch" in ui.session.graph.nodes
         assert ui.session.path is None
         assert not ui.editor.dialogs.any
         ui.settled()
