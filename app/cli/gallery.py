@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from .batch import batch
 from .options import AsJson
-from .outcome import note, print_json
+from .outcome import print_json
 
 if TYPE_CHECKING:
     from ...nodes import Kind, Node
@@ -39,42 +40,22 @@ def gallery(
     as_json: AsJson = False,
 ) -> int:
     """Make contact sheets of all presets and of all nodes at their defaults, over the sample frame."""
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
-
     from ...nodes import catalogue
     from ...presets import paths
-    from ..errors import OutputError
     from ..media.sheet import write_sheet
-    from ..renderer import Renderer, open_device
     from .specimen import drawn
 
-    try:
-        output.mkdir(parents=True, exist_ok=True)
-    except OSError as fault:
-        raise OutputError(f"{output}: the folder cannot be made ({fault.strerror}); choose another with -o") from None
-    renderer = Renderer(open_device(), budget=0)
-    note(renderer.device.description)
-    console = Console(stderr=True)
     done: list[dict[str, object]] = []
-    columns = (TextColumn("{task.description:<24}", markup=False), BarColumn(), MofNCompleteColumn())
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task("", total=len(paths()) + sum(bool(drawn(node)) for node in catalogue().values()))
-
-        def step(name: str) -> None:
-            progress.update(task, description=name, advance=1)
-
+    with batch(output, len(paths()) + sum(bool(drawn(node)) for node in catalogue().values())) as work:
         for name, made in (("presets", preset_sheet), ("nodes", node_sheet)):
             started, file = time.perf_counter(), output / f"{name}.jpg"
-            sheet = made(renderer, step)
+            sheet = made(work.renderer, work.step)
             write_sheet(file, sheet.light, ", ".join(sheet.names))
             spent = time.perf_counter() - started
-            line = f"{name:<24} {len(sheet.names):>3} pictures  {spent:5.2f} s  {file}"
-            progress.console.print(line, soft_wrap=True, markup=False, highlight=False)
+            work.say(f"{name:<24} {len(sheet.names):>3} pictures  {spent:5.2f} s  {file}")
             done.append({"sheet": str(file), "pictures": list(sheet.names), "seconds": round(spent, 3)})
-    renderer.close()
     if as_json:
-        print_json({"device": renderer.device.description, "sheets": done})
+        print_json({"device": work.device, "sheets": done})
     return 0
 
 
