@@ -29,6 +29,16 @@ def plain_text(plain: object) -> str:
     return f"{plain:g}" if isinstance(plain, float) else str(plain)
 
 
+def default_text(value: Value) -> str:
+    """The default of a value; of a long list how many entries it has."""
+    default = value.default
+    if isinstance(default, tuple) and value.type in ("curve", "ramp", "lights"):
+        word = {"curve": "point", "ramp": "stop", "lights": "light"}[value.type]
+        count = len(default) // value.length
+        return f"{count} {word}{'' if count == 1 else 's'}"
+    return plain_text(default)
+
+
 def socket_note(socket: Socket) -> str:
     """What there is to say of a socket, and of an input what it is without a link."""
     optional = f"Optional: {plain_text(socket.default)} if unlinked." if socket.optional else ""

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from .facts import doc_of, hard_range, plain_text, socket_note, soft_range, type_of
+from .facts import default_text, doc_of, hard_range, socket_note, soft_range, type_of
 
 if TYPE_CHECKING:
     from ...nodes import Node, Socket, Value
@@ -72,7 +72,7 @@ def _section(node: type[Node]) -> Iterator[str]:
 def _value(value: Value) -> tuple[str, ...]:
     choices = ", ".join(f"`{choice}`" for choice in value.choices)
     return (
-        f"`{value.name}`", value.type, _prose(plain_text(value.default)), soft_range(value), hard_range(value),
+        f"`{value.name}`", value.type, _prose(default_text(value)), soft_range(value), hard_range(value),
         value.unit or "", _prose(". ".join(filter(None, (choices, value.doc)))),
     )
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .facts import doc_of, facts_of, hard_range, passes_of, plain_text, socket_note, soft_range, type_of
+from .facts import default_text, doc_of, facts_of, hard_range, passes_of, socket_note, soft_range, type_of
 from .options import AsJson
 from .outcome import print_json
 
@@ -66,7 +66,7 @@ def _page(node: type[Node]) -> None:
     if node.values:
         print("values")
         for value in node.values.values():
-            print(f"  {value.name:<16} {value.type:<10} {plain_text(value.default):<14} {_range(value)}".rstrip())
+            print(f"  {value.name:<16} {value.type:<10} {default_text(value):<14} {_range(value)}".rstrip())
             if value.doc:
                 print(f"  {'':<16} {value.doc}")
         print()
