@@ -40,7 +40,8 @@ ALIKE_FROM_AFAR = MappingProxyType({
         "normal_from_depth.curvature", "normal_from_depth.normal", "rim_light.out", "rim_light.rim",
     ),
     "what hides what is read from depth, which has fewer steps in a proxy and is never mixed": (
-        "ambient_occlusion.bent_normal", "ambient_occlusion.occlusion", "directional_occlusion.light",
+        "ambient_occlusion.bent_normal", "ambient_occlusion.occlusion", "contact_shadows.shadow",
+        "directional_occlusion.light", "screen_reflections.confidence", "screen_reflections.reflection",
     ),
     "its pattern is as fine as pixels of the proxy": (
         "crosshatch.out", "film_grain.out", "halftone.out", "worley.cell",
