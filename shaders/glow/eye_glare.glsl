@@ -10,14 +10,7 @@ const vec3 eye_glare_shares[3] = vec3[](vec3(0.478, 0.138, 0.0), vec3(0.478, 0.1
 
 vec4 eye_glare_light(vec4 image) { return glare_light(image); }
 
-// The light of a smaller picture: sums, not averages. Outside lies black.
-vec4 eye_glare_shrink(int factor) {
-    ivec2 first = glare_first(factor);
-    vec4 sum = vec4(0.0);
-    for (int y = 0; y < 2 * factor; ++y)
-        for (int x = 0; x < 2 * factor; ++x) sum += glare_share(ivec2(x, y), factor) * image_at(first + ivec2(x, y));
-    return sum;
-}
+vec4 eye_glare_shrink(int factor) { return glare_shrunk(factor); }
 
 // The lenticular halo f3 per steradian for white light, by angle: a ring for every wavelength.
 vec4 eye_glare_halo() {

@@ -1,4 +1,5 @@
 #include "lib/bright.glsl"
+#include "lib/shrinking.glsl"
 
 // The light that gets through the emulsion, layer by layer.
 vec4 film_halation_light(vec4 image, vec3 threshold, float knee, float limit) {
@@ -8,19 +9,13 @@ vec4 film_halation_light(vec4 image, vec3 threshold, float knee, float limit) {
     return vec4(light, safe.a);
 }
 
-vec4 film_halation_shrink(int factor) {
-    vec4 sum = vec4(0.0);
-    for (int y = 0; y < factor; ++y)
-        for (int x = 0; x < factor; ++x)
-            sum += image_at(factor * pixel + ivec2(x, y));
-    return sum / float(factor * factor);
-}
+vec4 film_halation_shrink(int factor) { return shrunk(factor); }
 
 vec4 film_halation_none(vec4 light) { return vec4(0.0); }
 
 vec4 film_halation_add(vec4 halo, vec4 soft, vec3 share) { return halo + vec4(soft.rgb * share, 0.0); }
 
-vec4 film_halation_enlarge(int factor) { return image_near((vec2(pixel) + 0.5) / float(factor)); }
+vec4 film_halation_enlarge(int factor) { return enlarged(factor); }
 
 vec4 film_halation_glow(vec4 image, vec4 halo, float amount, vec4 color) {
     return glow_alone(image, amount * color.rgb * max(halo.rgb, 0.0));

@@ -1,5 +1,6 @@
 #include "lib/bright.glsl"
 #include "lib/noise.glsl"
+#include "lib/shrinking.glsl"
 
 const int ghosts_most = 12;
 
@@ -22,10 +23,7 @@ vec4 ghosts_light(vec4 image, float threshold, float knee, float limit) {
     return bright_light(image, threshold, knee, limit);
 }
 
-vec4 ghosts_shrink() {
-    ivec2 p = 2 * pixel;
-    return 0.25 * (image_at(p) + image_at(p + ivec2(1, 0)) + image_at(p + ivec2(0, 1)) + image_at(p + ivec2(1, 1)));
-}
+vec4 ghosts_shrink() { return shrunk(2); }
 
 // One channel of the light at a position.
 float ghosts_seen(vec2 at, int channel) {
@@ -51,7 +49,7 @@ vec4 ghosts_flare(
     return vec4(sum, 1.0);
 }
 
-vec4 ghosts_enlarge() { return image_near((vec2(pixel) + 0.5) / 2.0); }
+vec4 ghosts_enlarge() { return enlarged(2); }
 
 vec4 ghosts_dirt(vec4 image, vec4 dirt) { return clamp(finite(dirt), 0.0, 65504.0); }
 

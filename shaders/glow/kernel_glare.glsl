@@ -10,14 +10,7 @@ vec4 kernel_glare_light(vec4 image, float threshold, float knee, float limit) {
     return glare_light(threshold > 0.0 || limit < GLARE_BRIGHTEST ? bright_light(image, threshold, knee, limit) : image);
 }
 
-// The light of a smaller picture: sums, not averages. Outside lies black.
-vec4 kernel_glare_shrink(int factor) {
-    ivec2 first = glare_first(factor);
-    vec4 sum = vec4(0.0);
-    for (int y = 0; y < 2 * factor; ++y)
-        for (int x = 0; x < 2 * factor; ++x) sum += glare_share(ivec2(x, y), factor) * image_at(first + ivec2(x, y));
-    return sum;
-}
+vec4 kernel_glare_shrink(int factor) { return glare_shrunk(factor); }
 
 vec4 kernel_glare_grow(int factor) { return small_near(glare_grown(factor)) / float(factor * factor); }
 

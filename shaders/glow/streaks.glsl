@@ -1,16 +1,11 @@
 #include "lib/bright.glsl"
+#include "lib/shrinking.glsl"
 
 vec4 streaks_light(vec4 image, float threshold, float knee, float limit) {
     return bright_light(image, threshold, knee, limit);
 }
 
-vec4 streaks_shrink(int factor) {
-    vec4 sum = vec4(0.0);
-    for (int y = 0; y < factor; ++y)
-        for (int x = 0; x < factor; ++x)
-            sum += image_at(factor * pixel + ivec2(x, y));
-    return sum / float(factor * factor);
-}
+vec4 streaks_shrink(int factor) { return shrunk(factor); }
 
 // The mean of four samples, each `fade` times as heavy as the one before. The pass after it takes four times the stride
 // and fade^4: as every number is written in digits to the base 4 in one way only, P passes are the geometric series of
@@ -27,7 +22,7 @@ vec4 streaks_pass(vec2 stride, vec3 fade) {
 
 vec4 streaks_add(vec4 star, vec4 arm) { return star + arm; }
 
-vec4 streaks_enlarge(int factor) { return image_near((vec2(pixel) + 0.5) / float(factor)); }
+vec4 streaks_enlarge(int factor) { return enlarged(factor); }
 
 vec4 streaks_glow(vec4 image, vec4 star, float share, vec4 tint) {
     return glow_alone(image, star.rgb * share * tint.rgb);

@@ -1,4 +1,5 @@
 #include "lib/bright.glsl"
+#include "lib/shrinking.glsl"
 
 vec4 sun_beams_light(
     vec4 image, float mask, vec2 source, float radius, float threshold, float knee, float limit
@@ -8,13 +9,7 @@ vec4 sun_beams_light(
     return bright_light(image, threshold, knee, limit) * near * clamp(finite(mask), 0.0, 1.0);
 }
 
-vec4 sun_beams_shrink(int factor) {
-    vec4 sum = vec4(0.0);
-    for (int y = 0; y < factor; ++y)
-        for (int x = 0; x < factor; ++x)
-            sum += image_at(factor * pixel + ivec2(x, y));
-    return sum / float(factor * factor);
-}
+vec4 sun_beams_shrink(int factor) { return shrunk(factor); }
 
 // The mean of four samples, each `shrink` times as far from the source as the one before and `fade` times as heavy.
 vec4 sun_beams_pass(vec2 source, float shrink, float fade) {
@@ -30,7 +25,7 @@ vec4 sun_beams_pass(vec2 source, float shrink, float fade) {
     return sum / total;
 }
 
-vec4 sun_beams_enlarge(int factor) { return image_near((vec2(pixel) + 0.5) / float(factor)); }
+vec4 sun_beams_enlarge(int factor) { return enlarged(factor); }
 
 vec4 sun_beams_glow(vec4 image, vec4 beams, vec4 tint) { return glow_alone(image, beams.rgb * tint.rgb); }
 

@@ -17,5 +17,14 @@ float glare_share(ivec2 p, int factor) {
     return share.x * share.y;
 }
 
+// The light of a smaller picture of `image`: sums, not averages. Outside lies black.
+vec4 glare_shrunk(int factor) {
+    ivec2 first = glare_first(factor);
+    vec4 sum = vec4(0.0);
+    for (int y = 0; y < 2 * factor; ++y)
+        for (int x = 0; x < 2 * factor; ++x) sum += glare_share(ivec2(x, y), factor) * image_at(first + ivec2(x, y));
+    return sum;
+}
+
 // Where a pixel lies in the smaller picture.
 vec2 glare_grown(int factor) { return (vec2(pixel) + 0.5) / float(factor) + 1.0; }

@@ -1,0 +1,12 @@
+// The picture `image` at a fraction of its size and back, for what is so soft that fewer pixels hold it.
+
+// The mean of the pixels that a smaller one stands for.
+vec4 shrunk(int factor) {
+    vec4 sum = vec4(0.0);
+    for (int y = 0; y < factor; ++y)
+        for (int x = 0; x < factor; ++x)
+            sum += image_at(factor * pixel + ivec2(x, y));
+    return sum / float(factor * factor);
+}
+
+vec4 enlarged(int factor) { return image_near((vec2(pixel) + 0.5) / float(factor)); }
