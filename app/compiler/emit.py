@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from ...nodes import glsl_type
+from ...nodes import Camera, glsl_type
 from . import bodies
 from .fuse import Fused
 from .ir import Call, Convolve, Gather, Op, Program, Raster, Reduce, Ref, Shape
@@ -90,8 +90,8 @@ def _drawn(program: Program, root: Raster, fused: Fused, library: Library) -> Em
     lines = fragment_lines(text.body, wanted)
     shader = Shader("\n".join(lines) + "\n", "fragment", ("generated",), False, vertex_text(text.body))
     uniforms: tuple[tuple[str, Uniform], ...] = (
-        ("cameras", root.cameras), ("motions", root.motions), ("near", root.near), ("grid", root.size),
-        ("proxy", program.scale),
+        ("cameras", root.cameras), ("motions", root.motions), ("near", root.near),
+        ("eye", Camera(root.cameras[:12]).eye), ("grid", root.size), ("proxy", program.scale),
     )
     return Emitted(shader, uniforms, (), (0, 0))
 

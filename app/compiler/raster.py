@@ -12,7 +12,7 @@ ATTRIBUTES: Mapping[str, int] = {
 
 CHANNELS: Mapping[str, tuple[int, bool, str]] = {
     "albedo": (4, False, "vec4(v_albedo, 1.0)"),
-    "normal": (3, True, "raster_facing(v_normal, v_place, cameras)"),
+    "normal": (3, True, "raster_facing(v_normal, v_place, eye)"),
     "place": (4, True, "vec4(v_place, v_now.z)"),
     "emission": (4, False, "vec4(v_emission, 1.0)"),
     "metal_rough": (2, True, "v_metal_rough"),
@@ -59,7 +59,7 @@ void main() {{
 
 def fragment_lines(library: str, wanted: list[str]) -> Iterator[str]:
     """The fragment shader, which writes the channels that are wanted, in order."""
-    yield from ("#version 410 core", library, "uniform vec4[9] cameras;", "uniform ivec2 grid;", "uniform float proxy;")
+    yield from ("#version 410 core", library, "uniform vec3 eye;", "uniform ivec2 grid;", "uniform float proxy;")
     yield _varyings("in")
     for number, _ in enumerate(wanted):
         yield f"layout(location = {number}) out vec4 o{number};"

@@ -16,11 +16,9 @@ vec3 raster_turned(const vec4 motions[9], vec3 normal) {
     return vec3(dot(motions[0].xyz, normal), dot(motions[1].xyz, normal), dot(motions[2].xyz, normal));
 }
 
-// The unit normal of the side that the camera sees. Depth grows along row 2; its gradient shows the way it looks.
-vec3 raster_facing(vec3 normal, vec3 place, const vec4 cameras[9]) {
+// The unit normal of the side that the camera sees.
+vec3 raster_facing(vec3 normal, vec3 place, vec3 eye) {
     normal = normalize(normal);
-    mat3 turned = transpose(mat3(cameras[0].xyz, cameras[1].xyz, cameras[2].xyz));
-    vec3 eye = -(inverse(turned) * vec3(cameras[0].w, cameras[1].w, cameras[2].w));
     return dot(normal, eye - place) < 0.0 ? -normal : normal;
 }
 
