@@ -102,7 +102,7 @@ def test_the_sheet_of_presets_is_current(renderer: Renderer, tmp_path: Path) -> 
     sheet = gallery.preset_sheet(renderer)
     assert described(IMAGES / "presets.jpg") == [*sheet.names]
     compare("presets", written(sheet, tmp_path), np.ones(sheet.light.shape[:2]))
-    assert (IMAGES / "presets.jpg").stat().st_size < 1_000_000
+    assert (IMAGES / "presets.jpg").stat().st_size < 750_000
 
 
 def test_the_sheet_of_nodes_is_current(
@@ -110,7 +110,7 @@ def test_the_sheet_of_nodes_is_current(
 ) -> None:
     """It may lack nodes that are newer. Every ninth picture is made again and compared; the others stay black."""
     ids = tuple(described(IMAGES / "nodes.jpg"))
-    assert {*ids} <= {*catalogue()} and (IMAGES / "nodes.jpg").stat().st_size < 2_000_000
+    assert {*ids} <= {*catalogue()} and (IMAGES / "nodes.jpg").stat().st_size < 1_500_000
     picture_of, black, small = gallery.picture_of, np.zeros((270, 480, 3)), np.zeros((144, 256, 3))
 
     def blank(node: type[Node], *rest: object) -> np.ndarray:
