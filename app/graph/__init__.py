@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from .conversion import conversion
-from .graph import Graph, Group, Item, signature
+from .faces import signature
+from .graph import Graph
+from .group import Group, Item
 from .lookup import node_output
 from .names import INPUTS, OUTPUTS, did_you_mean
 from .parts import Control, Input, Output, Port, Settings, Signature, Unknown

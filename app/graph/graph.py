@@ -10,42 +10,17 @@ from graphlib import CycleError
 from types import MappingProxyType
 from typing import Any, Literal, Self
 
-from ...nodes import Node, Plain, Pointwise, Socket, Value
+from ...nodes import Node, Plain, Socket, Value
 from ..errors import GraphError
 from .conversion import conversion
+from .faces import declared, is_pointwise, signature
+from .group import Group, Item
 from .names import INPUTS, OUTPUTS, check_name, did_you_mean, fresh_name, pick
 from .notes import linked_routes, moved_keys, moved_layout, renamed, without, without_route
-from .parts import Control, Input, Output, Port, Settings, Signature, Unknown, freeze
+from .parts import Control, Input, Output, Port, Settings, freeze
 from .relink import moved_links, relinked
 from .values import coerced, value_fault
 from .walk import loop_sentence, neighbors, reach, route, sort
-
-
-@dataclass(frozen=True)
-class Group:
-    """A node whose body is another graph.
-
-    `path` is as written in the file, relative to that file; empty for a body that is part of it.
-    `values` holds settings of the body's controls by name.
-    """
-
-    graph: Graph
-    path: str = ""
-    values: Mapping[str, Plain] = field(default_factory=dict[str, Plain])
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "values", MappingProxyType(dict(self.values)))
-
-    def body(self) -> Graph:
-        """The graph inside, with the group's values put where its controls point."""
-        graph = self.graph
-        for name, plain in self.values.items():
-            if name in graph.controls:
-                graph = graph.put(graph.controls[name].target, plain)
-        return graph
-
-
-Item = Node | Group | Unknown
 
 
 @dataclass(frozen=True)
@@ -100,7 +75,7 @@ class Graph:
         if face.anything or port.socket in face.inputs:
             return face.inputs.get(port.socket)
         value = pick({**face.inputs, **face.values}, port.socket, f"node '{port.node}' has no input")
-        if not _is_pointwise(item, port.socket):
+        if not is_pointwise(item, port.socket):
             raise GraphError(f"'{port}' can only be set: only values of pointwise nodes can be wired")
         return value
 
@@ -346,55 +321,3 @@ class Graph:
         place, there = f"{section}.{old}", f"{section}.{new}" if new else ""
         ui, extra = moved_layout(self.ui, place, there), moved_keys(self.extra, place, there)
         return self._with(**{section: ends}, links=links, ui=ui, extra=extra)
-
-
-# --- faces of nodes ------------------------------------------------------------------------------------------------
-
-
-def signature(item: Item) -> Signature:
-    """What a node shows to links. A group shows its body's ends, and its controls as values."""
-    if isinstance(item, Node):
-        outputs = {name: output.socket for name, output in item.outputs.items()}
-        return Signature(item.inputs, outputs, item.values, pointwise=isinstance(item, Pointwise))
-    if isinstance(item, Unknown):
-        return Signature({}, {}, {}, anything=True)
-    inputs = {name: end.socket(name) for name, end in item.graph.inputs.items()}
-    outputs = {name: end.socket(name) for name, end in item.graph.outputs.items()}
-    values = {name: value for name in item.graph.controls if (value := control_value(item.graph, name))}
-    return Signature(inputs, outputs, values)
-
-
-def control_value(graph: Graph, name: str) -> Value | None:
-    """The value behind a control, called by the control's name, its present setting as the default."""
-    control = graph.controls[name]
-    item = graph.nodes.get(control.target.node)
-    value = None if item is None else _present(item, control.target.socket)
-    return value and dataclasses.replace(value, name=name, doc=control.doc or value.doc)
-
-
-def declared(item: Item, name: str, id: str) -> Value:
-    """A value of a node or control of a group with its present setting as the default. Raises GraphError."""
-    if value := _present(item, name):
-        return value
-    face = signature(item)
-    if face.anything:
-        raise GraphError(f"'{id}.{name}' cannot be set: the type of node '{id}' is unknown")
-    if name in face.inputs:
-        raise GraphError(f"'{id}.{name}' is an input, not a value: link something to it")
-    raise GraphError(f"node '{id}' has no value '{name}'{did_you_mean(name, face.values)}")
-
-
-def _present(item: Item, name: str) -> Value | None:
-    if isinstance(item, Node) and name in item.values:
-        return dataclasses.replace(item.values[name], default=getattr(item, name))
-    if isinstance(item, Group) and name in item.graph.controls and (value := control_value(item.graph, name)):
-        return dataclasses.replace(value, default=item.values.get(name, value.default))
-    return None
-
-
-def _is_pointwise(item: Item, name: str) -> bool:
-    """True if value `name` of a node, or what a control of a group turns, can be wired."""
-    while isinstance(item, Group):
-        target = item.graph.controls[name].target
-        item, name = item.graph.nodes[target.node], target.socket
-    return isinstance(item, Pointwise)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from ..errors import GraphError
-from .graph import Graph, signature
+from .faces import signature
+from .graph import Graph
 from .parts import Port
 
 

@@ -9,7 +9,9 @@ from typing import Literal
 
 from ...nodes import Node, catalogue
 from ..errors import GraphError
-from .graph import Graph, Group, Item, signature
+from .faces import signature
+from .graph import Graph
+from .group import Group, Item
 from .names import INPUTS, OUTPUTS, did_you_mean, name_fault, pick
 from .parts import Input, Port, Unknown
 from .values import numbers, value_fault
