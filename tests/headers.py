@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from halation.app.compiler import Picture, Probed
+from halation.app.compiler import Frame, Picture, Probed
 from halation.app.media.pictures import Pictures
+from halation.nodes import Missing
 
 
 class Headers(Pictures):
@@ -12,6 +13,9 @@ class Headers(Pictures):
     def __init__(self, size: tuple[int, int]) -> None:
         super().__init__()
         self.size = size
+
+    def at(self, path: str, frame: int, missing: Missing) -> Frame:
+        return Frame(path)
 
     def probe(self, picture: Picture) -> Probed:
         return Probed(self.size, False, picture.path)

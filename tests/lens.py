@@ -12,9 +12,9 @@ Array = np.ndarray
 
 
 @cache
-def blender() -> MappingProxyType[str, Array]:
-    """All of blender_lens.npz."""
-    with np.load(Path(__file__).parent / "data" / "blender_lens.npz") as data:
+def blender(name: str = "lens") -> MappingProxyType[str, Array]:
+    """All of blender_lens.npz, or of another file."""
+    with np.load(Path(__file__).parent / "data" / f"blender_{name}.npz") as data:
         return MappingProxyType({name: data[name] for name in data.files})
 
 

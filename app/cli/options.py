@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -14,8 +14,8 @@ from . import parsing
 from .outcome import note
 
 if TYPE_CHECKING:
-    from ...nodes import ColorChange, Render, Scene
-    from ..compiler import ColorProgram, Mesh, Picture, Probed
+    from ...nodes import ColorChange, Missing, Render, Scene
+    from ..compiler import ColorProgram, Frame, Mesh, Picture, Probed
     from ..graph import Graph
     from ..media.pictures import Pictures
 
@@ -120,6 +120,10 @@ class Lazy:
         found = bound(graph, inputs)
         return self.pictures.bind(graph, found) if found else {}
 
+    def at(self, path: str, frame: int, missing: Missing) -> Frame:
+        """The file of a frame."""
+        return self.pictures.at(path, frame, missing)
+
     def probe(self, picture: Picture) -> Probed:
         """Size and precision of a picture."""
         return self.pictures.probe(picture)
@@ -128,9 +132,9 @@ class Lazy:
         """The program of a change of color."""
         return self.pictures.recolor(change)
 
-    def render(self, path: str) -> Render:
+    def render(self, path: str, named: Mapping[str, str]) -> Render:
         """What the file of a render holds."""
-        return self.pictures.render(path)
+        return self.pictures.render(path, named)
 
     def mesh(self, scene: Scene) -> Mesh:
         """The triangles of a scene."""

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from ...nodes import Kind, Matte, Node, Render, Size, Socket, Source, catalogue
-from ..compiler import Picture, Plan, Probed, Request, compile_graph
+from ...nodes import Kind, Matte, Missing, Node, Render, Size, Socket, Source, catalogue
+from ..compiler import Frame, Picture, Plan, Probed, Request, compile_graph
 from ..graph import Graph, Input, Output, Port, Settings
 from .options import Lazy
 
@@ -35,11 +36,15 @@ class _SameSize(Lazy):
     def __init__(self, size: Size) -> None:
         self._size = size
 
+    def at(self, path: str, frame: int, missing: Missing) -> Frame:
+        """There is one picture."""
+        return Frame(path)
+
     def probe(self, picture: Picture) -> Probed:
         """Nothing is read."""
         return Probed(self._size, True, picture.path)
 
-    def render(self, path: str) -> Render:
+    def render(self, path: str, named: Mapping[str, str]) -> Render:
         """Every layer that a node may ask for is there."""
         mattes = tuple(f"CryptoObject{rank:02}" for rank in range(3))
         return Render({role: role for role in _ROLES}, dict.fromkeys(_ROLES, 4), mattes=(Matte("object", mattes, {}),))

@@ -13,7 +13,8 @@ from .fuse import fuse
 from .ir import Memory, Picture
 from .library import Library, installed, parse
 from .lower import lower
-from .outside import Outside, Probed
+from .named import named_files
+from .outside import Frame, Outside, Probed
 from .plan import FIRST_TABLE, Pass, Plan, Shader, Surface, Upload
 from .raster import ATTRIBUTES, Mesh
 from .recolor import ColorProgram, Table
@@ -23,9 +24,9 @@ from .target import NULL, Form, Precision, Target
 from .upstream import Upstream
 
 __all__ = [
-    "ATTRIBUTES", "FIRST_TABLE", "MAX_WEIGHTS", "NULL", "ColorProgram", "Form", "Library", "Memory", "Mesh",
+    "ATTRIBUTES", "FIRST_TABLE", "MAX_WEIGHTS", "NULL", "ColorProgram", "Form", "Frame", "Library", "Memory", "Mesh",
     "Outside", "Pass", "Picture", "Plan", "Precision", "Probed", "Request", "Shader", "Surface", "Table", "Target",
-    "Upload", "Upstream", "as_json", "compile_graph", "dot", "explain", "installed", "parse",
+    "Upload", "Upstream", "as_json", "compile_graph", "dot", "explain", "installed", "named_files", "parse",
 ]
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from hashlib import blake2b
+from types import MappingProxyType
 from typing import Literal
 
 from ...nodes import (
@@ -44,6 +45,7 @@ from .ir import (
     Gather,
     History,
     Memory,
+    Operand,
     Parameter,
     Picture,
     Raster,
@@ -70,25 +72,37 @@ class Made:
 
 
 @dataclass(frozen=True)
+class Fed:
+    """A node at a frame, and what it reads: inputs and wired values by name, and inputs at the frames it looks at."""
+
+    path: str
+    frame: int
+    node: Node
+    inputs: dict[str, Operand] = field(default_factory=dict[str, Operand])
+    wires: dict[str, Operand] = field(default_factory=dict[str, Operand])
+    others: dict[tuple[str, int], Operand] = field(default_factory=dict[tuple[str, int], Operand])
+    linked: set[str] = field(default_factory=set[str])
+
+
+@dataclass(frozen=True)
 class Files:
     """What a node names beyond the graph: pixels, changes of color, triangles, and what a render holds."""
 
     read: Callable[[Picture], Ref]
     recolor: Callable[[ColorChange], ColorProgram]
     mesh: Callable[[Scene], Mesh]
-    render: Callable[[str], Render]
+    render: Callable[[str, Mapping[str, str]], Render]
 
 
 class Recorder:
-    """Implements `Draw` for one node: `resolved` holds what its inputs are linked to."""
+    """Implements `Draw` for one node, which is `fed`."""
 
     def __init__(
-        self, owner: str, node: Filter, size: Size, frame: int, resolved: Mapping[str, Ref | Constant],
-        linked: frozenset[str], builder: Builder, library: Library, files: Files, memory: Memory | None,
+        self, fed: Fed, node: Filter, size: Size, builder: Builder, library: Library, files: Files,
+        memory: Memory | None,
     ) -> None:
-        self.size, self.frame = size, frame
-        self._owner, self._node = owner, node
-        self._resolved, self._linked = resolved, linked
+        self.size, self.frame = size, fed.frame
+        self._owner, self._fed, self._node = fed.path, fed, node
         self._builder, self._library, self._files = builder, library, files
         self._memory = memory
         self._shader = shader(node)
@@ -99,13 +113,20 @@ class Recorder:
         return self._builder.shape(operand).size if isinstance(operand, Ref) else (1, 1)
 
     def linked(self, socket: Socket) -> bool:
-        return socket.name in self._linked
+        return socket.name in self._fed.linked
 
-    def camera(self, socket: Viewpoint) -> Camera | None:
-        operand = self._resolved[socket.name]
+    def camera(self, socket: Viewpoint, frame: int | None = None) -> Camera | None:
+        operand = self._operand(socket) if frame is None else self._at(socket, frame)
         assert isinstance(operand, Constant)
         rows = operand.value
         return Camera(rows) if isinstance(rows, tuple) and any(rows) else None
+
+    def at(self, socket: Socket, frame: int) -> Drawn:
+        operand = self._at(socket, frame)
+        if isinstance(operand, Ref):
+            return Made(operand, self._builder.shape(operand))
+        shape, parameters = self._shape(socket, self.size), (Parameter(socket.glsl, operand),)
+        return self._made(Call((shape,), self._owner, "primitive/convert", f"as_{socket.glsl}", parameters))
 
     def __call__(
         self, function: str, /, *inputs: Socket, size: Size | None = None, edge: Edge = "clamp",
@@ -214,8 +235,8 @@ class Recorder:
         picture = Picture("numbers", "", Kind.VECTOR, 4, in_memory=True, pixels=table)
         return self._made(Read((shape,), self._owner, picture, blake2b(repr(table).encode()).hexdigest(), half=False))
 
-    def render(self, path: str) -> Render:
-        return self._files.render(path)
+    def render(self, path: str, named: Mapping[str, str] = MappingProxyType({})) -> Render:
+        return self._files.render(path, named)
 
     def read(self, path: str, layer: str, result: Socket) -> Drawn:
         ref = self._files.read(Picture(path, layer, result.kind, result.channels))
@@ -232,9 +253,12 @@ class Recorder:
 
     def _operand(self, item: Pixels) -> Ref | Constant:
         if isinstance(item, Socket):
-            return self._resolved[item.name]
+            return self._fed.inputs[item.name]
         assert isinstance(item, Made)
         return item.ref
+
+    def _at(self, socket: Socket, frame: int) -> Operand:
+        return self._fed.others.get((socket.name, frame)) or self._fed.inputs[socket.name]
 
     def _pixels(self, item: Pixels) -> Made:
         operand = self._operand(item)

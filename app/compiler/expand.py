@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from itertools import chain
 from typing import Any
@@ -48,35 +48,6 @@ class Flat:
                 break
             end = self.links[end]
         return end
-
-    def order(self, sources: Iterable[Port]) -> list[str]:
-        """Names of the nodes that `sources` need, each after what it reads."""
-        order: list[str] = []
-        state: dict[str, bool] = {}
-        todo: list[tuple[str, bool]] = [(port.node, False) for port in sources]
-        while todo:
-            name, leaving = todo.pop()
-            if leaving:
-                state[name] = True
-                order.append(name)
-                continue
-            if name in self.unknown:
-                kind = self.unknown[name]
-                raise GraphError(
-                    f"node '{name}': its type '{kind}' is unknown to this version of Halation", node=name
-                )
-            if name in state or name not in self.nodes:
-                if state.get(name) is False:
-                    raise GraphError(f"node '{name}' feeds itself: cut one link of the loop", node=name)
-                continue
-            state[name] = False
-            todo.append((name, True))
-            node = self.nodes[name]
-            for socket in (*node.inputs, *node.values):
-                source = self.source(Port(name, socket))
-                if source is not None and state.get(source.node) is not True:
-                    todo.append((source.node, False))
-        return order
 
 
 def stand_in(output: Socket, inputs: Mapping[str, Socket]) -> str | None:

@@ -17,12 +17,16 @@ from ...nodes import (
     Image,
     Kind,
     LookupFile,
+    Missing,
     Node,
     Pointwise,
+    Reader,
+    Render,
     Scene,
     SceneFile,
     Size,
     Socket,
+    Temporal,
     Value,
     curve_knots,
     ramp_knots,
@@ -31,10 +35,11 @@ from ...nodes import (
 from ..errors import GraphError, HalationError, ShaderError
 from ..graph import INPUTS, OUTPUTS, Graph, Port, did_you_mean
 from . import constants
-from .draws import Files, Made, Recorder, choices, shader
-from .expand import Flat, expand, nothing, stand_in
+from .draws import Fed, Files, Made, Recorder, choices, shader
+from .expand import nothing, stand_in
 from .ir import Builder, Call, Choice, Constant, Operand, Parameter, Picture, Program, Ref, Shape
 from .library import Library
+from .moments import Moments
 from .outside import Outside
 from .pictures import Pictures
 from .raster import Mesh
@@ -48,14 +53,16 @@ def lower(graph: Graph, request: Request, library: Library, outside: Outside) ->
 
 
 class _Lowering:
-    """The work in progress: `results` says what every port visited so far stands for."""
+    """The work in progress: `results` says what every port visited so far stands for at a frame."""
 
     def __init__(self, graph: Graph, request: Request, library: Library, outside: Outside) -> None:
         self.graph, self.request, self.library, self.outside = graph, request, library, outside
-        self.flat: Flat = expand(graph)
+        self.now = request.frame
+        self.moments = Moments(graph)
+        self.flat = self.moments.flat(self.now)
         self.builder = Builder()
         self.pictures = Pictures(graph, self.flat, request, outside, self.builder)
-        self.results: dict[Port, Operand] = {}
+        self.results: dict[tuple[Port, int], Operand] = {}
         self.memories: dict[str, Ref] = {}
         self.cameras: dict[Port, Camera] = {}
 
@@ -64,11 +71,11 @@ class _Lowering:
         if not targets:
             raise GraphError("the graph has no outputs: link something to an output, or name a node to render")
         sources = {name: self._target(name, port) for name, port in targets.items()}
-        for node in self.flat.order(sources.values()):
+        for path, frame in self.moments.order(sources.values(), self.now):
             try:
-                self._node(node)
+                self._node(path, frame)
             except HalationError as error:
-                error.node = error.node or node
+                error.node = error.node or path
                 raise
         outputs = {name: self._finished(port, name, self._shown(targets[name], port)) for name, port in sources.items()}
         return Program(
@@ -79,7 +86,10 @@ class _Lowering:
 
     def _materialized(self) -> dict[Port, Ref]:
         """What is not a constant, also by the outputs of groups and the inputs of their bodies."""
-        found = {port: operand for port, operand in self.results.items() if isinstance(operand, Ref)}
+        found = {
+            port: operand for (port, frame), operand in self.results.items()
+            if frame == self.now and isinstance(operand, Ref)
+        }
         for end in self.flat.links:
             group, slash, side = end.node.rpartition("/")
             if slash and side in (INPUTS, OUTPUTS) and (ref := found.get(self.flat.behind(end))):
@@ -112,10 +122,10 @@ class _Lowering:
 
     # --- nodes -----------------------------------------------------------------------------------------------------
 
-    def _operand(self, port: Port) -> Operand | None:
+    def _operand(self, port: Port, frame: int) -> Operand | None:
         """What a source port stands for; None for a graph input that has neither a picture nor a default."""
-        if port in self.results:
-            return self.results[port]
+        if (port, frame) in self.results:
+            return self.results[port, frame]
         socket = self.flat.inputs.get(port)
         if socket is None and port.node.endswith("/" + OUTPUTS):
             group = port.node.removesuffix("/" + OUTPUTS)
@@ -129,18 +139,19 @@ class _Lowering:
             raise GraphError(
                 f"'{port}' does not exist: link to an output of a node or to an input of the graph", node=port.node
             )
-        picture = self.pictures.bound(port, socket)
+        picture = self.pictures.named.bound(port, socket)
         if picture is not None:
-            self.results[port] = self.pictures.read(picture, f"{port}")
+            made = self.pictures.read(picture, f"{port}", frame, self._missing(socket.missing, frame))
         elif socket.default is not None:
-            self.results[port] = constants.of_input(port, socket)
+            made = constants.of_input(port, socket)
         else:
             return None
-        return self.results[port]
+        self.results[port, frame] = made
+        return made
 
     def _finished(self, port: Port, name: str, shown: Socket | None) -> Ref:
         """What an output shows, as pixels of its type; a constant fills the canvas unless one value is wanted."""
-        operand = self._operand(port)
+        operand = self._operand(port, self.now)
         if operand is None:
             raise GraphError(
                 f"output '{name}' shows the graph input '{port.socket}', which is not bound to a picture: "
@@ -154,18 +165,43 @@ class _Lowering:
             return self.pictures.converted(operand, shown, size, name)
         return self._as_type(operand, shown, name)
 
-    def _inputs(self, path: str, node: Node) -> tuple[dict[str, Operand], frozenset[str]]:
-        """What every input reads, and which of them are linked."""
-        found: dict[str, Operand] = {}
-        linked: set[str] = set()
+    def _node(self, path: str, frame: int) -> None:
+        node = self.moments.node(path, frame)
+        constants.check_values(path, node)
+        fed = self._fed(path, frame, node)
+        if frame == self.now:
+            cameras = {name: fed.inputs[name] for name in fed.linked if node.inputs[name].kind is Kind.CAMERA}
+            self.cameras |= {
+                Port(path, name): Camera(rows) for name, given in cameras.items()
+                if isinstance(given, Constant) and isinstance(rows := given.value, tuple) and any(rows)
+            }
+        size = self._size(fed)
+        through = self._through(fed)
+        if through is not None:
+            for name, passed in through.items():
+                fitted = self.pictures.fit(passed, size, path) if isinstance(passed, Ref) else passed
+                self.results[Port(path, name), frame] = fitted
+            return
+        self._fit_all(fed, size)
+        working = node.working(self.request.scale, size[1])
+        if isinstance(working, Pointwise):
+            self._pointwise(replace(fed, node=working), working, size)
+        elif isinstance(working, Filter):
+            self._filter(replace(fed, node=working), working, size)
+
+    def _fed(self, path: str, frame: int, node: Node) -> Fed:
+        """A node and all that it reads."""
+        fed = Fed(path, frame, node)
+        feeding = self.moments.feeding((path, frame))
         for name, socket in node.inputs.items():
-            source = self.flat.source(Port(path, name))
-            operand = self._operand(source) if source is not None else None
-            if operand is not None:
-                found[name] = operand
-                linked.add(name)
+            source, frames = feeding.get(name, (None, ()))
+            found = {at: made for at in frames if source and (made := self._operand(source, at)) is not None}
+            if found:
+                fed.inputs[name] = found[frame] if frame in found else next(iter(found.values()))
+                fed.others.update({(name, at): made for at, made in found.items()})
+                fed.linked.add(name)
             elif socket.optional:
-                found[name] = Constant(constants.of_socket(socket))
+                fed.inputs[name] = Constant(constants.of_socket(socket))
             elif source is not None:
                 raise GraphError(
                     f"node '{path}': input '{name}' comes from the graph input '{source.socket}', which is not bound "
@@ -174,99 +210,74 @@ class _Lowering:
             else:
                 wanted = "camera" if socket.kind is Kind.CAMERA else "picture"
                 raise GraphError(f"node '{path}': input '{name}' is not linked: link a {wanted} to it")
-        return found, frozenset(linked)
-
-    def _node(self, path: str) -> None:
-        node = self.flat.nodes[path]
-        constants.check_values(path, node)
-        operands, linked = self._inputs(path, node)
-        self.cameras |= {
-            Port(path, name): Camera(rows) for name in linked if node.inputs[name].kind is Kind.CAMERA
-            and isinstance(given := operands[name], Constant) and isinstance(rows := given.value, tuple) and any(rows)
-        }
-        wires: dict[str, Operand] = {}
         for name in node.values:
-            source = self.flat.source(Port(path, name))
-            operand = self._operand(source) if source is not None else None
+            source, _ = feeding.get(name, (None, ()))
+            operand = self._operand(source, frame) if source is not None else None
             if operand is not None:
-                wires[name] = operand
-        size = self._size(path, node, operands, wires, linked)
-        through = self._through(path, node, operands, wires)
-        if through is not None:
-            for name, passed in through.items():
-                fitted = self.pictures.fit(passed, size, path) if isinstance(passed, Ref) else passed
-                self.results[Port(path, name)] = fitted
-            return
-        self._fit_all(path, node, operands, wires, size)
-        working = node.working(self.request.scale, size[1])
-        if isinstance(working, Pointwise):
-            self._pointwise(path, working, operands, wires, size)
-        elif isinstance(working, Filter):
-            self._filter(path, working, operands, linked, size)
+                fed.wires[name] = operand
+        return fed
 
-    def _fit_all(
-        self, path: str, node: Node, operands: dict[str, Operand], wires: dict[str, Operand], size: Size
-    ) -> None:
+    def _fit_all(self, fed: Fed, size: Size) -> None:
         """Bring every picture to one size: that of the result, or for a filter, which may resize, of the first one."""
-        as_it_is = {name for name, socket in node.inputs.items() if socket.own_size}
-        named = (*operands.items(), *wires.items())
+        as_it_is = {name for name, socket in fed.node.inputs.items() if socket.own_size}
+        named = (*fed.inputs.items(), *fed.wires.items())
         refs = [operand for name, operand in named if isinstance(operand, Ref) and name not in as_it_is]
         sizes = [found for found in (self.builder.shape(ref).size for ref in refs) if found != (1, 1)]
-        wanted = sizes[0] if sizes and isinstance(node, Filter) else size
-        for group in (operands, wires):
-            for name, operand in group.items():
-                if isinstance(operand, Ref) and name not in as_it_is:
-                    group[name] = self.pictures.fit(operand, wanted, path)
+        wanted = sizes[0] if sizes and isinstance(fed.node, Filter) else size
 
-    def _through(
-        self, path: str, node: Node, operands: Mapping[str, Operand], wires: Mapping[str, Operand]
-    ) -> dict[str, Operand] | None:
+        def fitted(name: str, operand: Operand) -> Operand:
+            if isinstance(operand, Constant) or name in as_it_is:
+                return operand
+            return self.pictures.fit(operand, wanted, fed.path)
+
+        for group in (fed.inputs, fed.wires):
+            group.update({name: fitted(name, operand) for name, operand in group.items()})
+        fed.others.update({key: fitted(key[0], operand) for key, operand in fed.others.items()})
+
+    def _through(self, fed: Fed) -> dict[str, Operand] | None:
         """What the outputs of a muted or neutral node show; None if it has something to do."""
-        if path in self.flat.muted:
+        node = fed.node
+        if fed.path in self.flat.muted:
             found = {name: stand_in(output.socket, node.inputs) for name, output in node.outputs.items()}
             return {
-                name: operands[by] if by else Constant(nothing(node.outputs[name].socket)) for name, by in found.items()
+                name: fed.inputs[by] if by else Constant(nothing(node.outputs[name].socket))
+                for name, by in found.items()
             }
-        neutral = None if wires or len(node.outputs) != 1 else node.identity()
-        return dict.fromkeys(node.outputs, operands[neutral]) if neutral else None
+        neutral = None if fed.wires or len(node.outputs) != 1 else node.identity()
+        return dict.fromkeys(node.outputs, fed.inputs[neutral]) if neutral else None
 
-    def _size(
-        self, path: str, node: Node, operands: Mapping[str, Operand], wires: Mapping[str, Operand],
-        linked: frozenset[str],
-    ) -> Size:
+    def _size(self, fed: Fed) -> Size:
         """The size of a node's outputs. What is made of single values alone is one, unless it is a pattern."""
-        inputs = {name: operands[name] for name in node.inputs if name in linked}
+        inputs = {name: fed.inputs[name] for name in fed.node.inputs if name in fed.linked}
         found = {
             name: self.builder.shape(operand).size
-            for name, operand in (*inputs.items(), *wires.items()) if isinstance(operand, Ref)
+            for name, operand in (*inputs.items(), *fed.wires.items()) if isinstance(operand, Ref)
         }
         pictures = {name: size for name, size in found.items() if size != (1, 1)}
-        if found and not pictures and (found.keys() & inputs.keys() or not self._is_pattern(path, node)):
+        if found and not pictures and (found.keys() & inputs.keys() or not self._is_pattern(fed.path, fed.node)):
             return (1, 1)
-        return node.output_size(pictures, self.pictures.canvas)
+        return fed.node.output_size(pictures, self.pictures.canvas)
 
     def _is_pattern(self, path: str, node: Node) -> bool:
         """True for a node whose pixels differ even if all that it reads is the same everywhere."""
         return not node.inputs or self.library.uses(shader(node), frozenset({"pixel", "extent"}), path)
 
-    def _pointwise(
-        self, path: str, node: Pointwise, operands: Mapping[str, Operand], wires: Mapping[str, Operand], size: Size
-    ) -> None:
+    def _pointwise(self, fed: Fed, node: Pointwise, size: Size) -> None:
         parameters: list[Parameter] = []
         for name in node.order:
             if name in node.inputs:
-                parameters.append(Parameter(node.inputs[name].glsl, operands[name]))
+                parameters.append(Parameter(node.inputs[name].glsl, fed.inputs[name]))
             elif node.values[name].glsl is not None:
-                parameters.append(self._value(node, node.values[name], wires.get(name), size))
+                parameters.append(self._value(node, node.values[name], fed.wires.get(name), size))
         sockets = [output.socket for output in node.outputs.values()]
         shapes = tuple(
             Shape((1, 1) if socket.single else size, socket.channels, socket.kind is not Kind.IMAGE)
             for socket in sockets
         )
-        self._check_function(path, node, [item.glsl for item in parameters], [item.glsl for item in sockets])
-        ref = self.builder.add(Call(shapes, path, shader(node), node.id, tuple(parameters), choices(node)))
+        self._check_function(fed.path, node, [item.glsl for item in parameters], [item.glsl for item in sockets])
+        ref = self.builder.add(Call(shapes, fed.path, shader(node), node.id, tuple(parameters), choices(node)))
         for index, name in enumerate(node.outputs):
-            self.results[Port(path, name)] = Ref(ref.op, index)
+            self.results[Port(fed.path, name), fed.frame] = Ref(ref.op, index)
 
     def _check_function(self, path: str, node: Node, taken: list[str], made: list[str]) -> None:
         """Raise ShaderError unless the node's GLSL function takes and makes what the node declares."""
@@ -292,15 +303,20 @@ class _Lowering:
         knots = {"curve": curve_knots, "ramp": ramp_knots}.get(value.type)
         return Parameter(glsl, Constant(knots(now) if knots else now))
 
-    def _filter(
-        self, path: str, node: Filter, operands: Mapping[str, Operand], linked: frozenset[str], size: Size
-    ) -> None:
-        filled = dict(operands)
-        for name in linked:
-            filled[name] = self._as_pixels(path, node.inputs[name], operands[name], size)
+    def _filter(self, fed: Fed, node: Filter, size: Size) -> None:
+        path, remembers = fed.path, isinstance(node, Temporal)
+        if remembers and fed.frame != self.now:
+            raise GraphError(
+                f"node '{path}' makes every frame of the one before, so it cannot be seen at frame {fed.frame} while "
+                f"frame {self.now} is rendered: put what changes the time before '{path}'"
+            )
+        for name in fed.linked:
+            fed.inputs[name] = self._as_pixels(path, node.inputs[name], fed.inputs[name], size)
+        for (name, frame), operand in fed.others.items():
+            fed.others[name, frame] = self._as_pixels(path, node.inputs[name], operand, size)
         recorder = Recorder(
-            path, node, size, self.request.frame, filled, linked, self.builder, self.library, self._files(path),
-            self.request.memories.get(path),
+            fed, node, size, self.builder, self.library, self._files(fed),
+            self.request.memories.get(path) if remembers else None,
         )
         drawn = node.passes(recorder)
         if recorder.remembered is not None:
@@ -308,11 +324,12 @@ class _Lowering:
         made = drawn if isinstance(drawn, Mapping) else {next(iter(node.outputs)): drawn}
         for name, item in made.items():
             assert isinstance(item, Made | Camera)
-            self.results[Port(path, name)] = Constant(item.rows) if isinstance(item, Camera) else item.ref
+            result = Constant(item.rows) if isinstance(item, Camera) else item.ref
+            self.results[Port(path, name), fed.frame] = result
 
     def _as_pixels(self, path: str, socket: Socket, operand: Operand, size: Size) -> Operand:
         """A filter looks around in its input: give it real pixels with the channels that it declares."""
-        if socket.single:
+        if socket.single or socket.kind is Kind.CAMERA:
             return operand
         if isinstance(operand, Constant):
             return self.pictures.converted(operand, socket, size, path)
@@ -323,22 +340,31 @@ class _Lowering:
         made = self.builder.shape(ref)
         return ref if made.channels == socket.channels else self.pictures.converted(ref, socket, made.size, owner)
 
-    def _files(self, path: str) -> Files:
+    def _missing(self, wanted: Missing, frame: int) -> Missing:
+        """What stands for a missing file. Nodes may look beyond the ends of a shot: those stay as they are."""
+        return "hold" if wanted == "error" and frame != self.now else wanted
+
+    def _files(self, fed: Fed) -> Files:
         """The files that a node names, which lie beside the graph file that it came from."""
+        missing = self._missing(fed.node.missing if isinstance(fed.node, Reader) else "error", fed.frame)
+
+        def located(file: str) -> str:
+            return self.pictures.named.located(file, fed.path)
 
         def recolor(change: ColorChange) -> ColorProgram:
             if isinstance(change, LookupFile):
-                change = replace(change, path=self.pictures.located(change.path, path))
+                change = replace(change, path=located(change.path))
             return self.outside.recolor(change)
 
         def read(picture: Picture) -> Ref:
-            return self.pictures.read(replace(picture, path=self.pictures.located(picture.path, path)), path)
+            return self.pictures.read(replace(picture, path=located(picture.path)), fed.path, fed.frame, missing)
 
         def mesh(scene: Scene) -> Mesh:
             if isinstance(scene, SceneFile):
-                scene = replace(scene, path=self.pictures.located(scene.path, path))
+                scene = replace(scene, path=located(scene.path))
             return self.outside.mesh(scene)
 
-        return Files(
-            read, recolor, mesh, lambda file: self.outside.render(self.pictures.located(file, path))
-        )
+        def render(file: str, named: Mapping[str, str]) -> Render:
+            return self.outside.render(self.outside.at(located(file), fed.frame, missing).path, named)
+
+        return Files(read, recolor, mesh, render)

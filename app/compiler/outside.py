@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
-from ...nodes import ColorChange, Render, Scene, Size
+from ...nodes import ColorChange, Missing, Render, Scene, Size
 from .ir import Picture
 from .raster import Mesh
 from .recolor import ColorProgram
@@ -20,8 +21,20 @@ class Probed:
     fingerprint: str
 
 
+@dataclass(frozen=True)
+class Frame:
+    """The file that a frame shows. `black`: it has none, this one is as large, and black is to be seen."""
+
+    path: str
+    black: bool = False
+
+
 class Outside(Protocol):
     """Files, color libraries and meshes. Every method raises InputError for a file that cannot be read."""
+
+    def at(self, path: str, frame: int, missing: Missing) -> Frame:
+        """Find the file of a frame, where a path stands for a sequence."""
+        ...
 
     def probe(self, picture: Picture) -> Probed:
         """Look at a picture's header."""
@@ -31,8 +44,11 @@ class Outside(Protocol):
         """Write the program of a change of color. Raises UsageError for a space that nobody knows."""
         ...
 
-    def render(self, path: str) -> Render:
-        """Find out which layer of a file is what, how its numbers are meant, and where the camera was."""
+    def render(self, path: str, named: Mapping[str, str]) -> Render:
+        """Find out which layer of a file is what, how its numbers are meant, and where the camera was.
+
+        `named` are layers that are to have a role, by that.
+        """
         ...
 
     def mesh(self, scene: Scene) -> Mesh:

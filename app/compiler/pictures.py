@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
-from pathlib import PurePath
 
-from ...nodes import Kind, Size, Socket, Source
+from ...nodes import Kind, Missing, Size, Socket
 from ..errors import HalationError
-from ..graph import INPUTS, Graph, Input, Port
-from .expand import Flat
+from ..graph import Graph, make_socket
+from .expand import Flat, nothing
 from .ir import Accessor, Builder, Call, Constant, Gather, Operand, Parameter, Picture, Read, Ref, Shape
+from .named import Named
 from .outside import Outside, Probed
 from .request import Request
 
@@ -22,17 +21,23 @@ class Pictures:
     """Adds what is read from outside, and changes of size and type, to the operations in `builder`."""
 
     def __init__(self, graph: Graph, flat: Flat, request: Request, outside: Outside, builder: Builder) -> None:
+        self.named = Named(flat, request.bindings)
         self._settled = graph.settings.size
-        self._flat, self._request, self._outside, self._builder = flat, request, outside, builder
+        self._request, self._outside, self._builder = request, outside, builder
 
     @cached_property
     def canvas(self) -> Size:
         """The size of what is made from nothing: asked for, the graph's own, or that of the first picture."""
         size = self._request.size or self._settled
         if size is None:
-            first = next(self._named(), None)
-            size = self._probed(*first).size if first else DEFAULT_CANVAS
+            first = next(iter(self.named), None)
+            size = self._first_size(*first) if first else DEFAULT_CANVAS
         return self._scaled(size)
+
+    def _first_size(self, picture: Picture, owner: str) -> Size:
+        """What a sequence is as large as, whether or not this frame has a file."""
+        path = self._outside.at(picture.path, self._request.frame, "nearest").path if not picture.in_memory else ""
+        return self._probed(replace(picture, path=path) if path else picture, owner).size
 
     def _probed(self, picture: Picture, owner: str) -> Probed:
         try:
@@ -41,43 +46,24 @@ class Pictures:
             error.node = owner
             raise
 
-    def _named(self) -> Iterator[tuple[Picture, str]]:
-        """Pictures that the graph itself names, and who reads them: inputs first, then sources."""
-        for port, socket in self._flat.inputs.items():
-            named = port.node == INPUTS and not socket.socket().single
-            picture = self.bound(port, socket) if named else None
-            if picture is not None:
-                yield picture, f"{port}"
-        for path, node in self._flat.nodes.items():
-            for value in node.values.values() if isinstance(node, Source) else ():
-                if value.holds == "picture" and value.type == "path" and getattr(node, value.name):
-                    yield Picture(self.located(getattr(node, value.name), path), "", Kind.IMAGE, 4), path
-
     def _scaled(self, size: Size) -> Size:
         scale = self._request.scale
         return (max(1, round(size[0] * scale)), max(1, round(size[1] * scale)))
 
-    def bound(self, port: Port, socket: Input) -> Picture | None:
-        """The picture bound to a graph input, else its default file. A camera is none."""
-        if socket.kind is Kind.CAMERA:
-            return None
-        kind, width = socket.kind, socket.socket().channels
-        bound = self._request.bindings.get(port.socket) if port.node == INPUTS else None
-        if bound is not None:
-            return replace(bound, kind=kind, width=width)
-        if not socket.file:
-            return None
-        folder = self._flat.folders[port.node.removesuffix(INPUTS)]
-        return Picture(str(PurePath(folder, socket.file)), socket.layer, kind, width)
-
-    def read(self, picture: Picture, owner: str) -> Ref:
-        """Upload a picture, at the size wanted."""
+    def read(self, picture: Picture, owner: str, frame: int, missing: Missing) -> Ref:
+        """Upload a picture, or that frame of a sequence, at the size wanted."""
+        black = False
+        if not picture.in_memory:
+            found = self._outside.at(picture.path, frame, missing)
+            picture, black = replace(picture, path=found.path), found.black
         probed = self._probed(picture, owner)
-        data = picture.kind is not Kind.IMAGE
-        shape = Shape(probed.size, picture.width, data)
+        shape = Shape(probed.size, picture.width, picture.kind is not Kind.IMAGE)
+        wanted = self._scaled(self._request.size if self._request.size and probed.size != (1, 1) else probed.size)
+        if black:
+            socket = make_socket(picture.kind, picture.width)
+            return self.converted(Constant(nothing(socket)), socket, wanted, owner)
         ref = self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half))
-        wanted = self._request.size if self._request.size and probed.size != (1, 1) else probed.size
-        return self.fit(ref, self._scaled(wanted), owner)
+        return self.fit(ref, wanted, owner)
 
     def fit(self, ref: Ref, size: Size, owner: str) -> Ref:
         """The picture at another size. Equal up to rounding: stretched; otherwise scaled to cover and cropped."""
@@ -98,7 +84,3 @@ class Pictures:
         shape = Shape(size, socket.channels, socket.kind is not Kind.IMAGE)
         parameters = (Parameter(glsl, operand),)
         return self._builder.add(Call((shape,), owner, "primitive/convert", f"as_{glsl}", parameters))
-
-    def located(self, file: str, node: str) -> str:
-        """Relative paths start at the folder of the graph file that the node came from."""
-        return str(PurePath(self._flat.folders[node], file))

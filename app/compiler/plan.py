@@ -133,6 +133,12 @@ class Plan:
     """Bytes of each texture that the plan needs at the same time."""
 
     @property
+    def remembered(self) -> tuple[int, ...]:
+        """The surfaces that the next frame will want."""
+        keys = {memory.key for memory in self.memories.values()}
+        return tuple(number for number, surface in enumerate(self.surfaces) if surface.key in keys)
+
+    @property
     def peak_bytes(self) -> int:
         """Texture memory needed at once."""
         return sum(self.slots)

@@ -7,22 +7,25 @@ from hashlib import blake2b
 
 from ...nodes import Node
 from ..errors import GraphError
-from ..graph import INPUTS, OUTPUTS, Graph, Group, Port
-from .expand import Flat, expand
+from ..graph import INPUTS, OUTPUTS, Graph, Group, Port, is_animated
+from .expand import Flat
+from .moments import Moments
 
 
 class Upstream:
     """A hash by path of every node (`glow/bloom`), group (`glow`) and input (`inputs.beauty`, `glow/inputs.image`).
 
-    It changes with the node, its values and links, and with those of all that feed it; not with pictures bound to the
-    graph. What cannot be rendered, because it goes in a circle say, has none. From what is `known` of another graph
-    that differs in values of nodes only, as while one is dragged, only what they reach is found out anew.
+    It changes with the node, its values and links, and with those of all that feed it, and with the frame; not with
+    pictures bound to the graph. What cannot be rendered, because it goes in a circle say, has none. From what is
+    `known` of another graph that differs in values of nodes only, as while one is dragged, only what they reach is
+    found out anew.
     """
 
-    def __init__(self, graph: Graph, known: Upstream | None = None) -> None:
-        self.graph = graph
+    def __init__(self, graph: Graph, frame: int = 1, known: Upstream | None = None) -> None:
+        self.graph, self.frame = graph, frame
         self.hashes: dict[str, str] = {}
-        changed = _changed(known.graph, graph) if known else None
+        follows = known and known.frame == frame and not is_animated(graph)
+        changed = _changed(known.graph, graph) if known and follows else None
         try:
             if known is None or changed is None:
                 self._find_all()
@@ -32,9 +35,11 @@ class Upstream:
             self.hashes = {}
 
     def _find_all(self) -> None:
-        self._flat: Flat = expand(self.graph)
-        self._settings = repr(self.graph.settings)
-        self._reads = {path: self._sources(path) for path in self._order()}
+        moments = Moments(self.graph)
+        self._flat: Flat = moments.flat(self.frame)
+        # A node may look at other frames, where values are others.
+        self._settings = repr((self.graph.settings, self.frame, _animations(self.graph)))
+        self._reads = {path: self._sources(path) for path in self._order(moments)}
         for path in self._reads:
             self._hash_node(path)
         self._ends = [
@@ -56,15 +61,15 @@ class Upstream:
                 self._hash_node(path)
         self._hash_ends()
 
-    def _order(self) -> list[str]:
+    def _order(self, moments: Moments) -> list[str]:
         paths = [Port(path, "") for path in self._flat.nodes]
         try:
-            return self._flat.order(paths)
+            return list(dict.fromkeys(path for path, _ in moments.order(paths, self.frame)))
         except GraphError:  # something is wrong somewhere: take what can be had
             found: dict[str, None] = {}
             for path in paths:
                 try:
-                    found |= dict.fromkeys(self._flat.order((path,)))
+                    found |= dict.fromkeys(node for node, _ in moments.order((path,), self.frame))
                 except GraphError:
                     continue
             return list(found)
@@ -98,7 +103,7 @@ class Upstream:
 
 def _changed(before: Graph, after: Graph, prefix: str = "") -> dict[str, Node] | None:
     """The nodes that have other values, by path, if two graphs differ in nothing else that matters; else None."""
-    parts = ("links", "inputs", "outputs", "controls", "muted", "settings")
+    parts = ("links", "inputs", "outputs", "controls", "animation", "muted", "settings")
     same = all(getattr(before, part) is getattr(after, part) for part in parts) and [*before.nodes] == [*after.nodes]
     if not same:
         return None
@@ -117,6 +122,12 @@ def _changed(before: Graph, after: Graph, prefix: str = "") -> dict[str, Node] |
         else:
             return None
     return found
+
+
+def _animations(graph: Graph) -> list[object]:
+    """How values change over time, in groups too."""
+    inner = [_animations(item.graph) for item in graph.nodes.values() if isinstance(item, Group)]
+    return [sorted(graph.animation.items(), key=lambda item: item[0]), *(found for found in inner if any(found))]
 
 
 def _hash(*parts: object) -> str:

@@ -14,7 +14,7 @@ from .syntax import member
 WIDTH = 100
 """Columns within which an object or list stays on one line."""
 
-_SPREAD = frozenset({"controls", "inputs", "links", "nodes", "outputs"})
+_SPREAD = frozenset({"animation", "controls", "inputs", "links", "nodes", "outputs"})
 """Sections of a document that have a line for every entry, however short, so that a diff shows one entry."""
 
 

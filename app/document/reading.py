@@ -9,10 +9,11 @@ from typing import Any
 
 from ...nodes import Node, Plain, Value, catalogue
 from ..errors import DocumentError, GraphError
-from ..graph import Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, signature
+from ..graph import Animation, Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, signature
 from ..graph.names import did_you_mean, name_fault
 from ..graph.values import coerced, expected
 from . import limits, records
+from .animation import read_animation
 from .disk import read_text
 from .migrations import MIGRATIONS, Migration, migrate, newest
 from .records import convert, read_type, unknown_keys
@@ -107,8 +108,9 @@ class _Body:
             inputs={name: reader.input(name, end, at) for name, end in record.inputs.items()},
             outputs={name: reader.output(name, end, at) for name, end in record.outputs.items()},
             controls={name: reader.control(name, item, at) for name, item in record.controls.items()},
-            settings=Settings(settings.size), muted=frozenset(muted), ui=record.ui, extra=reader.extra,
-            folder=self.folder,
+            animation=reader.animation(record.animation, at),
+            settings=Settings(settings.size, settings.frames, settings.rate, settings.preroll),
+            muted=frozenset(muted), ui=record.ui, extra=reader.extra, folder=self.folder,
         )
         return graph, count
 
@@ -146,7 +148,7 @@ class _Body:
         found = convert(raw, records.InputRecord, self.file, where)
         self.keep(f"inputs.{name}", raw, records.InputRecord)
         kind, width = read_type(found.type, self.file, where)
-        return Input(kind, width, found.file, found.layer, found.default, found.doc)
+        return Input(kind, width, found.file, found.layer, found.default, found.doc, found.missing)
 
     def output(self, name: str, raw: Any, at: str) -> Output:
         """An entry of `outputs`."""
@@ -161,6 +163,15 @@ class _Body:
         found = convert(raw, records.ControlRecord, self.file, where)
         self.keep(f"controls.{name}", raw, records.ControlRecord)
         return Control(self.port(found.target, member(where, "target")), found.label, found.doc)
+
+    def animation(self, raw: Mapping[str, Any], at: str) -> dict[Port, Animation]:
+        """The section `animation`, by target."""
+        found: dict[Port, Animation] = {}
+        for target, item in raw.items():
+            where = member(member(at, "animation"), target)
+            found[self.port(target, where)] = read_animation(item, self.file, where)
+            self.keep(f"animation.{target}", item, records.AnimationRecord)
+        return found
 
     def item(self, id: str, raw: dict[str, Any], type: str, at: str, depth: int) -> tuple[Item, int]:
         """A node, and how many it stands for."""

@@ -8,8 +8,9 @@ from typing import Annotated, Any, TypeVar
 
 import msgspec
 
-from ...nodes import Kind
+from ...nodes import Kind, Missing
 from ..errors import DocumentError
+from ..graph import Interpolation, Outside
 from .syntax import member
 
 Count = Annotated[int, msgspec.Meta(ge=1)]
@@ -40,6 +41,7 @@ class GraphRecord(msgspec.Struct):
     controls: Section = {}
     nodes: Section = {}
     links: Section = {}
+    animation: Section = {}
     ui: Section = {}
 
 
@@ -47,6 +49,9 @@ class SettingsRecord(msgspec.Struct):
     """The section `settings`."""
 
     size: tuple[Count, Count] | None = None
+    frames: tuple[int, int] | None = None
+    rate: Annotated[float, msgspec.Meta(gt=0)] = 24.0
+    preroll: Annotated[int, msgspec.Meta(ge=0)] | None = None
 
 
 class InputRecord(msgspec.Struct):
@@ -55,6 +60,7 @@ class InputRecord(msgspec.Struct):
     type: str = "Image"
     file: str = ""
     layer: str = ""
+    missing: Missing = "error"
     default: float | tuple[float, ...] | None = None
     doc: str = ""
 
@@ -73,6 +79,24 @@ class ControlRecord(msgspec.Struct):
     target: str
     label: str = ""
     doc: str = ""
+
+
+class AnimationRecord(msgspec.Struct):
+    """An entry of `animation`."""
+
+    keys: list[Any] | None = None
+    outside: Outside = "hold"
+    expression: str | None = None
+
+
+class KeyRecord(msgspec.Struct):
+    """One of the keys of a value."""
+
+    frame: float
+    value: Any
+    interpolation: Interpolation = "smooth"
+    left: tuple[float, ...] = ()
+    right: tuple[float, ...] = ()
 
 
 class TypeRecord(msgspec.Struct):

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 from ...nodes import Plain, Value
 from ..errors import GraphError, OutputError
-from ..graph import Control, Graph, Group, Input, Item, Output, Unknown, signature
+from ..graph import Control, Graph, Group, Input, Item, Output, Settings, Unknown, signature
 from ..graph.names import name_fault
 from ..graph.values import coerced, expected
+from .animation import written_animation
 from .canonical import pretty
 from .disk import write_text
 from .limits import size_fault
@@ -43,7 +45,6 @@ def save(graph: Graph, path: str | Path) -> None:
 
 def _graph(graph: Graph) -> Section:
     """A body, without empty sections."""
-    size = graph.settings.size
     extra = graph.extra
 
     def entries(section: str, known: Mapping[str, Section]) -> Section:
@@ -51,15 +52,27 @@ def _graph(graph: Graph) -> Section:
 
     _check_names(graph)
     sections: dict[str, Mapping[str, Any]] = {
-        "settings": {**extra.get("settings", {}), **({"size": size} if size else {})},
+        "settings": {**extra.get("settings", {}), **_settings(graph.settings)},
         "inputs": entries("inputs", {name: _input(name, end) for name, end in graph.inputs.items()}),
         "outputs": entries("outputs", {name: _output(end) for name, end in graph.outputs.items()}),
         "controls": entries("controls", {name: _control(item) for name, item in graph.controls.items()}),
         "nodes": entries("nodes", {id: _item(id, item, graph) for id, item in graph.nodes.items()}),
         "links": {str(target): str(source) for target, source in graph.links.items()},
+        "animation": entries(
+            "animation", {str(port): written_animation(item) for port, item in graph.animation.items()}
+        ),
         "ui": graph.ui,
     }
     return {**extra.get("", {}), **{name: section for name, section in sections.items() if section}}
+
+
+def _settings(settings: Settings) -> Section:
+    """What differs from the default."""
+    plain = Settings()
+    return {
+        field.name: now for field in fields(Settings)
+        if (now := getattr(settings, field.name)) != getattr(plain, field.name)
+    }
 
 
 def _input(name: str, end: Input) -> Section:
@@ -70,7 +83,9 @@ def _input(name: str, end: Input) -> Section:
         default = tuple(float(part) for part in default)
     elif default is not None:
         default = float(default)
-    found = {"file": end.file, "layer": end.layer, "doc": end.doc}
+    found = {
+        "file": end.file, "layer": end.layer, "doc": end.doc, "missing": end.missing if end.missing != "error" else "",
+    }
     return {"type": type_name(end.kind, end.width)} | _filled(found) | ({} if default is None else {"default": default})
 
 

@@ -11,6 +11,7 @@ from ..errors import HalationError
 from .canvas.view import CanvasView
 from .dialogs import Dialogs
 from .log import Log
+from .services.renders import Renders
 from .theme.palette import PALETTES, Palette
 from .viewer.state import ViewerState
 
@@ -55,6 +56,7 @@ class Editor:
     display: Display
     probe: Probe
     fonts: Fonts | None = None
+    renders: Renders = field(default_factory=Renders)
     canvas: CanvasView = field(default_factory=CanvasView)
     viewer: ViewerState = field(default_factory=ViewerState)
     dialogs: Dialogs = field(default_factory=Dialogs)

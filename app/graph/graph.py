@@ -12,6 +12,7 @@ from typing import Any, Literal, Self
 
 from ...nodes import Node, Plain, Socket, Value
 from ..errors import GraphError
+from .animation import Animation, animation_fault, moved
 from .conversion import conversion
 from .faces import declared, is_pointwise, signature
 from .group import Group, Item
@@ -25,7 +26,7 @@ from .walk import loop_sentence, neighbors, reach, route, sort
 
 @dataclass(frozen=True)
 class Graph:
-    """Nodes by id, links by *target*: an input has at most one source.
+    """Nodes by id, links by *target*: an input has at most one source. `animation` holds values that change over time.
 
     `ui` is the layout: nodes, ends, routes and viewers by name. `extra` keeps keys that mean nothing here, by the JSON
     path of the object that holds them. `folder` is where relative paths start; it is not saved.
@@ -36,6 +37,7 @@ class Graph:
     inputs: Mapping[str, Input] = field(default_factory=dict[str, Input])
     outputs: Mapping[str, Output] = field(default_factory=dict[str, Output])
     controls: Mapping[str, Control] = field(default_factory=dict[str, Control])
+    animation: Mapping[Port, Animation] = field(default_factory=dict[Port, Animation])
     settings: Settings = field(default_factory=Settings)
     muted: frozenset[str] = frozenset()
     ui: Mapping[str, Any] = field(default_factory=dict[str, Any])
@@ -43,7 +45,7 @@ class Graph:
     folder: str = field(default="", compare=False)
 
     def __post_init__(self) -> None:
-        for name in ("nodes", "links", "inputs", "outputs", "controls"):
+        for name in ("nodes", "links", "inputs", "outputs", "controls", "animation"):
             if not isinstance(getattr(self, name), MappingProxyType):
                 object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
         for name in ("ui", "extra"):
@@ -151,7 +153,8 @@ class Graph:
         kept = {name: control for name, control in self.controls.items() if control.target.node != id}
         return self._with(
             nodes=without(self.nodes, id), links=links, controls=kept, muted=self.muted - {id},
-            ui=moved_layout(self.ui, id), extra=moved_keys(self.extra, f"nodes.{id}"),
+            animation=moved(self.animation, id), ui=moved_layout(self.ui, id),
+            extra=moved_keys(self.extra, f"nodes.{id}"),
         )
 
     def rename(self, old: str, new: str) -> Self:
@@ -169,7 +172,7 @@ class Graph:
         }
         return self._with(
             nodes=renamed(self.nodes, old, new), links=moved_links(self.links, moves), controls=controls,
-            muted={new if id == old else id for id in self.muted},
+            muted={new if id == old else id for id in self.muted}, animation=moved(self.animation, old, new),
             ui=moved_layout(self.ui, old, new), extra=moved_keys(self.extra, f"nodes.{old}", f"nodes.{new}"),
         )
 
@@ -187,7 +190,11 @@ class Graph:
             if control.target.node != id or face.anything or control.target.socket in face.values
         }
         extra = self.extra if type(before) is type(item) else moved_keys(self.extra, f"nodes.{id}")
-        return after._with(links=links, controls=kept, extra=extra)
+        kept_animation = {
+            port: animation for port, animation in self.animation.items()
+            if port.node != id or face.anything or animation_fault(after, port, animation) is None
+        }
+        return after._with(links=links, controls=kept, animation=kept_animation, extra=extra)
 
     def mute(self, id: str, on: bool = True) -> Self:
         """A graph where the node passes its first input through, or works again."""
@@ -216,7 +223,10 @@ class Graph:
         return declared(self.node(port.node), port.socket, port.node).default
 
     def set(self, port: Port, value: object) -> Self:
-        """A graph where a value of a node, or a control of a group, is set; checks type, choice and hard range."""
+        """A graph where a value of a node, or a control of a group, is set, for all frames.
+
+        Checks type, choice and hard range.
+        """
         wanted = declared(self.node(port.node), port.socket, port.node)
         if fault := value_fault(wanted, value):
             raise GraphError(f"{port}: {fault}")
@@ -233,7 +243,16 @@ class Graph:
             item = item.changed(**{port.socket: plain})
         else:
             return self
-        return self._with(nodes={**self.nodes, port.node: item})
+        animation = without(self.animation, port) if port in self.animation else self.animation
+        return self._with(nodes={**self.nodes, port.node: item}, animation=animation)
+
+    def animate(self, port: Port, animation: Animation | None) -> Self:
+        """A graph where a value changes over time, or does not any more; then it stays what it is set to."""
+        if animation is None:
+            return self._with(animation=without(self.animation, port))
+        if fault := animation_fault(self, port, animation):
+            raise GraphError(fault)
+        return self._with(animation={**self.animation, port: animation})
 
     def set_control(self, name: str, value: object) -> Self:
         """A graph where the value behind a control is set."""
@@ -290,8 +309,9 @@ class Graph:
         return self._move_end("outputs", old, new)
 
     def rename_control(self, old: str, new: str) -> Self:
-        """A graph where a control has another name."""
-        return self._move_end("controls", old, new)
+        """A graph where a control has another name; expressions follow."""
+        after = self._move_end("controls", old, new)
+        return after if old in self.nodes else after._with(animation=moved(self.animation, old, new))
 
     # --- inside ------------------------------------------------------------------------------------------------
 

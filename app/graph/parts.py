@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, cast
 
-from ...nodes import Kind, Plain, Size, Socket, Value
+from ...nodes import Kind, Missing, Plain, Size, Socket, Value
 from ..errors import GraphError
 from .conversion import make_socket
 
@@ -35,7 +35,8 @@ class Port:
 class Input:
     """Where something enters the graph: bound by name, else `default`, else layer `layer` of `file`.
 
-    `width` counts the channels of a Vector. `default` is one number, or one per channel.
+    `width` counts the channels of a Vector. `default` is one number, or one per channel. `missing` says what a frame
+    shows that has no file, where `file` names a sequence.
     """
 
     kind: Kind = Kind.IMAGE
@@ -44,6 +45,7 @@ class Input:
     layer: str = ""
     default: Plain | None = None
     doc: str = ""
+    missing: Missing = "error"
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "width", _width(self.kind, self.width))
@@ -96,9 +98,18 @@ class Unknown:
 
 @dataclass(frozen=True)
 class Settings:
-    """`size`: the canvas of nodes without image inputs; by default that of the first image read, else 1920x1080."""
+    """What holds for the graph as a whole.
+
+    `size`: the canvas of nodes without image inputs; by default that of the first image read, else 1920x1080.
+    `frames`: the first and last frame; by default those of the first sequence that is read, else frame 1 alone.
+    `rate`: frames per second. `preroll`: how many frames before the one that is wanted nodes with a memory look back;
+    by default to the first frame, so that a frame is the same wherever a rendering begins.
+    """
 
     size: Size | None = None
+    frames: tuple[int, int] | None = None
+    rate: float = 24.0
+    preroll: int | None = None
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from typing import Literal
 
 from ...nodes import Node, catalogue
 from ..errors import GraphError
+from .animation import animation_fault, loop_faults
 from .faces import signature
 from .graph import Graph
 from .group import Group, Item
@@ -56,7 +57,7 @@ def rechecked(
 
     It costs nothing where only values of nodes differ that had no problem and have none now, as while one is dragged.
     """
-    parts = ("links", "inputs", "outputs", "controls", "extra")
+    parts = ("links", "inputs", "outputs", "controls", "animation", "settings", "extra")
     same = all(getattr(graph, part) is getattr(before, part) for part in parts) and [*graph.nodes] == [*before.nodes]
     if not same:
         return problems(graph, known)
@@ -85,7 +86,23 @@ def _inside(graph: Graph, known: Mapping[str, type[Node]], depth: int) -> Iterat
             yield from _group(id, item, known, depth)
     for loop in loops({id: sorted(graph.feeding[id]) for id in sorted(graph.nodes)}):
         yield Problem(loop[0], "", loop_sentence(loop))
+    yield from _animations(graph)
     yield from _leftovers(graph)
+
+
+def _animations(graph: Graph) -> Iterator[Problem]:
+    for port, item in graph.animation.items():
+        if isinstance(graph.nodes.get(port.node), Unknown):
+            continue
+        if fault := animation_fault(graph, port, item):
+            yield Problem(port.node, port.socket, fault)
+        elif port in graph.links:
+            yield Problem(port.node, port.socket, f"'{port}' is linked, so that its keys do nothing", "warning")
+    for port, fault in loop_faults(graph):
+        yield Problem(port.node, port.socket, fault)
+    first, last = graph.settings.frames or (1, 1)
+    if last < first:
+        yield Problem("", "", f"the frames {first} to {last} run backwards: the first comes first")
 
 
 def _group(id: str, item: Group, known: Mapping[str, type[Node]], depth: int) -> Iterator[Problem]:

@@ -27,6 +27,7 @@ DATA_NAMES = {
 }
 """What plain names of data look like, by what they may mean: numbers that are not color."""
 _DATA = re.compile("|".join(DATA_NAMES.values()))
+_LISTED = 20
 _DEPTH = re.compile(r"z|_*(z_?depth|depth_?z|depth|hitpz|linear_?depth|zfiltered)", re.IGNORECASE)
 
 
@@ -167,10 +168,16 @@ def pick(path: str, layers: Sequence[Layer], name: str) -> Layer:
     if match := [one for layer in layers for one in _channels(layer) if f".{plain(one.full)}".endswith("." + wanted)]:
         return _only(path, name, match)
     choices = [layer.name for layer in layers]
-    near = {plain(choice): choice for choice in choices}
-    guess = difflib.get_close_matches(wanted, near, 1, 0.5)
-    hint = f"did you mean '{near[guess[0]]}'? It" if guess else "it"
-    raise InputError(f"{path}: has no layer '{name}': {hint} holds {', '.join(choices)}")
+    near = nearest(layers, name)
+    hint = f"did you mean '{near[0]}'? It" if near else "it"
+    rest = f" and {len(choices) - _LISTED} more" if len(choices) > _LISTED else ""
+    raise InputError(f"{path}: has no layer '{name}': {hint} holds {', '.join(choices[:_LISTED])}{rest}")
+
+
+def nearest(layers: Sequence[Layer], name: str) -> list[str]:
+    """The names of layers that are most like one that is not there, at most three."""
+    known = {plain(layer.name): layer.name for layer in layers}
+    return [known[word] for word in difflib.get_close_matches(plain(name), known, 3, 0.5)]
 
 
 def _main(layers: Sequence[Layer]) -> Layer:

@@ -7,17 +7,24 @@ Friedman and Jones 2015, as specified by Psyop: the header says `cryptomatte/KEY
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import cast
 
-from ...nodes import Matte
+import numpy as np
+
+from ...nodes import Kind, Matte, float_bits
+from ..errors import InputError
+from .color import Array
 from .layers import plain
 from .naming import Role
 from .passes import Pass
-from .survey import Survey
+from .read import read
+from .survey import Survey, survey
 
 _NAME = re.compile(r"cryptomatte/(\w+)/name")
 _ROLES = MappingProxyType({
@@ -43,6 +50,36 @@ def mattes_of(found: Survey) -> tuple[Matte, ...]:
         assert role is not None
         made.append(Matte(_ROLES[role], tuple(item.layer.full for item in items), MappingProxyType(ids)))
     return tuple(made)
+
+
+@dataclass(frozen=True)
+class IdMap:
+    """The id that covers most of each pixel, [h, w] of uint32, 0 where nothing does; and what ids are called."""
+
+    ids: Array
+    names: Mapping[int, str]
+
+    def at(self, u: float, v: float) -> int:
+        """The id at a point of the picture, given as fractions; 0 outside."""
+        height, width = self.ids.shape
+        x, y = math.floor(u * width), math.floor(v * height)
+        return int(self.ids[y, x]) if 0 <= x < width and 0 <= y < height else 0
+
+
+def id_map(path: str, first: str) -> IdMap:
+    """What is where, by the first layer of a cryptomatte.
+
+    Raises:
+        InputError: as `read`, also for a layer that is none of a cryptomatte.
+    """
+    matte = next((matte for matte in mattes_of(survey(path)) if matte.layers[0] == first), None)
+    if matte is None:
+        raise InputError(f"{path}: '{first}' is no cryptomatte")
+    ranks = read(path, first, Kind.VECTOR, 4).array.astype(np.float32, copy=False)
+    ids, covered = np.ascontiguousarray(ranks[..., 0::2]).view(np.uint32), ranks[..., 1::2]
+    found = np.where(covered[..., 1] > covered[..., 0], ids[..., 1], ids[..., 0])
+    found[~(covered.max(axis=2) > 0.0)] = 0
+    return IdMap(found, MappingProxyType({float_bits(bits): name for name, bits in matte.ids.items()}))
 
 
 def _manifest(attributes: Mapping[str, object], key: str, folder: Path) -> dict[str, int]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from hashlib import blake2b
 from pathlib import Path
@@ -16,8 +16,8 @@ from ..graph import Graph, Input
 if TYPE_CHECKING:
     import numpy as np
 
-    from ...nodes import ColorChange, Render, Scene
-    from ..compiler import ColorProgram, Mesh
+    from ...nodes import ColorChange, Missing, Render, Scene
+    from ..compiler import ColorProgram, Frame, Mesh
     from .info import ImageInfo
 
     Array = np.ndarray
@@ -30,6 +30,8 @@ class Pictures:
     """Probes and loads what the pictures of one graph stand for. `repaired` counts broken pixels by path."""
 
     repaired: dict[str, int] = field(default_factory=dict[str, int])
+    look: Callable[[str, Mapping[str, str]], Render] | None = None
+    """Finds out what a render holds, where that is not to be waited for."""
     _infos: dict[str, ImageInfo] = field(default_factory=dict[str, "ImageInfo"], repr=False)
     _marks: dict[str, str] = field(default_factory=dict[str, str], repr=False)
 
@@ -39,6 +41,12 @@ class Pictures:
         self._infos.clear()
         bound = {name: self._bind(_input(graph, name), name, item) for name, item in inputs.items()}
         return bound | self._siblings(graph, bound)
+
+    def at(self, path: str, frame: int, missing: Missing) -> Frame:
+        """The file of a frame. Raises InputError for a frame that has none."""
+        from .sequences import frame_file
+
+        return frame_file(path, frame, missing)
 
     def probe(self, picture: Picture) -> Probed:
         """Size and precision of a picture. Raises InputError for what cannot be read."""
@@ -72,11 +80,11 @@ class Pictures:
 
         return recolor(change)
 
-    def render(self, path: str) -> Render:
+    def render(self, path: str, named: Mapping[str, str]) -> Render:
         """What the file of a render holds. Raises InputError for one that cannot be read."""
         from .renders import find_render
 
-        return find_render(path)
+        return (self.look or find_render)(path, named)
 
     def mesh(self, scene: Scene) -> Mesh:
         """The triangles of a scene. Raises InputError for a file that cannot be read."""

@@ -9,7 +9,7 @@ The header is read at once, pixels when conventions or the camera are first aske
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from pathlib import Path
 from types import MappingProxyType
@@ -21,7 +21,7 @@ from .camera import Solved, header_camera, residual_of, solve_camera
 from .color import Array
 from .conventions import Convention, Motion, Space, habit
 from .header import Header, read_header
-from .info import fingerprint
+from .info import find_layer, fingerprint
 from .layers import Layer
 from .naming import PLURAL, Role
 from .passes import Maker, Pass, chosen, maker_of, passes_of
@@ -48,15 +48,21 @@ class _Findings:
 
 @dataclass(frozen=True)
 class Survey:
-    """A render: `passes` says what its layers are, `before` is the frame before it, if that was given."""
+    """A render: `passes` says what its layers are, `before` is the frame before it, if that was given.
+
+    `named` are layers that somebody chose for a role.
+    """
 
     header: Header
     maker: Maker
     passes: tuple[Pass, ...]
     before: Survey | None = None
+    named: Mapping[Role, Layer] = field(default_factory=lambda: MappingProxyType[Role, Layer]({}))
 
     def layer(self, role: Role) -> Layer | None:
-        """The layer of this role; None if there is none or if several have the same claim."""
+        """The layer of this role: that which was named, else the one with the best claim; None if several have it."""
+        if role in self.named:
+            return self.named[role]
         best = chosen(self.passes, role)
         return best[0].layer if len(best) == 1 else None
 
@@ -67,13 +73,15 @@ class Survey:
 
     @property
     def roles(self) -> tuple[Role, ...]:
-        """The roles that have a layer, in the order of the layers."""
-        return tuple(dict.fromkeys(item.role for item in self.passes if item.role is not None))
+        """The roles that have a layer, in the order of the layers; those that somebody chose one for come last."""
+        found = [item.role for item in self.passes if item.role is not None]
+        return tuple(dict.fromkeys([*found, *self.named]))
 
     @cached_property
     def rivals(self) -> Mapping[Role, tuple[Layer, ...]]:
         """The roles that several layers claim alike, which leaves them to the user."""
-        claims = {role: chosen(self.passes, role) for role in self.roles if role not in PLURAL}
+        open_roles = [role for role in self.roles if role not in PLURAL and role not in self.named]
+        claims = {role: chosen(self.passes, role) for role in open_roles}
         return {role: tuple(item.layer for item in best) for role, best in claims.items() if len(best) > 1}
 
     @property
@@ -101,8 +109,11 @@ class Survey:
         return _Findings(MappingProxyType(conventions), camera)
 
     def _habit(self, role: Role) -> Convention | None:
-        best = chosen(self.passes, role)
-        return habit(role, best[0].name, self.maker.renderer) if len(best) == 1 else None
+        layer = self.layer(role)
+        if layer is None:
+            return None
+        word = next((item.name for item in self.passes if item.layer is layer), layer.name)
+        return habit(role, word, self.maker.renderer)
 
     def _pixels(self) -> dict[Role, Array]:
         """The layers that conventions and the camera are found in."""
@@ -172,16 +183,18 @@ class Survey:
         return rule
 
 
-def survey(path: str | Path, before: str | Path | None = None) -> Survey:
+def survey(
+    path: str | Path, before: str | Path | None = None, named: Mapping[Role, str] = MappingProxyType({})
+) -> Survey:
     """Look at a render; `before` is the same render one frame earlier, which shows which way motion points.
 
-    The same file is looked at once.
+    `named` are layers that are to have a role whatever they look like. The same file is looked at once.
 
     Raises:
-        InputError: as `info`.
+        InputError: as `info`, and as `find_layer` for a layer that is not there.
     """
     earlier = (str(before), fingerprint(before)) if before is not None else None
-    found = _survey(str(path), fingerprint(path), earlier)
+    found = _survey(str(path), fingerprint(path), earlier, tuple(sorted(named.items())))
     here, there = (item.header.info.size for item in (found, found.before or found))
     if here != there:
         raise InputError(f"{before}: is {there[0]}x{there[1]} and {path} is {here[0]}x{here[1]}: name the frame before")
@@ -189,9 +202,12 @@ def survey(path: str | Path, before: str | Path | None = None) -> Survey:
 
 
 @lru_cache(maxsize=64)
-def _survey(path: str, mark: str, before: tuple[str, str] | None) -> Survey:
+def _survey(
+    path: str, mark: str, before: tuple[str, str] | None, named: tuple[tuple[Role, str], ...] = ()
+) -> Survey:
     header = read_header(path)
     maker = maker_of(header.attributes, header.info.layers)
     views = {part.index: part.view for part in header.parts}
     passes = passes_of(header.info.layers, header.attributes, maker.renderer, views)
-    return Survey(header, maker, passes, _survey(*before, None) if before else None)
+    layers = {role: find_layer(header.info, name) for role, name in named}
+    return Survey(header, maker, passes, _survey(*before, None) if before else None, MappingProxyType(layers))

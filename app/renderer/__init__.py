@@ -8,11 +8,12 @@ from .engine import Renderer, Wanted
 from .executor import Counters
 from .look import Look, fitted, to_panel, to_picture
 from .probe import Nonfinite, Probe, first_nonfinite
+from .reel import Reel
 from .run import Run
 from .runner import Runner
 from .textures import Lease
 
 __all__ = [
-    "Counters", "Device", "Display", "Drawable", "Handle", "Lease", "Look", "Nonfinite", "Probe", "Renderer", "Run",
-    "Runner", "Wanted", "describe", "first_nonfinite", "fitted", "open_device", "to_panel", "to_picture",
+    "Counters", "Device", "Display", "Drawable", "Handle", "Lease", "Look", "Nonfinite", "Probe", "Reel", "Renderer",
+    "Run", "Runner", "Wanted", "describe", "first_nonfinite", "fitted", "open_device", "to_panel", "to_picture",
 ]

@@ -66,8 +66,9 @@ class Decoding:
             self._uploads[surface][1]: future for surface, future in self._started.items()
             if not future.cancel() and not (future.done() and future.exception())
         }
-        self._begun.clear()
         self._begun.update(left)
+        while len(self._begun) > AHEAD:
+            self._begun.pop(next(iter(self._begun))).cancel()
         self._waiting.clear()
         self._uploads.clear()
         self._started.clear()

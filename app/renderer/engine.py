@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from ...nodes import Size
-from ..compiler import Library, Plan, Precision, Request, compile_graph
-from ..graph import Graph, Port
+from .. import media
+from ..compiler import Library, Memory, Plan, Precision, Request, compile_graph, named_files
+from ..graph import Graph, Port, keyed_frames
 from ..media.pictures import Pictures
 from .decoding import Array
 from .device import Device, open_device
@@ -25,18 +27,24 @@ DEFAULT_BUDGET = 512 * 2**20
 class Wanted:
     """What to render of a graph.
 
-    `inputs` are bound to graph inputs by name; `targets` are node or graph outputs by the name they come back under
-    (default: every graph output). `size` replaces the size of canvas and pictures; `scale` renders a proxy.
+    `inputs` are bound to graph inputs by name, or what makes them for a frame; `targets` are node or graph outputs by
+    the name they come back under (default: every graph output). `size` replaces the size of canvas and pictures;
+    `scale` renders a proxy.
     """
 
-    inputs: Mapping[str, Binding] = field(default_factory=lambda: MappingProxyType({}))
+    inputs: Mapping[str, Binding | Callable[[int], Binding]] = field(default_factory=lambda: MappingProxyType({}))
     targets: Mapping[str, Port] = field(default_factory=lambda: MappingProxyType({}))
     size: Size | None = None
     scale: float = 1.0
     frame: int = 1
     precision: Precision | None = None
-    follows: bool = False
-    """True if this is the frame after the one rendered last: temporal nodes then have their history."""
+    memories: Mapping[str, Memory] = field(default_factory=lambda: MappingProxyType({}))
+    """What nodes remember of the frame before: see `Reel`."""
+
+    @property
+    def bound(self) -> dict[str, Binding]:
+        """What the inputs are at this frame."""
+        return {name: item(self.frame) if callable(item) else item for name, item in self.inputs.items()}
 
 
 class Renderer:
@@ -59,16 +67,27 @@ class Renderer:
 
     def compile(self, graph: Graph, wanted: Wanted = Wanted(), *, fusion: bool = True) -> Plan:
         """Plan the rendering of what is wanted of `graph`. Raises the errors of `app.errors`."""
-        bindings = self.pictures.bind(graph, wanted.inputs)
-        memories = self.runner.memories if wanted.follows else {}
-        request = Request(wanted.targets, bindings, wanted.size, wanted.scale, wanted.frame, memories)
+        bindings = self.pictures.bind(graph, wanted.bound)
+        request = Request(wanted.targets, bindings, wanted.size, wanted.scale, wanted.frame, wanted.memories)
         return compile_graph(
             graph, request, self.pictures, target=self.device.target, precision=wanted.precision,
             library=self.library, fusion=fusion and self._fusion,
         )
 
+    def frames(self, graph: Graph, wanted: Wanted = Wanted()) -> tuple[int, int]:
+        """The first and last frame of a graph: as it says, else those of the first sequence it reads, else of keys."""
+        if graph.settings.frames is not None:
+            return graph.settings.frames
+        for path in named_files(graph, self.pictures.bind(graph, wanted.bound)):
+            if (found := media.find_sequence(path)) and found.frames:
+                return found.frames[0], found.frames[-1]
+        return 1, max([1, *(math.ceil(frame) for frame in keyed_frames(graph))])
+
     def render(self, graph: Graph, wanted: Wanted = Wanted()) -> dict[str, Array]:
-        """Every wanted output by name as [height, width, channels], scene-linear. Raises the errors of `app.errors`."""
+        """Every wanted output by name as [height, width, channels], scene-linear. Raises the errors of `app.errors`.
+
+        One frame alone: nodes with a memory have none. See `Reel`.
+        """
         return self.runner.run(self.compile(graph, wanted))
 
     def close(self) -> None:

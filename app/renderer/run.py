@@ -18,24 +18,24 @@ Decode = Callable[[Iterable[tuple[Upload, str]]], Decoding]
 
 
 class Run:
-    """Executes a plan, one pass per `next`; when it ends, `kept` leases the textures of the plan's outputs.
+    """Executes a plan, one pass per `next`; when it ends, `kept` leases the textures of the surfaces `wanted`.
 
     What others have computed already is not computed again. Several runs may be under way at once, step by step. A
     run that is dropped must be closed.
     """
 
     def __init__(
-        self, executor: Executor, plan: Plan, kept: Lease, decode: Decode, remember: Callable[[Plan], None],
+        self, executor: Executor, plan: Plan, kept: Lease, decode: Decode, wanted: Iterable[int],
         timings: Timings | None,
     ) -> None:
         self.plan = plan
-        self._executor, self._kept, self._remember, self._timings = executor, kept, remember, timings
+        self._executor, self._kept, self._timings = executor, kept, timings
         textures = executor.textures
-        self._wanted = tuple(dict.fromkeys(plan.outputs.values()))
-        self._needed = _needed(plan, textures)
+        self._wanted = tuple(dict.fromkeys(wanted))
+        self._needed = needed_passes(plan, self._wanted, textures)
         executor.counters.skipped += len(plan.passes) - len(self._needed)
         self._readers = _count_readers(plan, self._needed, self._wanted)
-        self._decoding = decode(_uploads(plan, self._needed, self._wanted, textures))
+        self._decoding = decode(needed_uploads(plan, self._needed, self._wanted, textures))
         self._lease = Lease(textures)
         for key in self._readers:
             if key in textures:
@@ -116,7 +116,6 @@ class Run:
         self._upload(self._wanted)
         for number in self._wanted:
             self._kept.take(self.plan.surfaces[number].key)
-        self._remember(self.plan)
 
     def _is_here(self, number: int) -> bool:
         return number not in self._decoding or self.plan.surfaces[number].key in self._executor.textures
@@ -137,12 +136,11 @@ class Run:
                 raise
 
 
-def _needed(plan: Plan, textures: Textures) -> list[int]:
-    """The passes that must run because nobody has their pixels, in order."""
+def needed_passes(plan: Plan, wanted: Iterable[int], textures: Textures) -> list[int]:
+    """The passes that must run, for the surfaces `wanted`, because nobody has their pixels; in order."""
     makers = {number: index for index, one in enumerate(plan.passes) for number in one.targets}
-    remembered = {memory.key for memory in plan.memories.values()}
     passes: set[int] = set()
-    todo = [*plan.outputs.values(), *(number for number, item in enumerate(plan.surfaces) if item.key in remembered)]
+    todo = list(wanted)
     while todo:
         number = todo.pop()
         index = makers.get(number)
@@ -162,7 +160,9 @@ def _count_readers(plan: Plan, needed: list[int], wanted: tuple[int, ...]) -> di
     return found
 
 
-def _uploads(plan: Plan, needed: list[int], wanted: tuple[int, ...], textures: Textures) -> list[tuple[Upload, str]]:
+def needed_uploads(
+    plan: Plan, needed: list[int], wanted: tuple[int, ...], textures: Textures
+) -> list[tuple[Upload, str]]:
     """What must be decoded, in the order in which passes want it, with the keys of the pixels."""
     reads = dict.fromkeys((*(number for index in needed for number in plan.passes[index].textures), *wanted))
     uploads = {upload.surface: (upload, plan.surfaces[upload.surface].key) for upload in plan.uploads}

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
 
-from ..compiler import Memory, Plan, Upload
+from ..compiler import Plan, Upload
 from ..errors import UsageError
-from .decoding import Array, Decoding, Loader
+from .decoding import AHEAD, Array, Decoding, Loader
 from .device import Device
 from .executor import Executor
-from .run import Run, Timings
+from .run import Run, Timings, needed_passes, needed_uploads
 from .textures import Lease, Texture
 
 
@@ -22,9 +22,6 @@ class Runner:
         self._executor = Executor(device, budget)
         self.programs, self.textures = self._executor.programs, self._executor.textures
         self.counters = self._executor.counters
-        self._history = self.lease()
-        self.memories: Mapping[str, Memory] = {}
-        """What temporal nodes remember of the last plan that ran to its end."""
         self._begun: dict[str, Future[Array]] = {}
         self._threads = ThreadPoolExecutor(max_workers=2, thread_name_prefix="decode")
 
@@ -39,15 +36,27 @@ class Runner:
         finally:
             kept.close()
 
-    def steps(self, plan: Plan, kept: Lease, *, timings: Timings | None = None) -> Run:
-        """Run one pass per step, so that a caller can stop in between; `kept` leases the outputs at the end.
+    def steps(
+        self, plan: Plan, kept: Lease, wanted: Iterable[int] | None = None, *, timings: Timings | None = None
+    ) -> Run:
+        """Run one pass per step, so that a caller can stop in between.
 
-        With `timings`, every pass is waited for and what it took is added to them.
+        At the end `kept` leases the surfaces `wanted`, by default the outputs. With `timings`, every pass is waited for
+        and what it took is added to them.
         """
         if self._executor.closed:
             raise UsageError("this renderer is closed: make another one")
+        surfaces = plan.outputs.values() if wanted is None else wanted
         with self.device.current():
-            return Run(self._executor, plan, kept, self._decode, self._remember, timings)
+            return Run(self._executor, plan, kept, self._decode, surfaces, timings)
+
+    def prepare(self, plan: Plan, wanted: Iterable[int] | None = None) -> None:
+        """Begin to decode what a plan will want soon."""
+        surfaces = tuple(plan.outputs.values() if wanted is None else wanted)
+        passes = needed_passes(plan, surfaces, self.textures)
+        for upload, key in needed_uploads(plan, passes, surfaces, self.textures)[:AHEAD]:
+            if key not in self._begun:
+                self._begun[key] = self._threads.submit(self._load, upload.picture)
 
     def download(self, plan: Plan) -> dict[str, Array]:
         """The outputs of a plan that has run, while they are leased, as [height, width, channels]."""
@@ -72,11 +81,3 @@ class Runner:
 
     def _decode(self, uploads: Iterable[tuple[Upload, str]]) -> Decoding:
         return Decoding(self._threads, self._load, uploads, self._begun)
-
-    def _remember(self, plan: Plan) -> None:
-        """Keep what the next frame will want, and let go of what this one wanted."""
-        before, self._history = self._history, self.lease()
-        for memory in plan.memories.values():
-            self._history.take(memory.key)
-        self.memories = plan.memories
-        before.close()

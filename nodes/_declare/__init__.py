@@ -10,18 +10,20 @@
   `default` may stay unlinked. `Output(...)` declares outputs; without any there is one Image, `out`.
 - *Values* are annotated attributes with a default. Numbers carry a `Slider`, choices are `Literal`s.
 - `Pointwise` is one GLSL function of its own pixel; its numbers, colors and vectors can be wired too.
-- `Filter` records draws symbolically in `passes`, `Source` reads files there, `Temporal` also keeps history.
+- `Filter` records draws symbolically in `passes`, `Source` makes pixels, `Reader` of files, `Temporal`
+  keeps history.
 
 Values reach `passes` and GLSL in working units (see `Slider.unit`), so no node converts any itself.
 """
 
 from __future__ import annotations
 
-from .camera import Camera, look_at
+from .camera import Camera, look_at, orbit_camera
 from .curves import MAX_POINTS, curve_at, curve_knots, ramp_at, ramp_knots
 from .draw import Affine, Argument, Draw, Drawn, Kernel, Pixels
 from .lights import LIGHT_NUMBERS, MAX_LIGHTS, Light, LightKind, lights_of, numbers_of
-from .node import Filter, Node, Pointwise, Source, Temporal
+from .mattes import float_bits, listed, matte_of, murmur3, picked, picked_names, toggled
+from .node import Filter, Node, Pointwise, Reader, Source, Temporal
 from .recolor import ColorChange, LookupFile, SpaceChange
 from .render import Matte, Meaning, Render
 from .scene import BuiltInScene, Motion, Scene, SceneFile, StageName
@@ -38,10 +40,14 @@ from .values import (
     Kernel3x3,
     LightList,
     Lights,
+    Missing,
+    OfLayer,
+    Picks,
     Plain,
     Points,
     Position,
     Ramp,
+    RenderPath,
     ScenePath,
     Slider,
     Stops,
@@ -56,9 +62,10 @@ __all__ = [
     "LIGHT_NUMBERS", "MAX_LIGHTS", "MAX_POINTS", "RGBA", "Affine", "Argument", "BuiltInScene", "Camera", "Color",
     "ColorChange", "Curve", "Doc", "Draw", "Drawn", "Edge", "Field", "File", "FilePath", "Filter", "Fraction",
     "Handle", "Holds", "Image", "Kernel", "Kernel3x3", "Kind", "Light", "LightKind", "LightList", "Lights",
-    "LookupFile", "Matte", "Meaning", "Motion", "Node", "Number", "Output", "Pixels", "Plain", "Points", "Pointwise",
-    "Position", "Ramp", "Render", "Scene", "SceneFile", "ScenePath", "Size", "Slider", "Socket", "Source",
-    "SpaceChange", "StageName", "Stops", "Swatch", "TablePath", "Temporal", "Unit", "Value", "Vector", "Viewpoint",
-    "curve_at", "curve_knots", "glsl_type", "lights_of", "look_at", "numbers_of", "ramp_at", "ramp_knots",
-    "working_factor",
+    "LookupFile", "Matte", "Meaning", "Missing", "Motion", "Node", "Number", "OfLayer", "Output", "Picks", "Pixels",
+    "Plain", "Points", "Pointwise", "Position", "Ramp", "Reader", "Render", "RenderPath", "Scene", "SceneFile",
+    "ScenePath", "Size", "Slider", "Socket", "Source", "SpaceChange", "StageName", "Stops", "Swatch", "TablePath",
+    "Temporal", "Unit", "Value", "Vector", "Viewpoint", "curve_at", "curve_knots", "float_bits", "glsl_type",
+    "lights_of", "listed", "look_at", "matte_of", "murmur3", "numbers_of", "orbit_camera", "picked", "picked_names",
+    "ramp_at", "ramp_knots", "toggled", "working_factor",
 ]

@@ -90,6 +90,18 @@ def look_at(eye: Vector3, target: Vector3, focal: tuple[float, float], up: Vecto
     return Camera((*rows, *forward, -_dot(forward, eye)))
 
 
+def orbit_camera(
+    target: Vector3, distance: float, azimuth: float, elevation: float, focal: tuple[float, float]
+) -> Camera:
+    """A camera so far from its target. Angles are radians; where both are 0 it is level and looks along y."""
+    away = (
+        math.sin(azimuth) * math.cos(elevation) * distance, -math.cos(azimuth) * math.cos(elevation) * distance,
+        math.sin(elevation) * distance,
+    )
+    x, y, z = (place + part for place, part in zip(target, away, strict=True))
+    return look_at((x, y, z), target, focal)
+
+
 def _in_fours(rows: tuple[float, ...]) -> tuple[tuple[float, ...], ...]:
     return rows[0:4], rows[4:8], rows[8:12]
 

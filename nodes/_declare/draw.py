@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Literal, Protocol
 
 from .camera import Camera
@@ -54,8 +55,12 @@ class Draw(Protocol):
         """True if something is linked to this input of the node."""
         ...
 
-    def camera(self, socket: Viewpoint) -> Camera | None:
-        """The camera that is linked to this input of the node, if any is."""
+    def camera(self, socket: Viewpoint, frame: int | None = None) -> Camera | None:
+        """The camera that is linked to this input of the node, if any is; at another of the node's `times`."""
+        ...
+
+    def at(self, socket: Socket, frame: int) -> Drawn:
+        """An input at another frame, one of the node's `times`."""
         ...
 
     def __call__(
@@ -139,8 +144,11 @@ class Draw(Protocol):
         """Numbers as a picture of four channels, `width` pixels to a row, for functions that read them anywhere."""
         ...
 
-    def render(self, path: str) -> Render:
-        """What the file of a render turns out to hold. For `Source` nodes."""
+    def render(self, path: str, named: Mapping[str, str] = MappingProxyType({})) -> Render:
+        """What the file of a render turns out to hold; `named` are layers by the roles that they are to have.
+
+        For `Source` nodes.
+        """
         ...
 
     def read(self, path: str, layer: str, result: Socket) -> Drawn:

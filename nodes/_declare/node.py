@@ -5,12 +5,12 @@ from __future__ import annotations
 import dataclasses
 import re
 from collections.abc import Mapping
-from typing import Any, ClassVar, Self, dataclass_transform, get_type_hints
+from typing import Annotated, Any, ClassVar, Self, dataclass_transform, get_type_hints
 
 from .camera import Camera
 from .draw import Draw, Drawn
 from .sockets import Output, Size, Socket
-from .values import Value, read_value, working_factor
+from .values import Doc, Missing, Value, read_value, working_factor
 
 
 def _fields(cls: Any) -> tuple[dataclasses.Field[Any], ...]:
@@ -45,7 +45,8 @@ class Node:
         cls.outputs = outputs
         hints = get_type_hints(cls, include_extras=True)
         cls.values = {
-            field.name: read_value(field.name, hints[field.name], field.default) for field in _fields(cls)
+            field.name: read_value(field.name, hints[field.name], field.default)
+            for field in sorted(_fields(cls), key=lambda field: field.name not in body)
         }
         cls.order = tuple(name for name in body if name in cls.inputs or name in cls.values)
 
@@ -56,6 +57,13 @@ class Node:
     def output_size(self, inputs: Mapping[str, Size], canvas: Size) -> Size:
         """The size of the outputs: the first linked input's, else the graph's canvas."""
         return next(iter(inputs.values()), canvas)
+
+    def times(self, frame: int) -> Mapping[str, tuple[int, ...]]:
+        """The frames of an input that this frame is made of, by input; one that is not named is seen at `frame` alone.
+
+        For filters, which get at them by `draw.at`.
+        """
+        return {}
 
     @classmethod
     def upgrade(cls, version: int, values: dict[str, Any]) -> dict[str, Any]:
@@ -97,8 +105,19 @@ class Source(Filter):
     """Makes pixels from outside the graph."""
 
 
+class Reader(Source):
+    """A source that reads image files. In their names `####`, `%04d` or `$F4` stands for the frame.
+
+    A folder is the sequence in it.
+    """
+
+    missing: Annotated[Missing, Doc(
+        "What a frame shows that has no file: an error, the last one before, the nearest one, or black."
+    )] = "error"
+
+
 class Temporal(Filter):
     """A filter that owns history: `draw.history` gives what `draw.remember` kept of the frame before.
 
-    History belongs to a rendering, not to the graph: it is never saved, and a frame that follows no other has none.
+    The first frame of the graph's range has none, nor has any before it.
     """

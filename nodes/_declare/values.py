@@ -43,8 +43,11 @@ class Doc:
     text: str
 
 
-Holds = Literal["picture", "table", "scene"]
-"""What is in a file: pixels, a table of colors (.cube, .3dl, ...), or meshes (.glb, .obj, ...)."""
+Missing = Literal["error", "hold", "nearest", "black"]
+"""What a frame of a sequence shows that has no file."""
+
+Holds = Literal["picture", "render", "table", "scene"]
+"""What is in a file: pixels, layers of a render, a table of colors (.cube, .3dl, ...), or meshes (.glb, .obj, ...)."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,25 @@ class File:
 
     layer: str = ""
     holds: Holds = "picture"
+
+
+@dataclass(frozen=True)
+class OfLayer:
+    """The value is about the layer of a render that has a role, "depth" say: a text names it, a choice what it holds.
+
+    `path` is the value with the render's file.
+    """
+
+    role: str
+    path: str = "path"
+
+
+@dataclass(frozen=True)
+class Picks:
+    """The value is a list of names of a cryptomatte, as `picked` reads it; `layer` is the value that says of which."""
+
+    layer: str
+    path: str = "path"
 
 
 @dataclass(frozen=True)
@@ -92,6 +114,7 @@ Fraction = Annotated[float, Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=
 RGBA = Annotated[tuple[float, float, float, float], Swatch()]
 Position = Annotated[tuple[float, float], Handle()]
 FilePath = Annotated[str, File()]
+RenderPath = Annotated[str, File(holds="render")]
 TablePath = Annotated[str, File(holds="table")]
 ScenePath = Annotated[str, File(holds="scene")]
 Points = Annotated[tuple[float, ...], Curve()]
@@ -128,6 +151,12 @@ class Value:
     """What a file is expected to be."""
     handle: bool = False
     """True for a position that is dragged in the viewer."""
+    file: str = ""
+    """The value with the path of the render that it is about."""
+    role: str = ""
+    """What the layer is that it is about."""
+    matte: str = ""
+    """The value that says of which cryptomatte it lists names."""
 
     @property
     def glsl(self) -> str | None:
@@ -138,6 +167,11 @@ class Value:
             return glsl_type(self.length)
         fixed = {"choice": "int", "matrix": "mat3", "curve": f"vec4[{MAX_POINTS}]", "ramp": f"vec4[{2 * MAX_POINTS}]"}
         return fixed.get(self.type)
+
+    @property
+    def pixels(self) -> bool:
+        """True for the path of a file with pictures."""
+        return self.type == "path" and self.holds in ("picture", "render")
 
     @property
     def wireable(self) -> bool:
@@ -169,6 +203,10 @@ def read_value(name: str, hint: Any, default: Any) -> Value:
             found["type"] = "color"
         elif isinstance(note, File):
             found |= {"type": "path", "layer_by": note.layer, "holds": note.holds}
+        elif isinstance(note, OfLayer):
+            found |= {"file": note.path, "role": note.role}
+        elif isinstance(note, Picks):
+            found |= {"file": note.path, "matte": note.layer}
         elif isinstance(note, Handle):
             found |= {"handle": True, "low": 0.0, "high": 1.0}
         elif isinstance(note, Curve):

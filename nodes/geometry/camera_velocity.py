@@ -1,3 +1,5 @@
+from collections.abc import Mapping
+
 from .._declare import Camera, Draw, Drawn, Field, Filter, Output, Vector, Viewpoint
 
 
@@ -6,18 +8,24 @@ class CameraVelocity(Filter):
 
     What stands still is placed in the world and seen by the other camera, as in TU Wien's "Screenspace Effects". What
     has no depth is sky: only turning moves it. In pixels of the full-size picture, x to the right and y down: x and y
-    are now minus the frame before, z and w the frame after minus now; without a camera after, as if it went on evenly.
+    are now minus the frame before, z and w the frame after minus now.
     """
 
     depth = Field(doc="Planar distance along the way the camera looks.")
     camera = Viewpoint(doc="The camera now.")
-    before = Viewpoint(doc="The camera of the frame before.")
-    after = Viewpoint(0.0, doc="The camera of the frame after.")
+    before = Viewpoint(0.0, doc="The camera of the frame before; without a link, `camera` as it was then.")
+    after = Viewpoint(0.0, doc="The camera of the frame after; if only this lacks a link, it goes on evenly.")
 
     velocity = Output(Vector(width=4))
 
+    def times(self, frame: int) -> Mapping[str, tuple[int, ...]]:
+        return {"camera": (frame, frame - 1, frame + 1)}
+
     def passes(self, draw: Draw) -> Drawn:
         now, before, after = (draw.camera(one) for one in (self.camera, self.before, self.after))
+        if before is None:
+            before = draw.camera(self.camera, draw.frame - 1)
+            after = after or draw.camera(self.camera, draw.frame + 1)
         stay = (0.0,) * 12
         return draw.point(
             "camera_velocity", self.depth, result=Vector(width=4),

@@ -1,10 +1,10 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Field, File, Output, Source, Vector
+from .._declare import Doc, Draw, Drawn, Field, File, Output, Reader, Vector
 
 
-class ReadImage(Source):
+class ReadImage(Reader):
     """Read one layer of an image file.
 
     `out` is the layer as color, `field` its first channel as data (depth, a mask), `vector` its first three channels

@@ -7,12 +7,13 @@ from .._declare import (
     Draw,
     Drawn,
     Field,
-    FilePath,
     Image,
     Meaning,
+    OfLayer,
     Output,
+    Reader,
     Render,
-    Source,
+    RenderPath,
     Vector,
     Viewpoint,
 )
@@ -23,9 +24,10 @@ _PLAIN = {
     "object_id": "object_id", "material_id": "material_id", "uv": "uv",
 }
 """Outputs that show a layer as it is, and its role."""
+_FOUND = "empty for the one that was found"
 
 
-class ReadRender(Source):
+class ReadRender(Reader):
     """Read a render: every layer finds its output by itself, whatever the renderer calls it.
 
     Names are those of Blender, Arnold, V-Ray, Karma, RenderMan, Redshift, Nuke and others, in files of one part or
@@ -34,23 +36,32 @@ class ReadRender(Source):
     is solved from positions, or named by the header. Where a guess is wrong, name the layer or the convention.
     """
 
-    path: Annotated[FilePath, Doc("The render, relative to the graph's folder.")] = ""
+    path: Annotated[RenderPath, Doc("The render, relative to the graph's folder.")] = ""
+    color_layer: Annotated[str, OfLayer("beauty"), Doc(f"The layer of the picture; {_FOUND}.")] = ""
+    albedo_layer: Annotated[str, OfLayer("albedo"), Doc(f"The layer of the surfaces' own color; {_FOUND}.")] = ""
+    emission_layer: Annotated[str, OfLayer("emission"), Doc(f"The layer of light that surfaces give; {_FOUND}.")] = ""
+    depth_layer: Annotated[str, OfLayer("depth"), Doc(f"The layer of depth; {_FOUND}.")] = ""
     depth_is: Annotated[
-        Literal["found", "planar", "radial", "inverse", "negative"], Doc("What the depth layer holds.")
+        Literal["found", "planar", "radial", "inverse", "negative"], OfLayer("depth"),
+        Doc("What the depth layer holds."),
     ] = "found"
+    normal_layer: Annotated[str, OfLayer("normal"), Doc(f"The layer of normals; {_FOUND}.")] = ""
     normal_is: Annotated[
-        Literal["found", "world", "camera"], Doc("Whose axes normals refer to: x right, y up, z towards the viewer.")
+        Literal["found", "world", "camera"], OfLayer("normal"),
+        Doc("Whose axes normals refer to: x right, y up, z towards the viewer."),
     ] = "found"
+    position_layer: Annotated[
+        str, OfLayer("position"), Doc(f"The layer of places in the world, which the camera is solved from; {_FOUND}.")
+    ] = ""
+    velocity_layer: Annotated[str, OfLayer("velocity"), Doc(f"The layer of motion; {_FOUND}.")] = ""
     velocity_is: Annotated[
-        Literal["found", "from previous", "to next", "to previous", "from next"],
+        Literal["found", "from previous", "to next", "to previous", "from next"], OfLayer("velocity"),
         Doc("Which way the first two channels of the motion layer point, in pixels, y down."),
     ] = "found"
-    color_layer: Annotated[str, Doc("The layer of the picture; empty for the one that was found.")] = ""
-    depth_layer: str = ""
-    normal_layer: str = ""
-    position_layer: str = ""
-    velocity_layer: str = ""
-    albedo_layer: str = ""
+    occlusion_layer: Annotated[str, OfLayer("occlusion"), Doc(f"The layer of ambient occlusion; {_FOUND}.")] = ""
+    object_id_layer: Annotated[str, OfLayer("object_id"), Doc(f"The layer of object numbers; {_FOUND}.")] = ""
+    material_id_layer: Annotated[str, OfLayer("material_id"), Doc(f"The layer of material numbers; {_FOUND}.")] = ""
+    uv_layer: Annotated[str, OfLayer("uv"), Doc(f"The layer of texture coordinates; {_FOUND}.")] = ""
 
     color = Output(Image())
     albedo = Output(Image())
@@ -66,20 +77,23 @@ class ReadRender(Source):
     camera = Output(Viewpoint())
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn | Camera]:
-        render = draw.render(self.path)
+        render = draw.render(self.path, self._named())
         found: dict[str, Drawn | Camera] = {}
         for name, role in _PLAIN.items():
-            layer = getattr(self, f"{name}_layer", "") or render.layers.get(role)
-            if layer is not None:
+            if (layer := render.layers.get(role)) is not None:
                 found[name] = draw.read(self.path, layer, self.outputs[name].socket)
         if render.camera:
             found["camera"] = render.camera
         for name, made in (("depth", self._depth), ("normal", self._normal), ("velocity", self._velocity)):
-            layer = getattr(self, f"{name}_layer") or render.layers.get(name)
-            if layer is not None:
+            if (layer := render.layers.get(name)) is not None:
                 drawn = draw.read(self.path, layer, self.outputs[name].socket)
                 found[name] = made(draw, render, drawn, render.meanings.get(name, Meaning("")))
         return found
+
+    def _named(self) -> dict[str, str]:
+        """The layers that somebody chose, by role."""
+        chosen = {value.role: str(getattr(self, value.name)) for value in self.values.values() if value.type == "text"}
+        return {role: layer for role, layer in chosen.items() if layer}
 
     def _depth(self, draw: Draw, render: Render, stored: Drawn, meaning: Meaning) -> Drawn:
         if self.depth_is != "found":

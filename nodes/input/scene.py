@@ -18,7 +18,7 @@ from .._declare import (
     Source,
     Vector,
     Viewpoint,
-    look_at,
+    orbit_camera,
 )
 
 _NEAR = 0.01
@@ -98,14 +98,8 @@ class Scene(Source):
         }
 
     def _camera(self, frame: int, aspect: float) -> Camera:
-        turn, tilt = self.azimuth + self.orbit * (frame - 1), self.elevation
-        away = (
-            math.sin(turn) * math.cos(tilt) * self.distance, -math.cos(turn) * math.cos(tilt) * self.distance,
-            math.sin(tilt) * self.distance,
-        )
-        x, y, z = (place + part for place, part in zip(self.target, away, strict=True))
-        across = self.focal / 36.0
-        return look_at((x, y, z), self.target, (across, across * aspect))
+        across, turn = self.focal / 36.0, self.azimuth + self.orbit * (frame - 1)
+        return orbit_camera(self.target, self.distance, turn, self.elevation, (across, across * aspect))
 
     def _motion(self, frame: int) -> Motion:
         frames = frame - 1

@@ -1,17 +1,17 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import Camera, Doc, Draw, FilePath, Output, Source, Viewpoint
+from .._declare import Camera, Doc, Draw, Output, Reader, RenderPath, Viewpoint
 
 
-class SolveCamera(Source):
+class SolveCamera(Reader):
     """Find the camera that a render was made with: solved from its positions, or as its header names it.
 
     The projection is fitted to the position of every pixel by linear least squares, in double precision; `halation info
     FILE` says how many pixels it is off.
     """
 
-    path: Annotated[FilePath, Doc("A render with a position layer, or with a camera in its header.")] = ""
+    path: Annotated[RenderPath, Doc("A render with a position layer, or with a camera in its header.")] = ""
 
     camera = Output(Viewpoint())
 

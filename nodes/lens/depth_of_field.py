@@ -92,7 +92,8 @@ class DepthOfField(Filter):
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         largest = self.max_blur / 2.0
         radius = self._radius(draw, largest)
-        image = draw("depth_of_field_clean", self.image, radius=radius, edge="reflect")
+        kept = draw("depth_of_field_stays", self.image, radius=radius, edge="reflect")
+        image = draw("depth_of_field_clean", self.image, radius=radius, kept=kept, edge="reflect")
         finest = min(_FINEST[self.quality], largest)
         levels = max(math.ceil(math.log2(largest / finest)), 0) if finest else 0
         tile = math.ceil(finest) + 1
@@ -105,7 +106,7 @@ class DepthOfField(Filter):
         bokeh = self._bokeh(draw, finest, stretch)
         if not levels:
             out = draw(
-                "depth_of_field_alone", image=image, radius=radius, reach=reach, **bokeh
+                "depth_of_field_alone", image=image, kept=kept, radius=radius, reach=reach, **bokeh
             )
         else:
             # Averaging and interpolating spreads light along both axes, and makes smaller discs rounder.
@@ -118,7 +119,7 @@ class DepthOfField(Filter):
             far, filled = self._layers(draw, image, radius, smaller, levels, finest, 1.0)
             rest = self._rest(draw, image, radius, levels, finest)
             out = draw(
-                "depth_of_field", image=image, radius=radius, reach=reach, near=near, hidden=hidden,
+                "depth_of_field", image=image, kept=kept, radius=radius, reach=reach, near=near, hidden=hidden,
                 far=far, filled=filled, rest=rest, **bokeh, coarsest=2.0**levels,
             )
         return {"out": out, "coc": draw.point("depth_of_field_coc", result=Field(), radius=radius)}

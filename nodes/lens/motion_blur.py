@@ -49,9 +49,12 @@ class MotionBlur(Filter):
         tile = max(math.ceil(reach), 1) + 1
         width, height = draw.size
         across, down = math.ceil(width / tile), math.ceil(height / tile)
+        layer = draw("motion_blur_layer", self.velocity, self.depth, result=Vector(width=2))
         velocity: Pixels = self.velocity
+        fronts: Pixels = self.image
         if draw.linked(self.depth):
-            velocity = draw("motion_blur_clean", self.velocity, self.depth, result=vector)
+            velocity = draw("motion_blur_clean", self.velocity, self.depth, layer=layer, result=vector)
+            fronts = draw("motion_blur_front", self.image, layer=layer)
         paths = draw.point(
             "motion_blur_path", velocity=velocity, result=vector, path=self.path, times=times, longest=self.max_length,
             reach=reach,
@@ -63,7 +66,14 @@ class MotionBlur(Filter):
             "motion_blur_fastest", paths=rows, size=(across, down), result=vector, axis=1, count=tile, times=times
         )
         around = draw("motion_blur_around", tiles=tiles, size=(across, down), result=vector, times=times)
+        spread = draw(
+            "motion_blur_spread", paths=paths, tiles=tiles, size=(across, down), result=Field(), tile=tile, times=times
+        )
+        variety = draw(
+            "motion_blur_variety", tiles=tiles, around=around, spread=spread, size=(across, down), result=Field(),
+            times=times,
+        )
         return draw(
-            "motion_blur", self.image, self.depth, paths=paths, around=around, times=times, tile=tile,
-            samples=self.samples,
+            "motion_blur", self.image, fronts=fronts, layer=layer, paths=paths, around=around, variety=variety, times=times,
+            tile=tile, samples=self.samples,
         )

@@ -29,29 +29,50 @@ ivec2 depth_of_field_fold(ivec2 at, ivec2 size) {
 
 float depth_of_field_coc(float radius) { return 2.0 * radius / proxy; }
 
-// Antialiased edges before what is farther carry light of both. If the nearer one is blurred, they would stay as a line
-// around it: they take after the pixels of their own surface that lie further in.
-vec4 depth_of_field_clean() {
+// Antialiased edges before what is farther carry light of both. `own` is that of the pixel's own surface further in, from
+// so many pixels, and `sharp` that of what is in focus beside it, before it. True at the edge of what is blurred.
+bool depth_of_field_edge(out vec4 own, out float owns, out vec4 sharp, out float sharps) {
     float radii[25], here = radius_at(pixel);
     for (int i = 0; i < 25; ++i) radii[i] = radius_at(pixel + ivec2(i % 5, i / 5) - 2);
-    vec4 sum = vec4(0.0);
-    float count = 0.0;
-    bool edge = false;
+    own = sharp = vec4(0.0), owns = sharps = 0.0;
+    bool blurred = false;
     for (int i = 0; i < 9; ++i) {
         int at = 5 * (i / 3) + i % 3 + 6;
+        vec4 light = finite(image_at(pixel + ivec2(i % 3, i / 3) - 1));
         bool inside = abs(radii[at] - here) < 1.0;
+        if (here - radii[at] >= 1.0 && abs(radii[at]) < 1.0) sharp += light, sharps += 1.0;
         for (int side = 0; side < 4; ++side) {
             float other = radii[at + int[4](-5, -1, 1, 5)[side]];
             bool before = here - other >= 1.0;
-            edge = edge || i == 4 && before && abs(other) >= 1.0;
+            blurred = blurred || i == 4 && before && abs(other) >= 1.0;
             inside = inside && !before;
         }
-        if (!inside) continue;
-        sum += image_at(pixel + ivec2(i % 3, i / 3) - 1);
-        count += 1.0;
+        if (inside) own += light, owns += 1.0;
     }
-    return edge && count > 0.0 ? sum / count : image_at(pixel);
+    own /= max(owns, 1.0), sharp /= max(sharps, 1.0);
+    return blurred && owns > 0.0;
 }
+
+// At the edge of what is sharp, its part of the pixel's light must not spread with the rest: it stays where it is.
+vec4 depth_of_field_stays() {
+    vec4 own, sharp;
+    float owns, sharps;
+    if (depth_of_field_edge(own, owns, sharp, sharps) || owns == 0.0 || sharps == 0.0) return vec4(0.0);
+    vec4 change = sharp - own;
+    float size = dot(change, change);
+    return size > 0.0 ? change * clamp(dot(finite(image_at(pixel)) - own, change) / size, 0.0, 1.0) : vec4(0.0);
+}
+
+// What spreads. Edges of what is blurred would stay as a line around it: they take after their own surface.
+vec4 depth_of_field_clean() {
+    vec4 own, sharp;
+    float owns, sharps;
+    bool blurred = depth_of_field_edge(own, owns, sharp, sharps);
+    return blurred ? own : image_at(pixel) - kept_at(pixel);
+}
+
+// With what stayed. It does not make light negative.
+vec4 depth_of_field_with(vec4 seen, vec4 kept) { return max(seen + kept, min(seen, 0.0)); }
 
 // --- levels: how a disc belongs to the size that it is made at ---
 
@@ -323,7 +344,7 @@ void depth_of_field_gathered(
 // Everything at full size.
 vec4 depth_of_field_alone(int tile, float finest, int aperture, vec3 lens, vec2 stretch) {
     float reach = reach_at(pixel / tile);
-    if (reach <= depth_of_field_least) return image_at(pixel);
+    if (reach <= depth_of_field_least) return image_at(pixel) + kept_at(pixel);
     vec4 front, same, behind;
     vec3 weights, shares;
     depth_of_field_gathered(
@@ -332,6 +353,7 @@ vec4 depth_of_field_alone(int tile, float finest, int aperture, vec3 lens, vec2 
     vec4 seen = shares.x * same / weights.y;
     if (shares.y > 0.0) seen = (seen + behind * (shares.y / weights.z)) / (shares.x + shares.y);
     else seen /= shares.x;
+    seen = depth_of_field_with(seen, kept_at(pixel));
     return weights.x > 0.0 ? mix(seen, front / weights.x, min(weights.x, 1.0)) : seen;
 }
 
@@ -339,7 +361,7 @@ vec4 depth_of_field(int tile, float finest, int aperture, vec3 lens, vec2 stretc
     vec2 middle = vec2(pixel) + 0.5, at = middle / 2.0;
     float reach = reach_at(pixel / tile), here = radius_at(pixel), hides = hidden_near(at);
     float layered = depth_of_field_rise(here, finest);
-    if (reach <= depth_of_field_least && hides == 0.0 && layered == 0.0) return image_at(pixel);
+    if (reach <= depth_of_field_least && hides == 0.0 && layered == 0.0) return image_at(pixel) + kept_at(pixel);
     vec4 front, same, behind, backdrop = far_near(at);
     vec3 weights, shares;
     depth_of_field_gathered(tile, finest, aperture, lens, stretch, reach, front, same, behind, weights, shares);
@@ -361,7 +383,7 @@ vec4 depth_of_field(int tile, float finest, int aperture, vec3 lens, vec2 stretc
         large = same + behind + backdrop + guessed * rest_near(middle / coarsest);
         large = total > 0.0 ? large / total : image_at(pixel);
     }
-    vec4 seen = mix(small, large, layered);
+    vec4 seen = depth_of_field_with(mix(small, large, layered), kept_at(pixel));
     if (weights.x > 0.0) seen = mix(seen, front / weights.x, min(weights.x, 1.0));
     return near_near(at) + (1.0 - hides) * seen;
 }

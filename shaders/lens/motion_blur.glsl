@@ -17,31 +17,116 @@ float motion_blur_length(vec4 path, vec2 times) {
     return length(motion_blur_place(path, times.x)) + length(motion_blur_place(path, times.y));
 }
 
-bool motion_blur_alike(float a, float b) { return motion_blur_apart * abs(a - b) < max(a, b) || a == b; }
+// --- antialiased edges ---
 
-// At antialiased edges velocities are averages of what is in front and what is behind, and nothing moves like that:
-// such pixels take after those of their own surface that lie one further in.
-vec4 motion_blur_clean() {
-    float near[25], here = nearness(depth_at(pixel));
-    for (int i = 0; i < 25; ++i) near[i] = nearness(depth_at(pixel + ivec2(i % 5, i / 5) - 2));
-    vec4 sum = vec4(0.0);
-    float count = 0.0;
-    bool edge = false;
-    for (int i = 0; i < 9; ++i) {
-        int at = 5 * (i / 3) + i % 3 + 6;
-        bool inside = motion_blur_alike(near[at], here);
-        for (int side = 0; side < 4; ++side) {
-            bool same = motion_blur_alike(near[at + int[4](-5, -1, 1, 5)[side]], here);
-            edge = edge || i == 4 && !same;
-            inside = inside && same;
-        }
-        vec4 velocity = velocity_at(pixel + ivec2(i % 3, i / 3) - 1);
-        if (!inside || !is_finite(velocity)) continue;
-        sum += velocity;
-        count += 1.0;
+// At an antialiased edge a pixel shows two surfaces. It counts as a piece of the nearer one: a layer is the nearness of
+// that, and how much of the pixel it covers, below 0 at edges. Everywhere else that is 1.
+
+// Where nearness jumps: on surfaces it grows evenly, beside an edge by far more than on the other side.
+bool motion_blur_edge(float here) {
+    const float steeper = 4.0;
+    float jump = 0.0;
+    for (int axis = 0; axis < 2; ++axis) {
+        ivec2 next = axis == 0 ? ivec2(1, 0) : ivec2(0, 1);
+        float before = abs(nearness(depth_at(pixel - next)) - here);
+        float after = abs(nearness(depth_at(pixel + next)) - here);
+        if (max(before, after) > steeper * min(before, after)) jump = max(jump, max(before, after));
     }
-    return edge && count > 0.0 ? sum / count : velocity_at(pixel);
+    return jump > 0.0 && motion_blur_apart * jump > here;
 }
+
+ivec2 motion_blur_beside(int i) { return ivec2(i % 5, i / 5) - 2; }
+
+// How much one of the 5 x 5 pixels around counts: the nearest are most like this one.
+float motion_blur_nearby(int i) {
+    ivec2 away = motion_blur_beside(i);
+    float square = float(away.x * away.x + away.y * away.y);
+    return 1.0 / max(square * square, 1.0);
+}
+
+// Which of 5 x 5 pixels lie well within the nearer and the farther surface of an edge, as bits. `bounds`: how near the two
+// are, and what is between them.
+uvec2 motion_blur_sides(out vec3 bounds) {
+    float near[25];
+    for (int i = 0; i < 25; ++i) near[i] = nearness(depth_at(pixel + motion_blur_beside(i)));
+    bounds = near[12].xxx;
+    for (int i = 0; i < 9; ++i) {
+        float other = near[5 * (i / 3) + i % 3 + 6];
+        bounds.xy = vec2(max(bounds.x, other), min(bounds.y, other));
+    }
+    bounds.z = 0.5 * (bounds.x + bounds.y);
+    uvec2 sides = uvec2(0u);
+    for (int i = 0; i < 25; ++i) {
+        bool front = near[i] > bounds.z, inside = i != 12;
+        if (i % 5 > 0) inside = inside && (near[i - 1] > bounds.z) == front;
+        if (i % 5 < 4) inside = inside && (near[i + 1] > bounds.z) == front;
+        if (i / 5 > 0) inside = inside && (near[i - 5] > bounds.z) == front;
+        if (i / 5 < 4) inside = inside && (near[i + 5] > bounds.z) == front;
+        if (inside) sides[front ? 0 : 1] |= 1u << i;
+    }
+    return sides;
+}
+
+// The mean velocity of some of them.
+vec4 motion_blur_motion(uint side) {
+    vec4 sum = vec4(0.0);
+    float total = 0.0;
+    for (int i = 0; i < 25; ++i) {
+        if ((side >> i & 1u) == 0u) continue;
+        vec4 velocity = velocity_at(pixel + motion_blur_beside(i));
+        if (!is_finite(velocity)) continue;
+        sum += motion_blur_nearby(i) * velocity;
+        total += motion_blur_nearby(i);
+    }
+    return total > 0.0 ? sum / total : velocity_at(pixel);
+}
+
+// Where renderers filter velocity as they do light, it tells how much the nearer surface covers: unlike colors, what moves
+// is much the same all over a surface.
+vec2 motion_blur_layer() {
+    const float slow = 0.5, hardly = 0.01;  // pixels that motions must differ by; covers that are none
+    float here = nearness(depth_at(pixel)), cover = 0.0;
+    if (!motion_blur_edge(here)) return vec2(here, 1.0);
+    vec3 bounds;
+    uvec2 sides = motion_blur_sides(bounds);
+    if (sides.x != 0u && sides.y != 0u) {
+        vec4 back = motion_blur_motion(sides.y), apart = motion_blur_motion(sides.x) - back;
+        float square = dot(apart, apart);
+        if (square > slow * slow) cover = dot(velocity_at(pixel) - back, apart) / square;
+    }
+    if (!(cover > hardly && cover < 1.0 - hardly)) return vec2(here, -1.0);
+    return vec2(here > bounds.z ? here : bounds.x, -cover);
+}
+
+// Velocities there are averages, and nothing moves like that: they are those of the same surface, one further in.
+vec4 motion_blur_clean() {
+    vec2 layer = layer_at(pixel);
+    if (layer.y > 0.0) return velocity_at(pixel);
+    vec3 bounds;
+    uvec2 sides = motion_blur_sides(bounds);
+    return motion_blur_motion(layer.x > bounds.z ? sides.x : sides.y);
+}
+
+// The light of the layer: that of the pixel without what is nearest behind it.
+vec4 motion_blur_front() {
+    vec4 light = finite(image_at(pixel)), back = vec4(0.0);
+    vec2 here = layer_at(pixel);
+    if (abs(here.y) == 1.0) return light;
+    float split = here.x, total = 0.0;
+    for (int i = 0; i < 9; ++i) split = min(split, layer_at(pixel + ivec2(i % 3, i / 3) - 1).x);
+    split = 0.5 * (split + here.x);
+    for (int i = 0; i < 25; ++i) {
+        ivec2 at = pixel + motion_blur_beside(i);
+        vec2 other = layer_at(at);
+        if (abs(other.y) < 1.0 || other.x > split) continue;
+        back += motion_blur_nearby(i) * finite(image_at(at));
+        total += motion_blur_nearby(i);
+    }
+    if (total > 0.0) back /= total;
+    return clamp(light - (1.0 + here.y) * back, vec4(0.0), max(light, 0.0));
+}
+
+// --- paths ---
 
 // The path of a pixel, shortened to `longest`, and so that nothing gets farther from its place than `reach`.
 vec4 motion_blur_path(vec4 velocity, int path, vec2 times, float longest, float reach) {
@@ -76,14 +161,36 @@ vec4 motion_blur_around(vec2 times) {
     return found;
 }
 
-// The part of its time that something spends on the stretch between two offsets of its path, which counts as straight
-// and evenly run through.
+// By how much paths of a tile differ from its longest, and those of its neighbors from the longest of all.
+float motion_blur_spread(int tile, vec2 times) {
+    vec4 longest = tiles_at(pixel);
+    float most = 0.0;
+    for (int y = 0; y < tile; ++y)
+        for (int x = 0; x < tile; ++x)
+            most = max(most, motion_blur_length(paths_at(tile * pixel + ivec2(x, y)) - longest, times));
+    return most;
+}
+
+float motion_blur_variety(vec2 times) {
+    vec4 longest = around_at(pixel);
+    float most = 0.0;
+    for (int i = 0; i < 9; ++i) {
+        ivec2 at = pixel + ivec2(i % 3, i / 3) - 1;
+        most = max(most, spread_at(at) + motion_blur_length(tiles_at(at) - longest, times));
+    }
+    return most;
+}
+
+// The part of its time that something spends on the stretch between two offsets, as far as its path leads there; it counts
+// as evenly run through.
 float motion_blur_share(vec4 path, vec2 times, vec2 from, vec2 to) {
     vec2 start = motion_blur_place(path, times.x), way = motion_blur_place(path, times.y) - start;
     float span = dot(way, way);
     if (span < motion_blur_still * motion_blur_still) return 0.0;
     vec2 passed = clamp(vec2(dot(from - start, way), dot(to - start, way)) / span, 0.0, 1.0);
-    return abs(passed.y - passed.x);
+    vec2 apart = 0.5 * (from + to) - motion_blur_place(path, mix(times.x, times.y, 0.5 * (passed.x + passed.y)));
+    float beside = abs(way.x * apart.y - way.y * apart.x) * inversesqrt(span);
+    return abs(passed.y - passed.x) * max(1.0 - beside, 0.0);
 }
 
 // How much of what lies at one nearness is in front of what lies at another; half, if they are equally deep.
@@ -92,9 +199,10 @@ float motion_blur_before(float other, float here) {
     return near > 0.0 ? clamp(0.5 + motion_blur_apart * (other - here) / near, 0.0, 1.0) : 0.5;
 }
 
-// How differently two things move: 0 for parts of one surface, 1 for what has nothing to do with each other.
-float motion_blur_unlike(vec4 a, vec4 b, vec2 times) {
-    return clamp(4.0 * motion_blur_length(a - b, times) / motion_blur_length(b, times) - 1.0, 0.0, 1.0);
+// How differently something moves than what has a path of a `length`, from how far their paths differ: 0 for parts of one
+// surface, 1 for what has nothing to do with each other.
+float motion_blur_unlike(float apart, float length) {
+    return clamp(4.0 * apart / max(length, motion_blur_still) - 1.0, 0.0, 1.0);
 }
 
 // Times along a path: steps of a pixel, so that nothing is missed, or longer ones if those are too many.
@@ -105,49 +213,87 @@ float motion_blur_step(vec4 path, vec2 times, int samples) {
     return max(1.0 / fastest, open / float(samples));
 }
 
+// The two pixels that a place on a path lies between: the first, the step to the second, and how far the place is on the way
+// there. They lie across the path, along which the place counts as in the middle of its pixel; where samples are `sparse`,
+// along it.
+float motion_blur_between(vec2 at, vec2 way, bool sparse, out ivec2 cell, out ivec2 side) {
+    bool steep = abs(way.y) > abs(way.x);
+    if (!sparse && way != vec2(0.0)) at += (steep ? (floor(at.y) + 0.5 - at.y) / way.y : (floor(at.x) + 0.5 - at.x) / way.x) * way;
+    side = steep == sparse ? ivec2(0, 1) : ivec2(1, 0);
+    at -= 0.5 * vec2(side);
+    cell = ivec2(floor(at));
+    return fract(steep == sparse ? at.y : at.x);
+}
+
 vec4 motion_blur(vec2 times, int tile, int samples) {
+    const float certain = 4.0;  // how much what is seen behind a layer counts more than what is seen a pixel away
     vec4 fast = around_at(pixel / tile), here = finite(image_at(pixel));
     if (motion_blur_length(fast, times) < 1.0) return here;
     vec4 own = paths_at(pixel);
-    float near = nearness(depth_at(pixel)), noise = blue_noise(pixel) - 0.5;
-    vec2 middle = vec2(pixel) + 0.5;
+    float far = motion_blur_length(own, times), variety = variety_at(pixel / tile) + motion_blur_length(fast - own, times);
+    bool alone = motion_blur_unlike(variety, far) == 0.0;
+    vec2 mine = layer_at(pixel);
+    float noise = blue_noise(pixel) - 0.5;
 
-    // Loop 0 follows the fastest motion around: what passes before this pixel. Loop 1 follows the pixel's own path:
-    // what it shows of itself, and of what is behind it. Together, equal motion is exactly a box filter along its path.
-    vec4 front = vec4(0.0), same = vec4(0.0), behind = vec4(0.0);  // sums of light
-    float covers = 0.0, stays = 0.0, bares = 0.0, nearby = 0.0;    // sums of the weights
-    for (int loop = 0; loop < 2; ++loop) {
+    // Loop 0 follows the fastest motion around: what passes before this pixel, and what moves behind it. Loop 1 follows
+    // the pixel's own path: what it shows of itself, and of what is behind it. Where everything moves alike, only loop 1
+    // counts, and is exactly a box filter along the path.
+    vec4 front = vec4(0.0), same = vec4(0.0), behind = vec4(0.0), moving = vec4(0.0);  // sums of light
+    float covers = 0.0, stays = 0.0, bares = 0.0, nearby = 0.0, moves = 0.0;           // sums of the weights
+    for (int loop = alone ? 1 : 0; loop < 2; ++loop) {
         vec4 path = loop == 0 ? fast : own;
         float step = motion_blur_step(path, times, samples), exact = motion_blur_step(path, times, 1 << 20);
         float shift = step > exact ? noise * step : 0.0;
         int first = int(round((times.x - shift) / step)), last = int(round((times.y - shift) / step));
         for (int i = first; i <= last; ++i) {
             float time = float(i) * step + shift;
-            vec2 away = motion_blur_place(path, time), at = middle - away;
-            ivec2 cell = ivec2(floor(at));
-            if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, image_size))) continue;
+            vec2 away = motion_blur_place(path, time);
             vec2 from = motion_blur_place(path, time - 0.5 * step), to = motion_blur_place(path, time + 0.5 * step);
-            vec4 light = finite(image_near(at)), other = paths_at(cell);
-            float before = cell == pixel ? 0.0 : motion_blur_before(nearness(depth_at(cell)), near);
-            float share = motion_blur_share(loop == 0 ? other : own, times, from, to);
-            if (loop == 0) {
-                front += before * share * light;
-                covers += before * share;
-                continue;
+            vec2 open = clamp(time + vec2(-0.5, 0.5) * step, times.x, times.y);
+            float spent = (open.y - open.x) / (times.y - times.x);
+            ivec2 cell, side;
+            float part = motion_blur_between(vec2(pixel) + 0.5 - away, to - from, step > exact, cell, side);
+            for (int k = 0; k < 2; ++k, cell += side, part = 1.0 - part) {
+                if (part == 1.0 || any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, image_size))) continue;
+                vec4 light = finite(fronts_at(cell));
+                float passes = (1.0 - part) * spent;
+                if (alone) {
+                    same += passes * light;
+                    stays += passes;
+                    continue;
+                }
+                vec4 other = paths_at(cell);
+                vec2 layer = layer_at(cell);
+                float cover = abs(layer.y), unlike = motion_blur_unlike(motion_blur_length(other - own, times), far);
+                float before = cell == pixel ? 0.0 : motion_blur_before(layer.x, mine.x);
+                float after = clamp(1.0 - 2.0 * before, 0.0, 1.0) * unlike;
+                before *= unlike;
+                float share = loop == 0 ? (1.0 - part) * motion_blur_share(other, times, from, to) : passes * (1.0 - before);
+                if (loop == 0) {
+                    front += before * share * light;
+                    covers += before * share * cover;
+                    moving += after * share * light;
+                    moves += after * share * cover;
+                    continue;
+                }
+                same += (1.0 - after) * share * light;
+                stays += (1.0 - after) * share * cover;
+                bares += share * (1.0 - (1.0 - after) * cover);
+                // What is hidden is most like what is nearest to it.
+                float weight = after * share / max(dot(away, away), 1.0);
+                behind += weight * light;
+                nearby += weight * cover;
             }
-            share *= 1.0 - before;
-            float apart = clamp(1.0 - 2.0 * before, 0.0, 1.0) * motion_blur_unlike(other, own, times);
-            same += (1.0 - apart) * share * light;
-            stays += (1.0 - apart) * share;
-            // What is hidden is most like what is nearest to it.
-            float weight = apart * share / max(dot(away, away), 1.0);
-            behind += weight * light;
-            nearby += weight;
-            bares += apart * share;
         }
     }
-    vec4 seen = stays + bares > 0.0 ? same : here;
-    if (nearby > 0.0) seen += behind * (bares / nearby);
-    if (stays + bares > 0.0) seen /= stays + bares;
+    if (abs(mine.y) < 1.0) {
+        behind += certain * (here - finite(fronts_at(pixel)));
+        nearby += certain * (1.0 - abs(mine.y));
+    }
+    if (nearby > 0.0) behind /= nearby;
+    if (moves > 0.0) behind = mix(behind, moving / moves, nearby > 0.0 ? min(2.0 * moves, 1.0) : 1.0);
+    vec4 seen = stays > 0.0 ? same : here;
+    if (nearby > 0.0 || moves > 0.0) seen = stays > 0.0 ? (same + bares * behind) / (stays + bares) : behind;
+    else if (stays > 0.0) seen /= stays;
     return covers > 0.0 ? mix(seen, front / covers, min(covers, 1.0)) : seen;
 }

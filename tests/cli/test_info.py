@@ -102,6 +102,49 @@ def test_the_frame_before(cli, fails, tmp_path):
     assert "no such file" in fails(4, "info", NEON, "--before", tmp_path / "no.exr")
 
 
+@pytest.fixture
+def frames(tmp_path: Path) -> Path:
+    """Frames 1, 2, 3 and 5 of a picture, as large as their number."""
+    for frame in (1, 2, 3, 5):
+        write_exr(tmp_path / f"shot.{frame:04d}.exr", {"rgba": np.zeros((3, frame, 4), np.float32)}, {"rgba": "half"})
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", ["shot.####.exr", "shot.%04d.exr", "shot.$F4.exr", ""])
+def test_a_sequence_is_told_first_and_then_its_first_frame(cli, frames, name):
+    result = cli("info", frames / name)
+    shown = frames / (name or "shot.####.exr")
+    assert (result.code, result.err) == (0, "")
+    assert result.out.splitlines()[:5] == [
+        str(shown), "  4 frames: 1-3,5", "  1 missing: 4", "", str(frames / "shot.0001.exr"),
+    ]
+    first = cli("info", frames / "shot.0001.exr").out
+    said = f"\n  one of 4 frames of {frames / 'shot.####.exr'}: 1-3,5"
+    assert said in first and result.out.split("\n\n", 1)[1] == first.replace(said, "")
+
+
+def test_a_sequence_for_machines(cli, frames):
+    found = cli("info", frames / "shot.####.exr", "--json").json
+    alone = cli("info", frames / "shot.0001.exr", "--json").json
+    assert found.pop("sequence") == {
+        "pattern": str(frames / "shot.####.exr"), "count": 4, "first": 1, "last": 5, "frames": [1, 2, 3, 5],
+        "gaps": [[4, 4]], "missing": 1,
+    }
+    assert found == alone
+
+
+def test_a_sequence_without_frames(fails, frames):
+    assert fails(4, "info", frames / "shto.####.exr").endswith("no file has such a name; did you mean 'shot.####.exr'?")
+    assert "more than 16 digits" in fails(2, "info", frames / "shot.%099d.exr")
+
+
+def test_one_frame_and_no_gap(cli, frames):
+    (frames / "only.7.exr").write_bytes((frames / "shot.0001.exr").read_bytes())
+    result = cli("info", frames / "only.#.exr")
+    assert result.out.splitlines()[:3] == [str(frames / "only.#.exr"), "  1 frame: 7", ""]
+    assert "one of" not in cli("info", frames / "only.7.exr").out
+
+
 def test_faults_are_one_sentence(fails, tmp_path):
     cut, text, empty = tmp_path / "cut.exr", tmp_path / "text.exr", tmp_path / "empty.exr"
     cut.write_bytes(CROP.read_bytes()[:60000])

@@ -12,8 +12,8 @@ import OpenImageIO as oiio
 import pytest
 from halation.app import media
 from halation.app.errors import GraphError
-from halation.nodes import Kind
-from halation.nodes.geometry.cryptomatte import Cryptomatte, float_bits, murmur3
+from halation.nodes import Kind, float_bits, murmur3
+from halation.nodes.geometry.cryptomatte import Cryptomatte
 from halation.presets import sample
 
 SAMPLE = str(sample())

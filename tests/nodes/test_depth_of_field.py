@@ -118,6 +118,16 @@ def test_the_background_does_not_leak(run, coc):
     assert np.abs(found[:, 60:] - 0.25).max() < 1e-5
 
 
+@pytest.mark.parametrize("coc", [8.0, 40.0])
+@pytest.mark.parametrize("bright", [30.0, 0.01])
+def test_antialiased_edges_of_what_is_sharp_stay(run, coc, bright):
+    """Pixels that a lamp in focus covers in part, with the depth of what is behind, throw no halo of its light."""
+    depth, light = deep(10.0), np.full((SIZE, SIZE, 4), 0.25, np.float32)
+    depth[:, :60], light[:, :60], light[:, 60] = 5.0, bright, 0.4 * bright + 0.6 * 0.25
+    found = run(lens(SIZE, coc), {"image": light, "depth": depth})
+    np.testing.assert_allclose(found, light, rtol=1e-5)
+
+
 @pytest.mark.parametrize(("coc", "quality"), [(10.0, "normal"), (22.0, "normal"), (40.0, "normal"), (22.0, "exact")])
 def test_the_near_spreads_over_what_is_in_focus(run, coc, quality):
     """At an edge, the part of a disc that is cut off by it: in front and behind, both flat."""

@@ -133,21 +133,80 @@ def test_fewer_samples_keep_the_mean(run):
     assert np.abs((full - few)[:, 20:-20].mean()) < 2e-3
 
 
-def test_cycles_with_its_shutter_open(run):
-    data = blender()
-    picture, expected = opaque(data["motion_image"]), data["motion_blurred"]
-    velocity, depth = data["motion_velocity"] * (-1.0, 1.0, -1.0, 1.0), data["motion_depth"]
-    found = run(MotionBlur(), {"image": picture, "velocity": velocity, "depth": depth})
-    moving = np.abs(velocity[..., :2]).max(-1) > 0.01
-    outer, inner = binary_dilation(moving, iterations=5) & ~moving, moving & ~binary_erosion(moving, iterations=5)
-    y, x = np.mgrid[: depth.shape[0], : depth.shape[1]]
+def naive(picture: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+    """Every pixel blurred along its own velocity, whatever passes by."""
+    y, x = np.mgrid[: picture.shape[0], : picture.shape[1]]
     times = ((np.arange(32) + 0.5) / 32 - 0.5) * 0.5
-    naive = np.mean([
+    return np.mean([
         [map_coordinates(picture[..., c], [y - t * velocity[..., 1], x - t * velocity[..., 0]], order=1, mode="nearest")
          for c in range(3)] for t in times
     ], 0).transpose(1, 2, 0)
-    assert psnr(found, expected) > 45.0 > 38.0 > psnr(naive, expected)
-    assert psnr(found, expected, outer) > 38.0 and psnr(found, expected, inner) > psnr(naive, expected, inner) + 3.0
+
+
+@pytest.mark.parametrize("samples", [64, 8])
+def test_cycles_with_its_shutter_open(run, samples):
+    """A cube flies by before a wall, a ball across; in the bands outside and inside of what moves, too."""
+    data = blender()
+    picture, expected = opaque(data["motion_image"]), data["motion_blurred"]
+    velocity, depth = data["motion_velocity"] * (-1.0, 1.0, -1.0, 1.0), data["motion_depth"]
+    found = run(MotionBlur(samples=samples), {"image": picture, "velocity": velocity, "depth": depth})
+    moving = np.abs(velocity[..., :2]).max(-1) > 0.01
+    outer, inner = binary_dilation(moving, iterations=5) & ~moving, moving & ~binary_erosion(moving, iterations=5)
+    plain, cube = naive(picture, velocity), np.arange(picture.shape[1]) >= 95
+    assert psnr(found, expected) > 47.9 > 38.0 > psnr(plain, expected)
+    assert psnr(found, expected, outer) > 47.5 and psnr(found, expected, inner) > 38.5 > psnr(plain, expected, inner)
+    assert psnr(found, expected, outer & cube) > 50.0 and psnr(found, expected, inner & cube) > 42.0
+
+
+def test_cycles_with_a_camera_that_moves_too(run):
+    """A box turns and a ball rolls by over fine tiles, on bent paths. Finer pictures come nearer: 44 dB at three times
+    the size, averaged."""
+    data = blender("travel")
+    picture, expected = opaque(data["travel_image"]), data["travel_blurred"]
+    velocity, depth = data["travel_velocity"] * (-1.0, 1.0, -1.0, 1.0), data["travel_depth"]
+    found = run(MotionBlur(), {"image": picture, "velocity": velocity, "depth": depth})
+    edge = np.abs(np.diff(1.0 / depth, axis=0, prepend=0)) + np.abs(np.diff(1.0 / depth, axis=1, prepend=0)) > 0.02
+    edge[0], edge[:, 0] = False, False
+    band, plain = binary_dilation(edge, iterations=5), naive(picture, velocity)
+    assert psnr(found, expected) > 39.9 > 36.5 > psnr(plain, expected)
+    assert psnr(found, expected, band) > 36.0 > 32.0 > psnr(plain, expected, band)
+
+
+def test_antialiased_edges_are_pieces_of_what_is_in_front(run):
+    """A bar that covers parts of pixels, over another that stands still, with light and velocity filtered alike: the
+    same as a far finer picture, averaged."""
+    fine, length, width = 16, 12.0, 70
+    x = (np.arange(width * fine) + 0.5) / fine
+    bar = (x > 25.3) & (x < 41.85)
+    ground = 0.5 + 0.02 * np.floor(x)
+    light, velocity = np.where(bar, 2.0, ground), np.where(bar, 2.0 * length, 0.0)
+    coarse = [one.reshape(width, fine).mean(1) for one in (light, velocity)]
+    times = (np.arange(960) + 0.5) / 960 - 0.5
+    covered = np.mean([(x - t * length > 25.3) & (x - t * length < 41.85) for t in times], 0)
+    expected = (2.0 * covered + ground * (1.0 - covered)).reshape(width, fine).mean(1)
+    depth = np.where(bar.reshape(width, fine)[:, fine // 2], 3.0, 9.0)
+    rows = np.ones((15, 1))
+    motion = np.zeros((15, width, 4))
+    motion[..., 0::2] = (rows * coarse[1])[..., None]
+    inputs = {"image": opaque(np.dstack([rows * coarse[0]] * 3)), "velocity": motion, "depth": rows * depth}
+    found = run(MotionBlur(max_length=2.0), inputs)[7, :, 0]
+    assert np.abs(found - expected).max() < 0.03
+
+
+def test_bent_paths_are_integrals_along_parabolas(run):
+    """Waves summed along the curve through the places before, now and after."""
+    times = (np.arange(4000) + 0.5) / 4000 - 0.5
+    before, after = np.array([18.0, 9.0]), np.array([14.0, -12.0])
+    place = 0.5 * times[:, None] * (before + after + times[:, None] * (after - before))
+    y, x = np.mgrid[:64, :64]
+    light, expected, bound = np.ones((64, 64)), np.ones((64, 64)), 0.0
+    for across, down in ((0.2, 0.13), (-0.1, 0.24), (0.21, -0.2)):
+        light += 0.3 * np.sin(across * x + down * y)
+        expected += 0.3 * np.mean([np.sin(across * (x - dx) + down * (y - dy)) for dx, dy in place[::8]], 0)
+        bound += 0.3 * (across**2 + down**2) / 8.0
+    inputs = {"image": opaque(np.dstack([light] * 3)), "velocity": motion(64, 64, *before, *after)}
+    found = run(MotionBlur(shutter=360.0, max_length=1.0), inputs)
+    assert np.abs(found[20:44, 20:44, 0] - expected[20:44, 20:44]).max() < bound < 0.01
 
 
 def test_half_size_moves_half_as_many_pixels(run):

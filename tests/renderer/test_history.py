@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import replace
 from typing import Annotated
 
 import numpy as np
 import pytest
-from conftest import graph_of
 from halation.app.compiler import Library, installed
 from halation.app.compiler.library import parse
-from halation.app.renderer import Renderer, Wanted, open_device
-from halation.nodes import Draw, Drawn, Image, Slider, Temporal
+from halation.app.errors import GraphError
+from halation.app.graph import Graph, Input, Output, Port, Settings
+from halation.app.renderer import Reel, Renderer, Wanted, open_device
+from halation.nodes import Draw, Drawn, Image, Kind, Slider, Temporal
+from halation.nodes.time.time_offset import TimeOffset
 
 
 class Trail(Temporal):
@@ -36,69 +40,99 @@ def engine():
     made.close()
 
 
+SHOWN = Input(Kind.IMAGE, default=0.0)
+WHOLE = range(1, 9)
+
+
+def trail(keep: float = 0.75, **settings) -> Graph:
+    """Blends what is bound to its input."""
+    graph = Graph(settings=Settings((7, 5), **settings)).add_input("image", SHOWN).add("trail", Trail(keep=keep))
+    graph = graph.add_output("out", Output()).connect(Port("inputs", "image"), Port("trail", "image"))
+    return graph.connect(Port("trail", "out"), Port("outputs", "out"))
+
+
 def frame(number: int) -> np.ndarray:
     return np.full((5, 7, 4), float(number), np.float32)
 
 
-def rendered(engine: Renderer, numbers: range, node: Trail, *, follows: bool = False) -> list[float]:
-    found = []
-    for number in numbers:
-        picture = {"image": frame(number)}
-        wanted = Wanted(picture, precision="float", frame=number, follows=follows or number != numbers.start)
-        found.append(float(engine.render(graph_of(node, picture), wanted)["out"][2, 3, 0]))
-    return found
+def reel(engine: Renderer, graph: Graph, **wanted) -> Reel:
+    return Reel(engine, graph, Wanted({"image": frame}, **{"precision": "float", **wanted}))
+
+
+def rendered(one: Reel, frames: Iterable[int]) -> list[float]:
+    return [float(one.render(number)["out"][2, 3, 0]) for number in frames]
+
+
+def closed_form(keep: float, begin: int, number: int) -> float:
+    """y_n = sum of (1 - a) a^k x_{n - k}, with the first frame standing for all before it."""
+    terms = [(1 - keep) * keep**back * (number - back) for back in range(number - begin)]
+    return sum(terms) + keep ** (number - begin) * begin
 
 
 def test_frames_blend_by_the_closed_form(engine):
-    """y_n = sum of (1 - a) a^k x_{n - k}, with the first frame standing for all before it."""
-    a, numbers = 0.75, range(1, 9)
-    expected = []
-    for number in numbers:
-        terms = [(1 - a) * a**back * (number - back) for back in range(number - 1)]
-        expected.append(sum(terms) + a ** (number - 1) * 1.0)
-    np.testing.assert_allclose(rendered(engine, numbers, Trail(keep=a)), expected, rtol=1e-6)
+    found = rendered(reel(engine, trail(0.75, frames=(1, 8))), WHOLE)
+    np.testing.assert_allclose(found, [closed_form(0.75, 1, number) for number in WHOLE], rtol=1e-6)
 
 
-def test_a_frame_that_follows_no_other_has_no_history(engine):
-    rendered(engine, range(1, 5), Trail())
-    assert rendered(engine, range(9, 10), Trail()) == [9.0]
+def test_a_frame_before_the_range_remembers_nothing(engine):
+    one = reel(engine, trail(frames=(5, 9)))
+    assert rendered(one, (3, 5)) == [3.0, 5.0]
 
 
-def test_two_runs_in_a_row_equal_one(engine):
-    whole = rendered(engine, range(1, 9), Trail())
-    parts = rendered(engine, range(1, 5), Trail()) + rendered(engine, range(5, 9), Trail(), follows=True)
-    assert parts == whole
+def test_frames_are_the_same_in_any_order_and_in_parts(engine):
+    graph = trail(frames=(1, 8))
+    whole = rendered(reel(engine, graph), WHOLE)
+    assert rendered(reel(engine, graph), range(5, 9)) == whole[4:]
+    order = (8, 2, 3, 7, 1, 5)
+    assert rendered(reel(engine, graph), order) == [whole[number - 1] for number in order]
 
 
-def test_history_of_another_size_is_not_used(engine):
-    rendered(engine, range(1, 3), Trail())
-    other = np.full((9, 9, 4), 5.0, np.float32)
-    wanted = Wanted({"image": other}, precision="float", follows=True)
-    assert engine.render(graph_of(Trail(), {"image": other}), wanted)["out"][0, 0, 0] == 5.0
+def test_what_was_shown_before_does_not_matter(engine):
+    """Another graph, another time, the same engine."""
+    alone = rendered(reel(engine, trail(0.5, frames=(1, 8))), (6,))
+    rendered(reel(engine, trail(0.9, frames=(1, 8))), WHOLE)
+    assert rendered(reel(engine, trail(0.5, frames=(1, 8))), (6,)) == alone
+
+
+@pytest.mark.parametrize("preroll", [0, 1, 3])
+def test_preroll_says_where_history_begins(engine, preroll):
+    graph = trail(0.75, frames=(1, 8), preroll=preroll)
+    expected = [closed_form(0.75, max(1, number - preroll), number) for number in WHOLE]
+    np.testing.assert_allclose(rendered(reel(engine, graph), WHOLE), expected, rtol=1e-6)
+
+
+def test_history_on_the_device_is_not_computed_again(engine):
+    one = reel(engine, trail(frames=(1, 8)))
+    before = engine.runner.counters.passes
+    rendered(one, WHOLE)
+    passes = engine.runner.counters.passes - before
+    assert passes == 8
+    rendered(one, (8,))
+    assert engine.runner.counters.passes - before <= 9
 
 
 def test_memory_does_not_grow_with_frames(engine):
-    rendered(engine, range(1, 4), Trail())
+    one = reel(engine, trail(frames=(1, 60)))
+    rendered(one, range(1, 4))
     early = engine.runner.textures.allocated
-    rendered(engine, range(4, 40), Trail(), follows=True)
+    rendered(one, range(4, 40))
     assert engine.runner.textures.allocated == early
 
 
-@pytest.mark.parametrize("precisions", [("float", "half"), ("half", "float")])
-def test_history_keeps_the_precision_that_it_was_made_with(engine, precisions):
-    """The next frame may be rendered with another: 3 remembered three quarters, 5 new one."""
-    for number, precision in zip((3, 5), precisions, strict=True):
-        picture = {"image": frame(number)}
-        wanted = Wanted(picture, precision=precision, frame=number, follows=number == 5)
-        found = engine.render(graph_of(Trail(), picture), wanted)["out"]
-    np.testing.assert_array_equal(found, np.full_like(found, 0.75 * 3.0 + 0.25 * 5.0))
+def test_a_memory_of_another_size_is_of_another_picture(engine):
+    grown = Wanted({"image": lambda number: np.full((5 + number, 7, 4), 1.0 * number, np.float32)}, precision="float")
+    one = Reel(engine, replace(trail(frames=(1, 8)), settings=Settings(frames=(1, 8))), grown)
+    assert rendered(one, (1, 2, 3)) == [1.0, 2.0, 3.0]
 
 
-def test_history_belongs_to_what_ran_last_however_it_was_run(engine):
-    """A frame rendered pass by pass in between, without history, leaves none."""
-    rendered(engine, range(1, 5), Trail())
-    between = graph_of(Trail(), {"image": frame(7)})
-    plan = engine.compile(between, Wanted({"image": frame(7)}, precision="float"))
-    for _ in engine.runner.steps(plan, engine.runner.lease()):
-        pass
-    assert rendered(engine, range(7, 8), Trail(), follows=True) == [7.0]
+def test_a_memory_of_halves_stays_one(engine):
+    """3, 5, 7 ... are exact in half floats, and so is what they blend to here."""
+    assert rendered(reel(engine, trail(0.5, frames=(1, 3)), precision="half"), (1, 2, 3)) == [1.0, 1.5, 2.25]
+
+
+def test_looking_at_another_frame_of_a_memory_is_refused(engine):
+    graph = trail(frames=(1, 8)).add("offset", TimeOffset(frames=-1)).disconnect(Port("outputs", "out"))
+    graph = graph.connect(Port("trail", "out"), Port("offset", "image"))
+    graph = graph.connect(Port("offset", "out"), Port("outputs", "out"))
+    with pytest.raises(GraphError, match="'trail' makes every frame of the one before"):
+        reel(engine, graph).render(3)

@@ -6,6 +6,7 @@ from ..action import Action
 from .documents import DOCUMENTS
 from .edits import EDITS
 from .graph import GRAPH
+from .handles import HANDLES
 from .view import VIEW
 from .viewer import VIEWER
 
@@ -16,4 +17,4 @@ MENUS = ("File", "Edit", "Graph", "Viewer", "View", "Help")
 
 def table() -> tuple[Action, ...]:
     """Every action, in the order of the menus."""
-    return (*DOCUMENTS, *EDITS, *GRAPH, *VIEWER, *VIEW)
+    return (*DOCUMENTS, *EDITS, *GRAPH, *VIEWER, *HANDLES, *VIEW)

@@ -202,8 +202,11 @@ def _value_rows(id: str, item: Item, graph: Graph, facts: Facts, values: Mapping
 
 
 def _first(rows: list[Row]) -> list[Row]:
-    """The values worth showing: those that are linked, and the first few others that fit a line."""
-    fields = [row for row in rows if not row.linked and row.value and row.value.type != "matrix"]
+    """The values worth showing: those that are linked, and the first few others that fit a line and say something."""
+    fields = [
+        row for row in rows if not row.linked and row.value and row.value.type != "matrix"
+        and not (row.value.role and row.plain == row.value.default)
+    ]
     if len(fields) == FIELDS + 1 and len(rows) == len(fields):
         return rows
     chosen = {id(row) for row in fields[:FIELDS]}

@@ -37,7 +37,7 @@ def browse(declaration: Value, then: Callable[[Path], object]) -> Browse:
             return Browse("Choose a Color Table", "table", then)
         case "scene":
             return Browse("Choose Meshes", "scene", then)
-        case "picture":
+        case "picture" | "render":
             return Browse("Choose an Image", "image", then)
 
 
@@ -62,7 +62,7 @@ class FileField:
         missing = bool(value) and bool(self._fault(rows, value, declaration))
         edit = text_field(
             self.fields, key, value, _TEXT, width - side - rows.gap * 0.5, hint="no file", fault=missing,
-            elide_left=True,
+            elide_left=True, lines=1,
         )
         first = item_rect()
         tip(str(self._full(rows, value)) if value else "")
@@ -86,33 +86,37 @@ class FileField:
             header = self.known.header(self._full(rows, value))
             rows.field_note(described(header, layer) if isinstance(header, ImageInfo) else "reading…")
 
-    def layer(self, rows: Rows, key: str, file: str, value: str, width: float) -> Edit | None:
-        """The layer: a list of those in the file, or plain text while the file cannot be read."""
+    def layer(
+        self, rows: Rows, key: str, file: str, value: str, width: float, first: str = FIRST, fault: bool = False
+    ) -> Edit | None:
+        """The layer: a list of those in the file, or plain text while it cannot be read; `first` is what "" stands for.
+        """
         path = self._full(rows, file)
         header = self.known.header(path) if file else "no file"
         if not isinstance(header, ImageInfo):
-            return text_field(self.fields, key, value, _TEXT, width, hint=FIRST)
+            return text_field(self.fields, key, value, _TEXT, width, hint=first, fault=fault)
         imgui.set_next_item_width(width)
         found = None
         names = [layer.name for layer in header.layers]
         flags = int(imgui.ComboFlags_.height_large) | int(imgui.ComboFlags_.no_arrow_button)
-        imgui.push_style_color(
-            imgui.Col_.text, imgui.get_color_u32((*(rows.palette.text if value else rows.palette.dim), 1.0))
-        )
+        ink = rows.palette.error if fault else rows.palette.text if value else rows.palette.dim
+        imgui.push_style_color(imgui.Col_.text, imgui.get_color_u32((*ink, 1.0)))
         least = max(width, imgui.get_font_size() * 15.0)
         imgui.set_next_window_size_constraints((least, 0.0), (least * 2, imgui.get_main_viewport().size.y * 0.7))
-        opened = imgui.begin_combo(f"##{key}", value or FIRST, flags)
+        opened = imgui.begin_combo(f"##{key}", value or first, flags)
         imgui.pop_style_color()
-        first = item_rect()
-        draw_arrow(rows.palette, first)
+        rect = item_rect()
+        draw_arrow(rows.palette, rect)
         if opened:
-            if imgui.selectable(FIRST, not value)[0]:
+            if imgui.selectable(first, not value)[0]:
                 found = Edit("")
+            rows.editor.places[f"layer {key} "] = item_rect()
             for name in names:
                 if self._choice(rows, path, name, name == value):
                     found = Edit(name)
+                rows.editor.places[f"layer {key} {name}"] = item_rect()
             imgui.end_combo()
-        rows.editor.places[f"field {key}"] = first
+        rows.editor.places[f"field {key}"] = rect
         return found
 
     def _choice(self, rows: Rows, path: Path, name: str, chosen: bool) -> bool:
@@ -135,7 +139,7 @@ class FileField:
     def _fault(self, rows: Rows, value: str, declaration: Value) -> str:
         """Why the file cannot be read, as far as is known."""
         path = self._full(rows, value)
-        if declaration.holds != "picture":
+        if not declaration.pixels:
             return self.known.fault(path)
         header = self.known.header(path)
         return header if isinstance(header, str) else ""

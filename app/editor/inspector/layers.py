@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from time import monotonic
 
 import numpy as np
 
 from ....nodes import Kind
 from ...errors import HalationError
-from ...media import ImageInfo, find_layer, fingerprint, info, read, to_display
+from ...media import ImageInfo, find_layer, info, read, to_display
 from ...media.color import NO_VIEW, Array
 from ..services.background import Background
+from ..services.versions import Versions
 
 WIDTH, HEIGHT = 96, 54
-_KEPT, _LOOK_AGAIN = 300, 1.0
+_KEPT = 300
+_NOTHING = 1e9
+"""From this depth on nothing is there."""
 
 Key = tuple[str, str, str | None]
 """Path, version of the file, layer; a layer of None stands for the header."""
@@ -25,27 +27,27 @@ class Layers:
 
     def __init__(self) -> None:
         self._made: Background[Key, ImageInfo | Array | str] = Background("layers", _made, _KEPT)
-        self._versions: dict[str, tuple[float, str, str]] = {}
+        self._versions = Versions()
 
     def header(self, path: Path) -> ImageInfo | str | None:
         """The header, a sentence if there is none, None while it is being read."""
-        version, fault = self._version(path)
+        version, fault = self._versions.of(path)
         found = fault or self._made.get((str(path), version, None))
         return found if isinstance(found, ImageInfo | str) else None
 
     def fault(self, path: Path) -> str:
         """Why there is no such file, or ""."""
-        return self._version(path)[1]
+        return self._versions.of(path)[1]
 
     def picture(self, path: Path, layer: str) -> Array | None:
         """A layer as [h, w, 3] of uint8, at most 96 x 54; None while it is being read, or if it cannot be."""
-        version, fault = self._version(path)
+        version, fault = self._versions.of(path)
         found = None if fault else self._made.get((str(path), version, layer))
         return found if isinstance(found, np.ndarray) else None
 
     def version(self, path: Path) -> str:
         """Changes when the file does."""
-        return self._version(path)[0]
+        return self._versions.of(path)[0]
 
     @property
     def busy(self) -> bool:
@@ -55,18 +57,6 @@ class Layers:
     def close(self) -> None:
         """End the thread."""
         self._made.close()
-
-    def _version(self, path: Path) -> tuple[str, str]:
-        """The version of a file and what is wrong with it, looked up about once a second."""
-        now = monotonic()
-        at, version, fault = self._versions.get(str(path), (-_LOOK_AGAIN, "", ""))
-        if now - at >= _LOOK_AGAIN:
-            try:
-                version, fault = fingerprint(path), ""
-            except HalationError as error:
-                version, fault = "", str(error)
-            self._versions[str(path)] = (now, version, fault)
-        return version, fault
 
 
 def _made(key: Key) -> ImageInfo | Array | str:
@@ -90,7 +80,7 @@ def small_picture(path: str, layer: str, header: ImageInfo) -> Array:
     step = max(1, -(-array.shape[1] // WIDTH), -(-array.shape[0] // HEIGHT))
     small = np.ascontiguousarray(array[::step, ::step, :3], dtype=np.float32)
     if found.data:
-        finite = small[np.isfinite(small)]
+        finite = small[np.isfinite(small) & (np.abs(small) < _NOTHING)]
         low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
         small = np.nan_to_num((small - low) / max(high - low, 1e-12), nan=0.0, posinf=1.0, neginf=0.0)
         return (np.clip(small, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)

@@ -50,7 +50,7 @@ def lights_height(value: Plain) -> float:
 
 def selected(fields: Fields, id: str, value: Numbers) -> int:
     """The light whose rows are shown; -1 if there is none."""
-    return min(fields.lights.get(id, 0), count_of(value) - 1)
+    return min(max(fields.lights.get(id, 0), 0), count_of(value) - 1)
 
 
 def _row_height() -> float:

@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ....nodes import Socket
+from ....nodes import Node, Socket
 from ...graph import Group, Item, Port, Unknown, signature
 from ..toolkit.places import item_rect
 from ..toolkit.words import tip
 from .applying import common
 from .fields import Fields
 from .heading import doc_of, explanation, faults, heading, name_field, title_of
+from .render_facts import render_path
+from .render_rows import RenderRows
 from .value_rows import ValueRows, link_chip
 
 if TYPE_CHECKING:
@@ -27,6 +29,7 @@ class NodeView:
 
     def __init__(self, fields: Fields, values: ValueRows) -> None:
         self._fields, self._values = fields, values
+        self._renders = RenderRows(values)
         self._explained = False
 
     def draw(self, rows: Rows, id: str) -> None:
@@ -46,8 +49,11 @@ class NodeView:
             return
         if face.values:
             rows.heading("Controls" if isinstance(item, Group) else "Values")
-        for name, declaration in face.values.items():
-            self._values.draw(rows, (Port(id, name),), declaration, labels.get(name, ""))
+        if isinstance(item, Node) and render_path(item):
+            self._renders.draw(rows, id, item)
+        else:
+            for name, declaration in face.values.items():
+                self._values.draw(rows, (Port(id, name),), declaration, labels.get(name, ""))
         if face.inputs:
             rows.heading("Inputs")
         for name, socket in face.inputs.items():

@@ -9,14 +9,17 @@ from typing import TYPE_CHECKING
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ....nodes import Plain, Value
+from ....nodes import Node, Plain, Value
 from ...graph import INPUTS, Graph, Port, signature
+from ..theme.palette import RGB
 from ..toolkit.places import item_rect
 from .applying import Ports, apply, as_text, default_of, from_text, reset
+from .choice_field import choose
 from .fields import Edit, Fields
 from .file_field import FileField
 from .light_rows import light_rows
 from .numbers import described, worded
+from .render_facts import convention_words, first_words, use_of
 from .value_field import value_field
 
 if TYPE_CHECKING:
@@ -35,7 +38,9 @@ class ValueRows:
     _targets: dict[str, tuple[Ports, Value]] = field(default_factory=dict[str, "tuple[Ports, Value]"])
     _renaming: str = ""
 
-    def draw(self, rows: Rows, ports: Ports, declaration: Value, label: str = "") -> None:
+    def draw(
+        self, rows: Rows, ports: Ports, declaration: Value, label: str = "", color: RGB | None = None
+    ) -> None:
         """One row; `ports` are the same value of several nodes, the active one first."""
         editor, port = rows.editor, ports[0]
         session, key = editor.session, str(port)
@@ -43,7 +48,7 @@ class ValueRows:
         value, source = graph.value(port), session.linked(port)
         changed = any(graph.value(one) != default_of(graph, one) for one in ports)
         control = session.control_of(port) if len(ports) == 1 else None
-        rows.name(key, label or port.socket, doc=_tip(declaration, control), changed=changed)
+        rows.name(key, label or port.socket, doc=_tip(declaration, control), changed=changed, color=color)
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left):
             rows.act(lambda: reset(session, ports))
         menu = imgui.is_item_hovered() and imgui.is_mouse_released(imgui.MouseButton_.right)
@@ -100,10 +105,26 @@ class ValueRows:
             return self.files.path(rows, str(port), value, declaration, width, lambda path: apply(
                 rows.editor.session, ports, declaration, Edit(path)
             ))
+        if declaration.role and isinstance(value, str):
+            return self._of_layer(rows, port, declaration, value, width, mixed)
         file = _file_of(graph, port)
         if file is not None and isinstance(value, str):
             return self.files.layer(rows, str(port), file, value, width)
         return value_field(self.fields, str(port), value, declaration, width, mixed=mixed)
+
+    def _of_layer(
+        self, rows: Rows, port: Port, declaration: Value, value: str, width: float, mixed: bool
+    ) -> Edit | None:
+        """The field of what is said about a layer of a render: which it is, or what it holds."""
+        use, key = use_of(rows.editor, port, declaration), str(port)
+        if declaration.type == "choice":
+            words = convention_words(declaration, use)
+            now = words[declaration.choices.index(value)] if value in declaration.choices else value
+            index = choose(self.fields, key, now, words, width, mixed=mixed)
+            return None if index is None else Edit(declaration.choices[index])
+        item = rows.editor.session.graph.nodes.get(port.node)
+        file = str(getattr(item, declaration.file)) if isinstance(item, Node) else ""
+        return self.files.layer(rows, key, file, value, width, first_words(use), bool(use and use.fault))
 
     def _mark(self, rows: Rows, port: Port, control: str) -> None:
         """A sign that a value is a control; a click renames that."""

@@ -13,6 +13,7 @@ from ...compiler import Library, Plan
 from ...errors import HalationError
 from ...graph import Graph, Port
 from ...renderer import Display, Handle, Lease, Renderer, Run, Wanted
+from ..services.renders import Pending
 from .thumbnails import Subject, Thumbnails
 from .timing import Timing, key_of, timings_of
 from .wishes import Wish, kind_of, path_of
@@ -77,6 +78,8 @@ class _Round:
     began: float
     passes: int = 0
     faults: dict[str, str] = field(default_factory=dict[str, str])
+    pending: Pending | None = None
+    """The render that the first of the queue waits for."""
     broken: dict[str, str] = field(default_factory=dict[str, str])
     """Why panels cannot show what they want, by name."""
     timings: dict[str, Timing] = field(default_factory=dict[str, Timing])
@@ -262,8 +265,9 @@ class Preview:
 
     def _compile(self, now: _Round) -> bool:
         """Begin with the next ports; False if there are none."""
-        if not now.queue:
+        if not now.queue or (now.pending is not None and not now.pending.ready()):
             return False
+        now.pending = None
         ports, wish = now.queue.pop(0), now.wish
         wanted = Wanted(wish.bindings, ports, wish.size, wish.scale, wish.frame)
         timings: list[tuple[Pass, float]] | None = [] if self.timed else None
@@ -272,6 +276,11 @@ class Preview:
             plan = self.renderer.compile(wish.graph, wanted)
             self._cameras |= plan.cameras
             self._job = _Job(ports, plan, self._runner.steps(plan, kept, timings=timings), kept, timings)
+        except Pending as pending:
+            now.queue.insert(0, ports)
+            now.pending = pending
+            kept.close()
+            return False
         except HalationError as error:
             self._failed(now, ports, error)
         return True

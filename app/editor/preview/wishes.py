@@ -46,7 +46,7 @@ class Wish:
     def mark(self, path: str) -> object:
         """Something that changes when anything upstream of a node does."""
         if self.known is None or self.known.graph is not self.graph:
-            self.known = Upstream(self.graph, self.known)
+            self.known = Upstream(self.graph, known=self.known)
         return self.known.hashes.get(path), self.world
 
 

@@ -10,6 +10,7 @@ from ....nodes import Node
 from ...document import load
 from ...errors import GraphError
 from ...graph import Graph, Group, Item, Port, did_you_mean
+from ...media.renders import is_render
 from ..edits import deleting, elements, naming, paths, room, routes, wiring
 from ..edits.elements import Place, Sizes
 from ..edits.ends import without_samples
@@ -17,6 +18,8 @@ from .state import State
 
 DROP_STEP = 100.0
 """Distance between nodes of files that were dropped together."""
+ABOVE = 380.0
+"""How far above a render a node is put that reads the same file."""
 
 
 class Wiring(State):
@@ -146,7 +149,10 @@ class Wiring(State):
         self.edit(label, elements.with_entries(self.graph, facts))
 
     def drop_files(self, paths: Sequence[str | Path], at: Place = (0.0, 0.0)) -> tuple[str, ...]:
-        """Files from outside as nodes: graphs become groups, all others `read_image`; returns their ids."""
+        """Files from outside as nodes: graphs become groups, renders `read_render`, all others `read_image`.
+
+        Returns their ids.
+        """
         graph, ids = self.graph, list[str]()
         if not paths:
             return ()
@@ -158,6 +164,14 @@ class Wiring(State):
         what = naming.stem(paths[0]) if len(ids) == 1 else f"{len(ids)} files"
         self.edit(f"Drop {what}", graph, ids)
         return tuple(ids)
+
+    def add_matte(self, id: str, kind: str = "") -> str:
+        """A node that cuts out of the render that another one reads, beside it; returns its id."""
+        made = self._new("cryptomatte")
+        path = self.graph.value(Port(id, "path"))
+        made = made.changed(path=path, **({"layer": kind} if kind else {}))
+        x, y = self.positions[id]
+        return self._add("cryptomatte", made, (x, y - ABOVE), None, True)
 
     def relative(self, path: str | Path) -> str:
         """How the document names a file: relative if it lies below the document's folder, else absolute."""
@@ -194,7 +208,8 @@ class Wiring(State):
     def _dropped(self, path: str | Path) -> Item:
         if Path(path).suffix.lower() == ".json":
             return self._group(path)
-        return self._new("read_image").changed(path=self.relative(path))
+        type_id = "read_render" if "read_render" in self.types and is_render(path) else "read_image"
+        return self._new(type_id).changed(path=self.relative(path))
 
     def _middle(self, target: Port) -> Place:
         """Halfway between the ends of a link."""

@@ -77,8 +77,8 @@ DARK = Palette(
         "tone": _hex("7a5a2e"), "blur": _hex("3f5f7f"), "filter": _hex("3f5f7f"), "glow": _hex("8a4f2a"),
         "light": _hex("6f5d1c"), "lens": _hex("5b5378"),
         "distort": _hex("4a6b4a"), "edge": _hex("2f6b6b"), "geometry": _hex("3d5378"), "merge": _hex("5a4a7a"),
-        "channel": _hex("4f5560"),
-        "measure": _hex("2f6258"), "noise": _hex("6b3f5f"), "stylize": _hex("6b3f5f"), "group": _hex("3a6a48"),
+        "channel": _hex("4f5560"), "measure": _hex("2f6258"),
+        "time": _hex("6b4a5a"), "noise": _hex("6b3f5f"), "stylize": _hex("6b3f5f"), "group": _hex("3a6a48"),
     }),
 )
 
@@ -93,8 +93,8 @@ LIGHT = Palette(
         "tone": _hex("e6c99a"), "blur": _hex("aecbe6"), "filter": _hex("aecbe6"), "glow": _hex("f0c09a"),
         "light": _hex("ecd88a"), "lens": _hex("cdc3e8"),
         "distort": _hex("b9d9b9"), "edge": _hex("a3d6d6"), "geometry": _hex("b4c3ec"), "merge": _hex("c9bce6"),
-        "channel": _hex("c6ccd6"),
-        "measure": _hex("a8d6cb"), "noise": _hex("e0b9d3"), "stylize": _hex("e0b9d3"), "group": _hex("aed9ba"),
+        "channel": _hex("c6ccd6"), "measure": _hex("a8d6cb"),
+        "time": _hex("e3bccb"), "noise": _hex("e0b9d3"), "stylize": _hex("e0b9d3"), "group": _hex("aed9ba"),
     }),
 )
 

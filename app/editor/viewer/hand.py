@@ -12,12 +12,18 @@ from imgui_bundle import imgui
 from ..theme.style import ui_scale
 from .geometry import Point, Sight
 from .holding import Aim, Hold, aim
+from .lights import add, can_add, put, token, turn
+from .orbit import Orbit, scene_at
+from .orbit import put as put_camera
 
 if TYPE_CHECKING:
     from ..editor import Editor
 
 NOTCHES = 4.0
 """Steps of the wheel that double the size."""
+
+_PAUSE = 0.7
+"""Seconds without the wheel that end a step."""
 
 _CURSORS: Mapping[str, imgui.MouseCursor_] = MappingProxyType({
     "n": imgui.MouseCursor_.resize_ns, "s": imgui.MouseCursor_.resize_ns, "w": imgui.MouseCursor_.resize_ew,
@@ -33,6 +39,8 @@ class Hand:
     def __init__(self) -> None:
         self._hold: Hold | None = None
         self.aim = Aim("pan")
+        self._turned = "", 0.0
+        """What the wheel changed last, and when."""
         self.picked: Point | None = None
         """Where the eyedropper was pressed or dragged to in this frame."""
 
@@ -44,14 +52,15 @@ class Hand:
         self.picked = None
         viewer.hovered = hovered or active
         imgui.set_item_key_owner(imgui.Key.mouse_wheel_y)
+        if hovered and not active:
+            keys = {"ctrl": io.key_ctrl, "alt": io.key_alt, "shift": io.key_shift}
+            self.aim = aim(editor, sight, at, ui_scale(), **keys)
         if hovered and io.mouse_wheel:
-            self._zoom(editor, sight, 2.0 ** (io.mouse_wheel / NOTCHES), at)
+            self._wheel(editor, sight, 2.0 ** (io.mouse_wheel / NOTCHES), at)
         if viewer.nearer != 1.0:
             middle = sight.origin[0] + sight.panel[0] / 2, sight.origin[1] + sight.panel[1] / 2
             self._zoom(editor, sight, viewer.nearer, at if hovered else middle)
             viewer.nearer = 1.0
-        if hovered and not active:
-            self.aim = aim(editor, sight, at, ui_scale(), ctrl=io.key_ctrl)
         if imgui.is_item_activated():
             self._press(editor, sight, at)
         if self._hold is not None:
@@ -67,18 +76,53 @@ class Hand:
             else:
                 imgui.open_popup("viewer menu")
             return
-        plain = left and not imgui.is_key_down(imgui.Key.space)
-        self._hold = Hold.begin(editor, sight, at, self.aim if plain else Aim("pan"))
+        taken = self.aim if left else Aim("track" if editor.viewer.orbits else "pan")
+        taken = Aim("pan") if imgui.is_key_down(imgui.Key.space) else taken
+        twice = left and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
+        if twice and taken.what in ("pan", "orbit") and sight.under(at) and can_add(editor):
+            add(editor, sight.fraction(at))
+            return
+        self._hold = Hold.begin(editor, sight, at, taken, ui_scale())
 
     def _drag(self, editor: Editor, sight: Sight, at: Point, active: bool) -> None:
         assert self._hold is not None
         delta = imgui.get_io().mouse_delta
         if self._hold.aim.what == "pick":
             self.picked = at
+        if self._hold.token and imgui.is_key_pressed(imgui.Key.escape, False):
+            editor.session.abandon(self._hold.token)
+            self._hold = None
+            return
         self._hold.drag(editor, sight, at, (delta.x, delta.y))
         if not active:
             self._hold.release(editor, sight, at)
             self._hold = None
+
+    def _wheel(self, editor: Editor, sight: Sight, factor: float, at: Point) -> None:
+        """Zoom; over a light, take that nearer or farther; where the mouse moves a camera, go nearer."""
+        if self._hold is not None and self._hold.token:
+            return
+        lamp, what = self.aim.lamp, self.aim.what
+        if lamp is not None and what in ("light", "light depth", "light drop"):
+            self._begin_turn(editor, token(lamp))
+            put(editor, lamp, lamp.at, lamp.depth / factor)
+        elif lamp is not None and what in ("goal", "goal depth") and lamp.aims:
+            self._begin_turn(editor, token(lamp))
+            turn(editor, lamp, lamp.aims[0], lamp.aims[1] / factor)
+        elif what in ("orbit", "track") and not imgui.is_key_down(imgui.Key.space):
+            scene = scene_at(editor)
+            if scene is not None:
+                self._begin_turn(editor, editor.viewer.scene)
+                put_camera(editor, Orbit.of(scene).nearer(factor), "orbit")
+        else:
+            self._zoom(editor, sight, factor, at)
+
+    def _begin_turn(self, editor: Editor, of: str) -> None:
+        """What the wheel does without a pause is one step."""
+        last, when = self._turned
+        if of != last or imgui.get_time() - when > _PAUSE:
+            editor.session.seal()
+        self._turned = of, imgui.get_time()
 
     @staticmethod
     def _zoom(editor: Editor, sight: Sight, factor: float, at: Point) -> None:
@@ -91,9 +135,9 @@ class Hand:
 
     def _show_cursor(self) -> None:
         what = self._hold.aim if self._hold else self.aim
-        if what.what in ("handle", "light"):
+        if what.what in ("handle", "track", "sun") or what.lamp:
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
-        elif what.what == "pan" and self._hold and self._hold.moved:
+        elif what.what == "matte" or (what.what in ("pan", "orbit") and self._hold and self._hold.moved):
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
         elif what.grip in _CURSORS:
             imgui.set_mouse_cursor(_CURSORS[what.grip])

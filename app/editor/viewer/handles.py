@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
 from ...graph import Port, Unknown, signature
+from .focus import is_idle
+from .geometry import Point
 
 if TYPE_CHECKING:
     from ..session import Session
     from .state import ViewerState
-
-Point = tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -23,14 +23,14 @@ class Handle:
 
 
 def handles(session: Session) -> tuple[Handle, ...]:
-    """Those of the active node that nothing else drives."""
+    """Those of the active node that matter, and that nothing else drives."""
     item = session.graph.nodes.get(session.active)
     if item is None or isinstance(item, Unknown):
         return ()
     found: list[Handle] = []
     for name, value in signature(item).values.items():
         port = Port(session.active, name)
-        if value.handle and session.linked(port) is None:
+        if value.handle and session.linked(port) is None and not is_idle(session, port):
             x, y = cast("Point", session.value(port))
             found.append(Handle(port, (x, y)))
     return tuple(found)
@@ -38,7 +38,9 @@ def handles(session: Session) -> tuple[Handle, ...]:
 
 def takes_position(session: Session, port: Port) -> bool:
     """True if a position is picked for that value, not a color."""
-    return any(handle.port == port for handle in handles(session))
+    item = session.graph.nodes.get(port.node)
+    value = None if item is None or isinstance(item, Unknown) else signature(item).values.get(port.socket)
+    return value is not None and value.handle
 
 
 def pixel_place(viewer: ViewerState) -> Point:

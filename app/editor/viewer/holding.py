@@ -3,24 +3,36 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 from ...graph import Port
+from .dome import RADIUS, direction_at, knob_of, middle_of
 from .geometry import Box, Grip, Point, Sight, box_dragged, box_grip, ordered, wipe_angle, wipe_grip
+from .ground import FAR, SCENE
 from .handles import handles
-from .lights import Lamp, lamps, put
+from .lights import Lamp, change, drop, lamps, put, suns, token, turn
+from .mattes import click, picks
+from .orbit import Orbit, aspect_of, scene_at
+from .orbit import put as put_camera
 
 if TYPE_CHECKING:
     from ..editor import Editor
 
-What = Literal["pan", "handle", "light", "wipe", "region", "new region", "measure", "pick"]
+What = Literal[
+    "pan", "handle", "light", "light depth", "light drop", "goal", "goal depth", "sun", "orbit", "track", "wipe",
+    "region", "new region", "measure", "pick", "matte",
+]
 
 ARM = 56.0
 """Length of the wipe's turning handle at UI scale 1."""
 
 REACH = 6.0
 """From how far away something is hit, at UI scale 1."""
+
+
+DOUBLINGS = 3.0
+"""How often the depth of a light doubles for a drag up across the whole panel."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +45,10 @@ class Aim:
     lamp: Lamp | None = None
 
 
-def aim(editor: Editor, sight: Sight, at: Point, scale: float = 1.0, *, ctrl: bool = False) -> Aim:
+def aim(
+    editor: Editor, sight: Sight, at: Point, scale: float = 1.0, *, ctrl: bool = False, alt: bool = False,
+    shift: bool = False,
+) -> Aim:
     """What is under the mouse. `scale` is that of the interface."""
     viewer, reach = editor.viewer, REACH * scale
     if viewer.picking:
@@ -45,9 +60,8 @@ def aim(editor: Editor, sight: Sight, at: Point, scale: float = 1.0, *, ctrl: bo
     for handle in handles(editor.session):
         if math.dist(at, sight.place(handle.at)) <= reach * 1.6:
             return Aim("handle", port=handle.port)
-    for lamp in reversed(lamps(editor)):
-        if math.dist(at, sight.place(lamp.at)) <= reach * 1.6:
-            return Aim("light", lamp=lamp)
+    if found := _light(editor, sight, at, scale, alt, shift):
+        return found
     if viewer.compare == "wipe" and sight.under(at):
         grip = wipe_grip(at, sight.place(viewer.wipe), viewer.wipe_angle, ARM * scale, reach)
         if grip:
@@ -56,7 +70,24 @@ def aim(editor: Editor, sight: Sight, at: Point, scale: float = 1.0, *, ctrl: bo
         grip = box_grip(at, sight.rectangle(viewer.region), reach)
         if grip:
             return Aim("region", grip)
-    return Aim("pan")
+    if viewer.orbits or (alt and viewer.scene):
+        return Aim("track" if shift else "orbit")
+    return Aim("matte" if picks(editor) else "pan")
+
+
+def _light(editor: Editor, sight: Sight, at: Point, scale: float, alt: bool, shift: bool) -> Aim | None:
+    """The light there, or what it shines to; the selected one first."""
+    near = REACH * scale * 1.6
+    if math.dist(at, middle_of(sight, scale)) <= RADIUS * scale + near:
+        for lamp in reversed(suns(editor)):
+            if math.dist(at, knob_of(sight, scale, lamp.camera, lamp.light.direction)) <= near:
+                return Aim("sun", lamp=lamp)
+    for lamp in reversed(lamps(editor)):
+        if math.dist(at, sight.place(lamp.at)) <= near:
+            return Aim("light depth" if alt else "light drop" if shift else "light", lamp=lamp)
+        if lamp.aims and math.dist(at, sight.place(lamp.aims[0])) <= near:
+            return Aim("goal depth" if alt else "goal", lamp=lamp)
+    return None
 
 
 @dataclass
@@ -70,14 +101,29 @@ class Hold:
     """From the mouse to the held point, as a fraction of the picture."""
     box: Box = (0.0, 0.0, 1.0, 1.0)
     moved: bool = False
+    scale: float = 1.0
+    """That of the interface."""
+    orbit: Orbit | None = None
+    """The camera, as it was."""
+    depth: float = 0.0
+    """How far away it is what was pressed on."""
 
     @classmethod
-    def begin(cls, editor: Editor, sight: Sight, at: Point, aim: Aim) -> Hold:
+    def begin(cls, editor: Editor, sight: Sight, at: Point, aim: Aim, scale: float = 1.0) -> Hold:
         """Take hold of what is aimed at."""
-        hold, (x, y) = cls(aim, at), sight.fraction(at)
+        hold, (x, y) = cls(aim, at, scale=scale), sight.fraction(at)
         held = next((one.at for one in handles(editor.session) if one.port == aim.port), None)
         if aim.lamp is not None:
             held, editor.lights[str(aim.lamp.port)] = aim.lamp.at, aim.lamp.index
+            if aim.what in ("goal", "goal depth") and aim.lamp.aims:
+                held, hold.depth = aim.lamp.aims
+            elif aim.what == "sun":
+                knob = knob_of(sight, scale, aim.lamp.camera, aim.lamp.light.direction)
+                held, hold.offset = None, (knob[0] - at[0], knob[1] - at[1])
+        if aim.what in ("orbit", "track") and (scene := scene_at(editor)) is not None:
+            hold.orbit = Orbit.of(scene)
+            depth = editor.viewer.ground.depth(editor, (x, y), SCENE) if aim.what == "track" else None
+            hold.depth = depth if depth is not None and depth < FAR else hold.orbit.distance
         if aim.what == "wipe" and aim.grip == "line":
             held = editor.viewer.wipe
         if held is not None:
@@ -91,14 +137,16 @@ class Hold:
         self.moved = self.moved or math.dist(at, self.start) > 3.0
         viewer, (x, y), begun = editor.viewer, sight.fraction(at), sight.fraction(self.start)
         match self.aim.what:
-            case "pan":
+            case "pan" | "matte":
                 if by != (0.0, 0.0) and self.moved:
                     moved = sight.panned(*by)
                     viewer.zoom, viewer.pan = moved.zoom, moved.pan
             case "handle" if self.moved:
                 self._move_handle(editor, (x + self.offset[0], y + self.offset[1]))
-            case "light" if self.moved and self.aim.lamp is not None:
-                put(editor, self.aim.lamp, (x + self.offset[0], y + self.offset[1]))
+            case "light" | "light depth" | "light drop" | "goal" | "goal depth" | "sun" if self.moved:
+                self._move_light(editor, sight, at, (x + self.offset[0], y + self.offset[1]))
+            case "orbit" | "track" if self.moved and self.orbit is not None:
+                self._move_camera(editor, sight, at, self.orbit)
             case "wipe" if self.aim.grip == "angle":
                 viewer.wipe_angle = wipe_angle(at, sight.place(viewer.wipe))
             case "wipe":
@@ -116,8 +164,10 @@ class Hold:
     def release(self, editor: Editor, sight: Sight, at: Point) -> None:
         """Let go."""
         viewer = editor.viewer
-        if self.aim.what in ("handle", "light"):
+        if self.token:
             editor.session.seal()
+        elif self.aim.what == "matte" and not self.moved:
+            click(editor, sight, at)
         elif self.aim.what == "new region":
             viewer.drawing_region = False
             viewer.region = viewer.region if self.moved else None
@@ -126,12 +176,52 @@ class Hold:
             if not self.moved and sight.under(at):
                 viewer.markers = toggled(viewer.markers, sight, at)
 
+    @property
+    def token(self) -> str:
+        """The merge token of what it does to the document; "" if it does nothing."""
+        if self.aim.port is not None and self.aim.what == "handle":
+            return f"handle {self.aim.port}"
+        return token(self.aim.lamp) if self.aim.lamp else "orbit" if self.orbit else ""
+
+    def _move_light(self, editor: Editor, sight: Sight, at: Point, to: Point) -> None:
+        lamp = self.aim.lamp
+        assert lamp is not None
+        farther = 2.0 ** (DOUBLINGS * (self.start[1] - at[1]) * sight.density / sight.panel[1])
+        match self.aim.what:
+            case "light":
+                put(editor, lamp, to)
+            case "light depth":
+                put(editor, lamp, lamp.at, lamp.depth * farther)
+            case "light drop":
+                drop(editor, lamp, to)
+            case "goal":
+                turn(editor, lamp, to, self.depth)
+            case "goal depth" if lamp.aims:
+                turn(editor, lamp, lamp.aims[0], self.depth * farther)
+            case "sun":
+                knob = at[0] + self.offset[0], at[1] + self.offset[1]
+                direction = direction_at(sight, self.scale, lamp.camera, knob)
+                change(editor, lamp, replace(lamp.light, direction=direction))
+            case _:
+                pass
+
+    def _move_camera(self, editor: Editor, sight: Sight, at: Point, orbit: Orbit) -> None:
+        """From where it was: nothing adds up."""
+        editor.dragging = True
+        if self.aim.what == "orbit":
+            across = sight.panel[0] / sight.density
+            orbit = orbit.turned((at[0] - self.start[0]) / across, (at[1] - self.start[1]) / across)
+        else:
+            (x, y), (left, top) = sight.fraction(at), sight.fraction(self.start)
+            orbit = orbit.moved(x - left, y - top, self.depth, aspect_of(editor))
+        put_camera(editor, orbit, self.token)
+
     def _move_handle(self, editor: Editor, to: Point) -> None:
         port = self.aim.port
         assert port is not None
         editor.dragging = True
         position = tuple(round(min(max(part, -1.0), 2.0), 5) for part in to)
-        editor.attempt(lambda: editor.session.set(port, position, merge=f"handle {port}"))
+        editor.attempt(lambda: editor.session.set(port, position, merge=self.token))
 
 
 def toggled(markers: tuple[Point, ...], sight: Sight, at: Point) -> tuple[Point, ...]:

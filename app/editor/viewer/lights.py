@@ -8,24 +8,34 @@ from typing import TYPE_CHECKING
 
 from ....nodes import Camera, Kind, Light, LightKind, lights_of
 from ...graph import Port, Unknown, signature
-from ..inspector.lights import changed, count_of, light_at
+from ..inspector.lights import added, changed, count_of, fresh, light_at, removed
+from .geometry import Point
+from .perspective import Place, dot, moved, project, unit, unproject
 
 if TYPE_CHECKING:
     from ..editor import Editor
 
-Point = tuple[float, float]
-Place = tuple[float, float, float]
-
 MOST = 64
 """Lights that are shown together; of longer lists only the selected one is."""
 
-_AHEAD = 0.12
-"""Length of the line from a spot, as a part of its depth."""
+_SHORTEST = 0.12
+"""Least length of the line from a spot, as a part of its depth."""
+
+_NEAREST = 0.2
+"""Least depth of the end of that line, as a part of that of the spot."""
+
+_OVER = 0.05
+"""How far before a surface a light is dropped, as a part of its depth; a sphere's radius is added."""
+
+_DEFAULT_DEPTH = 5.0
 
 
 @dataclass(frozen=True)
 class Lamp:
-    """A light in front of the camera: its value, its number there, and where it is as a fraction of the picture."""
+    """A light before the camera: its value, its number there, and where it is as a fraction of the picture.
+
+    A sun is everywhere: `at` is the middle of the picture, and the depth 0.
+    """
 
     port: Port
     index: int
@@ -35,76 +45,172 @@ class Lamp:
     depth: float
     chosen: bool
 
+    @property
+    def goal(self) -> Place | None:
+        """A place that a spot shines to, as far away as its direction is long, but where it can be seen."""
+        length = math.hypot(*self.light.direction)
+        if self.light.kind is not LightKind.SPOT or not 0.0 < length < math.inf:
+            return None
+        far = max(1.0, _SHORTEST * self.depth / length)
+        ahead = dot(self.camera.forward, self.light.direction) * far
+        if self.depth + ahead < _NEAREST * self.depth:
+            far *= (1.0 - _NEAREST) * self.depth / -ahead
+        return moved(self.light.place, self.light.direction, far)
+
+    @property
+    def aims(self) -> tuple[Point, float] | None:
+        """Where the camera sees that, and how deep."""
+        goal = self.goal
+        seen = project(self.camera, goal) if goal else None
+        return (seen[:2], seen[2]) if seen else None
+
 
 def lamps(editor: Editor) -> tuple[Lamp, ...]:
-    """Those of the active node, the selected one last; none if no camera is linked to it, or none is known yet."""
-    session = editor.session
-    item = session.graph.nodes.get(session.active)
-    if item is None or isinstance(item, Unknown):
-        return ()
-    face, found = signature(item), list[Lamp]()
-    values = [name for name, value in face.values.items() if value.type == "lights"]
-    if not values or (camera := _camera(editor, [name for name, one in face.inputs.items() if one.kind is Kind.CAMERA])
-                      ) is None:
-        return ()
-    for name in values:
-        port = Port(session.active, name)
-        numbers = session.value(port)
-        if session.linked(port) is not None or not isinstance(numbers, tuple) or not numbers:
-            continue
-        chosen = min(editor.lights.get(str(port), 0), count_of(numbers) - 1)
+    """Those that the camera sees, the selected one last; none if no camera is linked, or none is known yet."""
+    return tuple(lamp for lamp in _all(editor) if lamp.light.kind is not LightKind.SUN)
+
+
+def suns(editor: Editor) -> tuple[Lamp, ...]:
+    """The suns of the active node, the selected one last."""
+    return tuple(lamp for lamp in _all(editor) if lamp.light.kind is LightKind.SUN)
+
+
+def _all(editor: Editor) -> tuple[Lamp, ...]:
+    camera, found = _camera(editor), list[Lamp]()
+    for port in lists(editor) if camera else ():
+        numbers = _numbers(editor, port)
+        chosen = _chosen(editor, port)
         few = count_of(numbers) <= MOST
         for index, light in enumerate(lights_of(numbers)) if few else ((chosen, light_at(numbers, chosen)),):
-            seen = project(camera, light.place)
-            if light.kind is not LightKind.SUN and seen is not None:
+            assert camera is not None
+            seen = (0.5, 0.5, 0.0) if light.kind is LightKind.SUN else project(camera, light.place)
+            if seen is not None:
                 found.append(Lamp(port, index, light, camera, seen[:2], seen[2], index == chosen))
     return tuple(sorted(found, key=lambda lamp: lamp.chosen))
 
 
-def put(editor: Editor, lamp: Lamp, to: Point) -> None:
-    """Put a light elsewhere on the picture, as far from the camera as it is."""
-    u, v = (min(max(part, -1.0), 2.0) for part in to)
-    numbers = editor.session.value(lamp.port)
-    if not isinstance(numbers, tuple) or lamp.index >= count_of(numbers):
-        return
-    light = replace(light_at(numbers, lamp.index), place=unproject(lamp.camera, u, v, lamp.depth))
-    value = changed(numbers, lamp.index, light)
-    editor.dragging = True
-    editor.attempt(lambda: editor.session.set(lamp.port, value, merge=f"light {lamp.port} {lamp.index}"))
-
-
-def ahead(lamp: Lamp) -> Point | None:
-    """Where on the picture a spot shines to, a little way from it; None for other lights."""
-    length = math.hypot(*lamp.light.direction)
-    if lamp.light.kind is not LightKind.SPOT or not length:
-        return None
-    far = lamp.depth * _AHEAD / length
-    x, y, z = (at + way * far for at, way in zip(lamp.light.place, lamp.light.direction, strict=True))
-    seen = project(lamp.camera, (x, y, z))
-    return None if seen is None else seen[:2]
-
-
-def project(camera: Camera, place: Place) -> tuple[float, float, float] | None:
-    """Where a place is on the picture, and its depth; None for what is not in front of the camera."""
-    try:
-        u, v, depth = camera.project(place)
-    except ZeroDivisionError:
-        return None
-    return (u, v, depth) if depth > 0.0 and math.isfinite(u) and math.isfinite(v) else None
-
-
-def unproject(camera: Camera, u: float, v: float, depth: float) -> Place:
-    """The place in the world of a point of the picture at a depth."""
-    rows, seen = camera.inverse, (u * depth, v * depth, depth, 1.0)
-    x, y, z = (
-        round(sum(part * number for part, number in zip(rows[at : at + 4], seen, strict=True)), 5) for at in (0, 4, 8)
-    )
-    return x, y, z
-
-
-def _camera(editor: Editor, inputs: list[str]) -> Camera | None:
+def lists(editor: Editor) -> tuple[Port, ...]:
+    """The values of the active node that list lights, and that nothing else drives."""
     session = editor.session
+    item = session.graph.nodes.get(session.active)
+    if item is None or isinstance(item, Unknown):
+        return ()
+    ports = (Port(session.active, name) for name, value in signature(item).values.items() if value.type == "lights")
+    return tuple(port for port in ports if session.linked(port) is None)
+
+
+def _numbers(editor: Editor, port: Port) -> tuple[float, ...]:
+    value = editor.session.value(port)
+    return value if isinstance(value, tuple) else ()
+
+
+def _chosen(editor: Editor, port: Port) -> int:
+    """The selected light; -1 if there is none."""
+    return min(max(editor.lights.get(str(port), 0), 0), count_of(_numbers(editor, port)) - 1)
+
+
+def _camera(editor: Editor) -> Camera | None:
+    """The one that is linked to the active node."""
+    session = editor.session
+    item = session.graph.nodes.get(session.active)
+    if item is None or isinstance(item, Unknown):
+        return None
     path = "/".join((*session.place, session.active))
+    inputs = [name for name, socket in signature(item).inputs.items() if socket.kind is Kind.CAMERA]
     linked = (name for name in inputs if session.linked(Port(session.active, name)) is not None)
     found = (editor.preview.camera(Port(path, name)) for name in linked)
     return next((camera for camera in found if camera is not None), None)
+
+
+# --- what is done to them ------------------------------------------------------------------------------------------
+
+
+def put(editor: Editor, lamp: Lamp, to: Point, depth: float | None = None) -> None:
+    """Put a light elsewhere on the picture, as far from the camera as it is, or at another depth."""
+    u, v = (min(max(part, -1.0), 2.0) for part in to)
+    change(editor, lamp, replace(lamp.light, place=unproject(lamp.camera, u, v, depth or lamp.depth)))
+
+
+def drop(editor: Editor, lamp: Lamp, to: Point) -> None:
+    """Put it before the surface that is seen there; where none is, it stays as far away as it is."""
+    place = _over(editor, lamp.camera, to, lamp.light)
+    if place is None:
+        put(editor, lamp, to)
+    else:
+        change(editor, lamp, replace(lamp.light, place=place))
+
+
+def turn(editor: Editor, lamp: Lamp, to: Point, depth: float) -> None:
+    """Let a spot shine to a point of the picture at a depth."""
+    u, v = (min(max(part, -1.0), 2.0) for part in to)
+    direction = moved(unproject(lamp.camera, u, v, depth), lamp.light.place, -1.0)
+    x, y, z = (round(part, 5) for part in direction)
+    if any((x, y, z)):
+        change(editor, lamp, replace(lamp.light, direction=(x, y, z)))
+
+
+def change(editor: Editor, lamp: Lamp, light: Light, merge: str = "") -> None:
+    """Let it be that one; what is done to it in a row is one step."""
+    numbers = _numbers(editor, lamp.port)
+    if lamp.index >= count_of(numbers):
+        return
+    value = changed(numbers, lamp.index, light)
+    editor.dragging = True
+    editor.attempt(lambda: editor.session.set(lamp.port, value, merge=merge or token(lamp)))
+
+
+def token(lamp: Lamp) -> str:
+    """The merge token of what is done to it."""
+    return f"light {lamp.port} {lamp.index}"
+
+
+def can_add(editor: Editor) -> bool:
+    """True if the active node has a list of lights, and is told what it sees them with."""
+    return bool(lists(editor)) and _camera(editor) is not None
+
+
+def add(editor: Editor, to: Point) -> None:
+    """Add a point light before the surface that is seen there; where none is, as deep as the selected one."""
+    ports, camera = lists(editor), _camera(editor)
+    if not ports or camera is None:
+        return
+    port, light = ports[0], fresh(LightKind.POINT)
+    numbers, chosen = _numbers(editor, port), _chosen(editor, port)
+    depths = [lamp.depth for lamp in lamps(editor)]
+    deep = depths[-1] if depths else _DEFAULT_DEPTH
+    place = _over(editor, camera, to, light) or unproject(camera, *to, deep)
+    made, at = added(numbers, chosen, replace(light, place=place))
+    if made == numbers:
+        editor.say("there is no room for another light")
+        return
+    editor.lights[str(port)] = at
+    editor.attempt(lambda: editor.session.edit(f"Add light to {port.node}", editor.session.graph.set(port, made)))
+
+
+def can_remove(editor: Editor) -> bool:
+    """True if a light is selected."""
+    return any(_chosen(editor, port) >= 0 for port in lists(editor))
+
+
+def remove(editor: Editor) -> None:
+    """Remove the selected light."""
+    session = editor.session
+    port = next((port for port in lists(editor) if _chosen(editor, port) >= 0), None)
+    if port is not None:
+        made, at = removed(_numbers(editor, port), _chosen(editor, port))
+        editor.lights[str(port)] = max(at, 0)
+        editor.attempt(lambda: session.edit(f"Remove light of {port.node}", session.graph.set(port, made)))
+
+
+def _over(editor: Editor, camera: Camera, to: Point, light: Light) -> Place | None:
+    """A place before the surface that is seen at a point of the picture, on the way to it."""
+    found = editor.viewer.ground.surface(editor, camera, to)
+    if found is None:
+        return None
+    place, depth = found
+    back = moved(camera.eye, place, -1.0)
+    wanted = _OVER * depth + (light.size if light.kind is LightKind.SPHERE else 0.0)
+    way = unit(back)
+    far = min(wanted / max(-dot(way, camera.forward), 1e-3), 0.9 * math.hypot(*back))
+    x, y, z = (round(part, 5) for part in moved(place, way, far))
+    return x, y, z

@@ -7,22 +7,19 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
-from ..inspector.colors import swatch
-from ..inspector.lights import title
 from ..theme.palette import RGB
 from ..theme.style import u32, ui_scale
+from .axes import draw_axes
+from .focus import distance_in_words, focused, is_distance
 from .geometry import GRID_FROM, Box, Point, Sight, wipe_direction
 from .handles import handles
 from .holding import ARM
-from .lights import ahead, lamps
+from .lamp_lines import draw_dome, draw_lamps
+from .mattes import draw_name
+from .strokes import BLACK, WHITE, around, cross, frame, label
 
 if TYPE_CHECKING:
     from ..editor import Editor
-
-_WHITE: RGB = (1.0, 1.0, 1.0)
-_BLACK: RGB = (0.0, 0.0, 0.0)
-"""Lines over pictures of any color: white on black, whatever the theme."""
-
 
 def draw_overlays(editor: Editor, sight: Sight) -> None:
     """Everything that belongs to a place on the picture."""
@@ -33,19 +30,24 @@ def draw_overlays(editor: Editor, sight: Sight) -> None:
     if viewer.region is not None:
         _region(editor, lines, sight.rectangle(viewer.region))
     if viewer.measured is not None:
-        _dashed(lines, sight.rectangle(viewer.measured), editor.palette.accent)
+        frame(lines, sight.rectangle(viewer.measured), editor.palette.accent)
     for number, marker in enumerate(viewer.markers, 1):
         _marker(lines, sight.place(marker), str(number))
     if viewer.compare == "wipe" and editor.session.viewed("B") is not None:
         _wipe(editor, lines, sight)
     _handles(editor, lines, sight)
-    _lamps(editor, lines, sight)
+    draw_lamps(editor, lines, sight)
+    draw_dome(editor, lines, sight)
+    if viewer.orbits or (viewer.scene and viewer.hovered and imgui.get_io().key_alt):
+        draw_axes(editor, lines, sight)
+    _picked_depth(editor, lines, sight)
+    draw_name(editor, sight)
 
 
 def _grid(lines: imgui.ImDrawList, sight: Sight) -> None:
     """Lines between pixels that are in sight."""
     left, top, right, bottom = _visible(sight)
-    color = u32(_WHITE, min((sight.zoom - GRID_FROM) / 16.0, 1.0) * 0.16 + 0.04)
+    color = u32(WHITE, min((sight.zoom - GRID_FROM) / 16.0, 1.0) * 0.16 + 0.04)
     x0, y0 = sight.screen((left, top))
     x1, y1 = sight.screen((right, bottom))
     step = sight.zoom / sight.density
@@ -71,15 +73,15 @@ def _corners(sight: Sight) -> tuple[Point, Point]:
 
 def _region(editor: Editor, lines: imgui.ImDrawList, box: Box) -> None:
     left, top, right, bottom = box
-    _outlined(lines, box)
+    frame(lines, box)
     size = 3.5 * ui_scale()
     middle = (left + right) / 2, (top + bottom) / 2
     for x in (left, middle[0], right):
         for y in (top, middle[1], bottom):
             if (x, y) != middle:
-                lines.add_rect_filled((x - size, y - size), (x + size, y + size), u32(_BLACK, 0.7))
-                lines.add_rect_filled((x - size + 1, y - size + 1), (x + size - 1, y + size - 1), u32(_WHITE))
-    _cross(lines, middle, 5.0 * ui_scale())
+                lines.add_rect_filled((x - size, y - size), (x + size, y + size), u32(BLACK, 0.7))
+                lines.add_rect_filled((x - size + 1, y - size + 1), (x + size - 1, y + size - 1), u32(WHITE))
+    cross(lines, middle, 5.0 * ui_scale())
     editor.places["viewer region"] = box
 
 
@@ -89,15 +91,15 @@ def _wipe(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None:
     x, y = sight.place(viewer.wipe)
     dx, dy = wipe_direction(viewer.wipe_angle)
     end = x + dx * ARM * scale, y + dy * ARM * scale
-    for color, width in ((u32(_BLACK, 0.6), 4.0), (u32(_WHITE), 2.0)):
+    for color, width in ((u32(BLACK, 0.6), 4.0), (u32(WHITE), 2.0)):
         lines.add_line((x, y), end, color, width * scale)
         lines.add_circle_filled((x, y), (width + 4.0) * scale, color)
         lines.add_circle_filled(end, (width + 2.5) * scale, color)
     for name, away in (("A", -1.0), ("B", 1.0)):
         at = x + dy * away * 18 * scale, y - dx * away * 18 * scale
-        _label(lines, at, name)
-    editor.places["viewer wipe"] = _around((x, y), 6.0 * scale)
-    editor.places["viewer wipe angle"] = _around(end, 6.0 * scale)
+        label(lines, at, name)
+    editor.places["viewer wipe"] = around((x, y), 6.0 * scale)
+    editor.places["viewer wipe angle"] = around(end, 6.0 * scale)
 
 
 def _handles(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None:
@@ -106,68 +108,32 @@ def _handles(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None:
     for handle in handles(editor.session):
         x, y = sight.place(handle.at)
         near = math.dist((mouse.x, mouse.y), (x, y)) <= 10.0 * scale
-        color = editor.palette.accent if near else _WHITE
-        _cross(lines, (x, y), 9.0 * scale, color)
-        lines.add_circle((x, y), 5.0 * scale, u32(_BLACK, 0.6), 0, 3.0 * scale)
+        color = editor.palette.accent if near else WHITE
+        cross(lines, (x, y), 9.0 * scale, color)
+        lines.add_circle((x, y), 5.0 * scale, u32(BLACK, 0.6), 0, 3.0 * scale)
         lines.add_circle((x, y), 5.0 * scale, u32(color), 0, 1.5 * scale)
-        if near:
-            _label(lines, (x, y + 20 * scale), str(handle.port))
-        editor.places[f"handle {handle.port}"] = _around((x, y), 6.0 * scale)
+        port, words = handle.port, [str(handle.port)] if near else []
+        if port == focused(editor.session):
+            words.append(distance_in_words(editor.viewer.ground.depth(editor, handle.at)))
+        if words:
+            editor.places[f"label {port}"] = label(lines, (x, y + 20 * scale), "  ".join(words))
+        editor.places[f"handle {handle.port}"] = around((x, y), 6.0 * scale)
 
 
-def _lamps(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None:
-    """A disk in the color of each light, a line to where a spot shines."""
+def _picked_depth(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None:
+    """While a distance is picked: the one that is under the pointer."""
+    viewer, port = editor.viewer, focused(editor.session)
+    if not viewer.hovered or port is None or viewer.picking != str(port) or not is_distance(port):
+        return
     mouse, scale = imgui.get_mouse_pos(), ui_scale()
-    for lamp in lamps(editor):
-        at = sight.place(lamp.at)
-        near = math.dist((mouse.x, mouse.y), at) <= 10.0 * scale
-        ring = editor.palette.accent if near or lamp.chosen else _WHITE
-        if (end := ahead(lamp)) is not None:
-            for color, width in ((u32(_BLACK, 0.6), 3.0), (u32(ring), 1.5)):
-                lines.add_line(at, sight.place(end), color, width * scale)
-        lines.add_circle_filled(at, 7.5 * scale, u32(_BLACK, 0.6))
-        lines.add_circle_filled(at, 6.0 * scale, u32(ring))
-        lines.add_circle_filled(at, 4.5 * scale, u32(swatch(lamp.light.color) if lamp.light.on else _BLACK))
-        if near:
-            _label(lines, (at[0], at[1] + 20 * scale), title(lamp.light, lamp.index))
-        editor.places[f"handle {lamp.port} {lamp.index}"] = _around(at, 6.0 * scale)
+    words = distance_in_words(viewer.ground.depth(editor, sight.fraction((mouse.x, mouse.y))))
+    editor.places[f"label {port}"] = label(lines, (mouse.x, mouse.y + 26 * scale), words)
 
 
 def _marker(lines: imgui.ImDrawList, at: Point, text: str) -> None:
     scale = ui_scale()
-    _cross(lines, at, 6.0 * scale)
-    _label(lines, (at[0] + 10 * scale, at[1] - 10 * scale), text)
-
-
-def _cross(lines: imgui.ImDrawList, at: Point, arm: float, color: RGB = _WHITE) -> None:
-    x, y = at
-    for shade, width in ((u32(_BLACK, 0.6), 3.0), (u32(color), 1.0)):
-        lines.add_line((x - arm, y), (x + arm, y), shade, width)
-        lines.add_line((x, y - arm), (x, y + arm), shade, width)
-
-
-def _outlined(lines: imgui.ImDrawList, box: Box) -> None:
-    lines.add_rect(box[:2], box[2:], u32(_BLACK, 0.6), 0.0, 3.0)
-    lines.add_rect(box[:2], box[2:], u32(_WHITE), 0.0, 1.0)
-
-
-def _dashed(lines: imgui.ImDrawList, box: Box, color: RGB) -> None:
-    """A thin frame that differs from that of the region."""
-    lines.add_rect(box[:2], box[2:], u32(_BLACK, 0.6), 0.0, 3.0)
-    lines.add_rect(box[:2], box[2:], u32(color), 0.0, 1.0)
-
-
-def _label(lines: imgui.ImDrawList, center: Point, text: str) -> None:
-    """Text that can be read over any picture."""
-    size = imgui.calc_text_size(text)
-    x, y = round(center[0] - size.x / 2), round(center[1] - size.y / 2)
-    pad = 3.0 * ui_scale()
-    lines.add_rect_filled((x - pad, y), (x + size.x + pad, y + size.y), u32(_BLACK, 0.6), pad)
-    lines.add_text((x, y), u32(_WHITE), text)
-
-
-def _around(at: Point, reach: float) -> Box:
-    return at[0] - reach, at[1] - reach, at[0] + reach, at[1] + reach
+    cross(lines, at, 6.0 * scale)
+    label(lines, (at[0] + 10 * scale, at[1] - 10 * scale), text)
 
 
 # --- messages ------------------------------------------------------------------------------------------------------
@@ -177,7 +143,7 @@ def draw_progress(editor: Editor, sight: Sight, fraction: float) -> None:
     """A thin line at the top that grows."""
     (left, top), (right, _) = _corners(sight)
     lines, height = imgui.get_window_draw_list(), 2.0 * ui_scale()
-    lines.add_rect_filled((left, top), (right, top + height), u32(_BLACK, 0.4))
+    lines.add_rect_filled((left, top), (right, top + height), u32(BLACK, 0.4))
     lines.add_rect_filled((left, top), (left + (right - left) * fraction, top + height), u32(editor.palette.accent))
 
 

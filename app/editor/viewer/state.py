@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
+from .ground import Ground
 from .pacing import Pace
 
 Channels = Literal["color", "red", "green", "blue", "alpha", "luminance", "false color"]
@@ -80,6 +81,11 @@ class ViewerState:
     hovered: bool = False
     picking: str = ""
     """`node.value` that the next click on the picture sets: a color to that of the pixel, a position to its place."""
+    orbiting: bool = False
+    """True lets the mouse move the camera of the scene that is seen, not the picture."""
+    scene: str = ""
+    """The node whose camera that is; "" where there is none."""
+    ground: Ground = field(default_factory=Ground)
     scopes: set[str] = field(default_factory=lambda: {"histogram", "waveform"})
     scopes_of_scene: bool = False
     """True measures scene-linear numbers, False what the display shows."""
@@ -89,6 +95,11 @@ class ViewerState:
     def compares(self) -> bool:
         """True if B is needed."""
         return self.compare != "off"
+
+    @property
+    def orbits(self) -> bool:
+        """True if the mouse moves a camera."""
+        return self.orbiting and self.scene != ""
 
     def show(self, channels: Channels) -> None:
         """Show these channels; asked for again, all of them."""

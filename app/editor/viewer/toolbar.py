@@ -14,6 +14,7 @@ from ...media import displays, views
 from ..theme.style import ui_scale
 from ..toolkit.buttons import dropdown, entries, entry, room_for, tool
 from ..toolkit.fields import number
+from .focus import focused
 from .picking import list_ports, pick_port
 from .state import MEANINGS
 from .wanted import A, B
@@ -84,6 +85,10 @@ def _tools(editor: Editor, asked_view: str, is_data: bool) -> list[_Tool]:
         found.append(_port(editor, B))
     if is_data:
         found += _range(editor)
+    if viewer.scene:
+        found.append(_action(editor, icons.ICON_FA_CAMERA_ROTATE, "viewer.orbit"))
+    if focused(editor.session):
+        found.append(_action(editor, icons.ICON_FA_CROSSHAIRS, "viewer.pick_focus"))
     lit, widest = viewer.channels != "color", max(map(room_for, _SHORT.values()))
     found.append(
         _menu(editor, _SHORT[viewer.channels], "channels", "Channels", lit=lit, apart=True, width=widest)

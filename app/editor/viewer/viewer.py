@@ -8,17 +8,20 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
-from ....nodes import Kind
+from ....nodes import Kind, Plain
 from ...graph import OUTPUTS, Port
 from ...renderer.look import Look
 from ..theme.style import ui_scale
 from . import infobar
 from .finding import Finder
+from .focus import is_distance
 from .geometry import Sight
 from .hand import Hand
 from .handles import pixel_place, takes_position
 from .looking import asked_view, look_of, meaning_of, range_of
+from .mattes import picks
 from .measuring import copied, picked_color, written
+from .orbit import orbited
 from .overlays import draw_badge, draw_message, draw_overlays, draw_progress
 from .pacing import Stopwatch
 from .reading import Reader, Scan
@@ -71,6 +74,7 @@ class Viewer:
         port = editor.session.viewed("A")
         b = preview.shown(B) if viewer.compares else None
         now = _Now(preview.shown(A), b, asked_view(editor.session.graph, port) if port else "")
+        viewer.scene = orbited(editor.session)
         self._time(editor, now)
         inner, pad = imgui.internal.get_current_window().inner_rect, 4 * ui_scale()
         imgui.set_cursor_screen_pos((inner.min.x + pad, inner.min.y + pad))
@@ -167,6 +171,8 @@ class Viewer:
             draw_badge(editor, sight, "Click to pick; right click ends", palette.accent)
         elif viewer.drawing_region:
             draw_badge(editor, sight, "Drag a rectangle", palette.accent)
+        elif picks(editor):
+            draw_badge(editor, sight, "Click objects to pick them", palette.accent)
         elif viewer.finding:
             self._search += 1
             draw_badge(editor, sight, f"Searching{'.' * (self._search // 8 % 4)}", palette.accent)
@@ -225,11 +231,23 @@ class Viewer:
             editor.say(f"copied {viewer.pixel[0]}, {viewer.pixel[1]}")
         if self._hand.picked is not None and viewer.picking:
             port = Port.parse(viewer.picking)
-            picked = pixel_place(viewer) if takes_position(editor.session, port) else picked_color(values)
-            editor.attempt(lambda: editor.session.set(port, picked, merge=f"pick {port}"))
+            picked = self._picked(editor, port, values)
+            if picked is not None:
+                editor.attempt(lambda: editor.session.set(port, picked, merge=f"pick {port}"))
             if not imgui.is_mouse_down(imgui.MouseButton_.left):
                 editor.session.seal()
                 viewer.picking = ""
+
+    @staticmethod
+    def _picked(editor: Editor, port: Port, values: tuple[float, ...]) -> Plain | None:
+        """What a value becomes by a click on the picture: a place, a depth or a color; None if nobody knows."""
+        viewer = editor.viewer
+        if takes_position(editor.session, port):
+            return pixel_place(viewer)
+        if not is_distance(port):
+            return picked_color(values)
+        depth = viewer.ground.depth(editor, pixel_place(viewer))
+        return None if depth is None else float(f"{depth:.7g}")
 
     def _hint(self, editor: Editor) -> str:
         port = editor.session.viewed("A")

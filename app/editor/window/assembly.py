@@ -17,6 +17,7 @@ from ..preview import Preview
 from ..services.exporting import Exports
 from ..services.preferences import Store, state_folder
 from ..services.recovery import Recovery
+from ..services.renders import Renders
 from ..services.watching import Watcher
 from ..session import Session
 
@@ -36,10 +37,12 @@ def assemble(device: Device, state: Path | None = None) -> Editor:
     folder = state or state_folder()
     store = Store(folder)
     renderer = Renderer(device, budget=store.now.memory_budget * 2**20)
+    renders = Renders()
+    renderer.pictures.look = renders.render
     display = Display(device)
     return Editor(
         Session(), Preview(renderer, display), store, Actions(table(), lambda: store.now.shortcuts), Exports(),
-        Recovery(folder, store.now.autosave), Watcher(), SystemClipboard(), display, Probe(device),
+        Recovery(folder, store.now.autosave), Watcher(), SystemClipboard(), display, Probe(device), renders=renders,
     )
 
 
@@ -58,6 +61,7 @@ def take_apart(editor: Editor) -> None:
     """End what runs, keep what is to be remembered, give back what the device holds."""
     editor.exports.close()
     editor.watcher.close()
+    editor.renders.close()
     editor.recovery.close(keep=not editor.closing and editor.session.dirty)
     editor.store.flush()
     editor.probe.close()

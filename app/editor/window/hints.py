@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from ..editor import Editor
 from ..keys import shown
+from ..viewer.lights import can_add
+from ..viewer.mattes import picks
 
 Hint = tuple[str, str]
 """Keys or a button, and what they do."""
@@ -17,6 +19,18 @@ def hints(editor: Editor, panel: str) -> tuple[Hint, ...]:
             return ("Click", "take it from the picture"), ("Right click", "leave it")
         if viewer.drawing_region:
             return (("Drag", "the region"),)
+        if viewer.orbits:
+            return (
+                ("Drag", "go around"), ("Shift+drag", "move the scene"), ("Wheel", "nearer"),
+                ("Space+drag", "move the picture"), (_key(editor, "viewer.frame_scene"), "show all of it"),
+            )
+        if picks(editor):
+            return ("Click", "pick an object, or no longer"), ("Drag", "move the picture"), ("Wheel", "zoom")
+        if can_add(editor):
+            return (
+                ("Drag", "move a light"), ("Alt+drag or wheel", "nearer or farther"), ("Shift+drag", "onto a surface"),
+                ("Double click", "add one"), (_key(editor, "viewer.remove_light"), "remove it"),
+            )
     if panel == "Graph" and getattr(canvas, "tool", ""):
         return ("Drag", "across links"), ("Escape", "leave it")
     return tuple((_key(editor, keys), does) for keys, does in _HINTS.get(panel, _ANYWHERE) if _key(editor, keys))

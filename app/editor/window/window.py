@@ -146,7 +146,7 @@ class Window:
         self.frames += 1
         self._restyle()
         editor.places.clear()
-        if not imgui.is_mouse_down(imgui.MouseButton_.left):
+        if not any(map(imgui.is_mouse_down, (imgui.MouseButton_.left, imgui.MouseButton_.middle))):
             editor.dragging = False
         note_scope(editor)
         editor.canvas.hovered = editor.viewer.hovered = False

@@ -11,6 +11,7 @@ from halation.app.document import dumps, load
 from halation.app.editor.session import Session
 from halation.app.errors import DocumentError, GraphError, HalationError, OutputError, UsageError
 from halation.app.graph import Graph, Group, Input, Output, Port
+from halation.presets import sample
 from toy_nodes import TOYS, Gain, Photo, Soften, chain
 
 
@@ -191,3 +192,12 @@ def test_dropped_files(tmp_path):
         "halation": 1, "outputs": {"image": {"type": "Image"}},
         "ui": {"nodes": {"outputs.image": {"x": 0.0, "y": 0.0}}},
     }
+
+
+def test_a_dropped_render_is_read_as_one():
+    session = Session()
+    (id,) = session.drop_files([sample()])
+    assert session.graph.nodes[id].id == "read_render"
+    matte = session.add_matte(id, "object")
+    assert session.graph.nodes[matte].path == session.graph.nodes[id].path and session.selection == {matte}
+    assert session.history.steps == (f"Drop {id}", f"Add {matte}")

@@ -159,7 +159,7 @@ ACTS: dict[str, Act] = {
 
 OTHERS = {
     "edit", "go", "go_to", "new", "open", "open_copy", "open_text", "restore", "save", "save_as", "revert", "reload",
-    "reload_groups", "migrate", "save_group", "add_group", "drop_files",
+    "reload_groups", "migrate", "save_group", "add_group", "drop_files", "add_matte",
 }
 """What needs files or graphs, and what all the others call: tested by name elsewhere."""
 

@@ -8,7 +8,8 @@ from halation.app.editor.session import Session
 from halation.app.editor.viewer.geometry import Sight
 from halation.app.editor.viewer.handles import handles
 from halation.app.editor.viewer.holding import ARM, Hold, aim
-from halation.app.editor.viewer.lights import MOST, ahead, lamps, project, unproject
+from halation.app.editor.viewer.lights import MOST, lamps
+from halation.app.editor.viewer.perspective import project, unproject
 from halation.app.editor.viewer.state import ViewerState
 from halation.app.graph import Port
 from halation.nodes import (
@@ -41,7 +42,7 @@ class Lit(Filter):
 def editor() -> Any:
     return SimpleNamespace(
         session=Session({**catalogue(), "lamps": Lit}), viewer=ViewerState(), dragging=False, lights={},
-        preview=SimpleNamespace(camera={Port("lamps", "camera"): CAMERA}.get), attempt=lambda act: act(),
+        preview=SimpleNamespace(camera={Port("lamps", "camera"): CAMERA}.get, shown=lambda name: None), attempt=lambda act: act(),
     )
 
 
@@ -132,7 +133,8 @@ def test_of_many_lights_the_selected_one_has_a_handle(editor: Any) -> None:
 def test_a_spot_shows_where_it_shines_to(editor: Any) -> None:
     lit(editor, Light(LightKind.SPOT, (0.0, 0.0, 0.0), (0.0, 0.0, -3.0)), MIDDLE)
     point, spot = lamps(editor)
-    assert ahead(spot) == pytest.approx((0.5, 0.5 + 0.6 * 2.0 / 5.0)) and ahead(point) is None
+    assert spot.aims is not None and point.aims is None
+    assert spot.aims[0] == pytest.approx((0.5, 0.5 + 3.0 * 2.0 / 5.0)) and spot.aims[1] == pytest.approx(5.0)
 
 
 @pytest.mark.parametrize("place", [(0.0, 0.0, 0.0), (1.0, 2.0, -3.0), (-4.0, 50.0, 7.0)])

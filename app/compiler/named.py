@@ -1,0 +1,53 @@
+"""Which files a graph names."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from pathlib import PurePath
+
+from ...nodes import Kind, Source
+from ..graph import INPUTS, Graph, Input, Port
+from .expand import Flat, expand
+from .ir import Picture
+
+
+class Named:
+    """The pictures that a graph names, and those that are bound to its inputs."""
+
+    def __init__(self, flat: Flat, bindings: Mapping[str, Picture]) -> None:
+        self._flat, self._bindings = flat, bindings
+
+    def __iter__(self) -> Iterator[tuple[Picture, str]]:
+        """Every picture and who reads it, inputs first, then sources. A path may stand for a sequence."""
+        for port, socket in self._flat.inputs.items():
+            named = port.node == INPUTS and not socket.socket().single
+            picture = self.bound(port, socket) if named else None
+            if picture is not None:
+                yield picture, f"{port}"
+        for path, node in self._flat.nodes.items():
+            for value in node.values.values() if isinstance(node, Source) else ():
+                if value.pixels and getattr(node, value.name):
+                    yield Picture(self.located(getattr(node, value.name), path), "", Kind.IMAGE, 4), path
+
+    def bound(self, port: Port, socket: Input) -> Picture | None:
+        """The picture bound to a graph input, else its default file. A camera is none."""
+        if socket.kind is Kind.CAMERA:
+            return None
+        kind, width = socket.kind, socket.socket().channels
+        bound = self._bindings.get(port.socket) if port.node == INPUTS else None
+        if bound is not None:
+            return replace(bound, kind=kind, width=width)
+        if not socket.file:
+            return None
+        folder = self._flat.folders[port.node.removesuffix(INPUTS)]
+        return Picture(str(PurePath(folder, socket.file)), socket.layer, kind, width)
+
+    def located(self, file: str, node: str) -> str:
+        """Relative paths start at the folder of the graph file that the node came from."""
+        return str(PurePath(self._flat.folders[node], file))
+
+
+def named_files(graph: Graph, bindings: Mapping[str, Picture]) -> list[str]:
+    """The paths of all pictures that a graph reads, groups included; a path may stand for a sequence."""
+    return [picture.path for picture, _ in Named(expand(graph), bindings) if not picture.in_memory]

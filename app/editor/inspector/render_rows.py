@@ -1,0 +1,223 @@
+"""A node that reads a render: what is in the file, what each layer is taken for and why, what is left over."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import imgui
+
+from ....nodes import Kind, Node, Socket, Value
+from ...graph import Port
+from ...media.naming import Role
+from ...media.overview import Overview, Use
+from ...media.passes import Pass
+from ...media.report import camera_rows, either
+from ..theme.palette import RGB
+from ..toolkit.buttons import dropdown
+from ..toolkit.places import item_rect, place
+from ..toolkit.words import SMALL, font, tip, wrapped, write
+from .matte_rows import MatteRows
+from .render_facts import FOUND, overview_of, render_path, rule_words
+from .value_rows import ValueRows
+
+if TYPE_CHECKING:
+    from .rows import Rows
+
+_PART = ("", "name", "channels", "types", "compression", "storage", "color space", "window", "")
+_USE_AS = "use as"
+
+
+class RenderRows:
+    """The values of such a node, with everything that helps to set them."""
+
+    def __init__(self, values: ValueRows) -> None:
+        self._values = values
+        self._mattes = MatteRows(values.fields)
+
+    def draw(self, rows: Rows, id: str, item: Node) -> None:
+        """The values, then what there is to know."""
+        editor, path = rows.editor, render_path(item)
+        seen = overview_of(editor, id)
+        others = [value for value in item.values.values() if not value.role]
+        rows.fit([*(value.name for value in others), *(_label(value) for value in item.values.values() if value.role)])
+        for value in others:
+            self._values.draw(rows, (Port(id, value.name),), value)
+            if value.name == path:
+                _about(rows, seen)
+            if value.matte:
+                self._mattes.draw(rows, Port(id, value.name))
+        roles = [value for value in item.values.values() if value.role]
+        if roles:
+            self._layers(rows, id, item, roles, seen)
+        if not isinstance(seen, Overview):
+            return
+        if roles:
+            self._others(rows, id, roles, seen)
+        if any(output.socket.kind is Kind.CAMERA for output in item.outputs.values()):
+            _camera(rows, id, seen)
+        _file(rows, id, seen)
+
+    # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _layers(
+        self, rows: Rows, id: str, item: Node, roles: Sequence[Value], seen: Overview | str | None
+    ) -> None:
+        """A field for the layer of every output, and one for how its numbers are meant; last what is not there."""
+        uses = seen.uses if isinstance(seen, Overview) else {}
+        there = {role for role, use in uses.items() if use.layer or use.open or use.fault}
+        there |= {Role(value.role) for value in roles if getattr(item, value.name) != value.default}
+        shown = [value for value in roles if Role(value.role) in there]
+        rest = [value for value in roles if Role(value.role) not in there]
+        if shown:
+            rows.heading("Layers")
+        for value in shown:
+            self._role(rows, id, item, value, uses.get(Role(value.role)))
+        if not rest:
+            return
+        count = len({value.role for value in rest})
+        title = f"Not in This File ({count})" if uses else f"Layers ({count})"
+        if _opened(rows, f"{title}###rest {id}", f"more {id} layers"):
+            for value in rest:
+                self._role(rows, id, item, value, None)
+
+    def _role(self, rows: Rows, id: str, item: Node, value: Value, use: Use | None) -> None:
+        """One value, and what there is to say of it."""
+        socket = _socket(item, value)
+        color = rows.palette.kinds[socket.kind] if socket and value.type == "text" else None
+        self._values.draw(rows, (Port(id, value.name),), value, _label(value), color)
+        if use is None:
+            return
+        has_choice = f"{_output(value)}_is" in item.values
+        if value.type == "text":
+            said = use.fault or use.reason
+            rows.field_note(said, rows.palette.error if use.fault else rows.palette.warning if use.open else None)
+            if use.rule and not has_choice:
+                rows.field_note(rule_words(use.rule, told=False))
+        elif use.rule:
+            chosen = getattr(item, value.name) != FOUND
+            words = f"chosen by hand; found: {use.rule.words}" if chosen else rule_words(use.rule, told=True)
+            unsure = not use.rule.kind and not chosen
+            rows.field_note(words, rows.palette.warning if unsure else None)
+
+    def _others(self, rows: Rows, id: str, roles: Sequence[Value], seen: Overview) -> None:
+        """Layers that no output shows, each with a list of what to use it for."""
+        if seen.mattes:
+            self._offer_mattes(rows, id, seen)
+        if not seen.others:
+            return
+        rows.heading("Not Used")
+        for item in seen.others:
+            self._other(rows, id, [value for value in roles if value.type == "text"], item)
+
+    def _other(self, rows: Rows, id: str, roles: Sequence[Value], item: Pass) -> None:
+        key, session = f"{id} {item.layer.name}", rows.editor.session
+        button = f"{_USE_AS}  {icons.ICON_FA_CHEVRON_DOWN}"
+        room = imgui.calc_text_size(button).x + 2 * imgui.get_style().frame_padding.x
+        rect = place(rows.width - room - rows.gap)
+        imgui.dummy((rect[2] - rect[0], rect[3] - rect[1]))
+        tip(f"{item.layer.full}: {', '.join(item.layer.channels)}, {item.layer.format}")
+        write(rect, item.layer.name, rows.palette.text)
+        imgui.same_line(0.0, rows.gap)
+
+        def offer() -> None:
+            likely = [value for value in roles if value.role in item.candidates or value.role == item.role]
+            for value in (*likely, *(value for value in roles if value not in likely)):
+                if imgui.menu_item(f"{_label(value)}###{value.name}", "", value in likely)[0]:
+                    rows.act(lambda value=value: session.set(Port(id, value.name), item.layer.name))
+                rows.editor.places[f"menu {_label(value)}"] = item_rect()
+
+        dropdown(rows.editor, button, f"button use {key}", "Choose what this layer is used for", offer)
+        maybe = item.role is None and bool(item.candidates)
+        words = f"may be {either([role.words for role in item.candidates])}" if maybe else (
+            item.role.words if item.role else item.reason
+        )
+        with font(rows.editor, "text", SMALL):
+            wrapped(rows.palette.warning if maybe else rows.palette.dim, words)
+
+    def _offer_mattes(self, rows: Rows, id: str, seen: Overview) -> None:
+        """What cryptomattes there are, and a button for a node that cuts out."""
+        rows.heading("Cryptomatte")
+        words = [
+            f"{matte.kind or 'nameless'}: {len(matte.ids)} names" if matte.ids else f"{matte.kind}: no manifest"
+            for matte in seen.mattes
+        ]
+        rows.note(", ".join(words))
+        session = rows.editor.session
+        if rows.wide_button(f"{icons.ICON_FA_OBJECT_GROUP}  Pick Objects", f"matte {id}", "Add a cryptomatte node"):
+            rows.act(lambda: session.add_matte(id, seen.mattes[0].kind))
+
+
+def _about(rows: Rows, seen: Overview | str | None) -> None:
+    """What the file is, below its path."""
+    if seen is None:
+        rows.field_note("looking at it…")
+    elif isinstance(seen, Overview):
+        rows.field_note(f"{seen.size}\n{seen.maker}")
+        if seen.fault:
+            rows.field_note(seen.fault, rows.palette.error)
+
+
+def _camera(rows: Rows, id: str, seen: Overview) -> None:
+    """Whether there is one, and how exactly it was found."""
+    rows.heading("Camera")
+    facts = dict(camera_rows(seen.camera))
+    for name in ("found", "none", "residual", "field of view"):
+        if name in facts:
+            _fact(rows, name, facts[name], rows.palette.warning if name == "none" else None)
+    rows.editor.places[f"camera {id}"] = item_rect()
+
+
+def _file(rows: Rows, id: str, seen: Overview) -> None:
+    """What `halation info` shows besides: parts, the whole camera, metadata."""
+    rows.heading("File")
+    if _opened(rows, f"Parts ({len(seen.parts)})###parts {id}", f"more {id} parts"):
+        for part in seen.parts:
+            rest = ", ".join(word for word in part[2:] if word)
+            _fact(rows, part[1] or f"part {part[0]}", rest)
+    if seen.camera.camera and _opened(rows, f"Camera###camera {id}", f"more {id} camera"):
+        for name, words in camera_rows(seen.camera):
+            _fact(rows, name, words)
+    if seen.metadata and _opened(rows, f"Metadata ({len(seen.metadata)})###metadata {id}", f"more {id} metadata"):
+        for name, words in seen.metadata:
+            _fact(rows, name, words if len(words) <= _LONGEST else f"{words[:_LONGEST]}…")
+    if seen.report and rows.wide_button(f"{icons.ICON_FA_COPY}  Copy Report", f"report {id}", "All of it, as text"):
+        rows.editor.clipboard.put(seen.report)
+
+
+_LONGEST = 200
+
+
+def _fact(rows: Rows, name: str, words: str, color: RGB | None = None) -> None:
+    """A small row of two words: the name at the left, cut to fit."""
+    with font(rows.editor, "text", SMALL):
+        rect = place(rows.name_width, imgui.get_text_line_height())
+        imgui.dummy((rect[2] - rect[0], rect[3] - rect[1]))
+        tip(name)
+        write(rect, name, rows.palette.dim, align=1.0)
+        imgui.same_line(0.0, rows.gap)
+        wrapped(color or rows.palette.text, words)
+
+
+def _opened(rows: Rows, label: str, key: str) -> bool:
+    """A part that is folded at first."""
+    imgui.push_style_color(imgui.Col_.text, imgui.get_color_u32((*rows.palette.dim, 1.0)))
+    opened = imgui.tree_node_ex(label, int(imgui.TreeNodeFlags_.no_tree_push_on_open))
+    imgui.pop_style_color()
+    rows.editor.places[key] = item_rect()
+    return opened
+
+
+def _output(value: Value) -> str:
+    """The output that a value is about."""
+    return value.name.removesuffix("_layer").removesuffix("_is")
+
+
+def _label(value: Value) -> str:
+    return _output(value) if value.type == "text" else value.name
+
+
+def _socket(item: Node, value: Value) -> Socket | None:
+    output = item.outputs.get(_output(value))
+    return output.socket if output else None

@@ -1,0 +1,53 @@
+"""A disk that stands for all directions that sunlight can come from, as the camera sees them.
+
+Light from the middle comes from the camera, half way out from the side, at the rim from straight ahead.
+"""
+
+from __future__ import annotations
+
+import math
+
+from ....nodes import Camera
+from .geometry import Point, Sight
+from .perspective import Place, dot, moved, unit
+
+RADIUS, MARGIN = 46.0, 14.0
+"""Of the disk, and between it and the corner, at UI scale 1."""
+
+
+def middle_of(sight: Sight, scale: float) -> Point:
+    """Where the disk is: in the lower right corner of the panel."""
+    right, bottom = (sight.origin[i] + sight.panel[i] / sight.density for i in (0, 1))
+    return right - (RADIUS + MARGIN) * scale, bottom - (RADIUS + MARGIN) * scale
+
+
+def knob_of(sight: Sight, scale: float, camera: Camera, direction: Place) -> Point:
+    """The point on the screen that stands for sunlight in a direction."""
+    x, y = flat(camera, direction)
+    middle = middle_of(sight, scale)
+    return middle[0] + x * RADIUS * scale, middle[1] + y * RADIUS * scale
+
+
+def direction_at(sight: Sight, scale: float, camera: Camera, at: Point) -> Place:
+    """The direction of sunlight that a point on the screen stands for."""
+    middle = middle_of(sight, scale)
+    return direction_of(camera, ((at[0] - middle[0]) / (RADIUS * scale), (at[1] - middle[1]) / (RADIUS * scale)))
+
+
+def flat(camera: Camera, direction: Place) -> Point:
+    """Where on a disk of radius 1: equal steps out are equal angles away from the camera."""
+    way = unit(direction)
+    x, y = -dot(camera.right, way), -dot(camera.down, way)
+    out, away = math.hypot(x, y), math.acos(min(max(dot(camera.forward, way), -1.0), 1.0)) / math.pi
+    return (x / out * away, y / out * away) if out > 1e-9 else (away, 0.0)
+
+
+def direction_of(camera: Camera, flat: Point) -> Place:
+    """The unit vector along which the sun shines for a point of that disk."""
+    out = math.hypot(*flat)
+    angle = min(out, 1.0) * math.pi
+    x, y = (part / out * math.sin(angle) for part in flat) if out > 0.0 else (0.0, 0.0)
+    way = moved((0.0, 0.0, 0.0), camera.right, -x)
+    way = moved(moved(way, camera.down, -y), camera.forward, math.cos(angle))
+    first, second, third = (round(part, 5) for part in unit(way))
+    return first, second, third

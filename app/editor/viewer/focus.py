@@ -1,0 +1,56 @@
+"""What is sharp, of a node that focuses: at a point of the picture, or so far away."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ....nodes import Node
+from ...graph import Port
+
+if TYPE_CHECKING:
+    from ..editor import Editor
+    from ..session import Session
+
+_CHOICE, _POINT, _DISTANCE = "focus", "focus_point", "focus_distance"
+
+
+def focuses(item: object) -> bool:
+    """True for a node that is told by a depth what is sharp."""
+    return isinstance(item, Node) and "depth" in item.inputs and {_CHOICE, _POINT, _DISTANCE} <= item.values.keys()
+
+
+def focused(session: Session) -> Port | None:
+    """The value of the active node that says what is sharp, if the mouse may change it."""
+    item = session.graph.nodes.get(session.active)
+    if item is None or not focuses(item):
+        return None
+    port = Port(session.active, f"{_CHOICE}_{session.value(Port(session.active, _CHOICE))}")
+    return port if session.linked(port) is None else None
+
+
+def is_distance(port: Port) -> bool:
+    """True for a value that is a depth of what is sharp."""
+    return port.socket == _DISTANCE
+
+
+def is_idle(session: Session, port: Port) -> bool:
+    """True for a point that does not matter now, as a distance is chosen."""
+    item = session.graph.nodes.get(port.node)
+    return port.socket == _POINT and focuses(item) and focused_by(session, port.node) != "point"
+
+
+def focused_by(session: Session, id: str) -> str:
+    """What a node that focuses goes by."""
+    return str(session.value(Port(id, _CHOICE)))
+
+
+def pick_focus(editor: Editor) -> None:
+    """Let the next click on the picture say what is sharp; asked for again, not."""
+    port = focused(editor.session)
+    if port is not None:
+        editor.viewer.picking = "" if editor.viewer.picking == str(port) else str(port)
+
+
+def distance_in_words(depth: float | None) -> str:
+    """As a label says it."""
+    return "depth unknown" if depth is None else "nothing there" if depth >= 1e9 else f"depth {depth:.4g}"

@@ -1,0 +1,74 @@
+"""What lies under points of the picture: how far away it is, and where in the world."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from ....nodes import Camera, Node
+from ...graph import Port
+from .focus import focuses
+from .geometry import Point
+from .orbit import scene_at
+from .perspective import Place, project, unproject
+from .reading import Reader
+
+if TYPE_CHECKING:
+    from ..editor import Editor
+
+SCENE, DEPTH, PLACE = "scene depth", "depth", "place"
+"""Under which names the depth of the scene that is orbited, and depth and places of the active node, are wanted."""
+
+FAR = 1e9
+"""What is deeper is background."""
+
+_ASTRAY = 0.02
+"""How far from its pixel, as a part of the picture, a place may be seen that is really there."""
+
+
+def depths(editor: Editor) -> dict[str, Port]:
+    """What is to be computed for handles, by name."""
+    session, found = editor.session, dict[str, Port]()
+    if editor.viewer.orbits and (scene := scene_at(editor)) is not None and "depth" in scene.outputs:
+        found[SCENE] = Port(editor.viewer.scene, "depth")
+    item = session.graph.nodes.get(session.active)
+    if isinstance(item, Node) and (focuses(item) or any(value.type == "lights" for value in item.values.values())):
+        linked = {DEPTH: session.linked(Port(session.active, "depth"))}
+        if not focuses(item):
+            linked[PLACE] = session.linked(Port(session.active, "position"))
+        found |= {name: port for name, port in linked.items() if port is not None}
+    return found
+
+
+class Ground:
+    """Reads numbers of the pictures that `depths` names, as soon as they are there."""
+
+    def __init__(self) -> None:
+        self._reader = Reader()
+
+    def depth(self, editor: Editor, at: Point, name: str = DEPTH) -> float | None:
+        """How far away it is what is seen at a fraction of the picture; 1e10 for the background, None if unknown."""
+        values = self._read(editor, name, at)
+        if not values or not values[0] > 0.0:
+            return None
+        return values[0] if values[0] < FAR else 1e10
+
+    def surface(self, editor: Editor, camera: Camera, at: Point) -> tuple[Place, float] | None:
+        """The place in the world that is seen there, and its depth; None for the background, or if unknown."""
+        values = self._read(editor, PLACE, at)
+        if values is not None:
+            x, y, z = values[:3]
+            seen = project(camera, (x, y, z)) if math.isfinite(x + y + z) else None
+            return ((x, y, z), seen[2]) if seen and math.dist(seen[:2], at) < _ASTRAY else None
+        depth = self.depth(editor, at)
+        return (unproject(camera, *at, depth), depth) if depth is not None and depth < FAR else None
+
+    def _read(self, editor: Editor, name: str, at: Point) -> tuple[float, ...] | None:
+        port, shown = depths(editor).get(name), editor.preview.shown(name)
+        inside = 0.0 <= at[0] < 1.0 and 0.0 <= at[1] < 1.0
+        if port is None or shown is None or not inside:
+            return None
+        if shown.port != Port("/".join((*editor.session.place, port.node)), port.socket):
+            return None  # that of another node, until this one is ready
+        width, height = shown.full_size
+        return self._reader.pixel(editor.probe, name, shown, (int(at[0] * width), int(at[1] * height)))

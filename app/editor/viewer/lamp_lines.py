@@ -1,0 +1,176 @@
+"""Lights as they are drawn over the picture."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from imgui_bundle import imgui
+
+from ....nodes import Light, LightKind
+from ..inspector.colors import swatch
+from ..inspector.lights import title
+from ..theme.palette import RGB
+from ..theme.style import mix, u32, ui_scale
+from .dome import RADIUS, knob_of, middle_of
+from .geometry import Point, Sight
+from .lights import Lamp, lamps, suns
+from .perspective import Place, dot, moved, project, unit
+from .strokes import BLACK, CHOSEN, SHADE, WHITE, around, dashed_circle, label, path
+
+if TYPE_CHECKING:
+    from ..editor import Editor
+
+_STEPS = 64
+"""Corners of circles in perspective."""
+
+_WIDEST = 80.0
+"""Degrees; the circle of a wider cone would be too large to be seen."""
+
+_RINGS = 14
+
+
+def draw_lamps(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None:
+    """A disk in the color of each light, a line to where a spot shines; of the selected one, how far and how wide."""
+    mouse = imgui.get_mouse_pos()
+    at_mouse, reach = (mouse.x, mouse.y), 10.0 * ui_scale()
+    for lamp in lamps(editor):
+        at = sight.place(lamp.at)
+        near = math.dist(at_mouse, at) <= reach
+        ring = CHOSEN if near or lamp.chosen else WHITE
+        if lamp.chosen:
+            _extent(lines, sight, lamp, ring)
+        if lamp.aims:
+            _goal(editor, lines, sight, lamp, ring, near=math.dist(at_mouse, sight.place(lamp.aims[0])) <= reach)
+        _knob(lines, at, lamp.light, ring)
+        if near or (lamp.chosen and editor.dragging and editor.viewer.hovered):
+            words = f"{title(lamp.light, lamp.index)}  depth {lamp.depth:.4g}"
+            editor.places[f"label {lamp.port} {lamp.index}"] = label(lines, (at[0], at[1] + 2.0 * reach), words)
+        editor.places[f"handle {lamp.port} {lamp.index}"] = around(at, 0.6 * reach)
+
+
+def draw_dome(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None:
+    """A ball in the light of the selected sun, in a disk of all directions; every sun is a knob there."""
+    found, scale = suns(editor), ui_scale()
+    if not found:
+        return
+    middle, mouse, last = middle_of(sight, scale), imgui.get_mouse_pos(), found[-1]
+    lines.add_circle_filled(middle, (RADIUS + 4.0) * scale, u32(BLACK, 0.45))
+    _ball(lines, middle, 0.5 * RADIUS * scale, last)
+    dashed_circle(lines, middle, 0.5 * RADIUS * scale, mix(BLACK, WHITE, 0.6))
+    lines.add_circle(middle, RADIUS * scale, u32(WHITE, 0.6), 0, 1.2 * scale)
+    for sun in found:
+        at = knob_of(sight, scale, sun.camera, sun.light.direction)
+        near = math.dist((mouse.x, mouse.y), at) <= 10.0 * scale
+        if sun.chosen:
+            lines.add_line(at, middle, u32(BLACK, SHADE), 3.0 * scale)
+            lines.add_line(at, middle, u32(WHITE), 1.5 * scale)
+        _knob(lines, at, sun.light, CHOSEN if near or sun.chosen else WHITE)
+        if near:
+            label(lines, (at[0], at[1] - 20.0 * scale), title(sun.light, sun.index))
+        editor.places[f"handle {sun.port} {sun.index}"] = around(at, 6.0 * scale)
+    editor.places["viewer dome"] = around(middle, RADIUS * scale)
+
+
+def _knob(lines: imgui.ImDrawList, at: Point, light: Light, ring: RGB) -> None:
+    """In the light's color; black while it is off, with a bar if it takes light away."""
+    scale = ui_scale()
+    lines.add_circle_filled(at, 7.5 * scale, u32(BLACK, SHADE))
+    lines.add_circle_filled(at, 6.0 * scale, u32(ring))
+    color = swatch(light.color) if light.on else BLACK
+    lines.add_circle_filled(at, 4.5 * scale, u32(color))
+    if light.intensity < 0.0:
+        ink, half = BLACK if sum(color) > 1.5 else WHITE, 3.0 * scale
+        lines.add_line((at[0] - half, at[1]), (at[0] + half, at[1]), u32(ink), 1.5 * scale)
+
+
+def _goal(
+    editor: Editor, lines: imgui.ImDrawList, sight: Sight, lamp: Lamp, ring: RGB, *, near: bool
+) -> None:
+    """What a spot shines to: a ring at the end of a line."""
+    assert lamp.aims is not None
+    scale, (seen, depth) = ui_scale(), lamp.aims
+    end, color = sight.place(seen), CHOSEN if near else ring
+    path(lines, (sight.place(lamp.at), end), ring)
+    lines.add_circle(end, 5.0 * scale, u32(BLACK, SHADE), 0, 3.5 * scale)
+    lines.add_circle(end, 5.0 * scale, u32(color), 0, 2.0 * scale)
+    if near:
+        words = f"{title(lamp.light, lamp.index)} shines here  depth {depth:.4g}"
+        editor.places[f"label goal {lamp.port} {lamp.index}"] = label(lines, (end[0], end[1] + 20 * scale), words)
+    editor.places[f"goal {lamp.port} {lamp.index}"] = around(end, 6.0 * scale)
+
+
+def _extent(lines: imgui.ImDrawList, sight: Sight, lamp: Lamp, color: RGB) -> None:
+    """How far it reaches, as a dashed circle; a sphere's own size; a spot's cones, in perspective."""
+    light, at = lamp.light, sight.place(lamp.at)
+    unit_size = lamp.camera.focal[0] * sight.picture[0] * sight.zoom / sight.density / lamp.depth
+    if light.reach > 0.0:
+        dashed_circle(lines, at, light.reach * unit_size, color)
+    if light.kind is LightKind.SPHERE:
+        lines.add_circle(at, light.size * unit_size, u32(BLACK, SHADE), 0, 3.0 * ui_scale())
+        lines.add_circle(at, light.size * unit_size, u32(color), 0, 1.5 * ui_scale())
+    for angle, width in ((light.outer, 1.5), (light.inner, 0.8)):
+        rim = _seen(sight, lamp, cone(lamp, angle)) if light.kind is LightKind.SPOT else []
+        if not rim:
+            continue
+        path(lines, rim, color, width, closed=True)
+        if angle == light.outer:
+            for corner in sides(at, rim):
+                path(lines, (at, corner), color, width)
+
+
+def cone(lamp: Lamp, angle: float) -> list[Place]:
+    """The circle in which a spot's cone of that half angle ends, around what it shines to."""
+    goal = lamp.goal
+    if goal is None:
+        return []
+    way, length = unit(lamp.light.direction), math.dist(goal, lamp.light.place)
+    radius = length * math.tan(math.radians(min(angle, _WIDEST)))
+    side = _across(way, (0.0, 0.0, 1.0) if abs(way[2]) < 0.9 else (1.0, 0.0, 0.0))
+    other = _cross(way, side)
+    return [
+        moved(moved(goal, side, radius * math.cos(turn)), other, radius * math.sin(turn))
+        for turn in (2.0 * math.pi * step / _STEPS for step in range(_STEPS))
+    ]
+
+
+def sides(apex: Point, rim: list[Point]) -> tuple[Point, ...]:
+    """The corners of a rim that the outline of its cone touches; none if the apex is seen through the rim."""
+    found: list[Point] = []
+    for before, at, after in zip((rim[-1], *rim[:-1]), rim, (*rim[1:], rim[0]), strict=True):
+        if (_side(apex, at, before) >= 0.0) == (_side(apex, at, after) >= 0.0):
+            found.append(at)
+    return tuple(found)
+
+
+def _side(start: Point, end: Point, of: Point) -> float:
+    """Above 0 on one side of a line, below on the other."""
+    return (end[0] - start[0]) * (of[1] - start[1]) - (end[1] - start[1]) * (of[0] - start[0])
+
+
+def _seen(sight: Sight, lamp: Lamp, places: list[Place]) -> list[Point]:
+    """Places on the screen; none if any of them is not before the camera."""
+    seen = [project(lamp.camera, place) for place in places]
+    if any(one is None or one[2] < 0.02 * lamp.depth for one in seen):
+        return []
+    return [sight.place(one[:2]) for one in seen if one is not None]
+
+
+def _ball(lines: imgui.ImDrawList, middle: Point, radius: float, sun: Lamp) -> None:
+    """Rings that shrink towards where the light comes from: brighter, the more of it comes from the camera's side."""
+    way, color = unit(sun.light.direction), swatch(sun.light.color) if sun.light.on else BLACK
+    x, y, ahead = -dot(sun.camera.right, way), -dot(sun.camera.down, way), dot(sun.camera.forward, way)
+    for ring in range(_RINGS):
+        part = ring / (_RINGS - 1)
+        light = min(max((part + ahead) / (1.0 + abs(ahead)), 0.0), 1.0)
+        away = radius * part * 0.9
+        center = middle[0] + x * away, middle[1] + y * away
+        lines.add_circle_filled(center, radius * (1.0 - 0.9 * part), u32(mix((0.1, 0.1, 0.1), color, light)))
+
+
+def _across(way: Place, near: Place) -> Place:
+    return unit(_cross(way, near))
+
+
+def _cross(a: Place, b: Place) -> Place:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]

@@ -1,0 +1,100 @@
+"""Picking objects of a cryptomatte by clicking on the picture, while a node that picks some is active."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import imgui
+
+from ....nodes import Matte, float_bits, picked, toggled
+from ...graph import Port
+from ...media.mattes import IdMap
+from ..inspector.render_facts import matte_at, pick_value, render_file
+from ..theme.style import u32, ui_scale
+
+if TYPE_CHECKING:
+    from ..editor import Editor
+    from .geometry import Point, Sight
+
+
+@dataclass(frozen=True)
+class Under:
+    """What is under the pointer: its id, and its name if the file gives it one; `on` if it is picked."""
+
+    port: Port
+    matte: Matte
+    id: int
+    name: str
+    on: bool
+
+    @property
+    def words(self) -> str:
+        """What a label says of it."""
+        if not self.name:
+            return f"id {self.id:08x}: the file has no name for it"
+        return f"{icons.ICON_FA_CHECK}  {self.name}" if self.on else self.name
+
+
+def picks(editor: Editor) -> Port | None:
+    """The list of names that a click changes: that of the active node, if its file has a cryptomatte."""
+    session = editor.session
+    value = pick_value(session.graph.nodes.get(session.active))
+    if value is None or not isinstance(matte_at(editor, session.active), Matte):
+        return None
+    return Port(session.active, value.name)
+
+
+def under(editor: Editor, sight: Sight, at: Point) -> Under | None:
+    """What a click there would pick; None for nothing, and while nobody knows yet."""
+    port = picks(editor)
+    file = render_file(editor.session.graph, port.node) if port else None
+    matte = matte_at(editor, port.node) if port else None
+    if port is None or file is None or not isinstance(matte, Matte) or sight.under(at) is None:
+        return None
+    known = editor.renders.ids(file, matte)
+    id = known.at(*sight.fraction(at)) if isinstance(known, IdMap) else 0
+    if not id or not isinstance(known, IdMap):
+        return None
+    name = known.names.get(id, "")
+    alone = {name: matte.ids[name]} if name in matte.ids else {}
+    on = bool(alone) and float_bits(matte.ids[name]) in picked(str(editor.session.value(port)), alone)
+    return Under(port, matte, id, name if alone else "", on)
+
+
+def click(editor: Editor, sight: Sight, at: Point) -> None:
+    """Pick what is there, or no longer, as one step."""
+    found = under(editor, sight, at)
+    if found is None:
+        return
+    if not found.name:
+        editor.say(f"the file has no name for the id {found.id:08x}: it cannot be picked by name")
+        return
+    session = editor.session
+    pick = toggled(str(session.value(found.port)), found.name, found.matte.ids)
+    editor.attempt(lambda: session.set(found.port, pick))
+
+
+def draw_name(editor: Editor, sight: Sight) -> None:
+    """The name of what is under the pointer, beside it."""
+    if not editor.viewer.hovered or picks(editor) is None:
+        return
+    mouse, scale = imgui.get_mouse_pos(), ui_scale()
+    found = under(editor, sight, (mouse.x, mouse.y))
+    if found is None:
+        return
+    size, pad = imgui.calc_text_size(found.words), 6.0 * scale
+    right = sight.origin[0] + sight.panel[0] / sight.density
+    bottom = sight.origin[1] + sight.panel[1] / sight.density
+    left = min(mouse.x + 14.0 * scale, right - size.x - 3.0 * pad)
+    top = mouse.y + 18.0 * scale
+    top = top if top + size.y + 2.0 * pad < bottom else mouse.y - size.y - 2.0 * pad
+    box = round(left), round(top), round(left + size.x + 2.0 * pad), round(top + size.y + pad)
+    lines = imgui.get_window_draw_list()
+    lines.add_rect_filled(box[:2], box[2:], u32((0.0, 0.0, 0.0), 0.75), 4.0 * scale)
+    edge = editor.palette.accent if found.on else (1.0, 1.0, 1.0)
+    lines.add_rect(box[:2], box[2:], u32(edge, 0.9 if found.on else 0.25), 4.0 * scale)
+    ink = (1.0, 1.0, 1.0) if found.name else (0.75, 0.75, 0.75)
+    lines.add_text((round(left + pad), round(top + pad / 2)), u32(ink), found.words)
+    editor.places["matte name"] = box

@@ -1,0 +1,190 @@
+"""A camera that goes around a target, as the values of a node have it: turned, moved and brought nearer."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import PurePath
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from ....nodes import BuiltInScene, Camera, Node, SceneFile, orbit_camera
+from ...compiler import ATTRIBUTES
+from ...graph import Graph, Item, Port
+from ...media.meshes import load_mesh
+from .perspective import Place, neat
+
+if TYPE_CHECKING:
+    from ..editor import Editor
+    from ..session import Session
+
+SENSOR = 36.0
+"""Width in mm of what the focal length is measured against."""
+
+HALF_TURN = 180.0
+"""Degrees that it turns for a drag across the whole panel."""
+
+VALUES = ("target", "distance", "azimuth", "elevation", "focal")
+"""A node that has these values has a camera that goes around a target."""
+
+NEAREST, FARTHEST = 1e-3, 1e6
+STEEPEST = 89.0
+"""Straight from above, left and right would be anywhere."""
+
+_MARGIN = 0.9
+"""The part of the picture that a framed scene fills."""
+
+_SURROUNDING = 0.99
+"""What is so large, as a part of everything both in x and y, is a floor or backdrop: framing leaves it out."""
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """Where the camera is: angles in degrees, focal length in mm."""
+
+    target: Place
+    distance: float
+    azimuth: float
+    elevation: float
+    focal: float = 50.0
+
+    @classmethod
+    def of(cls, node: Node) -> Orbit:
+        """The one that a node's values say."""
+        return cls(*(getattr(node, name) for name in VALUES))
+
+    def camera(self, aspect: float) -> Camera:
+        """As effects see it; `aspect` is the picture's width over its height."""
+        across = self.focal / SENSOR
+        angles = math.radians(self.azimuth), math.radians(self.elevation)
+        return orbit_camera(self.target, self.distance, *angles, (across, across * aspect))
+
+    def turned(self, right: float, down: float) -> Orbit:
+        """After a drag by parts of the panel's width: what is in front of the target goes where the mouse goes."""
+        azimuth = (self.azimuth - HALF_TURN * right + 180.0) % 360.0 - 180.0
+        low, high = min(self.elevation, -STEEPEST), max(self.elevation, STEEPEST)
+        elevation = min(max(self.elevation + HALF_TURN * down, low), high)
+        return replace(self, azimuth=round(azimuth, 3), elevation=round(elevation, 3))
+
+    def moved(self, right: float, down: float, depth: float, aspect: float) -> Orbit:
+        """With the target moved so that what lies at a depth goes right and down by fractions of the picture."""
+        camera = self.camera(aspect)
+        across, along = right * depth / camera.focal[0], down * depth / camera.focal[1]
+        x, y, z = (
+            neat(at - across * to_right - along * to_bottom)
+            for at, to_right, to_bottom in zip(self.target, camera.right, camera.down, strict=True)
+        )
+        return replace(self, target=(x, y, z))
+
+    def nearer(self, factor: float) -> Orbit:
+        """With the target that many times as near."""
+        return replace(self, distance=neat(min(max(self.distance / factor, NEAREST), FARTHEST)))
+
+    def framing(self, places: np.ndarray, aspect: float) -> Orbit:
+        """Seen from the same side, with all places [n, 3] in the picture, and their middle in its middle."""
+        low, high = places.min(axis=0), places.max(axis=0)
+        x, y, z = (neat(float(part)) for part in (low + high) / 2.0)
+        camera = replace(self, target=(x, y, z)).camera(aspect)
+        away = np.asarray(places, np.float64) - (x, y, z)
+        ahead = away @ camera.forward
+        needed = [
+            np.abs(away @ axis) * focal / (0.5 * _MARGIN) - ahead
+            for axis, focal in zip((camera.right, camera.down), camera.focal, strict=True)
+        ]
+        distance = max(float(np.max(needed)), NEAREST)
+        return replace(self, target=(x, y, z), distance=neat(min(distance, FARTHEST)))
+
+
+# --- the node whose camera it is -----------------------------------------------------------------------------------
+
+
+def orbited(session: Session) -> str:
+    """The node whose camera the viewer moves: the scene that is selected, else the only one that is seen; "" if none.
+
+    One that is selected must be seen too. Values that links or keys set are not for the mouse.
+    """
+    graph, seen = session.graph, session.viewed("A")
+    scenes = [id for id, item in graph.nodes.items() if _goes_around(item)]
+    if not scenes or seen is None:
+        return ""
+    behind = _upstream(graph, seen)
+    scenes = [id for id in scenes if id in behind and _is_free(graph, id)]
+    return session.active if session.active in scenes else scenes[0] if len(scenes) == 1 else ""
+
+
+def _goes_around(item: Item) -> bool:
+    return isinstance(item, Node) and item.values.keys() >= set(VALUES)
+
+
+def _upstream(graph: Graph, port: Port) -> set[str]:
+    """The nodes that a port depends on."""
+    feeds: dict[str, list[Port]] = {}
+    for target, source in graph.links.items():
+        feeds.setdefault(target.node, []).append(source)
+    start = graph.links.get(port, port)
+    found, left = set[str](), [start.node]
+    while left:
+        node = left.pop()
+        if node not in found:
+            found.add(node)
+            left.extend(source.node for source in feeds.get(node, ()))
+    return found
+
+
+def _is_free(graph: Graph, id: str) -> bool:
+    ports = [Port(id, name) for name in VALUES]
+    return not any(port in graph.links or port in graph.animation for port in ports)
+
+
+def scene_at(editor: Editor) -> Node | None:
+    """The node whose camera the viewer moves, as it is now."""
+    item = editor.session.graph.nodes.get(editor.viewer.scene)
+    return item if isinstance(item, Node) and _goes_around(item) else None
+
+
+def put(editor: Editor, orbit: Orbit, merge: str = "") -> None:
+    """Move the camera there; equal `merge` tokens in a row make one step."""
+    session, id = editor.session, editor.viewer.scene
+    graph, before = session.graph, scene_at(editor)
+    if before is None:
+        return
+    for name in ("target", "distance", "azimuth", "elevation"):
+        if getattr(orbit, name) != getattr(before, name):
+            graph = graph.set(Port(id, name), getattr(orbit, name))
+    editor.attempt(lambda: session.edit(f"Orbit {id}", graph, merge=merge))
+
+
+def aspect_of(editor: Editor) -> float:
+    """Width over height of the picture."""
+    width, height = editor.viewer.picture
+    return max(width, 1) / max(height, 1)
+
+
+def frame_scene(editor: Editor) -> None:
+    """Show all of the scene, as one step."""
+    node = scene_at(editor)
+    if node is not None:
+        put(editor, Orbit.of(node).framing(_places(editor, node), aspect_of(editor)))
+
+
+def _places(editor: Editor, node: Node) -> np.ndarray:
+    """Where the scene's triangles are, but for a floor or backdrop around the rest. It was loaded to be shown."""
+    name, file, up = (getattr(node, value) for value in ("scene", "file", "up"))
+    path = str(PurePath(editor.session.graph.folder, file))
+    mesh = load_mesh(SceneFile(path, up) if name == "file" else BuiltInScene(name))
+    vertices = cast("np.ndarray", mesh.vertices)
+    column = np.cumsum([0, *ATTRIBUTES.values()])[list(ATTRIBUTES).index("object_material_moving")]
+    return without_surroundings(vertices[:, :3], vertices[:, column])
+
+
+def without_surroundings(places: np.ndarray, objects: np.ndarray) -> np.ndarray:
+    """The places of all objects but those as wide as everything; of all, if nothing would be left.
+
+    Places of one object stand in a row.
+    """
+    starts = np.flatnonzero(np.diff(objects, prepend=objects[0] - 1))
+    ends = (np.maximum.reduceat(places, starts), np.minimum.reduceat(places, starts))
+    wide = (ends[0] - ends[1])[:, :2] >= _SURROUNDING * np.ptp(places[:, :2], axis=0)
+    kept = np.repeat(~wide.all(axis=1), np.diff(starts, append=len(places)))
+    return places[kept] if kept.any() else places

@@ -1,0 +1,49 @@
+"""What is wrong with an expression, and at which character."""
+
+from __future__ import annotations
+
+import unicodedata
+
+from ...errors import GraphError
+
+_SHOWN = 60
+"""Characters of a long expression that a message shows."""
+
+
+class ExpressionError(GraphError):
+    """An expression cannot be read, or has no value at a frame. `position` is the character at fault in `text`.
+
+    The message is the sentence, the line at fault, and a caret below the character.
+    """
+
+    def __init__(self, text: str, position: int, sentence: str) -> None:
+        self.text, self.position, self.sentence = text, position, sentence
+        super().__init__(f"{sentence}\n{_pointed(text, position)}" if text.strip() else sentence)
+
+    def __reduce__(self) -> tuple[type[ExpressionError], tuple[str, int, str]]:
+        return ExpressionError, (self.text, self.position, self.sentence)
+
+
+def _pointed(text: str, position: int) -> str:
+    """The part of the line around a position, and a caret below."""
+    start = text.rfind("\n", 0, position) + 1
+    end = text.find("\n", position)
+    end = len(text) if end < 0 else end
+    first = max(start, position - _SHOWN // 2) if end - start > _SHOWN else start
+    last = min(end, first + _SHOWN)
+    head = "…" if first > start else ""
+    tail = "…" if last < end else ""
+    before = head + _printable(text[first:position])
+    return f"    {before}{_printable(text[position:last])}{tail}\n    {' ' * _width(before)}^"
+
+
+def _printable(text: str) -> str:
+    return "".join(letter if letter.isprintable() else " " for letter in text)
+
+
+def _width(text: str) -> int:
+    """How many columns a terminal gives to a text (Unicode Standard Annex 11)."""
+    return sum(
+        0 if unicodedata.combining(letter) else 2 if unicodedata.east_asian_width(letter) in "WF" else 1
+        for letter in text
+    )

@@ -1,0 +1,154 @@
+"""The functions and operators of expressions: what each makes of numbers, and of lists element by element."""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from ..keys import rounded
+from .noise import noise, random
+
+Made = float | bool | tuple[float, ...]
+"""What an expression can be."""
+
+
+class NoValueError(Exception):
+    """Why some numbers make no value, in words."""
+
+
+@dataclass(frozen=True)
+class Function:
+    """A function: how it is written, what it is, and how many values it can take."""
+
+    signature: str
+    doc: str
+    counts: Collection[int]
+    call: Callable[..., float]
+
+    @property
+    def name(self) -> str:
+        """What it is called."""
+        return self.signature.partition("(")[0]
+
+
+def applied(name: str, call: Callable[..., float], given: tuple[Made, ...]) -> Made:
+    """A function of numbers for numbers and lists: those go element by element, with single numbers for each.
+
+    Raises NoValueError, which says for which numbers.
+    """
+    if tuple not in map(type, given):
+        return _one(name, call, given)
+    lengths = {len(part) for part in given if isinstance(part, tuple)}
+    if len(lengths) > 1:
+        few, many = sorted(lengths)[:2]
+        raise NoValueError(f"a list of {few} and a list of {many} numbers do not go together")
+    length = lengths.pop()
+    rows = zip(*(part if isinstance(part, tuple) else (part,) * length for part in given), strict=True)
+    return tuple(_one(name, call, row) for row in rows)
+
+
+def _one(name: str, call: Callable[..., float], numbers: tuple[Made, ...]) -> float:
+    try:
+        made = float(call(*numbers))
+    except ZeroDivisionError:
+        raise NoValueError(f"a division by zero: {_shown(name, numbers)}") from None
+    except ValueError:
+        raise NoValueError(f"{_shown(name, numbers)} has no value") from None
+    except OverflowError:
+        made = math.inf
+    if not math.isfinite(made):
+        raise NoValueError(f"{_shown(name, numbers)} is too large")
+    return made
+
+
+def _shown(name: str, numbers: tuple[Made, ...]) -> str:
+    parts = [f"{part:g}" for part in numbers if not isinstance(part, tuple)]
+    if name in OPERATORS and len(parts) == 2:
+        return f"{parts[0]} {name} {parts[1]}"
+    return f"{name}({', '.join(parts)})"
+
+
+def _sign(x: float) -> float:
+    return float((x > 0.0) - (x < 0.0))
+
+
+def _fract(x: float) -> float:
+    return x - math.floor(x)
+
+
+def _divide(a: float, b: float) -> float:
+    return a / b
+
+
+def _clamp(x: float, low: float = 0.0, high: float = 1.0) -> float:
+    return min(max(x, low), high)
+
+
+def _mix(a: float, b: float, t: float) -> float:
+    return a * (1.0 - t) + b * t
+
+
+def _step(edge: float, x: float) -> float:
+    return 0.0 if x < edge else 1.0
+
+
+def _smoothstep(low: float, high: float, x: float) -> float:
+    if low == high:
+        return _step(low, x)
+    t = _clamp((x - low) / (high - low))
+    return t * t * (3.0 - 2.0 * t)
+
+
+def _fit(x: float, low: float, high: float, first: float, last: float) -> float:
+    return _mix(first, last, _step(low, x) if low == high else _clamp((x - low) / (high - low)))
+
+
+def _pulse(x: float, start: float, end: float) -> float:
+    return 1.0 if start <= x < end else 0.0
+
+
+OPERATORS: Mapping[str, Callable[[float, float], float]] = MappingProxyType({
+    "+": operator.add, "-": operator.sub, "*": operator.mul, "/": _divide, "%": operator.mod,
+    "^": math.pow, "**": math.pow,
+})
+"""Arithmetic. The rest of a division, %, has the sign of the divisor, as mod() of GLSL."""
+
+_MANY = range(2, 501)
+
+FUNCTIONS: Mapping[str, Function] = MappingProxyType({item.name: item for item in (
+    Function("sin(x)", "the sine of an angle in radians", (1,), math.sin),
+    Function("cos(x)", "the cosine of an angle in radians", (1,), math.cos),
+    Function("tan(x)", "the tangent of an angle in radians", (1,), math.tan),
+    Function("asin(x)", "the angle in radians with that sine", (1,), math.asin),
+    Function("acos(x)", "the angle in radians with that cosine", (1,), math.acos),
+    Function("atan(x)", "the angle in radians with that tangent", (1,), math.atan),
+    Function("atan2(y, x)", "the angle in radians from the x axis to the point x, y", (2,), math.atan2),
+    Function("degrees(x)", "radians as degrees", (1,), math.degrees),
+    Function("radians(x)", "degrees as radians", (1,), math.radians),
+    Function("sqrt(x)", "the square root", (1,), math.sqrt),
+    Function("exp(x)", "e to the power of x", (1,), math.exp),
+    Function("log(x)", "the natural logarithm", (1,), math.log),
+    Function("log2(x)", "the logarithm to base 2: photographic stops", (1,), math.log2),
+    Function("pow(x, y)", "x to the power of y", (2,), math.pow),
+    Function("abs(x)", "x without its sign", (1,), math.fabs),
+    Function("sign(x)", "-1, 0 or 1", (1,), _sign),
+    Function("floor(x)", "the whole number at or below x", (1,), math.floor),
+    Function("ceil(x)", "the whole number at or above x", (1,), math.ceil),
+    Function("round(x)", "the nearest whole number, halves away from zero", (1,), rounded),
+    Function("fract(x)", "x without its whole part", (1,), _fract),
+    Function("mod(x, y)", "the rest of x / y, with the sign of y", (2,), operator.mod),
+    Function("min(a, b, ...)", "the smallest", _MANY, min),
+    Function("max(a, b, ...)", "the largest", _MANY, max),
+    Function("clamp(x, low, high)", "x within low and high; within 0 and 1 if they are left out", (1, 3), _clamp),
+    Function("mix(a, b, t)", "from a at t = 0 to b at t = 1", (3,), _mix),
+    Function("step(edge, x)", "0 below the edge, else 1", (2,), _step),
+    Function("smoothstep(low, high, x)", "0 below low, 1 above high, smooth between", (3,), _smoothstep),
+    Function("fit(x, low, high, a, b)", "from a where x is low to b where it is high, level outside", (5,), _fit),
+    Function("pulse(x, start, end)", "1 from start until before end, else 0", (3,), _pulse),
+    Function("noise(x, seed)", "smooth noise, -1 to 1; the seed may be left out", (1, 2), noise),
+    Function("random(n, seed)", "0 to 1, another for every whole n; the seed may be left out", (1, 2), random),
+)})
+"""All functions by name."""

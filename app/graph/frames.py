@@ -1,0 +1,209 @@
+"""Frames in text: which ones (`1-24x2,40`), and file names that hold a frame number (`shot.####.exr`).
+
+Three ways to write the number are known, in the last part of a path only:
+
+    shot.####.exr   as many digits as there are # (as in Nuke and Blender); shot.#.exr has no padding
+    shot.%04d.exr   as printf; shot.%d.exr has no padding
+    shot.$F4.exr    as Houdini; shot.$F.exr has no padding
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import chain
+
+from ..errors import UsageError
+
+MOST_FRAMES = 1_000_000
+_DIGITS = 9
+_WIDEST = 16
+_SHOWN = 40
+_EXAMPLE = "such as 1-24, 1-24x2 or 1-12,40"
+
+_RANGE = re.compile(r"(-?[0-9]+)\s*(?:-\s*(-?[0-9]+)\s*(?:[xX]\s*([0-9]+))?)?")
+_PLACE = re.compile(r"(?P<hashes>#+)|%(?:0(?P<printf>[1-9][0-9]*))?d|\$F(?![A-Za-z_])(?P<houdini>[0-9]*)")
+_BLANK_PADDED = re.compile(r"%([1-9][0-9]*)d")
+_NUMBER = re.compile(rf"-?[0-9]{{1,{_WIDEST + _DIGITS}}}")
+
+
+def parse_frames(text: str) -> tuple[int, ...]:
+    """The frames that a text such as `1-24`, `1-24x2,40`, `10-1` or `-5--1` lists, in its order, each of them once.
+
+    Raises:
+        UsageError: the text is no list of frames, or one of more than a million.
+    """
+    if not text.strip():
+        raise UsageError(f"no frames are given: say which, {_EXAMPLE}")
+    spans: list[range] = []
+    count = 0
+    for entry in text.split(","):
+        spans.append(_span(entry.strip(), text))
+        count += len(spans[-1])
+        if count > MOST_FRAMES:
+            raise UsageError(f"frames '{_short(text)}': more than {MOST_FRAMES:,} frames: do fewer at once, {_EXAMPLE}")
+    return tuple(dict.fromkeys(chain.from_iterable(spans)))
+
+
+def format_frames(frames: Iterable[int]) -> str:
+    """The shortest text for these frames in this order, every range ending on a frame: `1-23x2,40`.
+
+    `parse_frames` reads it back; no frames are "".
+    """
+    found = tuple(dict.fromkeys(frames))
+    ends = _run_ends(found)
+    best = {0: (0, 0, 0)}  # how many frames are told -> length of the text, parts, frames told before the last part
+    for start, end in enumerate(ends):
+        if start not in best:
+            continue
+        # A run may leave its last frame to the next one. Single frames are never shorter than a run of five.
+        stops = {end, end + 1} if end - start > 3 else {start + 1, end, end + 1}
+        for stop in stops - {start}:
+            length = best[start][0] + 1 + len(_part(found, start, stop))
+            route = (length, best[start][1] + 1, start)
+            best[stop] = min(best.get(stop, route), route)
+    parts: list[str] = []
+    stop = len(found)
+    while stop:
+        start = best[stop][2]
+        parts.append(_part(found, start, stop))
+        stop = start
+    return ",".join(reversed(parts))
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """A file name with a place for the frame number, or several for the same one: `Pattern.parse("shot.####.exr")`.
+
+    `folder` ends with its separator; `pieces` are the texts around the numbers, `widths` how many characters each
+    number has at least.
+    """
+
+    text: str
+    folder: str
+    pieces: tuple[str, ...]
+    widths: tuple[int, ...]
+
+    @staticmethod
+    def parse(text: str) -> Pattern | None:
+        """The pattern that a path is, or None for a plain one. Raises UsageError for a number of absurd width."""
+        name = _last(text)
+        places = list(_PLACE.finditer(name))
+        if not places:
+            return None
+        edges = [0, *chain.from_iterable(place.span() for place in places), len(name)]
+        pieces = tuple(name[start:stop] for start, stop in zip(edges[::2], edges[1::2], strict=True))
+        widths = tuple(_width(place, text) for place in places)
+        return Pattern(text, text[: len(text) - len(name)], pieces, widths)
+
+    def name(self, frame: int) -> str:
+        """The path of a frame. The sign of a negative one takes a digit's place, as in printf and Nuke: -005."""
+        return self.folder + self._filled(f"{frame:0{width}d}" for width in self.widths)
+
+    def frame(self, name: str) -> int | None:
+        """The frame in the name of a file that fits, wherever the file lies.
+
+        A number may be wider than the padding only without zeros in front. Blender's -0005 is read as well as -005.
+        """
+        given = os.path.normcase(_last(name))
+        if not given.startswith(self._known[0]) or not given.endswith(self._known[-1]):
+            return None
+        digits = _NUMBER.match(given, len(self._known[0]))
+        while digits is not None:
+            frame = int(digits[0])
+            if abs(frame) < 10**_DIGITS and given in self._spellings(frame):
+                return frame
+            digits = _NUMBER.fullmatch(given, digits.start(), digits.end() - 1)
+        return None
+
+    @cached_property
+    def _known(self) -> tuple[str, ...]:
+        """The pieces as this system compares names: Windows does not care for letter case."""
+        return tuple(map(os.path.normcase, self.pieces))
+
+    def _spellings(self, frame: int) -> tuple[str, ...]:
+        usual = os.path.normcase(self._filled(f"{frame:0{width}d}" for width in self.widths))
+        if frame >= 0:
+            return (usual,)
+        return usual, os.path.normcase(self._filled(f"-{-frame:0{width}d}" for width in self.widths))
+
+    def _filled(self, numbers: Iterable[str]) -> str:
+        rest = (number + piece for number, piece in zip(numbers, self.pieces[1:], strict=True))
+        return self.pieces[0] + "".join(rest)
+
+
+def numbered(path: str) -> str:
+    """A name of this kind with a place for the frame number: `out.exr` gives `out.####.exr`."""
+    name = _last(path)
+    folder = path[: len(path) - len(name)]
+    if _BLANK_PADDED.search(name):
+        return folder + _BLANK_PADDED.sub(r"%0\1d", name)
+    stem, dot, ending = name.rpartition(".")
+    return f"{folder}{stem}.####.{ending}" if stem else f"{folder}{dot}{ending}.####"
+
+
+def check_numbered(path: str, frames: Sequence[int]) -> None:
+    """Refuse to write several frames to one name. Raises UsageError."""
+    if len(frames) > 1 and Pattern.parse(path) is None:
+        raise UsageError(f"{path}: {len(frames)} frames cannot go into one file: write -o {numbered(path)}")
+
+
+def _last(path: str) -> str:
+    """The part behind the last separator, which may be nothing."""
+    return os.path.basename(path)  # noqa: PTH119 - Path takes a separator at the end for no part
+
+
+def _span(entry: str, text: str) -> range:
+    """One entry of a list of frames."""
+    said = f"frames '{_short(text)}'"
+    if not entry:
+        raise UsageError(f"{said}: there is nothing before or after a comma: write them {_EXAMPLE}")
+    parts = _RANGE.fullmatch(entry)
+    if parts is None:
+        raise UsageError(f"{said}: '{_short(entry)}' is neither a frame nor a range: write them {_EXAMPLE}")
+    for number in filter(None, parts.groups()):
+        if len(number.lstrip("-").lstrip("0")) > _DIGITS:
+            raise UsageError(f"{said}: '{_short(number)}' has more than {_DIGITS} digits: write them {_EXAMPLE}")
+    first = int(parts[1])
+    last = int(parts[2]) if parts[2] else first
+    step = int(parts[3]) if parts[3] else 1
+    if not step:
+        raise UsageError(f"{said}: a step of 0 never gets on: write 1-24x2 for every second frame")
+    return range(first, last + 1, step) if first <= last else range(first, last - 1, -step)
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= _SHOWN else f"{text[: _SHOWN - 3]}..."
+
+
+def _run_ends(frames: Sequence[int]) -> list[int]:
+    """For every frame, where the run of equal steps that starts with it ends."""
+    ends = list(range(len(frames)))
+    for index in range(len(frames) - 2, -1, -1):
+        after = index + 1
+        follows = ends[after] > after and frames[after + 1] - frames[after] == frames[after] - frames[index]
+        ends[index] = ends[after] if follows else after
+    return ends
+
+
+def _part(frames: Sequence[int], start: int, stop: int) -> str:
+    """The text for a run of equal steps."""
+    first, last = frames[start], frames[stop - 1]
+    if stop - start == 1:
+        return str(first)
+    step = abs(frames[start + 1] - first)
+    return f"{first}-{last}" if step == 1 else f"{first}-{last}x{step}"
+
+
+def _width(place: re.Match[str], text: str) -> int:
+    if place["hashes"]:
+        width = len(place["hashes"])
+    else:
+        digits = (place["printf"] or place["houdini"] or "1").lstrip("0")
+        width = int(digits or "1") if len(digits) < 4 else 10**4
+    if width > _WIDEST:
+        raise UsageError(f"{_short(text)}: more than {_WIDEST} digits for a frame: write fewer, such as shot.####.exr")
+    return width

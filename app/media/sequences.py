@@ -1,0 +1,255 @@
+"""Numbered pictures: which frames there are, and the file of each.
+
+A path is a pattern (`shot.####.exr`), a folder that holds numbered pictures, or one picture. A file whose name happens
+to look like a pattern is one picture. Of a folder the name with the most frames counts; of several with as many, that
+whose number comes last in the name, then the first by alphabet. Only the one folder is ever listed.
+"""
+
+from __future__ import annotations
+
+import difflib
+import os
+import re
+import time
+from bisect import bisect_left
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from itertools import pairwise
+from pathlib import Path
+from types import MappingProxyType
+
+from ...nodes import Missing
+from ..compiler import Frame
+from ..errors import InputError, UsageError
+from ..graph.frames import Pattern, format_frames
+from .thumbnail import readable
+
+_UNSETTLED = 2_000_000_000
+"""Nanoseconds: how coarse the clocks of file systems are. A folder that changed just now may change again unseen."""
+
+_SHOWN = 60
+_MOST_NUMBERS = 8
+_WIDEST = 16
+_NUMBER = re.compile(r"(?:(?<![^._-])-)?[0-9]+")
+
+
+@dataclass(frozen=True)
+class Sequence:
+    """The frames of a pattern that have a file; `names` are the names of the files, by frame and in order."""
+
+    pattern: Pattern
+    names: Mapping[int, str]
+
+    @cached_property
+    def frames(self) -> tuple[int, ...]:
+        """The frames that are there, rising."""
+        return tuple(self.names)
+
+    @cached_property
+    def gaps(self) -> tuple[tuple[int, int], ...]:
+        """What is missing between the first and the last, each gap as its first and last frame."""
+        return tuple((here + 1, there - 1) for here, there in pairwise(self.frames) if there - here > 1)
+
+    @property
+    def missing(self) -> int:
+        """How many frames the gaps lack."""
+        return sum(last - first + 1 for first, last in self.gaps)
+
+    @cached_property
+    def said(self) -> str:
+        """The frames that are there as text, such as `1-12,14-24`, cut where that would be too long to read."""
+        return _cut(format_frames(self.frames))
+
+    @property
+    def lacking(self) -> str:
+        """The gaps as text, cut likewise."""
+        return _cut(",".join(str(first) if first == last else f"{first}-{last}" for first, last in self.gaps))
+
+    def path(self, frame: int) -> str:
+        """The file of a frame that is there."""
+        return self.pattern.folder + self.names[frame]
+
+
+def find_sequence(path: str) -> Sequence | None:
+    """The numbered pictures that a path means, maybe none at all; None for a path that is one picture.
+
+    Raises:
+        InputError: a folder without numbered pictures, or one that may not be read.
+        UsageError: as `Pattern.parse`.
+    """
+    if _is_file(path):
+        return None
+    if pattern := Pattern.parse(path):
+        return _sequence(pattern, _listed(pattern.folder))
+    if not _is_folder(path):
+        return None
+    names = _listed(path)
+    groups = _groups(names)
+    if not groups:
+        raise InputError(f"{path}: is a folder without numbered pictures: name a picture inside it")
+    best = min(groups, key=lambda text: (groups[text], text))
+    pattern = Pattern.parse(str(Path(path, best)))
+    return _sequence(pattern, names) if pattern else None
+
+
+def frame_file(path: str, frame: int, missing: Missing = "error") -> Frame:
+    """The file that shows a frame. A path that is one picture is its own, whatever the frame.
+
+    `hold` takes the last frame before it, or the first of all; `nearest` the one at the smallest distance, of two the
+    earlier; `black` names the nearest one too, for its size.
+
+    Raises:
+        InputError: the frame is missing and nothing was to stand for it, or there is no frame at all.
+        UsageError: as `Pattern.parse`.
+    """
+    if _is_file(path):
+        return Frame(path)
+    pattern = Pattern.parse(path)
+    if pattern and _is_file(usual := pattern.name(frame)):
+        return Frame(usual)
+    found = find_sequence(path)
+    if found is None:
+        return Frame(path)
+    check_any(found)
+    if frame in found.names:
+        return Frame(found.path(frame))
+    if missing == "error":
+        raise InputError(
+            f"{found.pattern.name(frame)}: there is no such file, only frames {found.said}: render it, or choose hold, "
+            "nearest or black for missing frames"
+        )
+    after = bisect_left(found.frames, frame)
+    near = found.frames[max(0, after - 1) : after + 1]
+    chosen = near[0] if missing == "hold" else min(near, key=lambda there: (abs(there - frame), there))
+    return Frame(found.path(chosen), missing == "black")
+
+
+def check_any(found: Sequence) -> None:
+    """Raise InputError for a sequence without a single file, with the name that may have been meant."""
+    if found.frames:
+        return
+    text, folder = found.pattern.text, found.pattern.folder
+    if not _is_folder(folder or "."):
+        raise InputError(f"{text}: no file has such a name; its folder is missing too")
+    names, sought = _listed(folder), text[len(folder) :]
+    near = [*difflib.get_close_matches(sought, _groups(names), 1), *difflib.get_close_matches(sought, names, 1)]
+    hint = f"; did you mean '{near[0]}'?" if near else ": check it"
+    raise InputError(f"{text}: no file has such a name{hint}")
+
+
+def suggest_pattern(path: str) -> str | None:
+    """The pattern of a picture that is one of several: `shot.0012.exr` beside shot.0011.exr is `shot.####.exr`."""
+    if not _is_file(path):
+        return None
+    name = Path(path).name
+    folder = path[: len(path) - len(name)]
+    try:
+        groups = _groups(_listed(folder))
+    except InputError:
+        return None
+    fitting = [
+        text for before, number, after in _numbers(name) for width in range(1, _WIDEST + 1)
+        if (text := _text(before, width, after)) in groups and groups[text][0] < -1 and _fits(number, width)
+    ]
+    return folder + min(fitting, key=lambda text: (groups[text], text)) if fitting else None
+
+
+@lru_cache(maxsize=64)
+def _sequence(pattern: Pattern, names: tuple[str, ...]) -> Sequence:
+    found: dict[int, str] = {}
+    for name in names:
+        frame = pattern.frame(name)
+        if frame is not None and (frame not in found or name == Path(pattern.name(frame)).name):
+            found[frame] = name
+    return Sequence(pattern, MappingProxyType(dict(sorted(found.items()))))
+
+
+@lru_cache(maxsize=16)
+def _groups(names: tuple[str, ...]) -> Mapping[str, tuple[int, int]]:
+    """The patterns that pictures among these files fit, with their rank: by count, then by how far back the number is.
+
+    Names that would look like something else as a pattern have none.
+    """
+    numbers: defaultdict[tuple[str, str, int], list[str]] = defaultdict(list)
+    endings = readable()
+    for name in names:
+        if not name.startswith(".") and Path(name).suffix.casefold() in endings:
+            for place, (before, number, after) in enumerate(_numbers(name)):
+                numbers[before, after, place].append(number)
+    groups: dict[str, tuple[int, int]] = {}
+    for (before, after, place), found in numbers.items():
+        for width in _widths(found):
+            text, count = _text(before, width, after), sum(_fits(number, width) for number in found)
+            if count and _is_read_back(text, before, after):
+                groups[text] = (-count, place)
+    return MappingProxyType(groups)
+
+
+def _numbers(name: str) -> Iterator[tuple[str, str, str]]:
+    """The numbers in a name without its ending, the last one first: what stands before, the number, what is after."""
+    stem = name.rpartition(".")[0]
+    for found in list(_NUMBER.finditer(stem))[: -_MOST_NUMBERS - 1 : -1]:
+        if len(found[0]) <= _WIDEST:
+            yield name[: found.start()], found[0], name[found.end() :]
+
+
+def _widths(numbers: list[str]) -> set[int]:
+    """The paddings that numbers may have: those that zeros show, or the length that all share, or none."""
+    padded = {len(number) for number in numbers if number[0] == "0" and len(number) > 1}
+    lengths = {len(number) for number in numbers}
+    return lengths if len(lengths) == 1 else {1, *padded}
+
+
+def _fits(number: str, width: int) -> bool:
+    return _bare(width).frame(number) is not None
+
+
+@lru_cache(maxsize=_WIDEST)
+def _bare(width: int) -> Pattern:
+    """A number and nothing else."""
+    return Pattern("", "", ("", ""), (width,))
+
+
+def _is_file(path: str) -> bool:
+    return os.path.isfile(path)  # noqa: PTH113 - Path raises where names are too long or may not be seen
+
+
+def _is_folder(path: str) -> bool:
+    return os.path.isdir(path)  # noqa: PTH112 - as above
+
+
+def _cut(frames: str) -> str:
+    return frames if len(frames) <= _SHOWN else f"{frames[:_SHOWN].rpartition(',')[0]},..."
+
+
+def _text(before: str, width: int, after: str) -> str:
+    return f"{before}{'#' * width}{after}"
+
+
+def _is_read_back(text: str, before: str, after: str) -> bool:
+    try:
+        pattern = Pattern.parse(text)
+    except UsageError:
+        return False
+    return pattern is not None and pattern.pieces == (before, after)
+
+
+def _listed(folder: str) -> tuple[str, ...]:
+    """The names of the files of a folder, from memory where it has not changed since; none if there is no folder."""
+    place = Path(folder or ".").absolute()
+    try:
+        written = place.stat().st_mtime_ns
+        settled = time.time_ns() - written > _UNSETTLED
+        return _scanned(place, written) if settled else _scanned.__wrapped__(place, written)
+    except (FileNotFoundError, NotADirectoryError, ValueError):
+        return ()
+    except OSError as error:
+        raise InputError(f"{folder or '.'}: the folder cannot be read: {error.strerror or error}") from error
+
+
+@lru_cache(maxsize=16)
+def _scanned(folder: Path, written: int) -> tuple[str, ...]:
+    with os.scandir(folder) as entries:
+        return tuple(sorted(entry.name for entry in entries if entry.is_file()))

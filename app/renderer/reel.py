@@ -1,0 +1,121 @@
+"""Frames of one graph: each with the history that it needs, whatever was rendered before."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+from ..compiler import Memory, Plan
+from ..graph import Graph
+from .decoding import Array
+from .engine import Renderer, Wanted
+from .run import Run
+from .textures import Lease
+
+KEPT_PLANS = 8
+
+Memories = Mapping[str, Memory]
+
+
+class Reel:
+    """Renders frames of a graph in any order; the pixels of a frame are always the same.
+
+    What nodes remember begins at the first frame of the graph's range, or `preroll` frames before the one that is
+    rendered where the graph says so; a frame before the range remembers nothing. What is remembered is known by key:
+    it is computed again only where it is no longer on the device. The frame of `wanted` does not matter.
+    """
+
+    def __init__(self, renderer: Renderer, graph: Graph, wanted: Wanted) -> None:
+        self.renderer, self.graph, self.wanted = renderer, graph, wanted
+        self.frames = renderer.frames(graph, wanted)
+        """The first and last frame of the range."""
+        self._memories: dict[tuple[int, int], Memories] = {}
+        """By the frame where history begins, and the frame that remembers."""
+        self._plans: dict[tuple[int, int], Plan] = {}
+        self._held: Lease = renderer.runner.lease()
+
+    def begin(self, frame: int) -> int:
+        """The frame at which the history of another one begins."""
+        first, preroll = self.frames[0], self.graph.settings.preroll
+        if frame <= first:
+            return frame
+        return first if preroll is None else max(first, frame - preroll)
+
+    def plan(self, frame: int) -> Plan:
+        """How a frame is made, of what was remembered before it. Raises the errors of `app.errors`."""
+        return self._plan(self.begin(frame), frame)
+
+    def lead(self, frame: int) -> range:
+        """The frames that must be gone through, for what they remember, before a frame can be made.
+
+        None where that is on the device, or the frame itself is.
+        """
+        begin, textures = self.begin(frame), self.renderer.runner.textures
+        plan = self._plan(begin, frame)
+        if all(plan.surfaces[number].key in textures for number in plan.outputs.values()):
+            return range(frame, frame)
+        start = frame
+        while start > begin and any(item.key not in textures for item in self._before(begin, start).values()):
+            start -= 1
+        return range(start, frame)
+
+    def steps(self, frame: int, kept: Lease) -> Iterator[Run]:
+        """What runs to make a frame, one after the other; the last one is the frame itself, its outputs `kept`."""
+        runner, begin = self.renderer.runner, self.begin(frame)
+        for at in self.lead(frame):
+            plan, lease = self._plan(begin, at), runner.lease()
+            yield runner.steps(plan, lease, plan.remembered)
+            self._hold(lease)
+        plan, lease = self.plan(frame), runner.lease()
+        yield runner.steps(plan, kept, (*plan.outputs.values(), *plan.remembered))
+        for number in plan.remembered:
+            lease.take(plan.surfaces[number].key)
+        self._hold(lease)
+
+    def render(self, frame: int) -> dict[str, Array]:
+        """Every output by name as [height, width, channels]. Raises the errors of `app.errors`."""
+        kept = self.renderer.runner.lease()
+        try:
+            for run in self.steps(frame, kept):
+                with run:
+                    for _ in run:
+                        pass
+            return self.renderer.runner.download(self.plan(frame))
+        finally:
+            kept.close()
+
+    def close(self) -> None:
+        """Let go of what was remembered."""
+        self._held.close()
+
+    # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _hold(self, lease: Lease) -> None:
+        """Keep what a frame remembered until the next one has been made."""
+        before, self._held = self._held, lease
+        before.close()
+
+    def _plan(self, begin: int, frame: int) -> Plan:
+        key = (begin, frame)
+        if key not in self._plans:
+            before = self._before(begin, frame)
+            plan = self.renderer.compile(self.graph, replace(self.wanted, frame=frame, memories=before))
+            self._memories[key] = plan.memories
+            self._plans[key] = plan
+            while len(self._plans) > KEPT_PLANS:
+                self._plans.pop(next(iter(self._plans)))
+        return self._plans[key]
+
+    def _before(self, begin: int, frame: int) -> Memories:
+        """What the frame before remembers."""
+        if frame <= begin:
+            return {}
+        start = frame - 1
+        while start > begin and (begin, start) not in self._memories:
+            start -= 1
+        for at in range(start, frame):
+            if (begin, at) not in self._memories:
+                self._plan(begin, at)
+            if not self._memories[begin, at]:
+                return {}
+        return self._memories[begin, frame - 1]

@@ -1,0 +1,1 @@
+"""Other frames: offset, speed and freeze, blending, feedback and memory."""

@@ -1,0 +1,27 @@
+from collections.abc import Mapping
+from typing import Annotated
+
+from .._declare import Draw, Drawn, Field, Filter, Image, Output, Slider, Vector
+
+
+class TimeOffset(Filter):
+    """Show another frame: later ones above zero, earlier ones below.
+
+    All that changes over time upstream is seen then: sequences, keys, expressions, noise, what moves in a scene.
+    """
+
+    image = Image((0.0, 0.0, 0.0, 0.0))
+    field = Field(0.0)
+    vector = Vector(0.0, width=4)
+    frames: Annotated[int, Slider(-24, 24, unit="count", doc="How many frames later.")] = 0
+
+    out = Output(Image())
+    field_out = Output(Field())
+    vector_out = Output(Vector(width=4))
+
+    def times(self, frame: int) -> Mapping[str, tuple[int, ...]]:
+        return dict.fromkeys(self.inputs, (frame + self.frames,))
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        outputs = {"out": self.image, "field_out": self.field, "vector_out": self.vector}
+        return {name: draw.at(socket, draw.frame + self.frames) for name, socket in outputs.items()}
