@@ -13,6 +13,7 @@ from .options import AsJson, Lazy
 from .outcome import print_json
 
 if TYPE_CHECKING:
+    from ...nodes import Missing
     from ..graph import Graph, Problem
 
 _SIZE = (1920, 1080)
@@ -66,30 +67,43 @@ def _faults(path: Path) -> Iterator[tuple[int, Problem]]:
 def _compiled(graph: Graph) -> Iterator[tuple[int, Problem]]:
     """What only shows when the graph is compiled: pictures and their layers."""
     from .. import compiler
-    from ..compiler import Picture, Probed
+    from ..compiler import Frame, Picture, Probed
     from ..errors import HalationError, InputError
     from ..graph import Problem
 
-    unread: dict[str, InputError] = {}
+    unread: dict[str, None] = {}
 
     class Forgiving(Lazy):
         """Goes on after a picture that cannot be read."""
+
+        def at(self, path: str, frame: int, missing: Missing) -> Frame:
+            try:
+                return super().at(path, frame, missing)
+            except InputError as fault:
+                unread[str(fault)] = None
+            return Frame(path)
 
         def probe(self, picture: Picture) -> Probed:
             if not picture.in_memory:
                 try:
                     return super().probe(picture)
                 except InputError as fault:
-                    unread[str(fault)] = fault
+                    unread[str(fault)] = None
             return Probed(graph.settings.size or _SIZE, False, picture.path)
 
+    lazy, first, last = Forgiving(), 1, 1
+    try:
+        first, last = lazy.frames(graph, ())
+        lazy.pictures.check_frames(graph, range(first, last + 1))
+    except InputError as fault:
+        unread[str(fault)] = None
     bindings = {
         name: Picture(name, "", item.kind, item.socket().channels, in_memory=True)
         for name, item in graph.inputs.items() if not item.file and item.default is None
     }
     try:
-        compiler.compile_graph(graph, compiler.Request(bindings=bindings), Forgiving())
+        compiler.compile_graph(graph, compiler.Request(bindings=bindings, frame=first), lazy)
     except HalationError as fault:
         yield fault.exit_code, Problem("", "", str(fault))
-    for fault in unread.values():
-        yield fault.exit_code, Problem("", "", str(fault))
+    for sentence in unread:
+        yield InputError.exit_code, Problem("", "", sentence)

@@ -18,6 +18,7 @@ def explain(
     node: Node = "",
     size: SizeText = None,
     scale: Scale = 1.0,
+    frame: Annotated[int | None, typer.Option(help="The frame to plan; by default the first of the graph.")] = None,
     form: Annotated[str, typer.Option(metavar="fragment|compute", help="Plan for this form of passes.")] = "compute",
     precision: Annotated[str, typer.Option(metavar="half|float", help="Precision of color intermediates.")] = "float",
     dot: Annotated[bool, typer.Option("--dot", help="Print Graphviz.")] = False,
@@ -38,7 +39,7 @@ def explain(
     lazy = Lazy()
     request = compiler.Request(
         parsing.targets(opened_graph, node), lazy.bind(opened_graph, inputs or ()), parsing.size(size),
-        parsing.scale(scale),
+        parsing.scale(scale), frame if frame is not None else lazy.frames(opened_graph, inputs or ())[0],
     )
     plan = compiler.compile_graph(opened_graph, request, lazy, target=target, precision=depth)
     if as_json:

@@ -25,7 +25,10 @@ Inputs = Annotated[
 ]
 Sets = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="NODE.VALUE=X", help="Set a value, or a control by its name; colors as r,g,b,a."),
+    typer.Option(
+        "--set", metavar="NODE.VALUE=X",
+        help="Set a value, or a control by its name: a number, r,g,b,a, keys as 1@1,4@24, or =expression.",
+    ),
 ]
 Node = Annotated[
     str, typer.Option("--node", metavar="ID[.OUTPUT]", help="Take the output of this node instead of the graph's.")
@@ -52,7 +55,7 @@ def opened(path: Path, sets: Sequence[str]) -> Graph:
     graph = document.loads(_standard_input(), "-") if piped else document.load(path)
     for name, text in parsing.assignments(sets, "--set").items():
         try:
-            graph = graph.override(name, parsing.value(text))
+            graph = graph.override(name, parsing.setting(text))
         except GraphError as fault:
             raise UsageError(f"--set {name}={text}: {str(fault).removeprefix(f'{name}: ')}") from None
     return graph
@@ -119,6 +122,10 @@ class Lazy:
         """Pictures for the graph inputs that the command line names."""
         found = bound(graph, inputs)
         return self.pictures.bind(graph, found) if found else {}
+
+    def frames(self, graph: Graph, inputs: Sequence[str]) -> tuple[int, int]:
+        """The first and last frame of a graph, without reading any file where it says so itself."""
+        return graph.settings.frames or self.pictures.frames(graph, self.bind(graph, inputs))
 
     def at(self, path: str, frame: int, missing: Missing) -> Frame:
         """The file of a frame."""

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar, get_args
 
 from ..errors import GraphError, UsageError
 
@@ -50,6 +51,51 @@ def value(text: str) -> Any:
         except (ValueError, RecursionError):
             continue
     return text
+
+
+def setting(text: str) -> Any:
+    """What a value is set to: a value, keys (`1@1,4@24`, `0,0@1:linear,1,.5@24`), or `=` and an expression."""
+    from ..graph import Expression, Interpolation, Key, Keys
+
+    if text.startswith("="):
+        return Expression(text[1:].strip())
+    if "@" not in text:
+        return value(text)
+    keys: list[Key] = []
+    numbers: list[str] = []
+    for part in text.split(","):
+        number, at, place = part.partition("@")
+        numbers.append(number)
+        if at:
+            frame, _, way = place.partition(":")
+            plain = value(",".join(numbers))
+            try:
+                if not isinstance(plain, bool | int | float | list):
+                    raise ValueError
+                key = Key(float(frame), tuple(map(float, plain)) if isinstance(plain, list) else plain)
+            except (TypeError, ValueError):
+                return text  # it may be a text with such a sign in it
+            keys.append(replace(key, interpolation=_choice(way or "smooth", get_args(Interpolation), f"--set {part}:")))
+            numbers = []
+    return text if numbers else Keys(tuple(keys))
+
+
+def frames(one: int | None, text: str | None) -> tuple[int, ...] | None:
+    """The frames that --frame or --frames name, if any."""
+    if text is None:
+        return None if one is None else (one,)
+    if one is not None:
+        raise UsageError("--frame and --frames: give one of them")
+    from ..graph.frames import parse_frames
+
+    return parse_frames(text)
+
+
+def numbered(files: Sequence[tuple[str, Path]]) -> bool:
+    """True if the name of a file has a place for the frame number."""
+    from ..graph.frames import Pattern
+
+    return any(Pattern.parse(str(path)) for _, path in files)
 
 
 def _refused(word: str) -> Any:

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-import json
-import sys
 import time
-from typing import TYPE_CHECKING, Annotated
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from . import parsing
-from .options import AsJson, GraphFile, Inputs, Node, Scale, Sets, SizeText, bound, opened, report_problems
+from .options import AsJson, GraphFile, Inputs, Lazy, Node, Scale, Sets, SizeText, bound, opened, report_problems
 from .outcome import note, print_json
+from .progress import told_to
+from .sharing import independent, share
 
 if TYPE_CHECKING:
-    from ..compiler import Pass
     from ..renderer.job import Report
 
 
@@ -29,7 +30,19 @@ def render(
     node: Node = "",
     size: SizeText = None,
     scale: Scale = 1.0,
-    frame: Annotated[int, typer.Option(help="The frame that nodes which change over time show.")] = 1,
+    frame: Annotated[
+        int | None, typer.Option(help="The one frame to render; by default the first of the graph.")
+    ] = None,
+    frames: Annotated[
+        str | None,
+        typer.Option(metavar="1-24x2,40", help="The frames to render; the file's name has #### for the number."),
+    ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Keep frames whose files are there and would come out the same.")
+    ] = False,
+    jobs: Annotated[
+        int, typer.Option("-j", "--jobs", min=1, help="Processes that share the frames, where these are independent.")
+    ] = 1,
     precision: Annotated[
         str | None, typer.Option(metavar="half|float", help="Precision of intermediates and of EXR files.")
     ] = None,
@@ -43,86 +56,101 @@ def render(
         str | None, typer.Option(metavar="fragment|compute", help="How passes run; by default what suits the device.")
     ] = None,
     progress: Annotated[
-        str, typer.Option(metavar="bar|json", help="A bar, on a terminal only, or a JSON object per pass.")
+        str, typer.Option(metavar="bar|json", help="A bar, on a terminal only, or a JSON object per pass and frame.")
     ] = "bar",
     as_json: AsJson = False,
 ) -> int:
-    """Render a graph to files."""
+    """Render a graph to files: one frame, or many.
+
+    An output whose name holds a place for the frame number (shot.####.png, shot.%04d.png) asks for all frames of the
+    graph unless some are named.
+    """
     started = time.perf_counter()
     depth = parsing.precision(precision) if precision is not None else None
     passes = parsing.form(form) if form is not None else None
-    step = _print_step if parsing.progress(progress) == "json" else None
+    told = parsing.progress(progress)
     destinations = parsing.paths(output)
     canvas, proxy = parsing.size(size), parsing.scale(scale)
+    chosen = parsing.frames(frame, frames)
     opened_graph = opened(graph, sets or ())
     report_problems(graph, opened_graph)
     bindings, targets = bound(opened_graph, inputs or ()), parsing.targets(opened_graph, node)
-    from ..renderer import Renderer, Wanted, open_device
+    from ..renderer import DEFAULT_BUDGET, Renderer, Wanted, open_device
     from ..renderer.job import Writing, run_job
 
+    if chosen is None:
+        first, last = Lazy().frames(opened_graph, inputs or ())
+        chosen = tuple(range(first, last + 1)) if parsing.numbered(destinations) else (first,)
+    if min(jobs, len(chosen)) > 1 and independent(opened_graph, targets, inputs or (), chosen[0]):
+        words = _words(graph, output, inputs, sets, node, size, scale, resume, precision, view, compression, form)
+        with told_to(told, len(chosen)) as hears:
+            reports = share(words, chosen, jobs, hears)
+        return _told(_added(reports), time.perf_counter() - started, as_json)
     loaded = time.perf_counter()
-    renderer = Renderer(open_device(passes), budget=0)
+    renderer = Renderer(open_device(passes), budget=DEFAULT_BUDGET if len(chosen) > 1 else 0)
     note(renderer.device.description)
     ready = time.perf_counter()
-    wanted = Wanted(bindings, targets, canvas, proxy, frame, depth)
+    wanted = Wanted(bindings, targets, canvas, proxy, precision=depth)
     writing = Writing(destinations, view, compression, depth or "half")
-    with _Bar() as bar:
-        report = run_job(renderer, opened_graph, wanted, writing, step or bar.step)
+    with told_to(told, len(chosen)) as hears:
+        report = run_job(renderer, opened_graph, wanted, writing, chosen, resume=resume, progress=hears)
     spent = {"load": loaded - started, "open": ready - loaded, **report.seconds}
-    _tell(report, renderer.device.description, {**spent, "total": time.perf_counter() - started}, as_json)
+    total = time.perf_counter() - started
+    return _told(_as_json(report, renderer.device.description, {**spent, "total": total}), total, as_json)
+
+
+def _as_json(report: Report, device: str, seconds: dict[str, float]) -> dict[str, Any]:
+    return {
+        "written": [str(path) for path in report.written], "frames": [item.frame for item in report.frames],
+        "kept": [item.frame for item in report.frames if item.kept], "device": device, "passes": report.passes,
+        "programs": report.programs, "peak_bytes": report.peak_bytes, "repaired": dict(report.repaired),
+        "seconds": {name: round(part, 4) for name, part in seconds.items()},
+    }
+
+
+def _added(reports: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """What several processes did together. Each has textures of its own."""
+    found = dict(reports[0])
+    for other in reports[1:]:
+        for name in ("written", "frames", "kept"):
+            found[name] = [*found[name], *other[name]]
+        for name in ("passes", "programs", "peak_bytes"):
+            found[name] += other[name]
+        found["repaired"] = {**found["repaired"], **other["repaired"]}
+        found["seconds"] = {name: max(part, other["seconds"][name]) for name, part in found["seconds"].items()}
+    order = sorted(range(len(found["frames"])), key=lambda place: found["frames"][place])
+    each = len(found["written"]) // max(1, len(order))
+    found["written"] = [path for place in order for path in found["written"][place * each : (place + 1) * each]]
+    return {**found, "frames": sorted(found["frames"]), "kept": sorted(found["kept"])}
+
+
+def _told(report: dict[str, Any], total: float, as_json: bool) -> int:
+    from ..compiler.explain import size_text
+
+    for path, count in report["repaired"].items():
+        note(f"{path}: {count} pixels that are not numbers were filled from their neighbors")
+    if as_json:
+        print_json(report)
+        return 0
+    peak, passes, kept = size_text(report["peak_bytes"]), report["passes"], len(report["kept"])
+    spent = f"{total:.2f} s, {passes} passes, {peak} of textures at the peak"
+    if len(report["frames"]) > 1:
+        rest = f", {kept} kept as they were" if kept else ""
+        note(f"{report['written'][0]} ... {report['written'][-1]}  {len(report['frames'])} frames{rest}, {spent}")
+        return 0
+    for path in report["written"]:
+        note(f"{path}  kept as it was" if kept else f"{path}  {spent}")
     return 0
 
 
-def _tell(report: Report, device: str, seconds: dict[str, float], as_json: bool) -> None:
-    from ..compiler.explain import size_text
-
-    for path, count in report.repaired.items():
-        note(f"{path}: {count} pixels that are not numbers were filled from their neighbors")
-    if as_json:
-        print_json(
-            {
-                "written": [str(path) for path in report.written], "device": device, "passes": report.passes,
-                "programs": report.programs, "peak_bytes": report.peak_bytes, "repaired": dict(report.repaired),
-                "seconds": {name: round(part, 4) for name, part in seconds.items()},
-            }
-        )
-        return
-    peak = size_text(report.peak_bytes)
-    for path in report.written:
-        note(f"{path}  {seconds['total']:.2f} s, {report.passes} passes, {peak} of textures at the peak")
-
-
-def _print_step(done: int, total: int, one: Pass) -> None:
-    """One line of JSON on standard error."""
-    note(json.dumps({"pass": done, "passes": total, "nodes": one.nodes}))
-
-
-class _Bar:
-    """A progress bar on standard error, where that is a terminal and the work is long enough to watch."""
-
-    def __init__(self) -> None:
-        self._quiet = not sys.stderr.isatty()
-        self._progress = None
-        self._started = time.perf_counter()
-
-    def __enter__(self) -> _Bar:
-        return self
-
-    def __exit__(self, *fault: object) -> None:
-        if self._progress is not None:
-            self._progress.stop()
-
-    def step(self, done: int, total: int, one: Pass) -> None:
-        """Show that `done` of `total` passes are through."""
-        if self._quiet or time.perf_counter() - self._started < 0.3:
-            return
-        if self._progress is None:
-            from rich.console import Console
-            from rich.progress import BarColumn, Progress, TextColumn
-
-            count = TextColumn("{task.completed}/{task.total} passes")
-            columns = (TextColumn("{task.description}", markup=False), BarColumn(), count)
-            self._progress = Progress(*columns, console=Console(stderr=True), transient=True)
-            self._progress.start()
-            self._progress.add_task("render", total=total)
-        self._progress.update(self._progress.task_ids[0], completed=done, description=one.nodes[-1])
+def _words(graph: Path, output: Sequence[str], inputs: Sequence[str] | None, sets: Sequence[str] | None, node: str,
+           size: str | None, scale: float, resume: bool, precision: str | None, view: str, compression: str,
+           form: str | None) -> list[str]:
+    """The same call for another process."""
+    listed = {"-o": output, "-i": inputs or (), "--set": sets or ()}
+    single = {
+        "--node": node, "--size": size, "--scale": repr(scale), "--precision": precision, "--view": view,
+        "--compression": compression, "--form": form,
+    }
+    words = [str(graph), *(word for flag, items in listed.items() for item in items for word in (flag, item))]
+    return [*words, *(f"{flag}={text}" for flag, text in single.items() if text), *(["--resume"] if resume else [])]

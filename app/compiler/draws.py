@@ -99,9 +99,9 @@ class Recorder:
 
     def __init__(
         self, fed: Fed, node: Filter, size: Size, builder: Builder, library: Library, files: Files,
-        memory: Memory | None,
+        memory: Memory | None, rate: float,
     ) -> None:
-        self.size, self.frame = size, fed.frame
+        self.size, self.frame, self.rate = size, fed.frame, rate
         self._owner, self._fed, self._node = fed.path, fed, node
         self._builder, self._library, self._files = builder, library, files
         self._memory = memory

@@ -28,6 +28,7 @@ def explain(plan: Plan) -> str:
         lines.append(f"pass {index:<4} {made}  {_label(one)}  reads {read}")
     for name, number in plan.outputs.items():
         lines.append(f"output    #{number}  {name}")
+    lines.append(f"frames    {frames_text(plan)}")
     shaders = len({one.shader for one in plan.passes})
     lines.append(
         f"total     {len(plan.passes)} passes, {shaders} programs, {len(plan.surfaces)} surfaces in "
@@ -36,11 +37,21 @@ def explain(plan: Plan) -> str:
     return "\n".join(lines)
 
 
+def frames_text(plan: Plan) -> str:
+    """Whether a frame can be made without the ones before it, and why not."""
+    if not plan.memories:
+        return "independent: each can be rendered alone, and several at a time"
+    nodes = " and ".join(f"'{node}'" for node in plan.memories)
+    size = size_text(sum(plan.surfaces[number].nbytes for number in plan.remembered))
+    return f"each is made of the one before, of which {size} are kept for {nodes}"
+
+
 def as_json(plan: Plan) -> dict[str, object]:
     """The same facts for machines."""
     return {
         "target": plan.target.renderer,
         "form": plan.target.form,
+        "frames": {"independent": not plan.memories, "remembering": sorted(plan.memories)},
         "uploads": [
             {"surface": item.surface, "node": item.node, "path": item.picture.path, "layer": item.picture.layer}
             for item in plan.uploads

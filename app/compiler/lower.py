@@ -316,7 +316,7 @@ class _Lowering:
             fed.others[name, frame] = self._as_pixels(path, node.inputs[name], operand, size)
         recorder = Recorder(
             fed, node, size, self.builder, self.library, self._files(fed),
-            self.request.memories.get(path) if remembers else None,
+            self.request.memories.get(path) if remembers else None, self.graph.settings.rate,
         )
         drawn = node.passes(recorder)
         if recorder.remembered is not None:

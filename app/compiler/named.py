@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import PurePath
 
-from ...nodes import Kind, Source
+from ...nodes import Kind, Missing, Reader, Source
 from ..graph import INPUTS, Graph, Input, Port
 from .expand import Flat, expand
 from .ir import Picture
@@ -48,6 +48,20 @@ class Named:
         return str(PurePath(self._flat.folders[node], file))
 
 
-def named_files(graph: Graph, bindings: Mapping[str, Picture]) -> list[str]:
-    """The paths of all pictures that a graph reads, groups included; a path may stand for a sequence."""
-    return [picture.path for picture, _ in Named(expand(graph), bindings) if not picture.in_memory]
+def named_files(graph: Graph, bindings: Mapping[str, Picture]) -> list[tuple[str, str, Missing]]:
+    """The paths of all pictures that a graph reads, who reads them, and what shows where a frame has no file.
+
+    Groups are looked into; a path may stand for a sequence.
+    """
+    flat = expand(graph)
+
+    def missing(owner: str) -> Missing:
+        node = flat.nodes.get(owner)
+        if isinstance(node, Reader):
+            return node.missing
+        group, _, name = owner.rpartition(".")
+        return flat.inputs[Port(group, name)].missing if node is None else "error"
+
+    return [
+        (picture.path, owner, missing(owner)) for picture, owner in Named(flat, bindings) if not picture.in_memory
+    ]

@@ -10,6 +10,7 @@ from typing import Any
 from ...nodes import Node, Plain, Value, catalogue
 from ..errors import DocumentError, GraphError
 from ..graph import Animation, Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, signature
+from ..graph.animation import adapted
 from ..graph.names import did_you_mean, name_fault
 from ..graph.values import coerced, expected
 from . import limits, records
@@ -108,7 +109,7 @@ class _Body:
             inputs={name: reader.input(name, end, at) for name, end in record.inputs.items()},
             outputs={name: reader.output(name, end, at) for name, end in record.outputs.items()},
             controls={name: reader.control(name, item, at) for name, item in record.controls.items()},
-            animation=reader.animation(record.animation, at),
+            animation=reader.animation(record.animation, nodes, at),
             settings=Settings(settings.size, settings.frames, settings.rate, settings.preroll),
             muted=frozenset(muted), ui=record.ui, extra=reader.extra, folder=self.folder,
         )
@@ -164,12 +165,14 @@ class _Body:
         self.keep(f"controls.{name}", raw, records.ControlRecord)
         return Control(self.port(found.target, member(where, "target")), found.label, found.doc)
 
-    def animation(self, raw: Mapping[str, Any], at: str) -> dict[Port, Animation]:
+    def animation(self, raw: Mapping[str, Any], nodes: Mapping[str, Item], at: str) -> dict[Port, Animation]:
         """The section `animation`, by target."""
         found: dict[Port, Animation] = {}
         for target, item in raw.items():
             where = member(member(at, "animation"), target)
-            found[self.port(target, where)] = read_animation(item, self.file, where)
+            port, animation = self.port(target, where), read_animation(item, self.file, where)
+            value = signature(nodes[port.node]).values.get(port.socket) if port.node in nodes else None
+            found[port] = adapted(value, animation) if value else animation
             self.keep(f"animation.{target}", item, records.AnimationRecord)
         return found
 

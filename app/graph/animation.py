@@ -195,6 +195,15 @@ def fitted(port: Port, value: Value, made: Plain, frame: int) -> Plain:
     return type(plain)(min(max(plain, value.minimum), value.maximum))
 
 
+def adapted(value: Value, animation: Animation) -> Animation:
+    """The same with keys of the type that the value has: 1 becomes 1.0 where it takes numbers."""
+    if isinstance(animation, Expression):
+        return animation
+    keys = (replace(key, value=plain) for key in animation.keys if (plain := coerced(value, key.value)) is not None)
+    made = tuple(keys)
+    return replace(animation, keys=made) if len(made) == len(animation.keys) else animation
+
+
 def moved(animation: Mapping[Port, Animation], old: str, new: str = "") -> dict[Port, Animation]:
     """All `animation` after a node or control was renamed, or a node removed if `new` is empty."""
     found: dict[Port, Animation] = {}

@@ -12,7 +12,7 @@ from typing import Any, Literal, Self
 
 from ...nodes import Node, Plain, Socket, Value
 from ..errors import GraphError
-from .animation import Animation, animation_fault, moved
+from .animation import Animation, adapted, animation_fault, moved
 from .conversion import conversion
 from .faces import declared, is_pointwise, signature
 from .group import Group, Item
@@ -223,10 +223,12 @@ class Graph:
         return declared(self.node(port.node), port.socket, port.node).default
 
     def set(self, port: Port, value: object) -> Self:
-        """A graph where a value of a node, or a control of a group, is set, for all frames.
+        """A graph where a value of a node, or a control of a group, is set for all frames, or is animated.
 
         Checks type, choice and hard range.
         """
+        if isinstance(value, Animation):
+            return self.animate(port, value)
         wanted = declared(self.node(port.node), port.socket, port.node)
         if fault := value_fault(wanted, value):
             raise GraphError(f"{port}: {fault}")
@@ -252,7 +254,8 @@ class Graph:
             return self._with(animation=without(self.animation, port))
         if fault := animation_fault(self, port, animation):
             raise GraphError(fault)
-        return self._with(animation={**self.animation, port: animation})
+        value = declared(self.node(port.node), port.socket, port.node)
+        return self._with(animation={**self.animation, port: adapted(value, animation)})
 
     def set_control(self, name: str, value: object) -> Self:
         """A graph where the value behind a control is set."""

@@ -2,10 +2,12 @@
 
 - `constant` holds the value up to the next key, `linear` goes straight.
 - `smooth` is the monotone cubic of Fritsch and Carlson (1980) with the slopes of Fritsch and Butland (1984), as scipy's
-  PchipInterpolator: nothing overshoots a key. Two keys alone make a straight line. Frames that are held take no part.
+  PchipInterpolator: nothing overshoots a key. It eases in at the first key and out at the last. Frames that are held
+  take no part.
 - `bezier` is a cubic in (frame, value) through the handles of both keys. See `bezier.py`.
 
-Booleans are always held, whole numbers rounded (halves away from zero), vectors and colors go channel by channel.
+Booleans are always held; vectors and colors go channel by channel. Between whole numbers are numbers: whoever wants a
+whole one rounds.
 """
 
 from __future__ import annotations
@@ -257,17 +259,7 @@ class Keys:
         """The slope of `smooth` at a key: that of its neighbors, as far as the value runs to them."""
         back = place > 0 and self._runs(place - 1)
         ahead = place + 1 < len(self.keys) and self._runs(place)
-        if back and ahead:
-            return _between(*self._rise(place - 1, channel), *self._rise(place, channel))
-        if ahead:
-            further = place + 2 < len(self.keys) and self._runs(place + 1)
-            near = self._rise(place, channel)
-            return _end(*near, *self._rise(place + 1, channel)) if further else near[1]
-        if back:
-            further = place > 1 and self._runs(place - 2)
-            near = self._rise(place - 1, channel)
-            return _end(*near, *self._rise(place - 2, channel)) if further else near[1]
-        return 0.0
+        return _between(*self._rise(place - 1, channel), *self._rise(place, channel)) if back and ahead else 0.0
 
     def _rise(self, place: int, channel: int) -> tuple[float, float]:
         """The frames from a key to the next, and the straight slope between them."""
@@ -275,19 +267,13 @@ class Keys:
         width = end.frame - start.frame
         return width, (end.parts[channel] - start.parts[channel]) / width
 
-    @cached_property
-    def _whole(self) -> bool:
-        return all(isinstance(key.value, int) for key in self.keys)
-
     def _held(self, place: int) -> Plain:
         key = self.keys[place]
         return self._plain(key.parts) if key.parts else key.value
 
     def _plain(self, parts: tuple[float, ...]) -> Plain:
         """Channels as the value that they make up."""
-        if isinstance(self.keys[0].value, tuple):
-            return parts
-        return rounded(parts[0]) if self._whole else parts[0]
+        return parts if isinstance(self.keys[0].value, tuple) else parts[0]
 
 
 def rounded(number: float) -> int:
@@ -326,13 +312,3 @@ def _between(width: float, slope: float, next_width: float, next_slope: float) -
         return 0.0
     one, two = 2.0 * next_width + width, next_width + 2.0 * width
     return (one + two) / (one / slope + two / next_slope)
-
-
-def _end(width: float, slope: float, next_width: float, next_slope: float) -> float:
-    """The slope at an end: of the parabola through three keys, within what keeps the cubic monotone."""
-    found = ((2.0 * width + next_width) * slope - width * next_slope) / (width + next_width)
-    if slope == 0.0 or found == 0.0 or (found > 0.0) != (slope > 0.0):
-        return 0.0
-    if (slope > 0.0) != (next_slope > 0.0) and abs(found) > 3.0 * abs(slope):
-        return 3.0 * slope
-    return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from hashlib import blake2b
@@ -9,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from ...nodes import Kind
-from ..compiler import Picture, Probed
+from ..compiler import Picture, Probed, named_files
 from ..errors import InputError, UsageError
-from ..graph import Graph, Input
+from ..graph import INPUTS, OUTPUTS, Graph, Input, keyed_frames
 
 if TYPE_CHECKING:
     import numpy as np
@@ -41,6 +42,28 @@ class Pictures:
         self._infos.clear()
         bound = {name: self._bind(_input(graph, name), name, item) for name, item in inputs.items()}
         return bound | self._siblings(graph, bound)
+
+    def frames(self, graph: Graph, bound: Mapping[str, Picture]) -> tuple[int, int]:
+        """The first and last frame of a graph: as it says, else those of the first sequence it reads, else of keys.
+
+        Raises InputError, UsageError for a sequence that cannot be looked at.
+        """
+        from .sequences import find_sequence
+
+        if graph.settings.frames is not None:
+            return graph.settings.frames
+        for path, _, _ in named_files(graph, bound):
+            if (found := find_sequence(path)) and found.frames:
+                return found.frames[0], found.frames[-1]
+        return 1, max([1, *(math.ceil(frame) for frame in keyed_frames(graph))])
+
+    def check_frames(self, graph: Graph, frames: range) -> None:
+        """Raise InputError for the first file that is missing in a sequence which the graph's outputs need."""
+        needed = graph.upstream(OUTPUTS)
+        for path, owner, missing in named_files(graph, {}):
+            used = owner.partition("/")[0] in needed or owner.startswith(f"{INPUTS}.")
+            for frame in frames if used and missing == "error" else ():
+                self.at(path, frame, missing)
 
     def at(self, path: str, frame: int, missing: Missing) -> Frame:
         """The file of a frame. Raises InputError for a frame that has none."""
@@ -142,6 +165,7 @@ class Pictures:
         from .info import find_layer
 
         if socket.layer and socket.kind is Kind.IMAGE:
+            path = self.at(path, 1, "nearest").path
             try:
                 find_layer(self.info(path), socket.layer)
             except InputError:

@@ -102,7 +102,7 @@ class Survey:
         for role, rule in (self._measured(pixels, camera.camera) if camera.solved else {}).items():
             conventions[role] = rule
         depth = pixels.get(Role.DEPTH)
-        if depth is not None and not conventions[Role.DEPTH].measured and (rule := evidence.depth_alone(depth)):
+        if depth is not None and not conventions[Role.DEPTH].measured and (rule := evidence.depth_alone(depth[..., 0])):
             conventions[Role.DEPTH] = rule
         if (rule := self._motion(pixels, camera)) is not None:
             conventions[Role.VELOCITY] = rule

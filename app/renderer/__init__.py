@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from .device import Device, describe, open_device
 from .display import Display, Drawable, Handle
-from .engine import Renderer, Wanted
+from .engine import DEFAULT_BUDGET, Renderer, Wanted
 from .executor import Counters
 from .look import Look, fitted, to_panel, to_picture
 from .probe import Nonfinite, Probe, first_nonfinite
@@ -14,6 +14,7 @@ from .runner import Runner
 from .textures import Lease
 
 __all__ = [
-    "Counters", "Device", "Display", "Drawable", "Handle", "Lease", "Look", "Nonfinite", "Probe", "Reel", "Renderer",
-    "Run", "Runner", "Wanted", "describe", "first_nonfinite", "fitted", "open_device", "to_panel", "to_picture",
+    "DEFAULT_BUDGET", "Counters", "Device", "Display", "Drawable", "Handle", "Lease", "Look", "Nonfinite", "Probe",
+    "Reel", "Renderer", "Run", "Runner", "Wanted", "describe", "first_nonfinite", "fitted", "open_device", "to_panel",
+    "to_picture",
 ]

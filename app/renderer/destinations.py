@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ...nodes import Kind, Socket
@@ -12,6 +12,7 @@ from .. import media
 from ..compiler import Picture, Plan, Precision
 from ..errors import UsageError
 from ..graph import OUTPUTS, Graph, Port, did_you_mean
+from ..graph.frames import Pattern, check_numbered
 from .engine import Wanted
 
 
@@ -38,8 +39,27 @@ class Destination:
     view: str
 
 
-def destinations(graph: Graph, wanted: Wanted, writing: Writing) -> tuple[Destination, ...]:
-    """The files to be written; an EXR may be named for several outputs. Raises UsageError."""
+def destinations(
+    graph: Graph, wanted: Wanted, writing: Writing, frames: Sequence[int]
+) -> dict[int, tuple[Destination, ...]]:
+    """The files of every frame; an EXR may be named for several outputs.
+
+    Raises UsageError, also where several frames would go into one file.
+    """
+    files = _files(graph, wanted, writing)
+    for file in files:
+        check_numbered(str(file.path), frames)
+    return {frame: tuple(replace(file, path=_at(file.path, frame)) for file in files) for frame in frames}
+
+
+def _at(path: Path, frame: int) -> Path:
+    """The name that a file has at a frame."""
+    pattern = Pattern.parse(str(path))
+    return path if pattern is None else Path(pattern.name(frame))
+
+
+def _files(graph: Graph, wanted: Wanted, writing: Writing) -> tuple[Destination, ...]:
+    """What is to be written, by the names that were given."""
     names = tuple(wanted.targets or graph.outputs)
     files: dict[Path, tuple[str, ...]] = {}
     known: dict[str, Path] = {}

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from ...nodes import Size
-from .. import media
-from ..compiler import Library, Memory, Plan, Precision, Request, compile_graph, named_files
-from ..graph import Graph, Port, keyed_frames
+from ..compiler import Library, Memory, Plan, Precision, Request, compile_graph
+from ..graph import Graph, Port
 from ..media.pictures import Pictures
 from .decoding import Array
 from .device import Device, open_device
@@ -76,12 +74,7 @@ class Renderer:
 
     def frames(self, graph: Graph, wanted: Wanted = Wanted()) -> tuple[int, int]:
         """The first and last frame of a graph: as it says, else those of the first sequence it reads, else of keys."""
-        if graph.settings.frames is not None:
-            return graph.settings.frames
-        for path in named_files(graph, self.pictures.bind(graph, wanted.bound)):
-            if (found := media.find_sequence(path)) and found.frames:
-                return found.frames[0], found.frames[-1]
-        return 1, max([1, *(math.ceil(frame) for frame in keyed_frames(graph))])
+        return self.pictures.frames(graph, self.pictures.bind(graph, wanted.bound))
 
     def render(self, graph: Graph, wanted: Wanted = Wanted()) -> dict[str, Array]:
         """Every wanted output by name as [height, width, channels], scene-linear. Raises the errors of `app.errors`.

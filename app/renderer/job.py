@@ -1,123 +1,205 @@
-"""One rendering from graph to files: what `halation render` does once its arguments are understood."""
+"""Renderings from graph to files: what `halation render` does once its arguments are understood.
+
+While a frame is computed the next one's pictures are decoded and the last one's results are written, all in bounded
+memory: a few pictures ahead, two frames behind.
+"""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections import deque
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
-from importlib import metadata
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
-from .. import document, media
-from ..compiler import Pass, Picture, Plan
-from ..graph import Graph, Group
+from .. import media
+from ..compiler import Pass, Plan
+from ..graph import Graph
 from .decoding import Array
-from .destinations import Writing, check, destinations
+from .destinations import Destination, Writing, check, destinations
 from .engine import Renderer, Wanted
+from .header import Hashes, frame_key, header, is_written
+from .reel import Reel
+from .textures import Lease
 
-__all__ = ["Progress", "Report", "Writing", "run_job"]
+__all__ = ["FrameReport", "Progress", "Report", "Writing", "run_job"]
 
-Progress = Callable[[int, int, Pass], None]
-"""Called after each pass with how many are done, how many there are, and which it was."""
+BEHIND = 2
+"""Frames whose results may wait to be written."""
+
+
+@dataclass(frozen=True)
+class FrameReport:
+    """What became of a frame. `passes` were executed for it; none where its files were `kept` as they were."""
+
+    frame: int
+    written: tuple[Path, ...]
+    passes: int
+    kept: bool = False
+
+
+class Progress(Protocol):
+    """Hears how far a job is."""
+
+    def passed(self, frame: int, done: int, total: int, one: Pass) -> None:
+        """A pass of a frame, or of one that leads up to it, is through."""
+        ...
+
+    def finished(self, report: FrameReport, done: int, total: int) -> None:
+        """The files of a frame are there; so many of all frames are done."""
+        ...
 
 
 @dataclass(frozen=True)
 class Report:
-    """What a job did. `seconds` are by stage."""
+    """What a job did. `seconds` are by stage; stages of different frames overlap."""
 
-    written: tuple[Path, ...]
-    plan: Plan
+    frames: tuple[FrameReport, ...]
     passes: int
     programs: int
     peak_bytes: int
     repaired: Mapping[str, int]
     seconds: Mapping[str, float] = field(default_factory=dict[str, float])
 
+    @property
+    def written(self) -> tuple[Path, ...]:
+        """All files, in the order of the frames."""
+        return tuple(path for frame in self.frames for path in frame.written)
+
 
 def run_job(
-    renderer: Renderer, graph: Graph, wanted: Wanted, writing: Writing, progress: Progress | None = None
+    renderer: Renderer, graph: Graph, wanted: Wanted, writing: Writing, frames: Sequence[int] | None = None, *,
+    resume: bool = False, progress: Progress | None = None,
 ) -> Report:
-    """Render what `wanted` says and write it.
+    """Render frames, by default that of `wanted`, and write them.
 
-    Whatever can be known to be wrong with a destination is known before anything is rendered. Raises the errors of
-    `app.errors`; no partial file is left behind.
+    Whatever can be known to be wrong with a destination is known before anything is rendered. With `resume`, frames
+    whose files are there and would come out the same are kept. Raises the errors of `app.errors`; the frames that were
+    finished stay, no partial file is left behind.
     """
-    started = time.perf_counter()
     counters, programs = renderer.runner.counters.passes, renderer.runner.programs.compiled
-    files = destinations(graph, wanted, writing)
-    plan = renderer.compile(graph, wanted)
-    sources = {item.node: item.picture for item in plan.uploads if not item.picture.in_memory}
-    check(files, plan, sources, writing.compression)
-    hashes = _hashes({picture.path for picture in sources.values()})
-    compiled = time.perf_counter()
-    outputs = _rendered(renderer, plan, progress)
-    rendered = time.perf_counter()
-    header = _header(renderer, graph, wanted, sources, hashes)
-    for file in files:
-        layers = {layer: outputs[name] for layer, name in file.layers.items()}
-        media.write(
-            file.path, layers, kinds=file.kinds, precision=writing.precision, compression=writing.compression,
-            view=file.view, metadata=header,
-        )
-    finished = time.perf_counter()
+    job = _Job(renderer, graph, wanted, writing, resume, progress, tuple(frames or (wanted.frame,)))
+    try:
+        reports = job.run()
+    finally:
+        job.close()
     return Report(
-        tuple(file.path for file in files), plan, renderer.runner.counters.passes - counters,
-        renderer.runner.programs.compiled - programs, renderer.runner.textures.peak, dict(renderer.pictures.repaired),
-        {"compile": compiled - started, "render": rendered - compiled, "write": finished - rendered},
+        tuple(reports), renderer.runner.counters.passes - counters, renderer.runner.programs.compiled - programs,
+        renderer.runner.textures.peak, dict(renderer.pictures.repaired), job.seconds,
     )
 
 
-def _rendered(renderer: Renderer, plan: Plan, progress: Progress | None) -> dict[str, Array]:
-    """The outputs of the plan by name."""
-    kept = renderer.runner.lease()
-    try:
-        with renderer.runner.steps(plan, kept) as steps:
-            for done, one in enumerate(steps, 1):
-                if progress is not None:
-                    progress(done, len(plan.passes), one)
-        return renderer.runner.download(plan)
-    finally:
+@dataclass(frozen=True)
+class _Task:
+    """One frame: its files, the keys that they shall have, and how it is made."""
+
+    frame: int
+    files: tuple[Destination, ...]
+    keys: tuple[str, ...]
+    plan: Plan
+
+
+class _Job:
+    def __init__(
+        self, renderer: Renderer, graph: Graph, wanted: Wanted, writing: Writing, resume: bool,
+        progress: Progress | None, frames: tuple[int, ...],
+    ) -> None:
+        self._renderer, self._graph, self._wanted, self._writing = renderer, graph, wanted, writing
+        self._resume, self._progress, self._frames = resume, progress, frames
+        self._reel = Reel(renderer, graph, wanted)
+        self._hashes = Hashes()
+        self._writer = ThreadPoolExecutor(1, thread_name_prefix="write")
+        self._writes: deque[Future[FrameReport]] = deque()
+        self._reports: list[FrameReport] = []
+        self.seconds = {"compile": 0.0, "render": 0.0, "write": 0.0}
+
+    def run(self) -> list[FrameReport]:
+        self._files = destinations(self._graph, self._wanted, self._writing, self._frames)
+        todo = deque(self._frames)
+        task = self._next(todo)
+        while task is not None:
+            kept, passes = self._begun(task)
+            following = self._next(todo)  # while the device is busy
+            if following is not None:
+                self._renderer.runner.prepare(following.plan)
+            self._write(task, self._taken(task, kept), passes)
+            task = following
+        while self._writes:
+            self._settle()
+        return sorted(self._reports, key=lambda report: self._frames.index(report.frame))
+
+    def close(self) -> None:
+        """Let what is being written come to its end."""
+        self._writer.shutdown(cancel_futures=True)
+        self._hashes.close()
+        self._reel.close()
+
+    # --- one frame ---------------------------------------------------------------------------------------------------
+
+    def _next(self, todo: deque[int]) -> _Task | None:
+        """The next frame that must be rendered."""
+        while todo:
+            frame, started = todo.popleft(), time.perf_counter()
+            plan, files = self._reel.plan(frame), self._files[frame]
+            sources = {item.node: item.picture for item in plan.uploads if not item.picture.in_memory}
+            check(files, plan, sources, self._writing.compression)
+            keys = tuple(frame_key(plan, file, self._writing) for file in files)
+            self.seconds["compile"] += time.perf_counter() - started
+            if self._resume and all(map(is_written, files, keys)):
+                self._finished(FrameReport(frame, tuple(file.path for file in files), 0, kept=True))
+                continue
+            return _Task(frame, files, keys, plan)
+        return None
+
+    def _begun(self, task: _Task) -> tuple[Lease, int]:
+        """Send a frame's passes to the device: what will hold the outputs, and how many passes they were."""
+        started, passes = time.perf_counter(), 0
+        kept = self._renderer.runner.lease()
+        for run in self._reel.steps(task.frame, kept):
+            with run:
+                for done, one in enumerate(run, 1):
+                    passes += 1
+                    if self._progress is not None:
+                        self._progress.passed(task.frame, done, run.total, one)
+        self.seconds["render"] += time.perf_counter() - started
+        return kept, passes
+
+    def _taken(self, task: _Task, kept: Lease) -> dict[str, Array]:
+        """Wait for the outputs of a frame."""
+        started = time.perf_counter()
+        outputs = self._renderer.runner.download(task.plan)
         kept.close()
+        self.seconds["render"] += time.perf_counter() - started
+        return outputs
 
+    def _write(self, task: _Task, outputs: Mapping[str, Array], passes: int) -> None:
+        sources = {item.node: item.picture for item in task.plan.uploads if not item.picture.in_memory}
+        hashes = self._hashes.of({picture.path for picture in sources.values()})
+        wanted = replace(self._wanted, frame=task.frame)
+        device = self._renderer.device.target.renderer
 
-def _hashes(paths: Iterable[str]) -> dict[str, Future[str]]:
-    """SHA-256 of files by path; computed on another thread, while the pictures are decoded and rendered."""
-    pool = ThreadPoolExecutor(1, thread_name_prefix="hash")
-    found = {path: pool.submit(media.content_hash, path) for path in paths}
-    pool.shutdown(wait=False)
-    return found
+        def write() -> FrameReport:
+            started = time.perf_counter()
+            for file, key in zip(task.files, task.keys, strict=True):
+                said: dict[str, Any] = header(self._graph, device, wanted, sources, hashes, key)
+                layers = {layer: outputs[name] for layer, name in file.layers.items()}
+                media.write(
+                    file.path, layers, kinds=file.kinds, precision=self._writing.precision,
+                    compression=self._writing.compression, view=file.view, metadata=said,
+                )
+            self.seconds["write"] += time.perf_counter() - started
+            return FrameReport(task.frame, tuple(file.path for file in task.files), passes)
 
+        self._writes.append(self._writer.submit(write))
+        while len(self._writes) > BEHIND or (self._writes and self._writes[0].done()):
+            self._settle()
 
-def _header(
-    renderer: Renderer, graph: Graph, wanted: Wanted, sources: Mapping[str, Picture],
-    hashes: Mapping[str, Future[str]],
-) -> dict[str, Any]:
-    """What a result says of itself: input metadata passes through, and how to make it again is added."""
-    header: dict[str, Any] = {}
-    for path in hashes:
-        header = media.read_metadata(path) | header
-    header["halation:graph"] = document.dumps(_whole(graph))
-    header["halation:version"] = metadata.version("halation")
-    header["halation:renderer"] = renderer.device.target.renderer
-    header["halation:settings"] = _settings(wanted)
-    for node, picture in sources.items():
-        layer = f":{picture.layer}" if picture.layer else ""
-        digest = hashes[picture.path].result()
-        header[f"halation:input:{node}"] = f"{Path(picture.path).name}{layer} sha256:{digest}"
-    return header
+    def _settle(self) -> None:
+        self._finished(self._writes.popleft().result())
 
-
-def _whole(graph: Graph) -> Graph:
-    """The graph with the bodies of its groups in it: their files may change, and their values may differ already."""
-    nodes = {
-        id: replace(item, graph=_whole(item.graph), path="") if isinstance(item, Group) else item
-        for id, item in graph.nodes.items()
-    }
-    return replace(graph, nodes=nodes)
-
-
-def _settings(wanted: Wanted) -> str:
-    parts = {"scale": wanted.scale, "frame": wanted.frame, "size": wanted.size, "precision": wanted.precision}
-    return " ".join(f"{name}={value}" for name, value in parts.items() if value is not None)
+    def _finished(self, report: FrameReport) -> None:
+        self._reports.append(report)
+        if self._progress is not None:
+            self._progress.finished(report, len(self._reports), len(self._frames))

@@ -70,6 +70,13 @@ class Camera:
         u, v, depth = (_dot(self._row(index), place) + self.rows[4 * index + 3] for index in range(3))
         return u / depth, v / depth, depth
 
+    def shifted(self, x: float, y: float) -> Camera:
+        """The same camera with another place of the picture at every pixel: that so far right and down, in fractions."""
+        u, v, depth = _in_fours(self.rows)
+        u = tuple(part - x * ahead for part, ahead in zip(u, depth, strict=True))
+        v = tuple(part - y * ahead for part, ahead in zip(v, depth, strict=True))
+        return Camera((*u, *v, *depth))
+
     def _row(self, index: int) -> Vector3:
         x, y, z = self.rows[4 * index : 4 * index + 3]
         return x, y, z

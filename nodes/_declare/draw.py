@@ -47,6 +47,11 @@ class Draw(Protocol):
         """The frame that is rendered."""
         ...
 
+    @property
+    def rate(self) -> float:
+        """Frames per second."""
+        ...
+
     def size_of(self, pixels: Pixels) -> Size:
         """The size of an input or of something drawn."""
         ...

@@ -9,6 +9,7 @@ from .._declare import (
     Draw,
     Drawn,
     Field,
+    Fraction,
     Image,
     Motion,
     Output,
@@ -24,6 +25,9 @@ from .._declare import (
 _NEAR = 0.01
 """What is nearer than this part of the distance to the target is cut off."""
 
+_JITTERS = 16
+"""Frames until the samples of a pixel start again: as many as antialiasing over time remembers well."""
+
 
 class Scene(Source):
     """Draw meshes into every channel that effects want: albedo, normals, depth, position, velocity, ids and more.
@@ -31,7 +35,7 @@ class Scene(Source):
     All in one pass. The camera orbits its target. What can move (all of a file, the red ball of the stage) turns about
     the world's upright axis and drifts. Positions are in world units, z up; depth is measured along the camera's axis,
     1e10 where nothing is; velocity is in pixels, y down: since the frame before, and until the next. Pixels are
-    sampled in their middle, so edges are hard and data is exact.
+    sampled in their middle, so edges are hard and data is exact; with jitter, elsewhere in each frame (Halton 1960).
     """
 
     scene: Annotated[Literal["stage", "corner", "blocks", "file"], Doc(
@@ -59,6 +63,10 @@ class Scene(Source):
     drift: Annotated[
         tuple[float, float, float], Slider(-0.5, 0.5, unit="scene"), Doc("How far what can move goes, each frame.")
     ] = (0.0, 0.0, 0.0)
+    jitter: Annotated[Fraction, Doc(
+        "How far from their middle pixels are sampled, for Temporal AA: 1 is all over the pixel. Cameras and velocity "
+        "are those of the middle."
+    )] = 0.0
 
     color = Output(Image(doc="Lit by one soft lamp and the sky, to see what is there."))
     albedo = Output(Image())
@@ -80,7 +88,9 @@ class Scene(Source):
         times = (draw.frame, draw.frame - 1, draw.frame + 1)
         now, before, after = (self._camera(time, width / height) for time in times)
         first, second, third = (self._motion(time) for time in times)
-        drawn = draw.raster(scene, (first, second, third), (now, before, after), _NEAR * self.distance)
+        x, y = (self.jitter * part for part in _halton(draw.frame))
+        moved = tuple(camera.shifted(x / width, y / height) for camera in (now, before, after))
+        drawn = draw.raster(scene, (first, second, third), moved, _NEAR * self.distance)
         place, surface = drawn["place"], drawn["surface"]
         return {
             "color": draw.point(
@@ -106,3 +116,19 @@ class Scene(Source):
         c, s = math.cos(self.turn * frames), math.sin(self.turn * frames)
         x, y, z = (part * frames for part in self.drift)
         return (c, -s, 0.0, x, s, c, 0.0, y, 0.0, 0.0, 1.0, z)
+
+
+def _halton(frame: int) -> tuple[float, float]:
+    """Where a pixel is sampled in a frame, from its middle: -0.5..0.5 by radical inverses of 2 and 3."""
+    index = frame % _JITTERS + 1
+    return _radical_inverse(index, 2) - 0.5, _radical_inverse(index, 3) - 0.5
+
+
+def _radical_inverse(index: int, base: int) -> float:
+    """The digits of a whole number, mirrored behind the point."""
+    found, place = 0.0, 1.0 / base
+    while index:
+        index, digit = divmod(index, base)
+        found += digit * place
+        place /= base
+    return found

@@ -93,7 +93,8 @@ class DepthOfField(Filter):
         largest = self.max_blur / 2.0
         radius = self._radius(draw, largest)
         kept = draw("depth_of_field_stays", self.image, radius=radius, edge="reflect")
-        image = draw("depth_of_field_clean", self.image, radius=radius, kept=kept, edge="reflect")
+        clean = draw("depth_of_field_clean", self.image, radius=radius, kept=kept, edge="reflect")
+        image = draw("depth_of_field_whole", self.image, clean=clean, kept=kept, radius=radius, edge="reflect")
         finest = min(_FINEST[self.quality], largest)
         levels = max(math.ceil(math.log2(largest / finest)), 0) if finest else 0
         tile = math.ceil(finest) + 1

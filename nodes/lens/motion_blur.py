@@ -74,6 +74,6 @@ class MotionBlur(Filter):
             times=times,
         )
         return draw(
-            "motion_blur", self.image, fronts=fronts, layer=layer, paths=paths, around=around, variety=variety, times=times,
-            tile=tile, samples=self.samples,
+            "motion_blur", self.image, fronts=fronts, layer=layer, paths=paths, around=around, variety=variety,
+            times=times, tile=tile, samples=self.samples,
         )

@@ -71,6 +71,25 @@ vec4 depth_of_field_clean() {
     return blurred ? own : image_at(pixel) - kept_at(pixel);
 }
 
+// Whether what has one radius lies before what has another, and is blurred.
+bool depth_of_field_hides(float other, float here) { return here - other >= 1.0 && abs(other) >= 1.0; }
+
+// The light that edges lose so goes to the nearer surface beside them: small lamps are hardly more than edges.
+vec4 depth_of_field_whole() {
+    const ivec2 beside[4] = ivec2[4](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
+    float here = radius_at(pixel);
+    vec4 sum = clean_at(pixel);
+    for (int i = 0; i < 4; ++i) {
+        ivec2 at = pixel + beside[i];
+        float there = radius_at(at), takers = 0.0;
+        bool outside = any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, extent));
+        if (outside || !depth_of_field_hides(here, there)) continue;
+        for (int j = 0; j < 4; ++j) takers += float(depth_of_field_hides(radius_at(at + beside[j]), there));
+        sum += (finite(image_at(at)) - kept_at(at) - clean_at(at)) / takers;
+    }
+    return sum;
+}
+
 // With what stayed. It does not make light negative.
 vec4 depth_of_field_with(vec4 seen, vec4 kept) { return max(seen + kept, min(seen, 0.0)); }
 

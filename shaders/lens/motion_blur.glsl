@@ -44,12 +44,12 @@ float motion_blur_nearby(int i) {
     return 1.0 / max(square * square, 1.0);
 }
 
-// Which of 5 x 5 pixels lie well within the nearer and the farther surface of an edge, as bits. `bounds`: how near the two
-// are, and what is between them.
+// Which of 5 x 5 pixels lie well within the nearer and the farther surface of an edge, as bits. `bounds`: how near the
+// two are, and what is between them.
 uvec2 motion_blur_sides(out vec3 bounds) {
     float near[25];
     for (int i = 0; i < 25; ++i) near[i] = nearness(depth_at(pixel + motion_blur_beside(i)));
-    bounds = near[12].xxx;
+    bounds = vec3(near[12]);
     for (int i = 0; i < 9; ++i) {
         float other = near[5 * (i / 3) + i % 3 + 6];
         bounds.xy = vec2(max(bounds.x, other), min(bounds.y, other));
@@ -81,8 +81,8 @@ vec4 motion_blur_motion(uint side) {
     return total > 0.0 ? sum / total : velocity_at(pixel);
 }
 
-// Where renderers filter velocity as they do light, it tells how much the nearer surface covers: unlike colors, what moves
-// is much the same all over a surface.
+// Where renderers filter velocity as they do light, it tells how much the nearer surface covers: unlike colors, it is
+// much the same all over a surface.
 vec2 motion_blur_layer() {
     const float slow = 0.5, hardly = 0.01;  // pixels that motions must differ by; covers that are none
     float here = nearness(depth_at(pixel)), cover = 0.0;
@@ -181,8 +181,8 @@ float motion_blur_variety(vec2 times) {
     return most;
 }
 
-// The part of its time that something spends on the stretch between two offsets, as far as its path leads there; it counts
-// as evenly run through.
+// The part of its time that something spends on the stretch between two offsets, as far as its path leads there; it
+// counts as evenly run through.
 float motion_blur_share(vec4 path, vec2 times, vec2 from, vec2 to) {
     vec2 start = motion_blur_place(path, times.x), way = motion_blur_place(path, times.y) - start;
     float span = dot(way, way);
@@ -199,8 +199,8 @@ float motion_blur_before(float other, float here) {
     return near > 0.0 ? clamp(0.5 + motion_blur_apart * (other - here) / near, 0.0, 1.0) : 0.5;
 }
 
-// How differently something moves than what has a path of a `length`, from how far their paths differ: 0 for parts of one
-// surface, 1 for what has nothing to do with each other.
+// How differently something moves than what has a path of a `length`, from how far their paths differ: 0 for parts of
+// one surface, 1 for what has nothing to do with each other.
 float motion_blur_unlike(float apart, float length) {
     return clamp(4.0 * apart / max(length, motion_blur_still) - 1.0, 0.0, 1.0);
 }
@@ -213,12 +213,13 @@ float motion_blur_step(vec4 path, vec2 times, int samples) {
     return max(1.0 / fastest, open / float(samples));
 }
 
-// The two pixels that a place on a path lies between: the first, the step to the second, and how far the place is on the way
-// there. They lie across the path, along which the place counts as in the middle of its pixel; where samples are `sparse`,
-// along it.
+// The two pixels that a place on a path lies between: the first, the step to the second, and how far the place is on the
+// way there. They lie across the path, along which the place counts as in the middle of its pixel; where samples are
+// `sparse`, along it.
 float motion_blur_between(vec2 at, vec2 way, bool sparse, out ivec2 cell, out ivec2 side) {
     bool steep = abs(way.y) > abs(way.x);
-    if (!sparse && way != vec2(0.0)) at += (steep ? (floor(at.y) + 0.5 - at.y) / way.y : (floor(at.x) + 0.5 - at.x) / way.x) * way;
+    vec2 slide = (floor(at) + 0.5 - at) / way;
+    if (!sparse && way != vec2(0.0)) at += (steep ? slide.y : slide.x) * way;
     side = steep == sparse ? ivec2(0, 1) : ivec2(1, 0);
     at -= 0.5 * vec2(side);
     cell = ivec2(floor(at));
@@ -230,8 +231,9 @@ vec4 motion_blur(vec2 times, int tile, int samples) {
     vec4 fast = around_at(pixel / tile), here = finite(image_at(pixel));
     if (motion_blur_length(fast, times) < 1.0) return here;
     vec4 own = paths_at(pixel);
-    float far = motion_blur_length(own, times), variety = variety_at(pixel / tile) + motion_blur_length(fast - own, times);
-    bool alone = motion_blur_unlike(variety, far) == 0.0;
+    float far = motion_blur_length(own, times);
+    bool alone = motion_blur_unlike(variety_at(pixel / tile) + motion_blur_length(fast - own, times), far) == 0.0;
+    bool bent = length(own.zw - own.xy) > 0.1 * length(own);
     vec2 mine = layer_at(pixel);
     float noise = blue_noise(pixel) - 0.5;
 
@@ -247,10 +249,17 @@ vec4 motion_blur(vec2 times, int tile, int samples) {
         int first = int(round((times.x - shift) / step)), last = int(round((times.y - shift) / step));
         for (int i = first; i <= last; ++i) {
             float time = float(i) * step + shift;
-            vec2 away = motion_blur_place(path, time);
-            vec2 from = motion_blur_place(path, time - 0.5 * step), to = motion_blur_place(path, time + 0.5 * step);
             vec2 open = clamp(time + vec2(-0.5, 0.5) * step, times.x, times.y);
             float spent = (open.y - open.x) / (times.y - times.x);
+            vec2 away = motion_blur_place(path, time);
+            if (alone && bent) {  // in even steps of time, pixels are passed unevenly
+                vec2 at = vec2(pixel) + 0.5 - motion_blur_place(path, 0.5 * (open.x + open.y));
+                if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, vec2(image_size)))) continue;
+                same += spent * finite(fronts_near(at));
+                stays += spent;
+                continue;
+            }
+            vec2 from = motion_blur_place(path, time - 0.5 * step), to = motion_blur_place(path, time + 0.5 * step);
             ivec2 cell, side;
             float part = motion_blur_between(vec2(pixel) + 0.5 - away, to - from, step > exact, cell, side);
             for (int k = 0; k < 2; ++k, cell += side, part = 1.0 - part) {
@@ -268,14 +277,15 @@ vec4 motion_blur(vec2 times, int tile, int samples) {
                 float before = cell == pixel ? 0.0 : motion_blur_before(layer.x, mine.x);
                 float after = clamp(1.0 - 2.0 * before, 0.0, 1.0) * unlike;
                 before *= unlike;
-                float share = loop == 0 ? (1.0 - part) * motion_blur_share(other, times, from, to) : passes * (1.0 - before);
                 if (loop == 0) {
+                    float share = (1.0 - part) * motion_blur_share(other, times, from, to);
                     front += before * share * light;
                     covers += before * share * cover;
                     moving += after * share * light;
                     moves += after * share * cover;
                     continue;
                 }
+                float share = passes * (1.0 - before);
                 same += (1.0 - after) * share * light;
                 stays += (1.0 - after) * share * cover;
                 bares += share * (1.0 - (1.0 - after) * cover);

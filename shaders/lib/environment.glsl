@@ -31,11 +31,17 @@ ivec2 environment_texel(ivec2 at, ivec2 size) {
     return ivec2(at.x - size.x * int(floor((float(at.x) + 0.5) / float(size.x))), clamp(at.y, 0, size.y - 1));
 }
 
-// One of the four pixels around a direction, and how much it counts.
-ivec2 environment_corner(vec2 uv, int corner, ivec2 size, out float weight) {
-    vec2 at = uv * vec2(size) - 0.5, part = at - floor(at);
-    ivec2 beyond = ivec2(corner & 1, corner >> 1);
-    vec2 near = mix(1.0 - part, part, vec2(beyond));
-    weight = near.x * near.y;
-    return environment_texel(ivec2(floor(at)) + beyond, size);
+// The four pixels around a direction, and how much each counts.
+struct Corners { ivec2 at[4]; vec4 weight; };
+
+Corners environment_corners(vec2 uv, ivec2 size) {
+    vec2 at = uv * vec2(size) - 0.5, part = at - floor(at), rest = 1.0 - part;
+    ivec2 first = ivec2(floor(at));
+    return Corners(
+        ivec2[4](
+            environment_texel(first, size), environment_texel(first + ivec2(1, 0), size),
+            environment_texel(first + ivec2(0, 1), size), environment_texel(first + ivec2(1, 1), size)
+        ),
+        vec4(rest.x * rest.y, part.x * rest.y, rest.x * part.y, part.x * part.y)
+    );
 }

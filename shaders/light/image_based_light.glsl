@@ -38,64 +38,30 @@ vec4 image_based_light_irradiance() {
     return sum / sum.a;
 }
 
+// Light from a direction. Pictures cannot be handed to functions, so each has one of its own.
 vec3 image_based_light_in_sky(vec2 uv) {
-    vec4 sum = vec4(0.0);
-    float weight;
-    for (int i = 0; i < 4; ++i) {
-        ivec2 at = environment_corner(uv, i, sky_size, weight);
-        sum += weight * sky_at(at);
-    }
-    return sum.rgb;
+    Corners c = environment_corners(uv, sky_size);
+    return (mat4(sky_at(c.at[0]), sky_at(c.at[1]), sky_at(c.at[2]), sky_at(c.at[3])) * c.weight).rgb;
 }
-
 vec3 image_based_light_in_level0(vec2 uv) {
-    vec4 sum = vec4(0.0);
-    float weight;
-    for (int i = 0; i < 4; ++i) {
-        ivec2 at = environment_corner(uv, i, level0_size, weight);
-        sum += weight * level0_at(at);
-    }
-    return sum.rgb;
+    Corners c = environment_corners(uv, level0_size);
+    return (mat4(level0_at(c.at[0]), level0_at(c.at[1]), level0_at(c.at[2]), level0_at(c.at[3])) * c.weight).rgb;
 }
-
 vec3 image_based_light_in_level1(vec2 uv) {
-    vec4 sum = vec4(0.0);
-    float weight;
-    for (int i = 0; i < 4; ++i) {
-        ivec2 at = environment_corner(uv, i, level1_size, weight);
-        sum += weight * level1_at(at);
-    }
-    return sum.rgb;
+    Corners c = environment_corners(uv, level1_size);
+    return (mat4(level1_at(c.at[0]), level1_at(c.at[1]), level1_at(c.at[2]), level1_at(c.at[3])) * c.weight).rgb;
 }
-
 vec3 image_based_light_in_level2(vec2 uv) {
-    vec4 sum = vec4(0.0);
-    float weight;
-    for (int i = 0; i < 4; ++i) {
-        ivec2 at = environment_corner(uv, i, level2_size, weight);
-        sum += weight * level2_at(at);
-    }
-    return sum.rgb;
+    Corners c = environment_corners(uv, level2_size);
+    return (mat4(level2_at(c.at[0]), level2_at(c.at[1]), level2_at(c.at[2]), level2_at(c.at[3])) * c.weight).rgb;
 }
-
 vec3 image_based_light_in_level3(vec2 uv) {
-    vec4 sum = vec4(0.0);
-    float weight;
-    for (int i = 0; i < 4; ++i) {
-        ivec2 at = environment_corner(uv, i, level3_size, weight);
-        sum += weight * level3_at(at);
-    }
-    return sum.rgb;
+    Corners c = environment_corners(uv, level3_size);
+    return (mat4(level3_at(c.at[0]), level3_at(c.at[1]), level3_at(c.at[2]), level3_at(c.at[3])) * c.weight).rgb;
 }
-
 vec3 image_based_light_in_level4(vec2 uv) {
-    vec4 sum = vec4(0.0);
-    float weight;
-    for (int i = 0; i < 4; ++i) {
-        ivec2 at = environment_corner(uv, i, level4_size, weight);
-        sum += weight * level4_at(at);
-    }
-    return sum.rgb;
+    Corners c = environment_corners(uv, level4_size);
+    return (mat4(level4_at(c.at[0]), level4_at(c.at[1]), level4_at(c.at[2]), level4_at(c.at[3])) * c.weight).rgb;
 }
 
 // Between two of five pictures of the sky, each coarser than the one before.
@@ -147,18 +113,29 @@ vec4 image_based_light_diffuse(float intensity, float rotation, int up) {
     return finite(vec4(intensity * clamp(occlusion_at(pixel), 0.0, 1.0) * color * light, 1.0));
 }
 
+// The i-th of facets that are spread as a `view` across x sees them (Heitz 2018).
+vec3 image_based_light_seen(int i, int count, vec3 view, float alpha) {
+    float part = (float(i) + 0.5) / float(count), turn = 2.0 * ENVIRONMENT_PI * fract(float(i) * 0.61803399);
+    vec3 stretched = normalize(vec3(alpha * view.x, 0.0, view.z)), across = vec3(0.0, 1.0, 0.0);
+    vec2 at = sqrt(part) * vec2(cos(turn), sin(turn));
+    at.y = mix(sqrt(1.0 - at.x * at.x), at.y, 0.5 * (1.0 + stretched.z));
+    float lift = sqrt(max(1.0 - dot(at, at), 0.0));
+    vec3 facet = at.x * across + at.y * cross(stretched, across) + lift * stretched;
+    return normalize(vec3(alpha * facet.xy, max(facet.z, 0.0)));
+}
+
 // How much facets mirror of an even sky: scale and bias of the color that they have head on, by how much the surface faces
 // the eye, across, and its roughness, down (the second half of the split sum).
 vec2 image_based_light_shares() {
     vec2 at = max(vec2(pixel) / vec2(extent - 1), 1e-3);
     vec3 view = vec3(sqrt(1.0 - at.x * at.x), 0.0, at.x);
-    float alpha = at.y * at.y;
+    float alpha = at.y * at.y, along = sqrt(at.x * at.x * (1.0 - alpha * alpha) + alpha * alpha);
     vec2 sum = vec2(0.0);
     for (int i = 0; i < IMAGE_BASED_LIGHT_FACETS; ++i) {
-        vec3 facet = image_based_light_facet(i, IMAGE_BASED_LIGHT_FACETS, alpha);
+        vec3 facet = image_based_light_seen(i, IMAGE_BASED_LIGHT_FACETS, view, alpha);
         float seen = dot(view, facet), lit = 2.0 * seen * facet.z - view.z;
         if (seen <= 0.0 || lit <= 0.0) continue;
-        float part = 4.0 * ggx_visible(at.x, lit, alpha) * lit * seen / facet.z;
+        float part = 2.0 * lit * (at.x + along) * ggx_visible(at.x, lit, alpha);  // of what is seen, that is lit
         sum += part * mix(vec2(1.0, 0.0), vec2(0.0, 1.0), fresnel(vec3(0.0), seen).x);
     }
     return sum / float(IMAGE_BASED_LIGHT_FACETS);

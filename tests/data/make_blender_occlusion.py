@@ -1,4 +1,4 @@
-"""Makes blender_occlusion.npz: the ambient occlusion and the bounced light of Blender (Cycles), and what a screen knows.
+"""Makes blender_occlusion.npz: ambient occlusion and bounced light by Blender (Cycles), and what a screen knows of it.
 
 make_blender_lens.py says how to run it. `known` is how much of the light of each pixel depends on what the picture does
 not show: rays in double precision say which directions are blocked, and the picture's own depth what it would say.
@@ -61,8 +61,7 @@ def met(place: Array, way: Array) -> Array:
         found = np.fmin(found, np.where(far > 1e-6, far, np.inf))
         one, two = (LOW - place) / way, (HIGH - place) / way
         enter, leave = np.minimum(one, two).max(-1), np.maximum(one, two).min(-1)
-        found = np.fmin(found, np.where((enter < leave) & (enter > 1e-6), enter, np.inf))
-    return found
+        return np.fmin(found, np.where((enter < leave) & (enter > 1e-6), enter, np.inf))
 
 
 def known(position: Array, normal: Array, depth: Array, eye: Array, rows: Array, counts: int = 24) -> Array:
@@ -73,9 +72,9 @@ def known(position: Array, normal: Array, depth: Array, eye: Array, rows: Array,
     beside, same, random = np.cross(normal, across), np.zeros(depth.shape), np.random.default_rng(1)
     lifted = position + 1e-4 * normal
     for i in range(counts * counts):
-        u, turn = ((i // counts) + random.random(depth.shape)) / counts, (i % counts + random.random(depth.shape)) / counts
-        turn = 2.0 * np.pi * turn[..., None]
-        way = np.sqrt(u)[..., None] * (np.cos(turn) * across + np.sin(turn) * beside) + np.sqrt(1.0 - u)[..., None] * normal
+        u, turn = ((part + random.random((*depth.shape, 1))) / counts for part in divmod(i, counts))
+        spread = np.cos(2.0 * np.pi * turn) * across + np.sin(2.0 * np.pi * turn) * beside
+        way = np.sqrt(u) * spread + np.sqrt(1.0 - u) * normal
         blocked = met(lifted, way) < RADIUS
         guess, beyond = np.zeros(depth.shape, bool), np.zeros(depth.shape, bool)
         for step in (np.arange(24) + 0.5) / 24 * RADIUS:
@@ -111,9 +110,6 @@ def open_(folder: Path) -> dict[str, Array]:
     focal = 42.0 / 36.0
     lens = np.array([[focal, 0.0, 0.5], [0.0, focal * SIZE[0] / SIZE[1], 0.5], [0.0, 0.0, 1.0]])
     rows = lens @ np.column_stack([turned, -turned @ stand[:3, 3]])
-    y, x = np.mgrid[: SIZE[1], : SIZE[0]] + 0.5
-    seen = position @ rows[:, :3].T + rows[:, 3]
-    print("off:", np.abs(seen[..., 0] / seen[..., 2] * SIZE[0] - x).max(), np.abs(seen[..., 1] / seen[..., 2] * SIZE[1] - y).max())
     normal = found["Normal"].astype(float)
     return {
         "open_rows": rows, "open_radius": RADIUS, "open_depth": shortened(found["Depth"][..., 0], 4),
@@ -140,7 +136,6 @@ def bounced(folder: Path) -> dict[str, Array]:
     layer.use_pass_normal = layer.use_pass_position = True
     layer.use_pass_diffuse_direct = layer.use_pass_diffuse_indirect = layer.use_pass_diffuse_color = True
     found = rendered(scene, folder)
-    print(sorted(found))
     stand = np.array(scene.camera.matrix_world)
     turned = stand[:3, :3].T * [[1.0], [-1.0], [-1.0]]
     focal = 50.0 / 36.0

@@ -1,5 +1,5 @@
-"""Makes blender_travel.npz: what Blender (Cycles) makes of a camera that moves past moving things, and of small lamps far
-out of focus.
+"""Makes blender_travel.npz: what Blender (Cycles) makes of moving things that a camera moves past, and of small lamps
+far out of focus.
 
 Scenes of another kind than those of make_blender_lens.py, which says how to run it. Light is stored as half floats
 without their last bits, which hold nothing but noise; depth and velocity with 16 bits of digits.

@@ -7,6 +7,7 @@ from pathlib import Path
 import halation.app as hal
 import pytest
 from halation.app import document
+from halation.app.editor.viewer.ground import depth_at
 from halation.app.graph import Graph, Output, Port, Settings
 from halation.nodes import catalogue
 
@@ -64,7 +65,7 @@ def test_the_point_is_dragged_and_its_depth_written(gui, path: Path) -> None:
         u, v = ui.session.value(POINT)
         ui.ctx.mouse_up(0)
         ui.settled()
-        found[u, v] = ui.ask(lambda: ui.editor.viewer.ground.depth(ui.editor, (u, v)))
+        found[u, v] = ui.ask(lambda: depth_at(ui.editor, (u, v)))
         assert "label lens.focus_point" in ui.editor.places
         assert ui.session.history.steps == ("Set lens.focus_point",)
         ui.keys("E")

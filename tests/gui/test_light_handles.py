@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from halation.app import document
 from halation.app.editor.viewer.dome import flat
+from halation.app.editor.viewer.ground import depth_at
 from halation.app.editor.viewer.perspective import project
 from halation.app.graph import Graph, Output, Port, Settings
 from halation.nodes import Camera, Light, LightKind, catalogue, lights_of, numbers_of
@@ -119,7 +120,7 @@ def test_a_spot_is_turned_by_what_it_shines_to(gui, path: Path) -> None:
 def test_shift_drops_a_light_before_what_is_under_the_mouse(gui, path: Path) -> None:
     def body(ui) -> None:
         steps, at = start(ui), (0.45, 0.55)
-        depth = ui.ask(lambda: ui.editor.viewer.ground.depth(ui.editor, at))
+        depth = ui.ask(lambda: depth_at(ui.editor, at))
         ui.drag("handle lit.lights 2", inside(ui, *at), keys="Shift")
         u, v, near = seen(ui, of(ui)[SPHERE])
         assert (u, v) == pytest.approx(at, abs=5e-3)
@@ -155,7 +156,7 @@ def test_the_sun_is_dragged_on_its_dome(gui, path: Path) -> None:
 def test_a_double_click_adds_a_light_and_delete_removes_it(gui, path: Path) -> None:
     def body(ui) -> None:
         steps, at = start(ui), (0.3, 0.75)
-        depth = ui.ask(lambda: ui.editor.viewer.ground.depth(ui.editor, at))
+        depth = ui.ask(lambda: depth_at(ui.editor, at))
         ui.double_click(inside(ui, *at))
         ui.settled()
         made = of(ui)

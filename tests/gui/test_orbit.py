@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from halation.app import document
+from halation.app.editor.viewer.ground import SCENE, depth_at
 from halation.app.editor.viewer.orbit import Orbit
 from halation.app.editor.viewer.perspective import project, unproject
 from halation.app.graph import Graph, Output, Port, Settings
@@ -78,7 +79,7 @@ def test_what_is_moved_stays_under_the_mouse(gui, path: Path, button: int) -> No
         start(ui)
         begin, end = (0.53, 0.45), (0.25, 0.62)
         before, viewer = orbit(ui), ui.editor.viewer
-        depth = ui.ask(lambda: viewer.ground.depth(ui.editor, begin, "scene depth"))
+        depth = ui.ask(lambda: depth_at(ui.editor, begin, SCENE))
         assert depth is not None and depth < 10.0
         place = unproject(before.camera(ASPECT), *begin, depth)
         ui.drag(inside(ui, *begin), inside(ui, *end), button, "" if button else "Shift")
@@ -86,7 +87,7 @@ def test_what_is_moved_stays_under_the_mouse(gui, path: Path, button: int) -> No
         assert seen == pytest.approx((*end, depth), abs=4e-3)
         assert len(ui.session.history.steps) == 1 and viewer.zoom == 0.0
         ui.settled()
-        assert ui.ask(lambda: viewer.ground.depth(ui.editor, seen[:2], "scene depth")) == pytest.approx(depth, rel=0.02)
+        assert ui.ask(lambda: depth_at(ui.editor, seen[:2], SCENE)) == pytest.approx(depth, rel=0.02)
         ui.keys("Ctrl+Z")
         ui.drag(inside(ui, 0.02, 0.02), inside(ui, 0.32, 0.02), button, "" if button else "Shift")
         assert project(orbit(ui).camera(ASPECT), before.target)[:2] != pytest.approx((0.5, 0.5), abs=0.05)

@@ -21,7 +21,7 @@ KEYS = (
     "Ctrl+Shift+G", "Ctrl+D", "Ctrl+C", "Ctrl+V", "Ctrl+X", "Ctrl+Z", "Ctrl+Shift+Z", "Ctrl+A", "W", "D", "R",
     "A", "Q", "I", "P", "1", "Ctrl+1", "Ctrl+P", "F1", "F2", "DownArrow", "UpArrow", "Shift+F", "Shift+C",
     "Shift+S", "Alt+X", "Alt+S", "Ctrl+Enter", "Ctrl+Backspace", "LeftBracket", "Shift+R", "Ctrl+S",
-    "Ctrl+Comma",
+    "Ctrl+Comma", "O", "E",
 )
 WORDS = ("blur", "0.5", "*2", "x", "bloom", "1+1", "-", "\u00c4")
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.nodes import look_at
+from halation.nodes import Camera, look_at
 from halation.nodes.light.ambient_occlusion import AmbientOcclusion
+from lens import blender
 
 FULL, SMALL = (320, 180), (192, 108)
 UP = ((0.0, 0.0, 1.0), 0.0)  # a floor: its normal, and n . x on it
@@ -313,3 +314,22 @@ def test_thin_things_let_light_through(run):
     thin = render(run, camera, depth, normal, mode="bitmask", thickness=0.02, **values)[below].mean()
     solid = render(run, camera, depth, normal, mode="bitmask", thickness=1e6, **values)[below].mean()
     assert abs(solid - thick) < 0.01 < thin - thick
+
+
+@pytest.mark.parametrize(("mode", "mean", "scatter"), [
+    ("gtao", 0.002, 0.009), ("bitmask", 0.002, 0.009), ("hbao", 0.008, 0.016), ("hemisphere", 0.015, 0.034),
+    ("crytek", 0.015, 0.048), ("alchemy", 0.012, 0.03),
+])
+def test_cycles_where_the_picture_shows_all_that_matters(run, mode, mean, scatter):
+    """A box and a ball before a wall. `known`: the share of directions of which rays through the scene and through the
+    picture say the same. Modes that do not go by the cosine are another measure, but not far from it."""
+    data = blender("occlusion")
+    camera, depth, normal = Camera(tuple(data["open_rows"].ravel())), data["open_depth"], data["open_normal"]
+    found = render(run, camera, depth, normal, mode=mode, quality="reference", radius=0.6, denoise=False)
+    error, known = found - data["open_share"].astype(float), data["open_known"] / 255.0
+    assert (known > 0.99).mean() > 0.4 and data["open_share"][known > 0.99].min() < 0.6
+    assert abs(error[known > 0.99].mean()) < mean and rms(error[known > 0.99]) < scatter
+    if mode in ("gtao", "bitmask"):
+        assert abs(error[known > 0.98].mean()) < 0.004 and rms(error[known > 0.98]) < 0.014
+        worked = render(run, camera, depth, normal, mode=mode, radius=0.6) - data["open_share"].astype(float)
+        assert abs(worked[known > 0.99].mean()) < 0.004 and rms(worked[known > 0.99]) < 0.01

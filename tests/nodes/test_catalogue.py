@@ -153,7 +153,7 @@ def test_it_renders_finite_at_defaults(renderer, node, size):
         assert np.isfinite(found[name]).all(), name
 
 
-WIRES = {"time_offset"}
+WIRES = {"freeze", "time_offset", "time_speed"}
 """Nodes that show their inputs as they are, at another time."""
 
 

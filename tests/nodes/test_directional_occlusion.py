@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.nodes import look_at
+from halation.nodes import Camera, look_at
 from halation.nodes.light.ambient_occlusion import AmbientOcclusion
 from halation.nodes.light.directional_occlusion import DirectionalOcclusion
+from lens import blender
+from scipy.ndimage import binary_erosion
 
-SIZE = (320, 180)
+SIZE, SMALL = (320, 180), (160, 90)
 
 
 def corner(wall=True, size=SIZE):
@@ -171,3 +173,93 @@ def test_nothing_gets_no_light(run):
     scene = camera, depth, normal
     found = light(run, scene, image=np.ones((27, 48, 4)), environment=even(1.0, 1.0, 1.0))
     assert not found[:, :20, :3].any() and found[:, 20:, :3].min() > 0.5
+
+
+def wall_and_floor(high, size=SMALL, eye=(2.4, 0.0, 2.0), target=(0.25, 0.0, 0.15)):
+    """A floor and a wall so high, which goes on below: a scene as of corner(), and where it is floor and wall."""
+    camera, depth, normal, place, _ = corner(size=size)
+    width, height = size
+    camera = look_at(eye, target, (1.0, width / height))
+    y, x = np.mgrid[0:height, 0:width]
+    rays = np.stack([(x + 0.5) / width, (y + 0.5) / height, np.ones(x.shape)], -1)
+    rays = rays @ np.reshape(camera.inverse, (3, 4))[:, :3].T
+    floor, wall = (-np.array(eye)[axis] / rays[..., axis] for axis in (2, 0))
+    top = eye[2] + wall * rays[..., 2]
+    stands = (wall > 0) & (top < high) & (top > 0)
+    depth = np.where(stands, wall, np.where((floor > 0) & (eye[0] + floor * rays[..., 0] > 0), floor, 1e10))
+    ground = ~stands & (depth < 1e9)
+    normal = np.where(stands[..., None], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]) * (depth < 1e9)[..., None]
+    return (camera, depth, normal), np.array(eye) + depth[..., None] * rays, ground, stands
+
+
+def hidden(place, side, high, radius):
+    """Of a floor's light by the cosine, what a plane through the y axis hides that rises `high` to a side, by rays."""
+    u, turn = np.meshgrid((np.arange(400) + 0.5) / 400, (np.arange(400) + 0.5) * np.pi / 200)
+    way = np.stack([np.sqrt(u) * np.cos(turn), np.sqrt(u) * np.sin(turn), np.sqrt(1.0 - u)], -1)
+    with np.errstate(divide="ignore"):
+        far = -np.dot(side, place) / (way @ np.asarray(side))
+    return ((far > 0) & (far < radius) & (far * way[..., 2] < high)).mean()
+
+
+def test_a_low_wall_of_light(run):
+    """C2 times a sky, and its complement times the wall's light."""
+    high, bright, above = 0.4, 3.0, 0.7
+    for d in (0.05, 0.2, 1.0):  # rays through half a sphere give (1 - d / sqrt(d^2 + h^2)) / 2
+        assert abs(hidden((d, 0.0, 0.0), (1.0, 0.0, 0.0), high, 1e9) - 0.5 * (1.0 - d / np.hypot(d, high))) < 2e-3
+    scene, place, ground, stands = wall_and_floor(high)
+    image = np.zeros((*ground.shape, 4), np.float32)
+    image[stands] = (bright, 0.5 * bright, 0.0, 1.0)
+    values = {"image": image, "radius": 0.8, "quality": "reference", "denoise": False}
+    dark, lit = light(run, scene, **values), light(run, scene, environment=even(*[above] * 3), **values)
+    for d in (0.1, 0.2, 0.4, 0.6):
+        near = ground & (np.abs(place[..., 0] - d) < 0.02) & (np.abs(place[..., 1]) < 0.15)
+        blocked = hidden((place[near][:, 0].mean(), 0.0, 0.0), (1.0, 0.0, 0.0), high, 0.8)
+        assert near.sum() > 10
+        assert abs(dark[near][:, 0].mean() / bright - blocked) < 0.02
+        np.testing.assert_allclose(dark[near][:, 1], 0.5 * dark[near][:, 0], rtol=1e-5)
+        assert abs(lit[near][:, 2].mean() / above - (1.0 - blocked)) < 0.02
+
+
+@pytest.mark.parametrize("degrees", [60.0, 100.0, 130.0])
+def test_wedges_under_a_sky(run, degrees):
+    """C4: at the edge of a wedge (1 - cos) / 2 of the sky is left; the other side gives its light for the rest."""
+    width, height = SMALL
+    slope = np.array([np.sin(np.radians(degrees)), 0.0, -np.cos(np.radians(degrees))])
+    assert abs(hidden((1e-6, 0.0, 0.0), slope, np.inf, 1e9) - (1.0 + np.cos(np.radians(degrees))) / 2.0) < 2e-3
+    eye = np.array([4.0, 0.0, 2.5]) if degrees < 120 else np.array([2.0, 0.0, 4.0])
+    camera = look_at(tuple(eye), (0.3, 0.0, 0.1), (2.0, 2.0 * width / height))
+    y, x = np.mgrid[0:height, 0:width]
+    rays = np.stack([(x + 0.5) / width, (y + 0.5) / height, np.ones(x.shape)], -1)
+    rays = rays @ np.reshape(camera.inverse, (3, 4))[:, :3].T
+    floor, side = -eye[2] / rays[..., 2], -(eye @ slope) / (rays @ slope)
+    floor, side = (np.where(one > 0, one, np.inf) for one in (floor, side))
+    depth, ground = np.minimum(floor, side), floor < side
+    normal = np.where(ground[..., None], [0.0, 0.0, 1.0], slope)
+    place = eye + depth[..., None] * rays
+    image = np.where(ground[..., None], 0.0, np.array([2.0, 1.0, 0.5, 1.0]))
+    found = light(
+        run, (camera, depth, normal), image=image, environment=even(0.0, 0.0, 0.8), quality="reference", denoise=False
+    )
+    for low, high in ((0.01, 0.05), (0.05, 0.1), (0.2, 0.25)):
+        near = ground & (place[..., 0] > low) & (place[..., 0] < high) & (np.abs(place[..., 1]) < 0.4)
+        blocked = hidden((place[near][:, 0].mean(), 0.0, 0.0), slope, np.inf, 0.5)
+        assert near.sum() > 25
+        assert abs(found[near][:, 0].mean() / 2.0 - blocked) < 0.02
+        assert abs(found[near][:, 2].mean() - (0.8 * (1.0 - blocked) + 0.5 * blocked)) < 0.02
+
+
+def test_cycles_bounces_light_once_off_colored_walls(run):
+    """Three sides of a box in the sun, all of which the picture shows: what it hands on, in red, green and white."""
+    data = blender("occlusion")
+    camera, depth = Camera(tuple(data["bounced_rows"].ravel())), data["bounced_depth"]
+    image = np.dstack([data["bounced_image"], np.ones(depth.shape)])
+    scene, expected = (camera, depth, data["bounced_normal"]), data["bounced_light"].astype(float)
+    inside = binary_erosion(depth < 1e9, iterations=2)
+    found = light(run, scene, image=image, radius=2.4, quality="reference", denoise=False)[..., :3]
+    error = (found - expected)[inside]
+    assert expected[inside].max() > 0.5
+    assert np.abs(error.mean(0)).max() < 0.012 and np.sqrt((error**2).mean(0)).max() < 0.02
+    for channel in range(3):
+        assert np.corrcoef(found[inside][:, channel], expected[inside][:, channel])[0, 1] > 0.985
+    worked = light(run, scene, image=image, radius=2.4)[..., :3][inside] - expected[inside]
+    assert np.sqrt((worked**2).mean(0)).max() < 0.03

@@ -165,8 +165,8 @@ def test_cycles_with_a_camera_that_moves_too(run):
     picture, expected = opaque(data["travel_image"]), data["travel_blurred"]
     velocity, depth = data["travel_velocity"] * (-1.0, 1.0, -1.0, 1.0), data["travel_depth"]
     found = run(MotionBlur(), {"image": picture, "velocity": velocity, "depth": depth})
-    edge = np.abs(np.diff(1.0 / depth, axis=0, prepend=0)) + np.abs(np.diff(1.0 / depth, axis=1, prepend=0)) > 0.02
-    edge[0], edge[:, 0] = False, False
+    jumps = [np.ptp(np.stack([np.roll(1.0 / depth, step, axis), 1.0 / depth]), 0) for axis, step in ((0, 1), (1, 1))]
+    edge = (np.maximum(*jumps) > 0.1 / depth) & (np.minimum(np.indices(depth.shape)[0], np.indices(depth.shape)[1]) > 0)
     band, plain = binary_dilation(edge, iterations=5), naive(picture, velocity)
     assert psnr(found, expected) > 39.9 > 36.5 > psnr(plain, expected)
     assert psnr(found, expected, band) > 36.0 > 32.0 > psnr(plain, expected, band)
@@ -189,7 +189,7 @@ def test_antialiased_edges_are_pieces_of_what_is_in_front(run):
     motion = np.zeros((15, width, 4))
     motion[..., 0::2] = (rows * coarse[1])[..., None]
     inputs = {"image": opaque(np.dstack([rows * coarse[0]] * 3)), "velocity": motion, "depth": rows * depth}
-    found = run(MotionBlur(max_length=2.0), inputs)[7, :, 0]
+    found = run(MotionBlur(max_length=1.0), inputs)[7, :, 0]
     assert np.abs(found - expected).max() < 0.03
 
 
@@ -199,14 +199,14 @@ def test_bent_paths_are_integrals_along_parabolas(run):
     before, after = np.array([18.0, 9.0]), np.array([14.0, -12.0])
     place = 0.5 * times[:, None] * (before + after + times[:, None] * (after - before))
     y, x = np.mgrid[:64, :64]
-    light, expected, bound = np.ones((64, 64)), np.ones((64, 64)), 0.0
+    light, expected = np.ones((64, 64)), np.ones((64, 64))
     for across, down in ((0.2, 0.13), (-0.1, 0.24), (0.21, -0.2)):
         light += 0.3 * np.sin(across * x + down * y)
         expected += 0.3 * np.mean([np.sin(across * (x - dx) + down * (y - dy)) for dx, dy in place[::8]], 0)
-        bound += 0.3 * (across**2 + down**2) / 8.0
     inputs = {"image": opaque(np.dstack([light] * 3)), "velocity": motion(64, 64, *before, *after)}
     found = run(MotionBlur(shutter=360.0, max_length=1.0), inputs)
-    assert np.abs(found[20:44, 20:44, 0] - expected[20:44, 20:44]).max() < bound < 0.01
+    error = (found[..., 0] - expected)[20:44, 20:44]
+    assert np.abs(error).max() < 0.004 and np.sqrt((error**2).mean()) < 0.0015
 
 
 def test_half_size_moves_half_as_many_pixels(run):

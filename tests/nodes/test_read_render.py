@@ -8,7 +8,7 @@ import pytest
 from halation.app.errors import GraphError, InputError
 from halation.app.graph import Graph, Output, Port
 from halation.app.renderer import Wanted
-from halation.nodes import look_at
+from halation.nodes import Kind, look_at
 from halation.nodes.geometry.position_from_depth import PositionFromDepth
 from halation.nodes.input.read_render import ReadRender
 from halation.nodes.input.solve_camera import SolveCamera
@@ -121,6 +121,28 @@ def test_a_layer_may_be_named(renderer, tmp_path):
     path = write(tmp_path / "a.exr", {"RGB": COLOR, "depth.Z": data["depth"], "mine.Z": data["depth"] * 2})
     (depth,) = shown(renderer, ReadRender(path=path, depth_layer="mine"), "depth")
     assert np.abs(depth / data["depth"] - 2).max() < 1e-6
+
+
+@pytest.mark.parametrize("role", [name.removesuffix("_layer") for name in ReadRender.values if name.endswith("_layer")])
+def test_every_output_takes_the_layer_that_is_named(renderer, tmp_path, role):
+    """Whatever the file calls it, and whatever else it finds; as data, the numbers of the file."""
+    mine = np.random.default_rng(4).random((*SIZE[::-1], 4)).astype(np.float32)
+    path = write(tmp_path / "a.exr", {"RGB": COLOR, "mine.XYZW": mine})
+    options = {f"{role}_layer": "mine"}
+    options |= {"velocity": {"velocity_is": "from previous"}, "depth": {"depth_is": "planar"}}.get(role, {})
+    (found,) = shown(renderer, ReadRender(path=path, **options), role)
+    socket = ReadRender.outputs[role].socket
+    count = min(socket.channels, 3) if socket.kind is Kind.IMAGE else socket.channels
+    assert np.abs(found[..., :count] - mine[..., :count]).max() < 1e-6
+
+
+def test_a_layer_that_is_named_is_measured_too(renderer, tmp_path):
+    """The depth that somebody chose is radial, the one that was found is not."""
+    data = scene()
+    layers = {"RGB": COLOR, "depth.Z": data["depth"], "other.Z": data["radial"], "P.XYZ": data["position"]}
+    path = write(tmp_path / "a.exr", layers)
+    (depth,) = shown(renderer, ReadRender(path=path, depth_layer="other"), "depth")
+    assert (np.abs(depth - data["depth"]) / data["depth"]).max() < 1e-5
 
 
 def test_the_camera_goes_on(renderer, tmp_path):

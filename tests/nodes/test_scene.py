@@ -11,6 +11,7 @@ from halation.app.media.meshes import load_mesh
 from halation.app.renderer import Wanted
 from halation.nodes import BuiltInScene, Kind
 from halation.nodes.input.scene import Scene
+from scipy.stats import qmc
 
 SIZE = (96, 54)
 CHANNELS = (
@@ -162,3 +163,26 @@ def test_only_what_is_wanted_is_drawn(renderer):
     graph = graph.connect(Port("scene", "depth"), Port("outputs", "depth"))
     plan = renderer.compile(graph, Wanted({}, {}, SIZE))
     assert len(plan.passes[0].targets) == 1 and plan.passes[0].mesh is not None
+
+
+def test_jitter_samples_pixels_elsewhere_by_halton(renderer):
+    """Places lie on the rays through where scipy's sequence puts the samples of a frame."""
+    halton = qmc.Halton(2, scramble=False).random(17)[1:]
+    for frame in (1, 2, 7, 15, 16, 31):
+        node = Scene(jitter=1.0, orbit=1.0)
+        found = rendered(renderer, node, frame)
+        seen = found["object_id"][..., 0] > 0
+        at = project(camera_of(node, frame), found["position"][seen])
+        pixels = np.argwhere(seen)[:, ::-1]
+        assert np.abs(at - pixels - halton[frame % 16]).max() < 1e-3, frame
+
+
+def test_jitter_is_no_motion(renderer):
+    """Velocity is that of the surface: none where nothing moves, else that of the place that is seen."""
+    assert not rendered(renderer, Scene(jitter=1.0), frame=7)["velocity"].any()
+    node = Scene(jitter=1.0, orbit=2.0)
+    found = rendered(renderer, node, frame=4)
+    seen = found["object_id"][..., 0] > 0
+    place = found["position"][seen]
+    now, before, after = (project(camera_of(node, frame), place) for frame in (4, 3, 5))
+    assert np.abs(found["velocity"][seen] - np.concatenate([now - before, after - now], 1)).max() < 1e-3

@@ -17,7 +17,7 @@ from ...media.report import camera_rows, either
 from ..theme.palette import RGB
 from ..toolkit.buttons import dropdown
 from ..toolkit.places import item_rect, place
-from ..toolkit.words import SMALL, font, tip, wrapped, write
+from ..toolkit.words import SMALL, elided, font, tip, wrapped, write
 from .matte_rows import MatteRows
 from .render_facts import FOUND, overview_of, render_path, rule_words
 from .value_rows import ValueRows
@@ -25,8 +25,9 @@ from .value_rows import ValueRows
 if TYPE_CHECKING:
     from .rows import Rows
 
-_PART = ("", "name", "channels", "types", "compression", "storage", "color space", "window", "")
 _USE_AS = "use as"
+_LONGEST = 200
+"""Letters that are shown of what a header says."""
 
 
 class RenderRows:
@@ -173,29 +174,39 @@ def _file(rows: Rows, id: str, seen: Overview) -> None:
     """What `halation info` shows besides: parts, the whole camera, metadata."""
     rows.heading("File")
     if _opened(rows, f"Parts ({len(seen.parts)})###parts {id}", f"more {id} parts"):
-        for part in seen.parts:
-            rest = ", ".join(word for word in part[2:] if word)
-            _fact(rows, part[1] or f"part {part[0]}", rest)
+        names = [part[1] or f"part {part[0]}" for part in seen.parts]
+        heads = {name.partition(".")[0] for name in names}
+        shared = heads.pop() if len(heads) == 1 and len(names) > 1 else ""
+        _facts(rows, [
+            (name.removeprefix(f"{shared}."), ", ".join(word for word in part[2:] if word))
+            for name, part in zip(names, seen.parts, strict=True)
+        ])
     if seen.camera.camera and _opened(rows, f"Camera###camera {id}", f"more {id} camera"):
-        for name, words in camera_rows(seen.camera):
-            _fact(rows, name, words)
+        _facts(rows, camera_rows(seen.camera))
     if seen.metadata and _opened(rows, f"Metadata ({len(seen.metadata)})###metadata {id}", f"more {id} metadata"):
-        for name, words in seen.metadata:
-            _fact(rows, name, words if len(words) <= _LONGEST else f"{words[:_LONGEST]}…")
+        _facts(rows, [
+            (name, words if len(words) <= _LONGEST else f"{words[:_LONGEST]}…") for name, words in seen.metadata
+        ])
     if seen.report and rows.wide_button(f"{icons.ICON_FA_COPY}  Copy Report", f"report {id}", "All of it, as text"):
         rows.editor.clipboard.put(seen.report)
 
 
-_LONGEST = 200
-
-
-def _fact(rows: Rows, name: str, words: str, color: RGB | None = None) -> None:
-    """A small row of two words: the name at the left, cut to fit."""
+def _facts(rows: Rows, facts: Sequence[tuple[str, str]]) -> None:
+    """Small rows whose names have the room that they ask for, as far as there is some."""
     with font(rows.editor, "text", SMALL):
-        rect = place(rows.name_width, imgui.get_text_line_height())
+        longest = max(imgui.calc_text_size(name).x for name, _ in facts)
+    width = min(max(longest, rows.name_width), rows.width * 0.42)
+    for name, words in facts:
+        _fact(rows, name, words, width=width)
+
+
+def _fact(rows: Rows, name: str, words: str, color: RGB | None = None, width: float = 0.0) -> None:
+    """A small row of two words: the name at the left, without its middle where it is too long."""
+    with font(rows.editor, "text", SMALL):
+        rect = place(width or rows.name_width, imgui.get_text_line_height())
         imgui.dummy((rect[2] - rect[0], rect[3] - rect[1]))
         tip(name)
-        write(rect, name, rows.palette.dim, align=1.0)
+        write(rect, elided(name, rect[2] - rect[0]), rows.palette.dim, align=1.0)
         imgui.same_line(0.0, rows.gap)
         wrapped(color or rows.palette.text, words)
 

@@ -48,7 +48,7 @@ class Rows:
         """Make the left column as wide as these names ask for: from a `least` part up to half of the panel."""
         scale = ui_scale()
         longest = max((imgui.calc_text_size(label.replace("_", " ")).x for label in labels), default=42.0 * scale)
-        wanted = max(self.width * least, longest + 22.0 * scale)
+        wanted = max(self.width * least, longest + 26.0 * scale)
         self.name_width = min(wanted, self.width * 0.48, 170.0 * scale)
         self.field_width = max(self.width - self.name_width - self.gap, 1.0)
 

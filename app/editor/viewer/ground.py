@@ -11,7 +11,6 @@ from .focus import focuses
 from .geometry import Point
 from .orbit import scene_at
 from .perspective import Place, project, unproject
-from .reading import Reader
 
 if TYPE_CHECKING:
     from ..editor import Editor
@@ -40,35 +39,32 @@ def depths(editor: Editor) -> dict[str, Port]:
     return found
 
 
-class Ground:
-    """Reads numbers of the pictures that `depths` names, as soon as they are there."""
+def depth_at(editor: Editor, at: Point, name: str = DEPTH) -> float | None:
+    """How far away it is what is seen at a fraction of the picture; 1e10 for the background, None if unknown."""
+    values = _read(editor, name, at)
+    if not values or not values[0] > 0.0:
+        return None
+    return values[0] if values[0] < FAR else 1e10
 
-    def __init__(self) -> None:
-        self._reader = Reader()
 
-    def depth(self, editor: Editor, at: Point, name: str = DEPTH) -> float | None:
-        """How far away it is what is seen at a fraction of the picture; 1e10 for the background, None if unknown."""
-        values = self._read(editor, name, at)
-        if not values or not values[0] > 0.0:
-            return None
-        return values[0] if values[0] < FAR else 1e10
+def surface_at(editor: Editor, camera: Camera, at: Point) -> tuple[Place, float] | None:
+    """The place in the world that is seen there, and its depth; None for the background, or if unknown."""
+    values = _read(editor, PLACE, at)
+    if values is not None:
+        x, y, z = values[:3]
+        seen = project(camera, (x, y, z)) if math.isfinite(x + y + z) else None
+        return ((x, y, z), seen[2]) if seen and math.dist(seen[:2], at) < _ASTRAY else None
+    depth = depth_at(editor, at)
+    return (unproject(camera, *at, depth), depth) if depth is not None and depth < FAR else None
 
-    def surface(self, editor: Editor, camera: Camera, at: Point) -> tuple[Place, float] | None:
-        """The place in the world that is seen there, and its depth; None for the background, or if unknown."""
-        values = self._read(editor, PLACE, at)
-        if values is not None:
-            x, y, z = values[:3]
-            seen = project(camera, (x, y, z)) if math.isfinite(x + y + z) else None
-            return ((x, y, z), seen[2]) if seen and math.dist(seen[:2], at) < _ASTRAY else None
-        depth = self.depth(editor, at)
-        return (unproject(camera, *at, depth), depth) if depth is not None and depth < FAR else None
 
-    def _read(self, editor: Editor, name: str, at: Point) -> tuple[float, ...] | None:
-        port, shown = depths(editor).get(name), editor.preview.shown(name)
-        inside = 0.0 <= at[0] < 1.0 and 0.0 <= at[1] < 1.0
-        if port is None or shown is None or not inside:
-            return None
-        if shown.port != Port("/".join((*editor.session.place, port.node)), port.socket):
-            return None  # that of another node, until this one is ready
-        width, height = shown.full_size
-        return self._reader.pixel(editor.probe, name, shown, (int(at[0] * width), int(at[1] * height)))
+def _read(editor: Editor, name: str, at: Point) -> tuple[float, ...] | None:
+    """Once it is there: until then, what was read of another node is shown under that name."""
+    port, shown = depths(editor).get(name), editor.preview.shown(name)
+    inside = 0.0 <= at[0] < 1.0 and 0.0 <= at[1] < 1.0
+    if port is None or shown is None or not inside:
+        return None
+    if shown.port != Port("/".join((*editor.session.place, port.node)), port.socket):
+        return None
+    width, height = shown.full_size
+    return editor.viewer.reader.pixel(editor.probe, name, shown, (int(at[0] * width), int(at[1] * height)))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 from ...graph import Port
 from .dome import RADIUS, direction_at, knob_of, middle_of
 from .geometry import Box, Grip, Point, Sight, box_dragged, box_grip, ordered, wipe_angle, wipe_grip
-from .ground import FAR, SCENE
+from .ground import FAR, SCENE, depth_at
 from .handles import handles
 from .lights import Lamp, change, drop, lamps, put, suns, token, turn
 from .mattes import click, picks
@@ -122,7 +122,7 @@ class Hold:
                 held, hold.offset = None, (knob[0] - at[0], knob[1] - at[1])
         if aim.what in ("orbit", "track") and (scene := scene_at(editor)) is not None:
             hold.orbit = Orbit.of(scene)
-            depth = editor.viewer.ground.depth(editor, (x, y), SCENE) if aim.what == "track" else None
+            depth = depth_at(editor, (x, y), SCENE) if aim.what == "track" else None
             hold.depth = depth if depth is not None and depth < FAR else hold.orbit.distance
         if aim.what == "wipe" and aim.grip == "line":
             held = editor.viewer.wipe

@@ -10,6 +10,7 @@ from ....nodes import Camera, Kind, Light, LightKind, lights_of
 from ...graph import Port, Unknown, signature
 from ..inspector.lights import added, changed, count_of, fresh, light_at, removed
 from .geometry import Point
+from .ground import surface_at
 from .perspective import Place, dot, moved, project, unit, unproject
 
 if TYPE_CHECKING:
@@ -204,7 +205,7 @@ def remove(editor: Editor) -> None:
 
 def _over(editor: Editor, camera: Camera, to: Point, light: Light) -> Place | None:
     """A place before the surface that is seen at a point of the picture, on the way to it."""
-    found = editor.viewer.ground.surface(editor, camera, to)
+    found = surface_at(editor, camera, to)
     if found is None:
         return None
     place, depth = found

@@ -114,7 +114,7 @@ def orbited(session: Session) -> str:
 
 
 def _goes_around(item: Item) -> bool:
-    return isinstance(item, Node) and item.values.keys() >= set(VALUES)
+    return isinstance(item, Node) and "azimuth" in item.values and set(VALUES) <= item.values.keys()
 
 
 def _upstream(graph: Graph, port: Port) -> set[str]:

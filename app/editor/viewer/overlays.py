@@ -12,6 +12,7 @@ from ..theme.style import u32, ui_scale
 from .axes import draw_axes
 from .focus import distance_in_words, focused, is_distance
 from .geometry import GRID_FROM, Box, Point, Sight, wipe_direction
+from .ground import depth_at
 from .handles import handles
 from .holding import ARM
 from .lamp_lines import draw_dome, draw_lamps
@@ -114,7 +115,7 @@ def _handles(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None:
         lines.add_circle((x, y), 5.0 * scale, u32(color), 0, 1.5 * scale)
         port, words = handle.port, [str(handle.port)] if near else []
         if port == focused(editor.session):
-            words.append(distance_in_words(editor.viewer.ground.depth(editor, handle.at)))
+            words.append(distance_in_words(depth_at(editor, handle.at)))
         if words:
             editor.places[f"label {port}"] = label(lines, (x, y + 20 * scale), "  ".join(words))
         editor.places[f"handle {handle.port}"] = around((x, y), 6.0 * scale)
@@ -126,7 +127,7 @@ def _picked_depth(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None
     if not viewer.hovered or port is None or viewer.picking != str(port) or not is_distance(port):
         return
     mouse, scale = imgui.get_mouse_pos(), ui_scale()
-    words = distance_in_words(viewer.ground.depth(editor, sight.fraction((mouse.x, mouse.y))))
+    words = distance_in_words(depth_at(editor, sight.fraction((mouse.x, mouse.y))))
     editor.places[f"label {port}"] = label(lines, (mouse.x, mouse.y + 26 * scale), words)
 
 

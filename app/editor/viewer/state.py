@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
-from .ground import Ground
 from .pacing import Pace
+from .reading import Reader
 
 Channels = Literal["color", "red", "green", "blue", "alpha", "luminance", "false color"]
 Compare = Literal["off", "wipe", "difference", "toggle"]
@@ -85,7 +85,8 @@ class ViewerState:
     """True lets the mouse move the camera of the scene that is seen, not the picture."""
     scene: str = ""
     """The node whose camera that is; "" where there is none."""
-    ground: Ground = field(default_factory=Ground)
+    reader: Reader = field(default_factory=Reader)
+    """The numbers that handles know."""
     scopes: set[str] = field(default_factory=lambda: {"histogram", "waveform"})
     scopes_of_scene: bool = False
     """True measures scene-linear numbers, False what the display shows."""

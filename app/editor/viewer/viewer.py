@@ -16,6 +16,7 @@ from . import infobar
 from .finding import Finder
 from .focus import is_distance
 from .geometry import Sight
+from .ground import depth_at
 from .hand import Hand
 from .handles import pixel_place, takes_position
 from .looking import asked_view, look_of, meaning_of, range_of
@@ -246,7 +247,7 @@ class Viewer:
             return pixel_place(viewer)
         if not is_distance(port):
             return picked_color(values)
-        depth = viewer.ground.depth(editor, pixel_place(viewer))
+        depth = depth_at(editor, pixel_place(viewer))
         return None if depth is None else float(f"{depth:.7g}")
 
     def _hint(self, editor: Editor) -> str:

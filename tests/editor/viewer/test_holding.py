@@ -42,7 +42,8 @@ class Lit(Filter):
 def editor() -> Any:
     return SimpleNamespace(
         session=Session({**catalogue(), "lamps": Lit}), viewer=ViewerState(), dragging=False, lights={},
-        preview=SimpleNamespace(camera={Port("lamps", "camera"): CAMERA}.get, shown=lambda name: None), attempt=lambda act: act(),
+        preview=SimpleNamespace(camera={Port("lamps", "camera"): CAMERA}.get, shown=lambda name: None),
+        attempt=lambda act: act(), say=lambda text: None,
     )
 
 

@@ -86,7 +86,12 @@ def test_what_is_in_front_goes_where_the_mouse_goes() -> None:
 @pytest.mark.parametrize("depth", [None, 3.0, 11.0])
 def test_what_is_moved_stays_under_the_mouse(editor: Any, depth: float | None) -> None:
     before = now(editor)
-    editor.viewer.ground = SimpleNamespace(depth=lambda editor, at, name: depth)
+    editor.viewer.orbiting = True
+    editor.probe = SimpleNamespace(pixel=lambda texture, x, y: (depth or 1e10,))
+    editor.preview.shown = lambda name: SimpleNamespace(
+        port=Port("scene", "depth"), full_size=(400, 200), texture=SimpleNamespace(size=(400, 200)), channels=1, key="",
+        revision=1,
+    )
     place = unproject(before.camera(ASPECT), 0.25, 0.5, depth or before.distance)
     drag(editor, (200.0, 200.0), (360.0, 120.0), "track")
     seen = project(now(editor).camera(ASPECT), place)
@@ -112,9 +117,9 @@ def test_a_framed_scene_fills_the_picture(editor: Any, name: Any, azimuth: float
     vertices: Any = load_mesh(BuiltInScene(name)).vertices
     places = without_surroundings(vertices[:, :3], vertices[:, 16])
     assert 0 < len(places) < len(vertices)
-    seen = np.array([project(now(editor).camera(ASPECT), tuple(map(float, place))) for place in places[::5]])
-    off = np.abs(seen[:, :2] - 0.5).max()
-    assert 0.43 < off < 0.4501
+    seen = np.column_stack([places, np.ones(len(places))]) @ np.reshape(now(editor).camera(ASPECT).rows, (3, 4)).T
+    assert (seen[:, 2] > 0.0).all()
+    assert np.abs(seen[:, :2] / seen[:, 2:] - 0.5).max() == pytest.approx(0.45, abs=1e-4)
     assert now(editor).target == pytest.approx((places.min(axis=0) + places.max(axis=0)) / 2.0, abs=1e-4)
 
 

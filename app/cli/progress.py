@@ -1,0 +1,96 @@
+"""How far a rendering is: a bar for people, a line of JSON for machines."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Literal
+
+from .outcome import note
+
+if TYPE_CHECKING:
+    from rich.progress import Progress as RichProgress
+
+    from ..compiler import Pass
+    from ..renderer.job import FrameReport, Progress
+
+_PATIENCE = 0.3
+"""Seconds that work may take without a bar."""
+
+
+@contextmanager
+def told_to(kind: Literal["bar", "json"], frames: int) -> Iterator[Progress]:
+    """What a job reports to."""
+    if kind == "json":
+        yield Lines()
+        return
+    bar = Bar(frames)
+    try:
+        yield bar
+    finally:
+        bar.close()
+
+
+class Lines:
+    """One JSON object on standard error for every pass and every frame."""
+
+    def passed(self, frame: int, done: int, total: int, one: Pass) -> None:
+        """Say which pass is through."""
+        note(json.dumps({"frame": frame, "pass": done, "passes": total, "nodes": one.nodes}))
+
+    def finished(self, report: FrameReport, done: int, total: int) -> None:
+        """Say which frame is there."""
+        written = [str(path) for path in report.written]
+        note(json.dumps(
+            {"frame": report.frame, "done": done, "frames": total, "written": written, "kept": report.kept,
+             "passes": report.passes}
+        ))
+
+
+class Bar:
+    """A progress bar on standard error, where that is a terminal and the work is long enough to watch.
+
+    It counts frames, or the passes of a single one.
+    """
+
+    def __init__(self, frames: int) -> None:
+        self._quiet = not sys.stderr.isatty()
+        self._frames = frames
+        self._progress: RichProgress | None = None
+        self._started = time.perf_counter()
+
+    def passed(self, frame: int, done: int, total: int, one: Pass) -> None:
+        """Show what is computed."""
+        if self._frames == 1:
+            self._show(one.nodes[-1], done, total)
+        else:
+            self._show(f"frame {frame}  {one.nodes[-1]}", None, self._frames)
+
+    def finished(self, report: FrameReport, done: int, total: int) -> None:
+        """Show how many frames are there."""
+        if total > 1:
+            self._show(f"frame {report.frame}", done, total)
+
+    def close(self) -> None:
+        """Take it away."""
+        if self._progress is not None:
+            self._progress.stop()
+
+    def _show(self, word: str, done: int | None, total: int) -> None:
+        if self._quiet or time.perf_counter() - self._started < _PATIENCE:
+            return
+        if self._progress is None:
+            from rich.console import Console
+            from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+            unit = "passes" if self._frames == 1 else "frames"
+            count = TextColumn("{task.completed}/{task.total} " + unit)
+            left = () if self._frames == 1 else (TimeRemainingColumn(), TextColumn("left"))
+            columns = (TextColumn("{task.description:<24}", markup=False), BarColumn(), count, *left)
+            self._progress = Progress(*columns, console=Console(stderr=True), transient=True)
+            self._progress.start()
+            self._progress.add_task("render", total=total)
+        self._progress.update(self._progress.task_ids[0], completed=done, description=word)

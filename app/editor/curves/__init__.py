@@ -1,0 +1,1 @@
+"""Values over time: a dope sheet and a curve editor in one panel."""

@@ -1,0 +1,103 @@
+"""What a drag in the panel does, from where it began and where it is now. Nothing here draws."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from ...graph import Animation, Keys, Port
+from ...graph.keys import rounded
+from .editing import Change, Limits, Side, moved, pulled, scaled
+from .plane import View
+from .rows import Spot
+
+Animations = Mapping[Port, Animation]
+At = tuple[float, float]
+"""A frame and a value."""
+
+
+@dataclass(frozen=True)
+class Pan:
+    """The view follows the mouse: where that was on the screen, and the view and scrolling then."""
+
+    start: tuple[float, float]
+    view: View
+    scroll: float
+
+
+@dataclass(frozen=True)
+class Seek:
+    """The current frame follows the mouse."""
+
+
+@dataclass(frozen=True)
+class Box:
+    """A rectangle from a place (frame, and value or pixels down the rows) to the mouse."""
+
+    start: At
+    how: str
+
+
+@dataclass(frozen=True)
+class Move:
+    """Chosen keys follow the mouse. `grabbed` is the frame of the one that it holds."""
+
+    base: Animations
+    spots: frozenset[Spot]
+    grabbed: float
+    start: At
+    merge: str
+    going: bool = False
+    alone: frozenset[Spot] = frozenset()
+    """What is chosen instead if the mouse was let go without moving."""
+
+    def change(self, at: At, snap: bool, limits: Limits, *, across: bool = True, up: bool = True) -> Change:
+        """What has become of the keys; on whole frames if `snap`."""
+        by = at[0] - self.start[0] if across else 0.0
+        if snap and across:
+            by = rounded(self.grabbed + by) - self.grabbed
+        return moved(self.base, self.spots, by, at[1] - self.start[1] if up else 0.0, limits)
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Chosen keys are drawn out from the frame `about`, the mouse holding what was at `grabbed`."""
+
+    base: Animations
+    spots: frozenset[Spot]
+    about: float
+    grabbed: float
+    start: float
+    merge: str
+
+    def change(self, frame: float, snap: bool) -> Change:
+        """What has become of the keys; on whole frames if `snap`."""
+        reach = self.grabbed - self.about
+        to = self.grabbed + frame - self.start
+        if snap:
+            to = float(rounded(to))
+        factor = (to - self.about) / reach if abs(reach) > 1e-9 else 1.0
+        return scaled(self.base, self.spots, factor, self.about, snap)
+
+
+@dataclass(frozen=True)
+class Bend:
+    """The end of a handle follows the mouse; `off` is how far from it the mouse took hold."""
+
+    base: Keys
+    port: Port
+    frame: float
+    channel: int
+    side: Side
+    value: float
+    off: At
+    both: bool
+    merge: str
+
+    def change(self, at: At, both: bool, flat: bool = False) -> Keys:
+        """The keys with that handle; `flat` keeps it level."""
+        to = at[0] - self.off[0] - self.frame, at[1] - self.off[1] - self.value
+        return pulled(self.base, self.frame, self.channel, self.side, (to[0], 0.0) if flat else to, both)
+
+
+Gesture = Pan | Seek | Box | Move | Scale | Bend

@@ -1,0 +1,101 @@
+"""The values that change over time, as rows grouped by node. Nothing here draws."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
+
+from ...errors import GraphError
+from ...graph import Animation, Graph, Keys, Port
+from ...graph.faces import declared
+
+Spot = tuple[Port, float, int]
+"""A channel of a key: the value, its frame, and which number of it."""
+
+COLORS, VECTORS = "rgba", "xyzw"
+
+
+@dataclass(frozen=True)
+class Row:
+    """A value of a node; one without a port is the node, which sums up the rows below it."""
+
+    node: str
+    port: Port | None
+    label: str
+    animation: Animation | None
+    ports: tuple[Port, ...]
+    """The values that it stands for."""
+    channels: str = ""
+    """The names of the channels: of one number there is none."""
+
+    @property
+    def keys(self) -> Keys | None:
+        """Its keys, if it has some."""
+        return self.animation if isinstance(self.animation, Keys) else None
+
+
+def rows(
+    graph: Graph, selection: Collection[str] = (), only: bool = False, folded: Collection[str] = ()
+) -> tuple[Row, ...]:
+    """A row for every node and every value of it that is animated: selected nodes first, or `only` those."""
+    by_node: dict[str, list[Port]] = {}
+    for port in graph.animation:
+        if port.node in graph.nodes:
+            by_node.setdefault(port.node, []).append(port)
+    order = {id: place for place, id in enumerate(graph.nodes)}
+    found: list[Row] = []
+    for node in sorted(by_node, key=lambda id: (id not in selection, order[id])):
+        if only and node not in selection:
+            continue
+        names = list(_names(graph, node))
+        ports = tuple(sorted(by_node[node], key=lambda port: _place(names, port.socket)))
+        found.append(Row(node, None, node, None, ports))
+        if node not in folded:
+            found.extend(
+                Row(node, port, port.socket.replace("_", " "), graph.animation[port], (port,), channels(graph, port))
+                for port in ports
+            )
+    return tuple(found)
+
+
+def channels(graph: Graph, port: Port) -> str:
+    """The letters of the channels that a value has; none for one number."""
+    try:
+        value = declared(graph.node(port.node), port.socket, port.node)
+    except GraphError:
+        return ""
+    if not isinstance(value.default, tuple):
+        return ""
+    letters = COLORS if value.type == "color" else VECTORS
+    return letters[: len(value.default)] if len(value.default) <= 4 else "abcdefghijklmnop"[: len(value.default)]
+
+
+def width(graph: Graph, port: Port) -> int:
+    """How many numbers a value has."""
+    return len(channels(graph, port)) or 1
+
+
+def spots_of(port: Port, keys: Keys, frames: Iterable[float] | None = None) -> frozenset[Spot]:
+    """All channels of the keys at those frames, or of all."""
+    count = max((len(key.parts) for key in keys.keys), default=0) or 1
+    return frozenset(
+        (port, frame, channel) for frame in (keys.frames if frames is None else frames) for channel in range(count)
+    )
+
+
+def limits(graph: Graph, port: Port) -> tuple[float, float]:
+    """What the numbers of a value cannot leave."""
+    try:
+        value = declared(graph.node(port.node), port.socket, port.node)
+    except GraphError:
+        return float("-inf"), float("inf")
+    return value.minimum, value.maximum
+
+
+def _names(graph: Graph, node: str) -> Iterable[str]:
+    item = graph.nodes[node]
+    return getattr(item, "values", {})
+
+
+def _place(names: list[str], name: str) -> tuple[int, str]:
+    return (names.index(name) if name in names else len(names)), name

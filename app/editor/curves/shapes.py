@@ -1,0 +1,202 @@
+"""What curves look like: keys as cubic pieces, pieces as points no finer than the screen. Nothing here draws.
+
+Every way from key to key is a cubic in (frame, value), so its pieces are exact: `Keys.at` lies on them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import GraphError
+from ...graph import Graph, Key, Keys, Port, value_at
+from .plane import Plane
+
+Pieces = NDArray[np.float64]
+"""Cubic pieces [n, 4, 2]: start, two handles and end as (frame, value)."""
+
+Line = NDArray[np.float64]
+"""Points [n, 2]."""
+
+TOLERANCE = 0.15
+"""Pixels that a drawn curve may be off."""
+
+_MOST, _REPEATS, _SAMPLES = 1024, 64, 240
+
+
+def level(key: Key, channel: int) -> float:
+    """A channel of a key as a number: of a switch, 0 or 1."""
+    return key.parts[channel] if channel < len(key.parts) else float(bool(key.value))
+
+
+def runs(keys: Keys, place: int) -> bool:
+    """True if the value goes from the key of that place to the next one, rather than being held."""
+    key = keys.keys[place]
+    return (place + 1 < len(keys.keys) and key.interpolation != "constant"
+            and 0 < len(key.parts) == len(keys.keys[place + 1].parts))
+
+
+def pieces(keys: Keys, channel: int) -> Pieces:
+    """A channel between the first and the last key."""
+    found: list[tuple[tuple[float, float], ...]] = []
+    for place, (start, end) in enumerate(zip(keys.keys, keys.keys[1:], strict=False)):
+        a, b = (start.frame, level(start, channel)), (end.frame, level(end, channel))
+        if not runs(keys, place):
+            corner = b[0], a[1]
+            found += [(a, a, corner, corner), (corner, corner, b, b)]
+        elif start.interpolation == "linear":
+            found.append((a, a, b, b))
+        else:
+            if start.interpolation == "bezier":
+                out, back = keys.handles(start.frame)[1], keys.handles(end.frame)[0]
+                one, two = (out[0], out[1 + channel]), (back[0], back[1 + channel])
+            else:
+                third = (b[0] - a[0]) / 3.0
+                one = third, third * keys.slopes(start.frame)[channel]
+                two = -third, -third * keys.slopes(end.frame)[channel]
+            found.append((a, (a[0] + one[0], a[1] + one[1]), (b[0] + two[0], b[1] + two[1]), b))
+    return np.array(found, np.float64).reshape(-1, 4, 2)
+
+
+def outside(keys: Keys, channel: int, inner: Pieces, first: float, last: float) -> tuple[Pieces, Pieces]:
+    """A channel before the first key, from the frame `first`, and after the last one, to the frame `last`."""
+    start, end = keys.frames[0], keys.frames[-1]
+    if keys.outside in ("loop", "mirror") and end > start:
+        return _repeated(keys, inner, first, last)
+    before, after = np.empty((0, 4, 2)), np.empty((0, 4, 2))
+    if first < start:
+        before = _straight((first, number(keys.at(first), channel)), (start, level(keys.keys[0], channel)))
+    if last > end:
+        after = _straight((end, level(keys.keys[-1], channel)), (last, number(keys.at(last), channel)))
+    return before, after
+
+
+def number(value: object, channel: int) -> float:
+    """A channel of a value."""
+    part = value[channel] if isinstance(value, tuple) else value
+    return float(part) if isinstance(part, int | float) else 0.0
+
+
+def points(curves: Sequence[Pieces], plane: Plane) -> list[Line]:
+    """Every curve as points on the screen, as far as it is seen: none where nothing of it is."""
+    view = plane.view
+    kept = [curve[(curve[:, 3, 0] >= view.first) & (curve[:, 0, 0] <= view.last)] for curve in curves]
+    whole = np.concatenate(kept) if kept else np.empty((0, 4, 2))
+    if not len(whole):
+        return [np.empty((0, 2)) for _ in kept]
+    screen = np.empty_like(whole)
+    screen[..., 0] = plane.rect[0] + (whole[..., 0] - view.first) * plane.across
+    screen[..., 1] = np.clip(plane.rect[3] - (whole[..., 1] - view.low) * plane.up, -1e6, 1e6)
+    p0, p1, p2, p3 = (screen[:, place] for place in range(4))
+    bend = np.maximum(np.hypot(*(p0 - 2.0 * p1 + p2).T), np.hypot(*(p1 - 2.0 * p2 + p3).T))
+    # Straight pieces have both handles at their ends.
+    bend[np.all(p0 == p1, axis=1) & np.all(p2 == p3, axis=1)] = 0.0
+    count = np.clip(np.ceil(np.sqrt(0.75 * bend / TOLERANCE)), 1, _MOST).astype(np.int64)
+    ends = np.cumsum(count)
+    of = np.repeat(np.arange(len(count)), count)
+    t = ((np.arange(ends[-1]) - (ends - count)[of] + 1) / count[of])[:, None]
+    v = 1.0 - t
+    made = v**3 * p0[of] + 3.0 * v * v * t * p1[of] + 3.0 * v * t * t * p2[of] + t**3 * p3[of]
+    found: list[Line] = []
+    place = 0
+    for curve in kept:
+        if len(curve):
+            begin = ends[place] - count[place]
+            found.append(np.concatenate([p0[place : place + 1], made[begin : ends[place + len(curve) - 1]]]))
+        else:
+            found.append(np.empty((0, 2)))
+        place += len(curve)
+    return found
+
+
+class Samples:
+    """An expression at whole frames, each computed once until the graph changes."""
+
+    def __init__(self) -> None:
+        self._of: tuple[object, ...] = ()
+        self._known: dict[tuple[Port, int], object] = {}
+
+    def line(self, graph: Graph, port: Port, channel: int, first: float, last: float) -> list[Line]:
+        """Points (frame, value), one line for each run of frames that has a value; fewer where there are many."""
+        of = graph.nodes, graph.animation, graph.controls, graph.settings
+        if len(of) != len(self._of) or any(a is not b for a, b in zip(of, self._of, strict=True)):
+            self._of, self._known = of, {}
+        stride = 1
+        while (last - first) / stride > _SAMPLES:
+            stride *= 2
+        found: list[list[tuple[float, float]]] = [[]]
+        for frame in range(int(first // stride) * stride, int(last) + stride + 1, stride):
+            value = self._at(graph, port, frame)
+            if value is not None:
+                found[-1].append((float(frame), number(value, channel)))
+            elif found[-1]:
+                found.append([])
+        return [np.array(run, np.float64) for run in found if run]
+
+    def _at(self, graph: Graph, port: Port, frame: int) -> object:
+        if (port, frame) not in self._known:
+            try:
+                self._known[port, frame] = value_at(graph, port, frame)
+            except GraphError:
+                self._known[port, frame] = None
+        return self._known[port, frame]
+
+
+def dashes(line: Line, on: float, off: float) -> list[Line]:
+    """A line cut into dashes, on the screen."""
+    if len(line) < 2:
+        return []
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+    found: list[Line] = []
+    for begin in np.arange(0.0, along[-1], on + off)[:2000]:
+        end = min(begin + on, along[-1])
+        a, b = np.searchsorted(along, (begin, end))
+        corners = [begin, *along[a:b], end]
+        found.append(np.stack([np.interp(corners, along, line[:, axis]) for axis in (0, 1)], axis=1))
+    return found
+
+
+def heights(keys: Keys, channel: int, at: Callable[[Key], bool] = lambda key: True) -> tuple[float, float] | None:
+    """The least and the highest that a channel comes to, around the keys that `at` names."""
+    chosen = [key for key in keys.keys if at(key)]
+    if not chosen:
+        return None
+    found = [level(key, channel) for key in chosen]
+    inner = pieces(keys, channel)
+    frames = {key.frame for key in chosen}
+    near = [piece for piece in inner if piece[0, 0] in frames and piece[3, 0] in frames]
+    found += [float(part) for piece in near for part in piece[1:3, 1]]
+    return min(found), max(found)
+
+
+def _straight(start: tuple[float, float], end: tuple[float, float]) -> Pieces:
+    return np.array([(start, start, end, end)], np.float64)
+
+
+def _repeated(keys: Keys, inner: Pieces, first: float, last: float) -> tuple[Pieces, Pieces]:
+    """What lies between the ends, over and over or to and fro, as often as it is seen."""
+    start, end = keys.frames[0], keys.frames[-1]
+    span = end - start
+    back = inner[::-1, ::-1].copy()
+    back[..., 0] = start + end - back[..., 0]
+    before = min(int(max(start - first, 0.0) // span) + 1, _REPEATS) if first < start else 0
+    after = min(int(max(last - end, 0.0) // span) + 1, _REPEATS) if last > end else 0
+
+    jump = _straight((start, inner[-1, 3, 1]), (start, inner[0, 0, 1]))
+
+    def copies(turns: range) -> list[Pieces]:
+        made: list[Pieces] = []
+        for turn in turns:
+            later = np.array((turn * span, 0.0))
+            if keys.outside == "loop":
+                made.append(jump + later)
+            made.append((back if keys.outside == "mirror" and turn % 2 else inner) + later)
+        return made
+
+    ahead, behind = copies(range(1, after + 1)), copies(range(-before, 0))
+    if behind and keys.outside == "loop":
+        behind.append(jump)
+    none = np.empty((0, 4, 2))
+    return np.concatenate([none, *behind]), np.concatenate([none, *ahead])

@@ -1,0 +1,31 @@
+import math
+from typing import Annotated, Literal
+
+from .._declare import Doc, Draw, Drawn, Fraction, Image, Slider, Temporal, Vector
+
+
+class FrameBlend(Temporal):
+    """Blend every frame with all before it, ever fainter: afterimages, ghosts, slow film, calm noise.
+
+    `y = (1 - a) x + a y'`, y' what the frame before became. By time, `a = exp(-dt / time)`: the picture is the same at
+    any frame rate. The history is kept in 32 bits: in 16, what changes by less than half a step of a half float is
+    lost, and trails never fade out.
+    """
+
+    image = Image()
+    mode: Annotated[Literal["time", "persistence"], Doc("What says how fast the past fades.")] = "time"
+    time: Annotated[float, Slider(
+        0.0, 1.0, unit="s", minimum=0.0, maximum=1e4, doc="By time: after so long, 1 / e (37 percent) is left."
+    )] = 0.1
+    persistence: Annotated[Fraction, Doc("By persistence: what is left after one frame, a.")] = 0.7
+
+    def passes(self, draw: Draw) -> Drawn:
+        kept = self.persistence if self.mode == "persistence" else 0.0
+        if self.mode == "time" and self.time > 0.0:
+            kept = math.exp(-1.0 / (draw.rate * self.time))
+        first = draw.point("frame_blend_first", self.image, result=Vector(width=4))
+        blended = draw.point(
+            "frame_blend", self.image, before=draw.history(first), kept=kept, result=Vector(width=4)
+        )
+        draw.remember(blended)
+        return blended

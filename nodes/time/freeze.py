@@ -1,0 +1,34 @@
+from collections.abc import Mapping
+from typing import Annotated
+
+from .._declare import Draw, Drawn, Field, Filter, Image, Output, Slider, Vector
+
+
+class Freeze(Filter):
+    """Hold one frame, or every so many: animation on twos, the stutter of a slow camera.
+
+    All that changes over time upstream stands still.
+    """
+
+    image = Image((0.0, 0.0, 0.0, 0.0))
+    field = Field(0.0)
+    vector = Vector(0.0, width=4)
+    frame: Annotated[int, Slider(1, 240, unit="count", doc="The frame that is held, or one of those that are.")] = 1
+    every: Annotated[int, Slider(
+        0, 12, unit="count", minimum=0,
+        doc="0 holds one frame for ever; above, so many frames pass until another one is shown: 2 is on twos.",
+    )] = 0
+
+    out = Output(Image())
+    field_out = Output(Field())
+    vector_out = Output(Vector(width=4))
+
+    def times(self, frame: int) -> Mapping[str, tuple[int, ...]]:
+        return dict.fromkeys(self.inputs, (self._held(frame),))
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        outputs = {"out": self.image, "field_out": self.field, "vector_out": self.vector}
+        return {name: draw.at(socket, self._held(draw.frame)) for name, socket in outputs.items()}
+
+    def _held(self, frame: int) -> int:
+        return self.frame + (frame - self.frame) // self.every * self.every if self.every else self.frame

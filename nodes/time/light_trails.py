@@ -1,0 +1,42 @@
+import math
+from collections.abc import Mapping
+from typing import Annotated, Literal
+
+from .._declare import Doc, Draw, Drawn, Fraction, Image, Output, Slider, Temporal, Vector
+
+
+class LightTrails(Temporal):
+    """Draw with light: what is bright leaves a trail where it went, as in a long exposure.
+
+    `trail = max(bright, a trail')`, trail' what it was in the frame before; by time, `a = exp(-dt / time)`, the same at
+    any frame rate. The picture is seen wherever it is brighter. The trail is kept in 32 bits.
+    """
+
+    image = Image()
+    fade: Annotated[Literal["time", "never"], Doc(
+        "Trails fade with time, or stay for ever, as stars and the lamps of cars on film."
+    )] = "time"
+    time: Annotated[float, Slider(
+        0.02, 5.0, unit="s", minimum=0.0, maximum=1e4, doc="After so long, 1 / e (37 percent) of the light is left."
+    )] = 0.5
+    threshold: Annotated[float, Slider(
+        0.0, 5.0, unit="scene", minimum=0.0, doc="Only what is brighter than this leaves a trail; 0 is everything."
+    )] = 1.0
+    knee: Annotated[Fraction, Doc("The part of the threshold over which light fades in.")] = 0.5
+    intensity: Annotated[float, Slider(0.0, 2.0, unit="ratio", minimum=0.0, doc="How bright the trails are.")] = 1.0
+
+    out = Output(Image(doc="The picture with its trails."))
+    trail = Output(Image(doc="The trails alone."))
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        kept = 1.0
+        if self.fade == "time":
+            kept = math.exp(-1.0 / (draw.rate * self.time)) if self.time > 0.0 else 0.0
+        vector = Vector(width=4)
+        bright = draw.point(
+            "light_trails_bright", self.image, threshold=self.threshold, knee=self.knee, result=vector
+        )
+        trail = draw.point("light_trails_fade", bright=bright, before=draw.history(bright), kept=kept, result=vector)
+        draw.remember(trail)
+        out = draw.point("light_trails", self.image, trail=trail, intensity=self.intensity)
+        return {"out": out, "trail": draw.point("light_trails_alone", trail=trail, intensity=self.intensity)}

@@ -1,0 +1,59 @@
+import math
+from collections.abc import Mapping
+from typing import Annotated, Literal
+
+from .._declare import Doc, Draw, Drawn, Field, Filter, Image, Output, Slider, Vector
+
+
+class TimeSpeed(Filter):
+    """Play faster, slower or backward, or at any pace: by a speed, or by keys that say which frame is shown when.
+
+    By speed, the frame shown is `pivot + speed (frame - pivot)`. A speed that changes would have to be summed up over
+    all frames before; key `source` instead, as in a time remap: the steeper its curve, the faster.
+    """
+
+    image = Image((0.0, 0.0, 0.0, 0.0))
+    field = Field(0.0)
+    vector = Vector(0.0, width=4)
+    mode: Annotated[Literal["speed", "source"], Doc("What says which frame is shown.")] = "speed"
+    speed: Annotated[float, Slider(
+        -4.0, 4.0, unit="ratio", minimum=-1000.0, maximum=1000.0,
+        doc="By speed: 2 is twice as fast, 0.5 slow motion, below 0 backward.",
+    )] = 0.5
+    pivot: Annotated[int, Slider(1, 240, unit="count", doc="By speed: the frame that stays where it is.")] = 1
+    source: Annotated[float, Slider(
+        1.0, 240.0, unit="count", minimum=-1e6, maximum=1e6, doc="By source: the frame that is shown now, for keys."
+    )] = 1.0
+    between: Annotated[Literal["nearest", "blend"], Doc(
+        "Between two frames of an image, show the nearest one or dissolve. Fields and vectors are never mixed."
+    )] = "nearest"
+
+    out = Output(Image())
+    field_out = Output(Field())
+    vector_out = Output(Vector(width=4))
+
+    def times(self, frame: int) -> Mapping[str, tuple[int, ...]]:
+        seen = self._source(frame)
+        pair = (math.floor(seen), math.ceil(seen)) if self.between == "blend" else (_nearest(seen),)
+        return dict.fromkeys(self.inputs, (_nearest(seen),)) | {"image": tuple(dict.fromkeys(pair))}
+
+    def passes(self, draw: Draw) -> Mapping[str, Drawn]:
+        seen = self._source(draw.frame)
+        before, near, part = math.floor(seen), _nearest(seen), seen - math.floor(seen)
+        if self.between == "blend" and part > 0.0:
+            image = draw.point(
+                "time_speed_dissolve", before=draw.at(self.image, before), after=draw.at(self.image, before + 1),
+                part=part,
+            )
+        else:
+            image = draw.at(self.image, near)
+        return {"out": image, "field_out": draw.at(self.field, near), "vector_out": draw.at(self.vector, near)}
+
+    def _source(self, frame: int) -> float:
+        seen = self.pivot + self.speed * (frame - self.pivot) if self.mode == "speed" else self.source
+        return round(seen, 6)  # 0.1 times 10 is a whole frame
+
+
+def _nearest(frame: float) -> int:
+    """Halves go to the later frame."""
+    return math.floor(frame + 0.5)
