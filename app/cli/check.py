@@ -94,7 +94,7 @@ def _compiled(graph: Graph) -> Iterator[tuple[int, Problem]]:
     lazy, first, last = Forgiving(), 1, 1
     try:
         first, last = lazy.frames(graph, ())
-        lazy.pictures.check_frames(graph, range(first, last + 1))
+        lazy.check_frames(graph, range(first, last + 1))
     except InputError as fault:
         unread[str(fault)] = None
     bindings = {

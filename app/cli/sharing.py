@@ -83,14 +83,15 @@ class _Listener:
         """Listen to one of a crew until it has ended."""
         from ..errors import HalationError
 
-        assert process.stdout and process.stderr
-        for line in process.stderr:
-            with self._lock:
-                self._line(line.rstrip())
         report: dict[str, Any] = {}
-        with contextlib.suppress(ValueError):
-            report = json.loads(process.stdout.read())
-        code = process.wait()
+        with process:
+            assert process.stdout and process.stderr
+            for line in process.stderr:
+                with self._lock:
+                    self._line(line.rstrip())
+            with contextlib.suppress(ValueError):
+                report = json.loads(process.stdout.read())
+        code = process.returncode
         with self._lock:
             if code == 0:
                 self.reports.append(report)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
-Scope = Literal["", "graph", "viewer"]
+Scope = Literal["", "graph", "viewer", "animation"]
 """Where a shortcut works: everywhere, or while the mouse is over that panel."""
 
 Act = Callable[[Any], object]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Protocol, TypeVar
 
 from ..errors import HalationError
 from .canvas.view import CanvasView
+from .curves.state import CurvesState
 from .dialogs import Dialogs
 from .log import Log
 from .services.renders import Renders
@@ -59,6 +60,7 @@ class Editor:
     renders: Renders = field(default_factory=Renders)
     canvas: CanvasView = field(default_factory=CanvasView)
     viewer: ViewerState = field(default_factory=ViewerState)
+    curves: CurvesState = field(default_factory=CurvesState)
     dialogs: Dialogs = field(default_factory=Dialogs)
     log: Log = field(default_factory=Log)
     faults: dict[str, str] = field(default_factory=dict[str, str])

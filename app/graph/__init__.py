@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .animation import ANIMATED, Animation, animation_fault, is_animated, keyed_frames, still, value_at
+from .animation import ANIMATED, Animation, animation_fault, is_animated, keyed_range, still, value_at
 from .conversion import conversion, make_socket
 from .expressions import Expression
 from .faces import signature
@@ -17,6 +17,6 @@ from .problems import Problem, problems
 __all__ = [
     "ANIMATED", "INPUTS", "OUTPUTS", "Animation", "Control", "Expression", "Graph", "Group", "Input", "Interpolation",
     "Item", "Key", "Keys", "Output", "Outside", "Port", "Problem", "Settings", "Signature", "Unknown",
-    "animation_fault", "conversion", "did_you_mean", "is_animated", "keyed_frames", "make_socket", "node_output",
+    "animation_fault", "conversion", "did_you_mean", "is_animated", "keyed_range", "make_socket", "node_output",
     "problems", "signature", "still", "value_at",
 ]

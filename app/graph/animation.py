@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -47,11 +48,11 @@ def is_animated(graph: Graph) -> bool:
     )
 
 
-def keyed_frames(graph: Graph) -> set[float]:
-    """Every frame that has a key, groups included."""
-    found = {key.frame for item in graph.animation.values() if isinstance(item, Keys) for key in item.keys}
-    inner = (keyed_frames(item.graph) for item in graph.nodes.values() if isinstance(item, Group))
-    return found.union(*inner)
+def keyed_range(graph: Graph) -> tuple[int, int]:
+    """From frame 1 to the last key, groups included."""
+    keyed = [item for item in graph.animation.values() if isinstance(item, Keys) and item.keys]
+    inner = (keyed_range(item.graph)[1] for item in graph.nodes.values() if isinstance(item, Group))
+    return 1, max([1, *(math.ceil(item.keys[-1].frame) for item in keyed), *inner])
 
 
 def animation_fault(graph: Graph, port: Port, animation: Animation) -> str | None:

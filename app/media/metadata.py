@@ -57,7 +57,11 @@ def is_structural(name: str) -> bool:
 
 
 def add_metadata(spec: oiio.ImageSpec, metadata: Mapping[str, Any], format: str) -> None:
-    """Put attributes into a header to be written, as far as the format can hold them."""
+    """Put attributes into a header to be written, as far as the format can hold them.
+
+    No date is among them: the same picture gives the same bytes.
+    """
+    spec.attribute("DateTime", "")
     for name, value in metadata.items():
         if is_structural(name):
             continue

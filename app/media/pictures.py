@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from hashlib import blake2b
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING, Any, cast
 from ...nodes import Kind
 from ..compiler import Picture, Probed, named_files
 from ..errors import InputError, UsageError
-from ..graph import INPUTS, OUTPUTS, Graph, Input, keyed_frames
+from ..graph import INPUTS, OUTPUTS, Graph, Input, keyed_range
 
 if TYPE_CHECKING:
     import numpy as np
@@ -55,7 +54,7 @@ class Pictures:
         for path, _, _ in named_files(graph, bound):
             if (found := find_sequence(path)) and found.frames:
                 return found.frames[0], found.frames[-1]
-        return 1, max([1, *(math.ceil(frame) for frame in keyed_frames(graph))])
+        return keyed_range(graph)
 
     def check_frames(self, graph: Graph, frames: range) -> None:
         """Raise InputError for the first file that is missing in a sequence which the graph's outputs need."""

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import os
 import secrets
 import shutil
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -23,6 +25,9 @@ _FAULTS = {
     errno.ENAMETOOLONG: "the name is too long",
 }
 _MARGIN = 1 << 20
+_PART = ".halation-"
+_ABANDONED = 3600.0
+"""Seconds after which an unfinished file is nobody's any more; other machines may be writing to the same folder."""
 
 
 def store(path: str | Path, encode: Callable[[str], None], room: int) -> None:
@@ -42,7 +47,15 @@ def store(path: str | Path, encode: Callable[[str], None], room: int) -> None:
 
 def part_prefix(process: int) -> str:
     """How the names of unfinished files of a process begin: one that was killed cannot remove them itself."""
-    return f".halation-{process}-"
+    return f"{_PART}{process}-"
+
+
+def sweep(folder: str | Path) -> None:
+    """Remove the unfinished files that processes left in a folder when they were killed."""
+    for part in Path(folder).glob(f"{_PART}*"):
+        with contextlib.suppress(OSError):
+            if time.time() - part.stat().st_mtime > _ABANDONED:
+                part.unlink()
 
 
 def check_room(path: str | Path) -> None:

@@ -48,7 +48,8 @@ def frame_key(plan: Plan, file: Destination, writing: Writing) -> str:
     The keys of a plan cover shaders, values, history and the versions of all pictures that are read.
     """
     pixels = {layer: plan.surfaces[plan.outputs[name]].key for layer, name in file.layers.items()}
-    said = (metadata.version("halation"), pixels, sorted(file.kinds.items()), file.view, writing)
+    how = (file.path.suffix, file.view, writing.compression, writing.precision)
+    said = (metadata.version("halation"), sorted(pixels.items()), sorted(file.kinds.items()), how)
     return blake2b(repr(said).encode(), digest_size=16).hexdigest()
 
 

@@ -117,6 +117,9 @@ class _Job:
 
     def run(self) -> list[FrameReport]:
         self._files = destinations(self._graph, self._wanted, self._writing, self._frames)
+        if self._resume:
+            for folder in {file.path.parent for files in self._files.values() for file in files}:
+                media.sweep(folder)
         todo = deque(self._frames)
         task = self._next(todo)
         while task is not None:

@@ -71,7 +71,7 @@ class Camera:
         return u / depth, v / depth, depth
 
     def shifted(self, x: float, y: float) -> Camera:
-        """The same camera with another place of the picture at every pixel: that so far right and down, in fractions."""
+        """The same camera with the picture cut out that so far to the right and down, in fractions of it."""
         u, v, depth = _in_fours(self.rows)
         u = tuple(part - x * ahead for part, ahead in zip(u, depth, strict=True))
         v = tuple(part - y * ahead for part, ahead in zip(v, depth, strict=True))

@@ -89,8 +89,9 @@ class Scene(Source):
         now, before, after = (self._camera(time, width / height) for time in times)
         first, second, third = (self._motion(time) for time in times)
         x, y = (self.jitter * part for part in _halton(draw.frame))
-        moved = tuple(camera.shifted(x / width, y / height) for camera in (now, before, after))
-        drawn = draw.raster(scene, (first, second, third), moved, _NEAR * self.distance)
+        at = (x / width, y / height)
+        seen = (now.shifted(*at), before.shifted(*at), after.shifted(*at))
+        drawn = draw.raster(scene, (first, second, third), seen, _NEAR * self.distance)
         place, surface = drawn["place"], drawn["surface"]
         return {
             "color": draw.point(

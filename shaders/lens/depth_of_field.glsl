@@ -67,8 +67,7 @@ vec4 depth_of_field_stays() {
 vec4 depth_of_field_clean() {
     vec4 own, sharp;
     float owns, sharps;
-    bool blurred = depth_of_field_edge(own, owns, sharp, sharps);
-    return blurred ? own : image_at(pixel) - kept_at(pixel);
+    return depth_of_field_edge(own, owns, sharp, sharps) ? own : image_at(pixel) - kept_at(pixel);
 }
 
 // Whether what has one radius lies before what has another, and is blurred.
@@ -82,8 +81,7 @@ vec4 depth_of_field_whole() {
     for (int i = 0; i < 4; ++i) {
         ivec2 at = pixel + beside[i];
         float there = radius_at(at), takers = 0.0;
-        bool outside = any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, extent));
-        if (outside || !depth_of_field_hides(here, there)) continue;
+        if (!depth_of_field_hides(here, there)) continue;
         for (int j = 0; j < 4; ++j) takers += float(depth_of_field_hides(radius_at(at + beside[j]), there));
         sum += (finite(image_at(at)) - kept_at(at) - clean_at(at)) / takers;
     }
@@ -211,15 +209,11 @@ int depth_of_field_chord(float reach, int row) {
 
 // What scatters over a block: light, and how much of the block it covers. Beyond the focus, smaller discs are nearer,
 // and what they hide of a surface is taken to be like the rest of it.
-void depth_of_field_scattered(
-    int tile, int aperture, vec3 lens, vec2 stretch, float side, out vec4 sum, out float covered
-) {
+float depth_of_field_scattered(int tile, int aperture, vec3 lens, vec2 stretch, float side, out vec4 sum) {
     vec4 front = vec4(0.0), back = vec4(0.0);
-    float fronts = 0.0, backs = 0.0, hidden = 0.0;
+    float fronts = 0.0, backs = 0.0, hidden = 0.0, reach = reach_at(pixel / tile), here = extents_at(pixel).y;
     sum = vec4(0.0);
-    covered = 0.0;
-    float reach = reach_at(pixel / tile), here = extents_at(pixel).y;
-    if (reach == 0.0) return;
+    if (reach == 0.0) return 0.0;
     float unit = depth_of_field_unit(lens), whole = depth_of_field_area(unit, reach);
     for (int y = -int(reach + 0.5); y <= int(reach + 0.5); ++y) {
         int chord = depth_of_field_chord(reach, y);
@@ -240,21 +234,19 @@ void depth_of_field_scattered(
             hidden += share * (extents.z + before * extents.x);
         }
     }
-    covered = fronts + backs;
     sum = front + back;
-    if (side < 0.0 || covered == 0.0) return;
+    if (side < 0.0 || fronts + backs == 0.0) return fronts + backs;
     float nearer = min(fronts, 1.0), rest = (1.0 - nearer) * min(backs / max(1.0 - hidden, 1e-3), 1.0);
     sum = vec4(0.0);
     if (fronts > 0.0) sum += front * (nearer / fronts);
     if (backs > 0.0) sum += back * (rest / backs);
-    covered = nearer + rest;
+    return nearer + rest;
 }
 
 // What is nearer, and so larger, covers first; what more there is fills up, but no pixel is covered more than once.
 vec4 depth_of_field_near_light(int tile, float finest, int aperture, vec3 lens, vec2 stretch) {
     vec4 sum;
-    float covered;
-    depth_of_field_scattered(tile, aperture, lens, stretch, -1.0, sum, covered);
+    float covered = depth_of_field_scattered(tile, aperture, lens, stretch, -1.0, sum);
     vec2 at = (vec2(pixel) + 0.5) / 2.0;
     float left = 1.0 - cover_near(at), part = min(depth_of_field_slack * covered, left);
     return light_near(at) + (covered > 0.0 ? sum * (part / covered) : vec4(0.0));
@@ -262,16 +254,14 @@ vec4 depth_of_field_near_light(int tile, float finest, int aperture, vec3 lens, 
 
 float depth_of_field_near_cover(int tile, float finest, int aperture, vec3 lens, vec2 stretch) {
     vec4 sum;
-    float covered;
-    depth_of_field_scattered(tile, aperture, lens, stretch, -1.0, sum, covered);
+    float covered = depth_of_field_scattered(tile, aperture, lens, stretch, -1.0, sum);
     return min(cover_near((vec2(pixel) + 0.5) / 2.0) + depth_of_field_slack * covered, 1.0);
 }
 
 // Beyond the focus the larger discs are the farther ones.
 vec4 depth_of_field_far_light(int tile, float finest, int aperture, vec3 lens, vec2 stretch) {
     vec4 sum;
-    float covered;
-    depth_of_field_scattered(tile, aperture, lens, stretch, 1.0, sum, covered);
+    float covered = depth_of_field_scattered(tile, aperture, lens, stretch, 1.0, sum);
     vec2 at = (vec2(pixel) + 0.5) / 2.0;
     float part = min(depth_of_field_slack * covered, 1.0), more = cover_near(at);
     vec4 found = covered > 0.0 ? sum * (part / covered) : vec4(0.0);
@@ -280,8 +270,7 @@ vec4 depth_of_field_far_light(int tile, float finest, int aperture, vec3 lens, v
 
 float depth_of_field_far_cover(int tile, float finest, int aperture, vec3 lens, vec2 stretch) {
     vec4 sum;
-    float covered;
-    depth_of_field_scattered(tile, aperture, lens, stretch, 1.0, sum, covered);
+    float covered = depth_of_field_scattered(tile, aperture, lens, stretch, 1.0, sum);
     return min(cover_near((vec2(pixel) + 0.5) / 2.0) + depth_of_field_slack * covered, 1.0);
 }
 

@@ -199,10 +199,10 @@ float motion_blur_before(float other, float here) {
     return near > 0.0 ? clamp(0.5 + motion_blur_apart * (other - here) / near, 0.0, 1.0) : 0.5;
 }
 
-// How differently something moves than what has a path of a `length`, from how far their paths differ: 0 for parts of
-// one surface, 1 for what has nothing to do with each other.
-float motion_blur_unlike(float apart, float length) {
-    return clamp(4.0 * apart / max(length, motion_blur_still) - 1.0, 0.0, 1.0);
+// How differently something moves than what gets so `far`, from how much their paths differ: 0 for parts of one surface,
+// 1 for what has nothing to do with each other.
+float motion_blur_unlike(float apart, float far) {
+    return clamp(4.0 * apart / max(far, motion_blur_still) - 1.0, 0.0, 1.0);
 }
 
 // Times along a path: steps of a pixel, so that nothing is missed, or longer ones if those are too many.

@@ -197,7 +197,7 @@ def test_render_without_a_destination(cli, graphs):
 def test_a_bug_is_called_a_bug(cli, graphs, tmp_path, monkeypatch):
     from halation.app.renderer import job
 
-    monkeypatch.setattr(job, "run_job", lambda *_: 1 / 0)
+    monkeypatch.setattr(job, "run_job", lambda *_, **__: 1 / 0)
     result = cli("render", graphs(), "-o", tmp_path / "out.exr", "--json")
     assert result.code == 70 and json.loads(result.out)["error"]["kind"] == "Bug"
     assert "this is a bug in Halation (ZeroDivisionError: division by zero)" in result.err
@@ -208,7 +208,7 @@ def test_a_bug_is_called_a_bug(cli, graphs, tmp_path, monkeypatch):
 
 
 def test_too_little_memory(fails, graphs, monkeypatch):
-    def refuse(*_):
+    def refuse(*_, **__):
         raise MemoryError
 
     from halation.app.renderer import job

@@ -178,11 +178,15 @@ def test_progress_shows_on_a_terminal_only(long, tmp_path):
 
 
 def test_progress_for_programs(ten, tmp_path):
-    """A line of JSON for every pass, and nothing else that begins like one."""
+    """A line of JSON for every pass and for the frame, and nothing else that begins like one."""
     result = halation("render", ten, "-o", tmp_path / "out.exr", "--progress", "json", "--json")
     assert result.returncode == 0, result.stderr
     told = [json.loads(line) for line in result.stderr.splitlines() if line.startswith("{")]
     count = json.loads(result.stdout)["passes"]
+    frame = told.pop()
+    assert frame == {
+        "frame": 1, "done": 1, "frames": 1, "written": [str(tmp_path / "out.exr")], "kept": False, "passes": count
+    }
     assert [(one["pass"], one["passes"]) for one in told] == [(number, count) for number in range(1, count + 1)]
     assert told[-1]["nodes"][-1] == "tone" and {name for one in told for name in one["nodes"]} <= set(TEN)
     refused = halation("render", ten, "-o", tmp_path / "out.exr", "--progress", "loud")

@@ -94,6 +94,21 @@ def test_the_motion_of_blender_is_proved_by_a_crop_of_the_frame_before() -> None
     assert np.median(apart) < 1e-3 and np.percentile(apart, 75) < 1e-3  # the ball moves by itself
 
 
+@pytest.mark.parametrize("sign", [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)], ids=str)
+def test_motion_of_any_sign_and_unit_is_found_in_flipped_copies_of_the_sample(tmp_path: Path, sign) -> None:
+    """Under a name that says nothing: the cameras of both frames tell, to a ten thousandth of a pixel."""
+    position, vector = (
+        pixels.array.astype(np.float64)
+        for pixels in read_many(NEON, [Want("Position", Kind.VECTOR, 3), Want("Vector", Kind.VECTOR, 4)])
+    )
+    moved = vector[..., :2] * (-1.0, 1.0)
+    for number, unit in enumerate(((1.0, 1.0), (480.0, 270.0), (240.0, 135.0))):  # pixels, pictures, half pictures
+        layers = {"P.XYZ": position, "motionvector.XY": moved * sign / unit}
+        found = survey(written(tmp_path / f"{number}.exr", layers), NEON_BEFORE).conventions[Role.VELOCITY]
+        assert (found.kind, found.measured) == ("from_previous", True)
+        assert found.scale == (sign[0] * unit[0], sign[1] * unit[1])
+
+
 def test_arnold_with_a_camera_in_its_header(tmp_path: Path) -> None:
     layers = {"beauty.RGB": SEEN.normal * 0.5 + 0.5, "P.XYZ": SEEN.position, "N.XYZ": SEEN.normal,
               "Z.Z": np.where(SEEN.hit, SEEN.depth, 1e30)}

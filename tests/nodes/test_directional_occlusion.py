@@ -177,7 +177,6 @@ def test_nothing_gets_no_light(run):
 
 def wall_and_floor(high, size=SMALL, eye=(2.4, 0.0, 2.0), target=(0.25, 0.0, 0.15)):
     """A floor and a wall so high, which goes on below: a scene as of corner(), and where it is floor and wall."""
-    camera, depth, normal, place, _ = corner(size=size)
     width, height = size
     camera = look_at(eye, target, (1.0, width / height))
     y, x = np.mgrid[0:height, 0:width]

@@ -174,7 +174,8 @@ def test_jitter_samples_pixels_elsewhere_by_halton(renderer):
         seen = found["object_id"][..., 0] > 0
         at = project(camera_of(node, frame), found["position"][seen])
         pixels = np.argwhere(seen)[:, ::-1]
-        assert np.abs(at - pixels - halton[frame % 16]).max() < 1e-3, frame
+        # Far away, places are as coarse as 32 bits are.
+        assert np.percentile(np.abs(at - pixels - halton[frame % 16]), 99) < 1e-4, frame
 
 
 def test_jitter_is_no_motion(renderer):

@@ -104,6 +104,32 @@ def test_balls_do_not_mirror_themselves(run, radius):
         assert np.all(mirrored(run, camera, seen["depth"], given, "confidence", sky=False) == 0.0)
 
 
+@pytest.mark.parametrize(("eye", "center", "radius"), [
+    ((0.0, -4.0, 1.5), (0.2, 0.5, 1.0), 0.9), ((1.5, -3.5, 0.8), (-0.3, 0.3, 0.7), 0.7),
+])
+def test_a_ball_mirrors_floor_and_wall(run, eye, center, radius):
+    """Rays off a curved mirror, met by analysis wherever the picture shows what they meet."""
+    camera = look_at(eye, (0.2, 3.0, 0.9), (1.2, 1.2 * 16 / 9))
+    depth, normal, place, view = taken(camera, [FLOOR, WALL])
+    seen = ball(camera, center, radius, *SIZE)
+    there = seen["depth"] < depth
+    depth = np.where(there, seen["depth"], depth)
+    normal, place = (
+        np.where(there[..., None], seen[name], plain) for name, plain in (("normal", normal), ("position", place))
+    )
+    way = view - 2.0 * (view * normal).sum(-1, keepdims=True) * normal
+    far, _ = meet(place, way, [FLOOR, WALL])
+    at, deep = projected(camera, place + np.minimum(far, 1e9)[..., None] * way)
+    column, row = np.moveaxis(np.clip(np.nan_to_num(at).astype(int), 0, np.array(SIZE) - 1), -1, 0)
+    shown = ((at > 1.0) & (at < np.array(SIZE) - 1.0)).all(-1) & (deep > 0.0) & ~there[row, column]
+    sure = mirrored(run, camera, depth, normal, "confidence", sky=False)[..., 0]
+    error = np.abs(mirrored(run, camera, depth, normal, sky=False)[..., :2] - at).max(-1)
+    met = there & shown & (sure > 0.999)
+    assert (there & shown).sum() > 150 and met.sum() > 0.99 * (there & shown).sum()
+    assert np.median(error[met]) < 0.01 and np.quantile(error[met], 0.9) < 0.4
+    assert (sure[there & ~shown] > 0.0).mean() < 0.035
+
+
 def test_reflectance_is_schlicks(run):
     """The floor under an even picture that the sky closes: out is 1 + F (2 - 1), alone it is F 2."""
     camera = look_at((0.0, -4.0, 0.7), (0.0, 3.0, 0.6), (1.0, 16 / 9))

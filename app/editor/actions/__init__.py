@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..action import Action
+from .animation import ANIMATION
 from .documents import DOCUMENTS
 from .edits import EDITS
 from .graph import GRAPH
@@ -17,4 +18,4 @@ MENUS = ("File", "Edit", "Graph", "Viewer", "View", "Help")
 
 def table() -> tuple[Action, ...]:
     """Every action, in the order of the menus."""
-    return (*DOCUMENTS, *EDITS, *GRAPH, *VIEWER, *HANDLES, *VIEW)
+    return (*DOCUMENTS, *EDITS, *GRAPH, *VIEWER, *HANDLES, *ANIMATION, *VIEW)

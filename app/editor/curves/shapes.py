@@ -6,12 +6,13 @@ Every way from key to key is a cubic in (frame, value), so its pieces are exact:
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import GraphError
-from ...graph import Graph, Key, Keys, Port, value_at
+from ...graph import Graph, Key, Keys, Port, Settings, value_at
 from .plane import Plane
 
 Pieces = NDArray[np.float64]
@@ -116,29 +117,32 @@ class Samples:
 
     def __init__(self) -> None:
         self._of: tuple[object, ...] = ()
+        self._graph = Graph()
         self._known: dict[tuple[Port, int], object] = {}
 
-    def line(self, graph: Graph, port: Port, channel: int, first: float, last: float) -> list[Line]:
+    def line(
+        self, graph: Graph, settings: Settings, port: Port, channel: int, first: float, last: float
+    ) -> list[Line]:
         """Points (frame, value), one line for each run of frames that has a value; fewer where there are many."""
-        of = graph.nodes, graph.animation, graph.controls, graph.settings
+        of = graph.nodes, graph.animation, graph.controls, settings
         if len(of) != len(self._of) or any(a is not b for a, b in zip(of, self._of, strict=True)):
-            self._of, self._known = of, {}
+            self._of, self._known, self._graph = of, {}, replace(graph, settings=settings)
         stride = 1
         while (last - first) / stride > _SAMPLES:
             stride *= 2
         found: list[list[tuple[float, float]]] = [[]]
         for frame in range(int(first // stride) * stride, int(last) + stride + 1, stride):
-            value = self._at(graph, port, frame)
+            value = self._at(port, frame)
             if value is not None:
                 found[-1].append((float(frame), number(value, channel)))
             elif found[-1]:
                 found.append([])
         return [np.array(run, np.float64) for run in found if run]
 
-    def _at(self, graph: Graph, port: Port, frame: int) -> object:
+    def _at(self, port: Port, frame: int) -> object:
         if (port, frame) not in self._known:
             try:
-                self._known[port, frame] = value_at(graph, port, frame)
+                self._known[port, frame] = value_at(self._graph, port, frame)
             except GraphError:
                 self._known[port, frame] = None
         return self._known[port, frame]

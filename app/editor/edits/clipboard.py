@@ -11,6 +11,7 @@ from ...document import dumps, loads
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Port
 from ...graph.names import fresh_name
+from . import timing
 from .elements import Place, end_port, entry, keys, owner, with_entries, with_places
 from .layout import positions, uncovered
 from .merging import merged, moved_dots
@@ -34,7 +35,7 @@ def part(graph: Graph, chosen: Collection[str]) -> Graph:
         nodes={id: item for id, item in graph.nodes.items() if id in chosen}, links=links,
         inputs={name: end for name, end in graph.inputs.items() if f"{INPUTS}.{name}" in chosen},
         outputs={name: end for name, end in graph.outputs.items() if f"{OUTPUTS}.{name}" in chosen},
-        muted=graph.muted.intersection(chosen), folder=graph.folder,
+        muted=graph.muted.intersection(chosen), animation=timing.of_nodes(graph, chosen), folder=graph.folder,
         extra={path: kept for path, kept in graph.extra.items() if ".".join(path.split(".")[1:2]) in chosen
                and path.startswith("nodes.")},
     )

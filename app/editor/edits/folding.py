@@ -10,6 +10,7 @@ from ...document import limits
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Port, signature
 from ...graph.notes import moved_layout
+from . import timing
 from .routes import tidied
 
 CONTROLS = "controls"
@@ -117,7 +118,12 @@ def _put(outer: Graph, id: str, body: Graph, moves: Moves) -> Graph:
     controls = {
         name: item for name, item in controls.items() if item.target.node != id or item.target.socket not in gone
     }
+    names = {f"{id}.{port.socket}": f"{id}.{there.socket}" for port, there in moves.items() if port.node == CONTROLS}
+    animation = {moved(port, CONTROLS): timing.renamed(item, names) for port, item in outer.animation.items()}
+    animation = {port: item for port, item in animation.items() if port.node != id or port.socket not in gone}
     ui = outer.ui
     for before, after in moves.items():
         ui = moved_layout(ui, f"{id}.{before.socket}", f"{id}.{after.socket}")
-    return tidied(replace(outer, nodes={**outer.nodes, id: item}, links=links, controls=controls, ui=ui))
+    return tidied(replace(
+        outer, nodes={**outer.nodes, id: item}, links=links, controls=controls, animation=animation, ui=ui
+    ))

@@ -9,6 +9,7 @@ from ....nodes import Kind, Socket, Value
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Control, Graph, Group, Input, Output, Port
 from ...graph.names import check_name, fresh_name
+from . import timing
 from .elements import (
     Place,
     entry,
@@ -44,6 +45,8 @@ def grouped(graph: Graph, chosen: Collection[str], name: str = "") -> tuple[Grap
     crossing = _crossing(graph, set(ids))
     spots = positions(graph)
     body = _body(graph, ids, chosen, crossing, spots)
+    inner, around = timing.split(graph, ids, id)
+    body = replace(body, animation=inner)
     outer = replace(
         graph,
         nodes={**rest, id: Group(body)},
@@ -56,9 +59,12 @@ def grouped(graph: Graph, chosen: Collection[str], name: str = "") -> tuple[Grap
             for name, item in graph.controls.items()
         },
         muted=graph.muted - set(ids),
+        animation=around,
         extra=_extra(graph, ids, inside=False),
         ui=_outer_ui(graph, id, ids, crossing),
     )
+    timing.check_names(graph, body, inner)
+    timing.check_names(graph, outer, around)
     notes = [key for key in keys(graph) if key in chosen and is_note(key)]
     return tidied(with_places(without_entries(outer, notes), {id: corner(graph, ids, spots)})), id
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from ....nodes import Node
 from ...graph import INPUTS, OUTPUTS, Graph, Port
+from . import timing
 from .elements import DECOR, Place, entries, entry, with_entries, with_places
 from .naming import copy_of
 from .routes import routes, with_routes
@@ -42,6 +43,10 @@ def merged(graph: Graph, part: Graph, places: Mapping[str, Place]) -> Merged:
         graph, nodes={**graph.nodes, **{names[id]: item for id, item in part.nodes.items()}},
         links={**graph.links, **links}, muted=graph.muted | {names[id] for id in part.muted if id in names},
         extra={**graph.extra, **_extra(part, names)},
+        animation={**graph.animation, **{
+            Port(names[port.node], port.socket): timing.renamed(item, names)
+            for port, item in part.animation.items() if port.node in names
+        }},
     )
     for section in DECOR:
         for id in entries(part, section):

@@ -9,6 +9,7 @@ from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Port
 from ...graph.names import fresh_name
 from ...graph.notes import moved_keys
+from . import timing
 from .elements import keys, with_sections, without_entries
 from .folding import group
 from .grouping import corner
@@ -37,6 +38,9 @@ def ungrouped(graph: Graph, id: str) -> tuple[Graph, tuple[str, ...]]:
         inputs={**graph.inputs, **{opened.hoisted[name]: body.inputs[name] for name in hoisted}},
         links={**links, **found.graph.links},
         controls=opened.controls(),
+        animation=timing.joined(
+            graph, body, id, {name: found.keys[name] for name in body.nodes if name in found.keys}
+        ),
     )
     after = opened.with_layout(after)
     return tidied(after), tuple(found.keys[key] for key in found.keys if found.keys[key] in set(keys(after)))

@@ -8,7 +8,10 @@ from collections.abc import Iterable, Iterator
 from ..action import Action
 from ..editor import Editor
 
-_SCOPES = {"graph": "Graph, with the mouse over it", "viewer": "Viewer, with the mouse over it"}
+_SCOPES = {
+    "graph": "Graph, with the mouse over it", "viewer": "Viewer, with the mouse over it",
+    "animation": "Animation, with the mouse over it",
+}
 
 MOUSE: tuple[tuple[str, str], ...] = (
     ("Middle drag, Alt+drag", "Move the view"), ("Wheel", "Zoom"), ("Right click", "Menu of what is there"),

@@ -7,7 +7,7 @@ from typing import Any
 
 from ....nodes import Kind, Plain, Size
 from ...errors import GraphError
-from ...graph import INPUTS, Graph, Input, Output, Port, Settings, problems
+from ...graph import INPUTS, Graph, Input, Output, Port, problems
 from ..edits.elements import Place, clean, end_port, with_places
 from .state import State
 
@@ -73,9 +73,8 @@ class Ends(State):
         """Set the size of what is made from nothing, in pixels; None for that of the first picture."""
         if size is not None and min(size) < 1:
             raise GraphError(f"the size {size[0]} x {size[1]} has no pixels: give at least 1 x 1")
-        self.edit(
-            "Set size", replace(self.graph, settings=Settings(size and (int(size[0]), int(size[1])))), merge=merge
-        )
+        settings = replace(self.graph.settings, size=size and (int(size[0]), int(size[1])))
+        self.edit("Set size", replace(self.graph, settings=settings), merge=merge)
 
     def _add_end(self, graph: Graph, key: str, at: Place | None) -> str:
         self.edit(f"Add {key}", with_places(graph, {key: at}) if at else graph, (key,))

@@ -9,22 +9,24 @@ from ...errors import GraphError
 from ...graph import Control, Graph, Group, Port, signature
 from ...graph.names import fresh_name
 from ..edits.elements import clean
-from .state import State
+from .animating import Animating
 
 
-class Values(State):
+class Values(Animating):
     """What a person turns."""
 
     def value(self, port: Port) -> Plain:
-        """What a value of a node, or a control of a group, is set to."""
+        """What a value of a node, or a control of a group, is set to, whatever changes it over time."""
         return self.graph.value(port)
 
     def set(self, port: Port, value: object, merge: str = "") -> None:
-        """Set a value; equal `merge` tokens in a row make one step."""
+        """Set a value, or where it has keys a key at `frame`; equal `merge` tokens in a row make one step."""
+        if self._keyed(port, value, merge):
+            return
         self.edit(f"Set {port}", self.graph.set(port, clean(value) if isinstance(value, str) else value), merge=merge)
 
     def reset(self, port: Port) -> None:
-        """Set a value back to its default."""
+        """Set a value back to its default, for all frames."""
         self.edit(f"Reset {port}", self._without(self.graph, port))
 
     def reset_all(self, id: str) -> None:
@@ -35,8 +37,9 @@ class Values(State):
         self.edit(f"Reset {id}", graph)
 
     def is_default(self, port: Port) -> bool:
-        """True if a value is as it is in a new node."""
-        return self.graph.value(port) == self._without(self.graph, port).value(port)
+        """True if a value is as it is in a new node, at all frames."""
+        still = port not in self.graph.animation
+        return still and self.graph.value(port) == self._without(self.graph, port).value(port)
 
     def linked(self, port: Port) -> Port | None:
         """What is linked to an input or value, if anything."""
@@ -75,6 +78,7 @@ class Values(State):
     def _without(graph: Graph, port: Port) -> Graph:
         """`graph` with a value at its default."""
         graph.value(port)
+        graph = graph.animate(port, None) if port in graph.animation else graph
         item = graph.node(port.node)
         if isinstance(item, Group):
             values = {name: plain for name, plain in item.values.items() if name != port.socket}

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from ..canvas.canvas import Canvas
+from ..curves.panel import Animation
 from ..editor import Editor
 from ..inspector.inspector import Inspector
 from ..panels.about import About
@@ -44,6 +45,7 @@ class Docked:
 DOCKED = (
     Docked("Viewer", "MainDockSpace", Viewer, bare=True),
     Docked("Graph", "Lower", Canvas, bare=True),
+    Docked("Animation", "Lower", Animation, bare=True),
     Docked("Problems", "Lower", Problems),
     Docked("Renders", "Lower", Renders),
     Docked("Log", "Lower", LogPanel),

@@ -10,8 +10,8 @@ from ..keys import chord
 
 def note_scope(editor: Editor) -> None:
     """Keys go to the panel that the mouse was over last; to be called between two frames."""
-    if editor.canvas.hovered or editor.viewer.hovered:
-        editor.scope = "graph" if editor.canvas.hovered else "viewer"
+    if editor.canvas.hovered or editor.viewer.hovered or editor.curves.hovered:
+        editor.scope = "graph" if editor.canvas.hovered else "viewer" if editor.viewer.hovered else "animation"
 
 
 def run_shortcuts(editor: Editor) -> None:

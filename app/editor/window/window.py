@@ -149,7 +149,7 @@ class Window:
         if not any(map(imgui.is_mouse_down, (imgui.MouseButton_.left, imgui.MouseButton_.middle))):
             editor.dragging = False
         note_scope(editor)
-        editor.canvas.hovered = editor.viewer.hovered = False
+        editor.canvas.hovered = editor.viewer.hovered = editor.curves.hovered = False
         try:
             guarded(editor, "Rendering", lambda: self._heartbeat.beat(editor))
         finally:

@@ -1,0 +1,270 @@
+"""What can be done in the Animation panel, whichever mode it is in. Nothing here draws."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
+
+from ...errors import UsageError
+from ...graph import Graph, Interpolation, Keys, Outside, Port, Settings
+from ..session.animating import values_of
+from .copying import copied, pasted, read
+from .editing import (
+    Ease,
+    automatic,
+    chosen,
+    eased,
+    extent,
+    fixed,
+    going_on,
+    interpolated,
+    moved,
+    removed,
+    straightened,
+)
+from .plane import View
+from .rows import Row, Spot, limits, spots_of, width
+from .shapes import Samples, heights
+
+if TYPE_CHECKING:
+    from ..editor import Editor
+
+
+def put(editor: Editor, changes: Mapping[Port, Keys], label: str, merge: str = "") -> None:
+    """Give values other keys, as one step; a value without any stays as it is at this frame."""
+    before = editor.session.graph.animation
+    editor.session.animate_all({port: keys for port, keys in changes.items() if before.get(port) != keys}, label, merge)
+
+
+def spoken(spots: frozenset[Spot]) -> str:
+    """How many keys these are, in words."""
+    count = len({(port, frame) for port, frame, _ in spots})
+    return "a key" if count == 1 else f"{count} keys"
+
+
+def some(editor: Editor) -> bool:
+    """True if keys are chosen."""
+    return bool(editor.curves.spots)
+
+
+def choose_all(editor: Editor) -> None:
+    """Choose every key that has a row."""
+    state, session = editor.curves, editor.session
+    found = state.rows(session.graph, session.selection)
+    rows = found if state.mode == "sheet" else state.curves(found)
+    state.choose(frozenset(spot for row in rows if row.port and row.keys for spot in _seen(editor, row)))
+
+
+def choose_none(editor: Editor) -> None:
+    """Choose nothing."""
+    editor.curves.spots = frozenset()
+
+
+def delete(editor: Editor) -> None:
+    """Remove chosen keys."""
+    _change(editor, lambda graph, spots: removed(graph.animation, spots), "Delete")
+
+
+def interpolate(how: Interpolation) -> Callable[[Editor], None]:
+    """Chosen keys go to the next in that way."""
+    return lambda editor: _change(
+        editor, lambda graph, spots: interpolated(graph.animation, spots, how), f"Make {how}:"
+    )
+
+
+def ease(how: Ease) -> Callable[[Editor], None]:
+    """Chosen keys are come to, or left, gently."""
+    words = {"in": "Ease into", "out": "Ease out of", "both": "Ease"}[how]
+    return lambda editor: _change(editor, lambda graph, spots: eased(graph.animation, spots, how), words)
+
+
+def make_automatic(editor: Editor) -> None:
+    """Handles go along the smooth curve."""
+    editor.curves.free -= _keys_of(editor)
+    _change(editor, lambda graph, spots: automatic(graph.animation, spots), "Automatic handles of")
+
+
+def make_aligned(editor: Editor) -> None:
+    """Both handles lie on one line, and turn together."""
+    editor.curves.free -= _keys_of(editor)
+    _change(editor, lambda graph, spots: straightened(graph.animation, spots), "Align handles of")
+
+
+def make_free(editor: Editor) -> None:
+    """Each handle turns alone."""
+    _change(editor, lambda graph, spots: fixed(graph.animation, spots), "Free handles of")
+    editor.curves.free |= _keys_of(editor)
+
+
+def go_on(how: Outside) -> Callable[[Editor], None]:
+    """What the values of the chosen keys, or else of the chosen rows, do outside of their keys."""
+
+    def act(editor: Editor) -> None:
+        state, graph = editor.curves, editor.session.graph
+        ports = {port for port, _, _ in state.spots} or state.shown
+        if not ports:
+            raise UsageError("no keys are selected: select some of the values that this is about")
+        put(editor, going_on(graph.animation, ports, how), f"Outside of keys: {how}")
+
+    return act
+
+
+def goes_on(editor: Editor, how: Outside) -> bool:
+    """True if all values of the chosen keys do that outside of their keys."""
+    state, animation = editor.curves, editor.session.graph.animation
+    found = [animation.get(port) for port in ({port for port, _, _ in state.spots} or state.shown)]
+    return bool(found) and all(isinstance(keys, Keys) and keys.outside == how for keys in found)
+
+
+def copy(editor: Editor) -> None:
+    """Chosen keys go to the clipboard."""
+    editor.clipboard.put(copied(editor.session.graph.animation, editor.curves.spots))
+
+
+def cut(editor: Editor) -> None:
+    """Chosen keys go to the clipboard, and away."""
+    copy(editor)
+    _change(editor, lambda graph, spots: removed(graph.animation, spots), "Cut")
+
+
+def paste(editor: Editor) -> None:
+    """Keys of the clipboard come in from the current frame on, and are chosen."""
+    session, state = editor.session, editor.curves
+    change = pasted(session.graph, read(editor.clipboard.get()), session.frame, state.shown)
+    put(editor, change.made, f"Paste {spoken(change.spots)}")
+    state.spots = change.spots
+
+
+def duplicate(editor: Editor) -> None:
+    """Chosen keys once more, behind themselves; the copies are chosen."""
+    state, graph = editor.curves, editor.session.graph
+    span = extent(state.spots)
+    if span is None:
+        raise UsageError("no keys are selected: select what to duplicate")
+    change = moved(graph.animation, state.spots, float(int(span[1] - span[0]) + 1))
+    made = {
+        port: Keys((*before.keys, *(key for key in keys.keys if _holds(change.spots, port, key.frame))), before.outside)
+        for port, keys in change.made.items() if isinstance(before := graph.animation[port], Keys)
+    }
+    put(editor, made, f"Duplicate {spoken(state.spots)}")
+    state.spots = change.spots
+
+
+def nudge(by: float) -> Callable[[Editor], None]:
+    """Chosen keys so many frames later."""
+
+    def act(editor: Editor) -> None:
+        state = editor.curves
+        change = moved(editor.session.graph.animation, state.spots, by)
+        put(editor, change.made, f"Move {spoken(state.spots)}", "nudge keys")
+        state.spots = change.spots
+
+    return act
+
+
+def insert(editor: Editor, port: Port, frame: float) -> None:
+    """A key on the curve, which is chosen."""
+    keys = editor.session.graph.animation.get(port)
+    if isinstance(keys, Keys):
+        frame = round(frame, 6)
+        made = keys.insert(frame)
+        put(editor, {port: made}, f"Key {port}")
+        editor.curves.choose(spots_of(port, made, (frame,)))
+
+
+def key_here(editor: Editor) -> None:
+    """A key at the current frame for every chosen row, or for all."""
+    state, session = editor.curves, editor.session
+    found = state.curves(state.rows(session.graph, session.selection))
+    made = {row.port: row.keys.insert(float(session.frame)) for row in found if row.port and row.keys}
+    put(editor, made, f"Key at frame {session.frame}")
+    state.choose(frozenset().union(*(spots_of(port, keys, (float(session.frame),)) for port, keys in made.items())))
+
+
+def swap_mode(editor: Editor) -> None:
+    """From the dope sheet to curves, and back."""
+    editor.curves.mode = "curves" if editor.curves.mode == "sheet" else "sheet"
+
+
+def fitted(editor: Editor, samples: Samples) -> View:
+    """The view that shows what is wanted: all rows and the range, or the chosen keys."""
+    state, session = editor.curves, editor.session
+    graph = session.graph
+    spots = state.spots if state.wanted == "chosen" else frozenset[Spot]()
+    rows = [row for row in state.curves(state.rows(graph, session.selection)) if row.port]
+    if spots:
+        tops = [
+            found for port, frames in chosen(graph.animation, spots).items()
+            for channel in {part for parts in frames.values() for part in parts}
+            if isinstance(keys := graph.animation[port], Keys)
+            and (found := heights(keys, channel, lambda key, frames=frames: key.frame in frames))
+        ]
+        return state.view.fitted(extent(spots), _around(tops))
+    first, last = session.frames
+    every = [frame for row in rows if row.keys for frame in row.keys.frames]
+    ends = min([first, *every]), max([last, *every])
+    tops = [found for row in rows for found in _heights(graph, session.settings, row, state.hidden, samples, ends)]
+    return state.view.fitted(ends, _around(tops) or (0.0, 1.0))
+
+
+def bounds(editor: Editor) -> Callable[[Port], tuple[float, float]]:
+    """What the values of the graph cannot leave."""
+    return lambda port: limits(editor.session.graph, port)
+
+
+def animatable(editor: Editor) -> tuple[Port, ...]:
+    """Values of the selected nodes that could be keyed and are not yet."""
+    session = editor.session
+    return tuple(
+        port for id in session.graph.nodes if id in session.selection for port in values_of(session.graph, id)
+        if port not in session.graph.animation and session.linked(port) is None
+    )
+
+
+def _change(
+    editor: Editor, make: Callable[[Graph, frozenset[Spot]], Mapping[Port, Keys]], words: str
+) -> None:
+    state, graph = editor.curves, editor.session.graph
+    if not state.spots:
+        raise UsageError("no keys are selected: click some, or drag a box around them")
+    put(editor, make(graph, state.spots), f"{words} {spoken(state.spots)}")
+
+
+def _keys_of(editor: Editor) -> set[tuple[Port, float]]:
+    return {(port, frame) for port, frame, _ in editor.curves.spots}
+
+
+def _seen(editor: Editor, row: Row) -> frozenset[Spot]:
+    assert row.port and row.keys
+    spots, state = spots_of(row.port, row.keys), editor.curves
+    return spots if state.mode == "sheet" else frozenset(
+        spot for spot in spots if (spot[0], spot[2]) not in state.hidden
+    )
+
+
+def _holds(spots: frozenset[Spot], port: Port, frame: float) -> bool:
+    return (port, frame, 0) in spots or any(spot[:2] == (port, frame) for spot in spots)
+
+
+def _around(found: list[tuple[float, float]]) -> tuple[float, float] | None:
+    return (min(low for low, _ in found), max(high for _, high in found)) if found else None
+
+
+def _heights(
+    graph: Graph, settings: Settings, row: Row, hidden: set[tuple[Port, int]], samples: Samples,
+    ends: tuple[float, float],
+) -> list[tuple[float, float]]:
+    port = row.port
+    if port is None:
+        return []
+    found: list[tuple[float, float]] = []
+    for channel in range(width(graph, port)):
+        if (port, channel) in hidden:
+            continue
+        if row.keys:
+            inside = heights(row.keys, channel)
+            found += [inside] if inside else []
+        else:
+            lines = samples.line(graph, settings, port, channel, *ends)
+            found += [(float(line[:, 1].min()), float(line[:, 1].max())) for line in lines]
+    return found

@@ -1,0 +1,121 @@
+"""What is known of the panel in one frame of the window."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from imgui_bundle import imgui
+
+from ...graph import Graph, Keys, Port
+from ..editor import Editor
+from ..theme.palette import RGB
+from ..theme.style import mix, u32
+from .hits import Mark, Tip
+from .plane import Plane, Rect
+from .rows import Row
+from .shapes import Line
+from .state import CurvesState
+
+TOOLBAR, LIST, RULER, BAR, ROW = 36.0, 224.0, 34.0, 12.0, 22.0
+"""Sizes at UI scale 1: the tools, the names of rows, the ruler, the bar of what is chosen, and a row."""
+
+SMALL = 12.5
+"""Letters of axes."""
+
+Lane = tuple[Port, int]
+"""A channel of a value."""
+
+
+@dataclass
+class Frame:
+    """Where the parts of the panel are, and what is in them."""
+
+    editor: Editor
+    rows: tuple[Row, ...]
+    plane: Plane
+    """Time and values on the part with the keys."""
+    list: Rect
+    ruler: Rect
+    bar: Rect
+    scale: float
+    at: tuple[float, float]
+    """The mouse, on the screen."""
+    over: bool = False
+    """True while nothing lies between the mouse and the part with keys, ruler and bar."""
+    marks: tuple[Mark, ...] = ()
+    tips: tuple[Tip, ...] = ()
+    lines: tuple[tuple[Lane, Line], ...] = ()
+
+    @property
+    def state(self) -> CurvesState:
+        """What the panel shows."""
+        return self.editor.curves
+
+    @property
+    def graph(self) -> Graph:
+        """The graph that one is in."""
+        return self.editor.session.graph
+
+    @property
+    def sheet(self) -> bool:
+        """True in the dope sheet."""
+        return self.state.mode == "sheet"
+
+    @property
+    def top(self) -> float:
+        """Where the first row begins."""
+        return self.plane.rect[1] - self.state.scroll
+
+    @property
+    def high(self) -> float:
+        """How high a row is."""
+        return round(ROW * self.scale)
+
+    def row_at(self, y: float) -> Row | None:
+        """The row at a height of the screen."""
+        place = int((y - self.top) // self.high)
+        return self.rows[place] if y >= self.plane.rect[1] and 0 <= place < len(self.rows) else None
+
+    def where(self, at: tuple[float, float] | None = None) -> tuple[float, float]:
+        """Frame and value at a place of the screen; in the dope sheet, pixels down the rows instead of a value."""
+        x, y = at or self.at
+        return self.plane.frame(x), y - self.top if self.sheet else self.plane.value(y)
+
+    def back(self, where: tuple[float, float]) -> tuple[float, float]:
+        """The place on the screen of what `where` gave."""
+        return self.plane.x(where[0]), where[1] + self.top if self.sheet else self.plane.y(where[1])
+
+
+def holds(rect: Rect, at: tuple[float, float]) -> bool:
+    """True if a point is in a rectangle."""
+    return rect[0] <= at[0] < rect[2] and rect[1] <= at[1] < rect[3]
+
+
+def color_of(editor: Editor, row: Row, channel: int, place: int) -> RGB:
+    """The color of a curve: red, green and blue for channels, for numbers one of a few in turn."""
+    palette = editor.palette
+    if row.channels:
+        dark = palette.name == "dark"
+        lanes: tuple[RGB, ...] = (
+            ((0.93, 0.42, 0.42), (0.45, 0.78, 0.44), (0.45, 0.64, 0.98)) if dark else
+            ((0.78, 0.16, 0.16), (0.13, 0.50, 0.16), (0.12, 0.33, 0.80))
+        )
+        return lanes[channel] if channel < 3 else mix(palette.text, palette.panel, 0.3)
+    kinds = list(palette.kinds.values())
+    return kinds[(3, 0, 2, 4, 5)[place % 5]]
+
+
+def small(frame: Frame, x: float, y: float, text: str, color: RGB, alpha: float = 1.0, align: float = 0.0) -> float:
+    """A line of small letters: its left end (or with `align` 1 its right one) at `x`, its middle at `y`. Its width."""
+    fonts = frame.editor.fonts
+    font, size = (fonts.text if fonts else imgui.get_font()), SMALL * frame.scale
+    wide = imgui.calc_text_size(text).x * size / imgui.get_font_size()
+    lines = imgui.get_window_draw_list()
+    lines.add_text(font, size, (round(x - wide * align), round(y - size * 0.52)), u32(color, alpha), text)
+    return wide
+
+
+def keys_of(graph: Graph, port: Port | None) -> Keys | None:
+    """The keys of a value, if it has some."""
+    found = graph.animation.get(port) if port else None
+    return found if isinstance(found, Keys) else None

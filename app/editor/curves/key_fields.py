@@ -1,0 +1,124 @@
+"""Numbers of the key that is chosen alone: its frame, its value, its handles."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from imgui_bundle import imgui
+
+from ....nodes import Value
+from ...graph import Keys, Port
+from ...graph.faces import declared
+from ..editor import Editor
+from ..inspector.fields import Edit, Fields
+from ..inspector.number_field import row_of_numbers
+from ..theme.palette import DARK
+from ..theme.style import ui_scale
+from ..toolkit.places import place
+from ..toolkit.words import write
+from . import commands
+from .editing import Change, has_handle, moved, with_number
+from .frame import Frame
+from .hits import SIDES
+from .rows import spots_of
+
+_FRAMES = Value("frame", "float", 1.0, low=0.0, high=100.0)
+_LABEL = 46.0
+
+
+class KeyFields:
+    """Fields below the names."""
+
+    def __init__(self) -> None:
+        self._fields = Fields(DARK)
+
+    def height(self, frame: Frame) -> float:
+        """How high they are."""
+        rows = len(self._rows(frame))
+        line = imgui.get_frame_height() + 3.0 * frame.scale
+        return rows * line + 10.0 * frame.scale if rows else 0.0
+
+    def draw(self, frame: Frame, top: float) -> None:
+        """Draw them; what was changed goes into the graph."""
+        editor, fields = frame.editor, self._fields
+        fields.palette, fields.places = editor.palette, editor.places
+        dragged = fields.dragging
+        fields.begin(imgui.is_mouse_down(imgui.MouseButton_.left))
+        scale = ui_scale()
+        left, _, right, _ = frame.list
+        y = top + 6.0 * scale
+        for name, label, numbers, declaration in self._rows(frame):
+            imgui.set_cursor_screen_pos((left + 8.0 * scale, y))
+            rect = place(_LABEL * scale)
+            write(rect, label, editor.palette.dim)
+            imgui.set_cursor_screen_pos((left + (_LABEL + 10.0) * scale, y))
+            width = right - left - (_LABEL + 18.0) * scale
+            id, start = f"keys {name}", left + (_LABEL + 10.0) * scale
+            editor.places[f"field {id}"] = (start, y, right - 8.0 * scale, y + rect[3] - rect[1])
+            edit = row_of_numbers(fields, id, numbers, declaration, width, ("",) * len(numbers), keep_type=True)
+            if edit:
+                editor.attempt(lambda name=name, edit=edit: self._apply(frame, name, edit))
+            y += imgui.get_frame_height() + 3.0 * scale
+        if dragged and not fields.dragging:
+            editor.session.seal()
+        left_over = fields.end()
+        if left_over and frame.state.single:
+            id, edit = left_over
+            editor.attempt(lambda: self._apply(frame, id.removeprefix("keys ").partition("#")[0], edit))
+        editor.dragging |= fields.dragging
+
+    def _rows(self, frame: Frame) -> list[tuple[str, str, tuple[float, ...], Value]]:
+        """Name, label, numbers and declaration of every line."""
+        found = _found(frame)
+        if found is None:
+            return []
+        port, keys, at = found
+        index = keys.frames.index(at)
+        key = keys.keys[index]
+        declaration = declared(frame.graph.node(port.node), port.socket, port.node)
+        rows: list[tuple[str, str, tuple[float, ...], Value]] = [("frame", "Frame", (key.frame,), _FRAMES)]
+        if key.parts and len(key.parts) <= 4:
+            kind = replace(declaration, type="int" if declaration.type == "int" else "float")
+            rows.append(("value", "Value", key.value if isinstance(key.value, tuple) else (key.value,), kind))  # type: ignore
+            if not frame.sheet and len(key.parts) == 1:
+                loose = replace(kind, type="float", minimum=float("-inf"), maximum=float("inf"))
+                rows += [
+                    (side, label, handle, loose)
+                    for side, label, handle in zip(SIDES, ("In", "Out"), keys.handles(at), strict=True)
+                    if handle and has_handle(keys, index, side)
+                ]
+        return rows
+
+    def _apply(self, frame: Frame, name: str, edit: Edit) -> None:
+        found = _found(frame)
+        if found is None or not isinstance(edit.value, tuple):
+            return
+        port, keys, at = found
+        editor, state = frame.editor, frame.state
+        numbers = edit.value
+        if name == "frame":
+            change = moved(frame.graph.animation, spots_of(port, keys, (at,)), numbers[0] - at)
+        elif name == "value":
+            made = keys
+            for channel, number in enumerate(numbers):
+                made = with_number(made, at, channel, number)
+            change = Change({port: made}, state.spots)
+        else:
+            across = min(numbers[0], 0.0) if name == "left" else max(numbers[0], 0.0)
+            handle = (across, *numbers[1:])
+            made = keys.with_handles(at, **{name: handle})
+            state.free.add((port, at))
+            change = Change({port: made}, state.spots)
+        commands.put(editor, change.made, f"Set {name} of a key", edit.merge)
+        state.spots = change.spots
+
+
+def _found(frame: Frame) -> tuple[Port, Keys, float] | None:
+    single = frame.state.single
+    keys = frame.graph.animation.get(single[0]) if single else None
+    if single is None or not isinstance(keys, Keys) or keys.key(single[1]) is None:
+        return None
+    return single[0], keys, single[1]
+
+
+__all__ = ["Editor", "KeyFields"]

@@ -1,0 +1,308 @@
+"""From the mouse to gestures, and from gestures to keys."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Literal
+
+from imgui_bundle import imgui
+
+from ...graph import Keys
+from ..editor import Editor
+from . import commands
+from .editing import Change, aligned, extent
+from .frame import Frame, Lane, holds
+from .gestures import Bend, Box, Gesture, Move, Pan, Scale, Seek
+from .hits import REACH, Mark, Tip, boxed, line_at, nearest
+from .paint import grips
+from .rows import Spot, limits
+from .shapes import level
+
+LEFT, RIGHT, MIDDLE = imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.MouseButton_.middle
+CLICK = 3.0
+"""Pixels (at UI scale 1) that the mouse may move within a click."""
+
+_NOTCH = 48.0
+_LINE = 4.0
+Part = Literal["", "key", "tip", "left", "right", "bar", "now", "ruler", "curve", "open"]
+
+
+class Mouse:
+    """Which gesture is going on, and what is under the pointer."""
+
+    def __init__(self) -> None:
+        self.gesture: Gesture | None = None
+        self.part: Part = ""
+        self.mark: Mark | None = None
+        self.tip: Tip | None = None
+        self.lane: Lane | None = None
+        self.menu = False
+        """True in the frame in which a menu is asked for."""
+        self._count = 0
+        self._pressed: tuple[float, float] = (0.0, 0.0)
+
+    def update(self, frame: Frame) -> None:
+        """Go on with the gesture, or begin one."""
+        io = imgui.get_io()
+        self.menu = False
+        self.part, self.mark, self.tip, self.lane = "", None, None, None
+        if self.gesture is None and frame.over:
+            self._find(frame)
+        if frame.over or self.gesture:
+            self._wheel(frame, io)
+        if self.gesture:
+            self._go_on(frame, io)
+        elif frame.over:
+            self._begin(frame, io)
+        self._cursor()
+
+    # --- what is there -----------------------------------------------------------------------------------------------
+
+    def _find(self, frame: Frame) -> None:
+        x, y = frame.at
+        reach = REACH * frame.scale
+        if holds(frame.ruler, frame.at):
+            self.part = "ruler"
+        elif holds(frame.bar, frame.at):
+            found = grips(frame)
+            if found and found[0] - 2.0 <= x <= found[1] + 2.0:
+                self.part = "left" if x <= found[0] + found[2] else "right" if x >= found[1] - found[2] else "bar"
+        elif tip := nearest(frame.tips, x, y, reach):
+            self.part, self.tip = "tip", tip
+        elif mark := nearest(self._marks(frame), x, y, reach):
+            self.part, self.mark = "key", mark
+        elif abs(x - frame.plane.x(frame.editor.session.frame)) <= _LINE * frame.scale:
+            self.part = "now"
+        else:
+            self.lane = line_at(frame.lines, x, y, reach)
+            self.part = "curve" if self.lane else "open"
+
+    def _marks(self, frame: Frame) -> list[Mark]:
+        """All keys, chosen ones on top."""
+        spots = frame.state.spots
+        return sorted(frame.marks, key=lambda mark: not spots.isdisjoint(mark.spots))
+
+    def _cursor(self) -> None:
+        gesture = self.gesture
+        if isinstance(gesture, Pan):
+            imgui.set_mouse_cursor(imgui.MouseCursor_.resize_all)
+        elif isinstance(gesture, Scale) or self.part in ("left", "right", "now") or isinstance(gesture, Seek):
+            imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
+        elif self.part in ("key", "tip", "bar"):
+            imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
+
+    # --- beginning ---------------------------------------------------------------------------------------------------
+
+    def _begin(self, frame: Frame, io: imgui.IO) -> None:
+        state = frame.state
+        self._pressed = frame.at
+        if imgui.is_mouse_clicked(MIDDLE) or (imgui.is_mouse_clicked(LEFT) and imgui.is_key_down(imgui.Key.space)):
+            self.gesture = Pan(frame.at, state.view, state.scroll)
+        elif imgui.is_mouse_clicked(RIGHT):
+            if self.mark and state.spots.isdisjoint(self.mark.spots):
+                state.choose(self.mark.spots)
+            self.menu = self.part not in ("ruler", "now")
+        elif imgui.is_mouse_double_clicked(LEFT) and self.part in ("curve", "open"):
+            self._insert(frame)
+        elif imgui.is_mouse_clicked(LEFT):
+            self._press(frame, io)
+
+    def _press(self, frame: Frame, io: imgui.IO) -> None:
+        state = frame.state
+        match self.part:
+            case "ruler" | "now":
+                self.gesture = Seek()
+                if self.part == "ruler":
+                    self._go_on(frame, io)
+            case "tip" if self.tip:
+                self._take_tip(frame, self.tip)
+            case "left" | "right":
+                span = extent(state.spots)
+                if span:
+                    self._scale(frame, span[0] if self.part == "left" else span[1])
+            case "bar":
+                span = extent(state.spots)
+                if span:
+                    self._move(frame, span[0], frozenset())
+            case "key" if self.mark:
+                self._take_key(frame, io, self.mark)
+            case "curve" if self.lane:
+                keys = frame.graph.animation.get(self.lane[0])
+                if isinstance(keys, Keys):
+                    lane = frozenset((self.lane[0], at, self.lane[1]) for at in keys.frames)
+                    state.choose(lane, "toggle" if io.key_ctrl else "add" if io.key_shift else "replace")
+            case _:
+                how = "add" if io.key_shift else "toggle" if io.key_ctrl else "replace"
+                self.gesture = Box(frame.where(), how)
+
+    def _take_key(self, frame: Frame, io: imgui.IO, mark: Mark) -> None:
+        state = frame.state
+        alone: frozenset[Spot] = frozenset()
+        if io.key_shift:
+            state.choose(mark.spots, "add")
+        elif io.key_ctrl:
+            state.choose(mark.spots, "toggle")
+        elif mark.spots <= state.spots:
+            alone = mark.spots
+        else:
+            state.choose(mark.spots)
+        if mark.spots.isdisjoint(state.spots):
+            return
+        grabbed = next(iter(mark.spots))[1]
+        if io.key_alt:
+            self._scale(frame, grabbed)
+        else:
+            self._move(frame, grabbed, alone)
+
+    def _move(self, frame: Frame, grabbed: float, alone: frozenset[Spot]) -> None:
+        self.gesture = Move(
+            frame.graph.animation, frame.state.spots, grabbed, frame.where(), self._token(), alone=alone
+        )
+
+    def _scale(self, frame: Frame, grabbed: float) -> None:
+        span = extent(frame.state.spots)
+        if span and span[1] > span[0]:
+            about = span[0] if abs(grabbed - span[0]) >= abs(grabbed - span[1]) else span[1]
+            self.gesture = Scale(
+                frame.graph.animation, frame.state.spots, about, grabbed, frame.where()[0], self._token()
+            )
+
+    def _take_tip(self, frame: Frame, tip: Tip) -> None:
+        keys = frame.graph.animation.get(tip.port)
+        if not isinstance(keys, Keys):
+            return
+        key = keys.keys[keys.frames.index(tip.frame)]
+        at, end = frame.where(), frame.where((tip.x, tip.y))
+        both = (tip.port, tip.frame) not in frame.state.free and aligned(keys, tip.frame)
+        self.gesture = Bend(
+            keys, tip.port, tip.frame, tip.channel, tip.side, level(key, tip.channel),
+            (at[0] - end[0], at[1] - end[1]), both, self._token(),
+        )
+
+    def _insert(self, frame: Frame) -> None:
+        at = frame.where()[0]
+        at = float(round(at)) if frame.state.snap else at
+        row = frame.row_at(frame.at[1]) if frame.sheet else None
+        port = self.lane[0] if self.lane else row.port if row else None
+        if port:
+            frame.editor.attempt(lambda: commands.insert(frame.editor, port, at))
+
+    def _token(self) -> str:
+        self._count += 1
+        return f"keys {id(self)} {self._count}"
+
+    # --- going on ----------------------------------------------------------------------------------------------------
+
+    def _go_on(self, frame: Frame, io: imgui.IO) -> None:
+        editor, state, gesture = frame.editor, frame.state, self.gesture
+        if imgui.is_key_pressed(imgui.Key.escape):
+            self._cancel(frame)
+            return
+        button = MIDDLE if isinstance(gesture, Pan) and imgui.is_mouse_down(MIDDLE) else LEFT
+        if not imgui.is_mouse_down(button):
+            self._end(frame, io)
+            return
+        at = frame.where()
+        match gesture:
+            case Pan():
+                x, y = frame.at[0] - gesture.start[0], frame.at[1] - gesture.start[1]
+                up = 0.0 if frame.sheet else y / frame.plane.up
+                state.view = gesture.view.panned(-x / frame.plane.across, up)
+                if frame.sheet:
+                    state.scroll = gesture.scroll - y
+            case Seek():
+                editor.dragging = True
+                editor.session.seek(at[0])
+            case Move():
+                if not gesture.going and not self._far(frame):
+                    return
+                self.gesture = gesture = replace(gesture, going=True)
+                snap = state.snap != (io.key_shift and frame.sheet)
+                curves = not frame.sheet and not holds(frame.bar, self._pressed)
+                change = gesture.change(
+                    at, snap, lambda port: limits(frame.graph, port),
+                    across=not (curves and io.key_ctrl), up=curves and not io.key_shift,
+                )
+                self._put(frame, change, f"Move {commands.spoken(gesture.spots)}", gesture.merge)
+            case Scale():
+                if self._far(frame):
+                    change = gesture.change(at[0], state.snap != io.key_shift)
+                    self._put(frame, change, f"Scale {commands.spoken(gesture.spots)}", gesture.merge)
+            case Bend():
+                if io.key_alt:
+                    state.free.add((gesture.port, gesture.frame))
+                made = gesture.change(at, gesture.both and not io.key_alt, flat=io.key_shift)
+                self._put(frame, Change({gesture.port: made}, state.spots), "Bend a curve", gesture.merge)
+            case _:
+                pass
+
+    def _put(self, frame: Frame, change: Change, label: str, merge: str) -> None:
+        editor, state = frame.editor, frame.state
+        editor.dragging = True
+
+        def act() -> None:
+            commands.put(editor, change.made, label, merge)
+            state.spots = change.spots
+
+        editor.attempt(act)
+
+    def _end(self, frame: Frame, io: imgui.IO) -> None:
+        gesture, self.gesture = self.gesture, None
+        state = frame.state
+        match gesture:
+            case Box():
+                rect = (*frame.back(gesture.start), *frame.at)
+                if self._far(frame):
+                    found = boxed(frame.marks, rect)
+                    state.choose(found, gesture.how)  # type: ignore[arg-type]
+                elif gesture.how == "replace":
+                    state.spots = frozenset()
+            case Move():
+                if not gesture.going and gesture.alone:
+                    state.choose(gesture.alone)
+                frame.editor.session.seal()
+            case Scale() | Bend():
+                frame.editor.session.seal()
+            case _:
+                pass
+
+    def _cancel(self, frame: Frame) -> None:
+        gesture, self.gesture = self.gesture, None
+        if isinstance(gesture, Move | Scale | Bend):
+            frame.editor.session.abandon(gesture.merge)
+        if isinstance(gesture, Move | Scale):
+            frame.state.spots = gesture.spots
+
+    def _far(self, frame: Frame) -> bool:
+        return max(abs(a - b) for a, b in zip(self._pressed, frame.at, strict=True)) > CLICK * frame.scale
+
+    # --- the wheel ---------------------------------------------------------------------------------------------------
+
+    def _wheel(self, frame: Frame, io: imgui.IO) -> None:
+        """Zoom at the pointer: both axes in curves, Ctrl time alone, Shift values alone; in the sheet Shift scrolls."""
+        state, turned, across = frame.state, io.mouse_wheel, io.mouse_wheel_h
+        if io.key_shift and not turned:
+            turned, across = across, 0.0  # some systems turn Shift and wheel sideways
+        if across:
+            state.view = state.view.panned(-across * _NOTCH * frame.scale / frame.plane.across, 0.0)
+        if not turned:
+            return
+        factor = 1.15**turned
+        frame_at, value = frame.plane.frame(frame.at[0]), frame.plane.value(frame.at[1])
+        if frame.sheet:
+            if io.key_shift:
+                state.scroll -= turned * _NOTCH * frame.scale
+            else:
+                state.view = state.view.zoomed(frame_at, value, factor, 1.0)
+        else:
+            state.view = state.view.zoomed(
+                frame_at, value, 1.0 if io.key_shift else factor, 1.0 if io.key_ctrl else factor
+            )
+
+
+def hot_of(mouse: Mouse) -> Mark | Tip | None:
+    """What is lit under the pointer."""
+    return mouse.tip or mouse.mark
+
+
+__all__ = ["Editor", "Mouse", "hot_of"]

@@ -1,0 +1,160 @@
+"""Draws curves: keys with their handles, what lies beyond them dimmer, expressions dashed."""
+
+from __future__ import annotations
+
+from imgui_bundle import ImVec2, imgui
+
+from ...graph import Keys, Port
+from ..theme.style import mix, u32
+from .frame import Frame, Lane, color_of, small
+from .hits import Mark, Tip
+from .paint import KEY, paint_key
+from .plane import Plane, ticks
+from .rows import Row
+from .shapes import Line, Pieces, Samples, dashes, outside, pieces, points
+
+Drawn = list[imgui.ImVec2Like]
+
+
+class Plot:
+    """Knows the curves of all values that are shown, and their points on the screen as long as nothing moves."""
+
+    def __init__(self) -> None:
+        self.samples = Samples()
+        self._pieces: dict[Lane, tuple[Keys, Pieces]] = {}
+        self._of: tuple[object, ...] = ()
+        self._drawn: list[tuple[Lane, Drawn, str]] = []
+        self._lines: tuple[tuple[Lane, Line], ...] = ()
+
+    def lines(self, frame: Frame, rows: tuple[Row, ...]) -> tuple[tuple[Lane, Line], ...]:
+        """The curves of keys on the screen, within their first and last one."""
+        graph, settings = frame.graph, frame.editor.session.settings
+        of = (graph.animation, graph.nodes, graph.controls, settings, rows)
+        also = (frame.plane, frozenset(frame.state.hidden), frame.scale)
+        same = len(self._of) == 2 and all(a is b for a, b in zip(of[:4], self._of[0][:4], strict=True))  # type: ignore
+        if not same or self._of[0][4] != rows or self._of[1] != also:  # type: ignore
+            self._make(frame, rows)
+            self._of = of, also
+        return self._lines
+
+    def _make(self, frame: Frame, rows: tuple[Row, ...]) -> None:
+        view, plane = frame.plane.view, frame.plane
+        lanes: list[tuple[Lane, str]] = []
+        shapes: list[Pieces] = []
+        self._drawn = []
+        for row in rows:
+            if row.port is None:
+                continue
+            for channel in range(len(row.channels) or 1):
+                lane = row.port, channel
+                if lane in frame.state.hidden:
+                    continue
+                if row.keys is None:
+                    self._drawn += self._dashed(frame, row.port, channel)
+                    continue
+                inner = self._inner(lane, row.keys)
+                before, after = outside(row.keys, channel, inner, view.first, view.last)
+                lanes += [(lane, "inside"), (lane, "outside"), (lane, "outside")]
+                shapes += [inner, before, after]
+        found = points(shapes, plane)
+        self._lines = tuple(
+            (lane, line) for (lane, sort), line in zip(lanes, found, strict=True) if sort == "inside" and len(line)
+        )
+        self._drawn += [
+            (lane, drawn(line), sort) for (lane, sort), line in zip(lanes, found, strict=True) if len(line) > 1
+        ]
+
+    def _inner(self, lane: Lane, keys: Keys) -> Pieces:
+        known = self._pieces.get(lane)
+        if known is None or known[0] is not keys:
+            known = self._pieces[lane] = keys, pieces(keys, lane[1])
+        return known[1]
+
+    def _dashed(self, frame: Frame, port: Port, channel: int) -> list[tuple[Lane, Drawn, str]]:
+        plane, view, scale = frame.plane, frame.plane.view, frame.scale
+        found: list[tuple[Lane, Drawn, str]] = []
+        settings = frame.editor.session.settings
+        for line in self.samples.line(frame.graph, settings, port, channel, view.first, view.last):
+            line = on_screen(line, plane)
+            found += [
+                ((port, channel), drawn(dash), "inside") for dash in dashes(line, 6.0 * scale, 4.0 * scale)
+            ]
+        return found
+
+    # --- painting ----------------------------------------------------------------------------------------------------
+
+    def paint(self, frame: Frame, rows: tuple[Row, ...], hot: Mark | Tip | None, lit: Lane | None) -> None:
+        """Draw the grid of values, the curves, and on top of them keys and handles."""
+        draw, scale = imgui.get_window_draw_list(), frame.scale
+        colors = {
+            (row.port, channel): color_of(frame.editor, row, channel, place)
+            for place, row in enumerate(row for row in frame.rows if row.port) if row in rows
+            for channel in range(len(row.channels) or 1)
+        }
+        inks = {lane: (u32(color), u32(color, 0.32)) for lane, color in colors.items()}
+        for lane, line, sort in self._drawn:
+            ink = inks.get(lane)
+            if ink:
+                thick = 2.5 if lane == lit and sort == "inside" else 1.6
+                draw.add_polyline(line, ink[sort == "outside"], thick * scale, 0)
+        self._tips(frame, hot)
+        spots, palette = frame.state.spots, frame.editor.palette
+        chosen = u32(palette.accent)
+        size = KEY * scale * 0.85
+        for mark in frame.marks:
+            if spots.isdisjoint(mark.spots):
+                (port, _, channel), = mark.spots
+                paint_key(draw, mark.x, mark.y, size, mark.look, inks[port, channel][0])
+        ring = u32(palette.canvas)
+        for mark in frame.marks:
+            if not spots.isdisjoint(mark.spots):
+                draw.add_circle_filled((mark.x, mark.y), size * 1.75, ring, 16)
+                paint_key(draw, mark.x, mark.y, size * 1.2, mark.look, chosen)
+        if hot:
+            draw.add_circle((hot.x, hot.y), size * 1.9, u32(palette.accent, 0.9), 20, 1.5 * scale)
+
+    def grid(self, frame: Frame) -> None:
+        """Lines of values."""
+        draw, palette, plane = imgui.get_window_draw_list(), frame.editor.palette, frame.plane
+        left, _, right, _ = plane.rect
+        strong, faint = u32(mix(palette.grid, palette.dim, 0.22)), u32(mix(palette.canvas, palette.grid, 0.9))
+        zero = u32(mix(palette.grid, palette.dim, 0.55))
+        for tick in ticks(plane.view.low, plane.view.high, plane.up, 36.0 * frame.scale):
+            y = round(plane.y(tick.at)) + 0.5
+            draw.add_line((left, y), (right, y), zero if abs(tick.at) < 1e-12 else strong if tick.label else faint)
+
+    def labels(self, frame: Frame) -> None:
+        """The numbers of the lines of values, over the curves."""
+        draw, palette, plane, scale = imgui.get_window_draw_list(), frame.editor.palette, frame.plane, frame.scale
+        left, top, _, bottom = plane.rect
+        ground, half = u32(palette.canvas, 0.82), 8.0 * scale
+        for tick in ticks(plane.view.low, plane.view.high, plane.up, 36.0 * scale):
+            y = round(plane.y(tick.at)) + 0.5
+            if not tick.label or y < top + half or y > bottom - half:
+                continue
+            wide = imgui.calc_text_size(tick.label).x * 0.8
+            draw.add_rect_filled(
+                (left + 2.0 * scale, y - half), (left + 10.0 * scale + wide, y + half), ground, 3.0 * scale
+            )
+            small(frame, left + 6.0 * scale, y, tick.label, palette.dim)
+
+    def _tips(self, frame: Frame, hot: Mark | Tip | None) -> None:
+        draw, palette, scale = imgui.get_window_draw_list(), frame.editor.palette, frame.scale
+        line, fill = u32(palette.text, 0.55), u32(palette.text)
+        for tip in frame.tips:
+            draw.add_line(tip.root, (tip.x, tip.y), line, 1.25 * scale)
+            draw.add_circle_filled((tip.x, tip.y), 3.5 * scale, fill, 12)
+            draw.add_circle_filled((tip.x, tip.y), 1.9 * scale, u32(palette.canvas), 10)
+
+
+def drawn(line: Line) -> Drawn:
+    """Points as draw lists want them."""
+    return list(map(ImVec2, *line.T.tolist()))
+
+
+def on_screen(line: Line, plane: Plane) -> Line:
+    """A line of frames and values in pixels."""
+    found = line.copy()
+    found[:, 0] = plane.rect[0] + (line[:, 0] - plane.view.first) * plane.across
+    found[:, 1] = (plane.rect[3] - (line[:, 1] - plane.view.low) * plane.up).clip(-1e6, 1e6)
+    return found

@@ -1,0 +1,83 @@
+"""Keys and expressions follow the values that they belong to, from one graph to another."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+
+from ...errors import GraphError
+from ...graph import Animation, Expression, Graph, Port, animation_fault
+from ...graph.names import fresh_name
+
+Animations = Mapping[Port, Animation]
+
+
+def renamed(animation: Animation, names: Mapping[str, str]) -> Animation:
+    """An expression where nodes, controls or values (`node.value`) are called otherwise, all at once; keys as is."""
+    if not isinstance(animation, Expression):
+        return animation
+    heads = {name.partition(".")[0] for name in animation.names}
+    asked = [(old, new) for old, new in names.items() if old != new and old.partition(".")[0] in heads]
+    taken = {*heads, *names, *names.values()}
+    waiting: list[tuple[str, str]] = []
+    for old, new in sorted(asked, key=lambda pair: -pair[0].count(".")):
+        between = fresh_name("between", taken)
+        taken.add(between)
+        animation = animation.renamed(old, between)
+        waiting.append((between, new))
+    for between, new in waiting:
+        animation = animation.renamed(between, new)
+    return animation
+
+
+def of_nodes(graph: Graph, ids: Collection[str]) -> dict[Port, Animation]:
+    """What changes over time in some nodes."""
+    return {port: item for port, item in graph.animation.items() if port.node in ids}
+
+
+def split(graph: Graph, ids: Collection[str], group: str) -> tuple[dict[Port, Animation], dict[Port, Animation]]:
+    """The animation of what becomes a group, and of what is left around it.
+
+    Values with a control stay animated outside, as what the group shows.
+    """
+    shown = {item.target: name for name, item in graph.controls.items() if item.target.node in ids}
+    names = {str(target): f"{group}.{name}" for target, name in shown.items()}
+    inner, outer = dict[Port, Animation](), dict[Port, Animation]()
+    for port, item in graph.animation.items():
+        if port in shown:
+            outer[Port(group, shown[port])] = renamed(item, names)
+        elif port.node in ids:
+            inner[port] = item
+        else:
+            outer[port] = renamed(item, names)
+    return inner, outer
+
+
+def joined(graph: Graph, body: Graph, group: str, nodes: Mapping[str, str]) -> dict[Port, Animation]:
+    """The animation of a graph where the body of one of its groups stands in its place, its nodes called as `nodes`."""
+    targets = {
+        name: Port(nodes[item.target.node], item.target.socket)
+        for name, item in body.controls.items() if item.target.node in nodes
+    }
+    inside = dict(nodes) | {name: str(port) for name, port in targets.items() if name not in body.nodes}
+    found = {
+        Port(nodes[port.node], port.socket): renamed(item, inside)
+        for port, item in body.animation.items() if port.node in nodes
+    }
+    outside = {f"{group}.{name}": str(port) for name, port in targets.items()}
+    for port, item in graph.animation.items():
+        there = targets.get(port.socket) if port.node == group else port
+        if there is not None:
+            found[there] = renamed(item, outside)
+    return found
+
+
+def check_names(before: Graph, after: Graph, animation: Animations) -> None:
+    """Raise GraphError if an expression of `after` no longer finds what it reads."""
+    for port, item in animation.items():
+        if not isinstance(item, Expression) or animation_fault(after, port, item) is None:
+            continue
+        if port not in before.animation or animation_fault(before, port, before.animation[port]) is None:
+            raise GraphError(
+                f"the expression of '{port}' reads a value from the other side of the group's border: "
+                "bake it into keys first, or make that value a control"
+            )

@@ -1,0 +1,57 @@
+"""Starts `halation render` many times and kills it at a random moment, looking at every file in between.
+
+    python killed.py COUNT WORDS...
+
+The first one may end, to see how long it takes. Prints how many were killed before they had ended, and how many times there was a file to look at. Modules are loaded
+once: every render is a fork of this process, which never touches OpenGL itself.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import signal
+import sys
+import time
+from pathlib import Path
+
+
+def main(count: int, words: list[str]) -> None:
+    import numpy  # noqa: F401
+    import OpenImageIO as oiio
+    from halation.app import document, media  # noqa: F401
+    from halation.app.cli.program import run
+    from halation.app.renderer import job  # noqa: F401
+
+    folder = Path(words[words.index("-o") + 1]).parent
+    def start() -> int:
+        child = os.fork()
+        if child == 0:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+            os._exit(run(["render", *words]))
+        return child
+
+    draw, killed, seen = random.Random(7), 0, 0
+    began = time.perf_counter()
+    os.waitpid(start(), 0)
+    whole = time.perf_counter() - began
+    for file in folder.glob("out.*.exr"):
+        file.unlink()
+    for _ in range(count):
+        child = start()
+        time.sleep(draw.uniform(0.1, 1.1) * whole)
+        os.kill(child, signal.SIGKILL)
+        killed += os.WIFSIGNALED(os.waitpid(child, 0)[1])
+        files = sorted(folder.glob("out.*.exr"))
+        for file in files:
+            picture = oiio.ImageInput.open(str(file))
+            assert picture and picture.read_image() is not None, f"{file}: {oiio.geterror()}"
+            picture.close()
+        seen += bool(files)
+        for file in files[draw.randrange(len(files) + 1) :]:  # so that there is something to do again
+            file.unlink()
+    print(json.dumps([killed, seen]))
+
+
+main(int(sys.argv[1]), sys.argv[2:])
