@@ -16,6 +16,7 @@ from typing import Any, Protocol
 
 from .. import media
 from ..compiler import Pass, Plan
+from ..errors import HalationError
 from ..graph import Graph
 from .decoding import Array
 from .destinations import Destination, Writing, check, destinations
@@ -121,16 +122,24 @@ class _Job:
             for folder in {file.path.parent for files in self._files.values() for file in files}:
                 media.sweep(folder)
         todo = deque(self._frames)
-        task = self._next(todo)
+        task, fault = self._next(todo), None
         while task is not None:
             kept, passes = self._begun(task)
-            following = self._next(todo)  # while the device is busy
-            if following is not None:
-                self._renderer.runner.prepare(following.plan)
+            following = None
+            try:
+                following = self._next(todo)  # while the device is busy
+                if following is not None:
+                    self._renderer.runner.prepare(following.plan)
+            except HalationError as error:  # that frame cannot be made, this one can
+                fault = error
             self._write(task, self._taken(task, kept), passes)
             task = following
+            if fault is not None:
+                break
         while self._writes:
             self._settle()
+        if fault is not None:
+            raise fault
         return sorted(self._reports, key=lambda report: self._frames.index(report.frame))
 
     def close(self) -> None:
