@@ -50,12 +50,17 @@ def opened(path: Path, sets: Sequence[str]) -> Graph:
     """
     from .. import document
     from ..errors import GraphError, UsageError
+    from ..graph import animation_fault
 
     piped = str(path) == "-"
     graph = document.loads(_standard_input(), "-") if piped else document.load(path)
     for name, text in parsing.assignments(sets, "--set").items():
+        value = parsing.setting(text)
         try:
-            graph = graph.override(name, parsing.setting(text))
+            graph = graph.override(name, value)
+            for port, item in graph.animation.items():
+                if item is value and (said := animation_fault(graph, port, item)):
+                    raise GraphError(said)
         except GraphError as fault:
             raise UsageError(f"--set {name}={text}: {str(fault).removeprefix(f'{name}: ')}") from None
     return graph

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from .animation import ANIMATED, Animation, animation_fault, is_animated, keyed_range, still, value_at
+from .animation import ANIMATED, Animation
 from .conversion import conversion, make_socket
 from .expressions import Expression
-from .faces import signature
-from .graph import Graph
-from .group import Group, Item
+from .graph import Graph, Group, Item, declared, signature
 from .keys import Interpolation, Key, Keys, Outside
 from .lookup import node_output
 from .names import INPUTS, OUTPUTS, did_you_mean
 from .parts import Control, Input, Output, Port, Settings, Signature, Unknown
 from .problems import Problem, problems
+from .still import animation_fault, is_animated, keyed_range, still, value_at
 
 __all__ = [
     "ANIMATED", "INPUTS", "OUTPUTS", "Animation", "Control", "Expression", "Graph", "Group", "Input", "Interpolation",
     "Item", "Key", "Keys", "Output", "Outside", "Port", "Problem", "Settings", "Signature", "Unknown",
-    "animation_fault", "conversion", "did_you_mean", "is_animated", "keyed_range", "make_socket", "node_output",
-    "problems", "signature", "still", "value_at",
+    "animation_fault", "conversion", "declared", "did_you_mean", "is_animated", "keyed_range", "make_socket",
+    "node_output", "problems", "signature", "still", "value_at",
 ]

@@ -5,27 +5,50 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
-from graphlib import CycleError
 from types import MappingProxyType
 from typing import Any, Literal, Self
 
-from ...nodes import Node, Plain, Socket, Value
+from ...nodes import Node, Plain, Pointwise, Socket, Value
 from ..errors import GraphError
-from .animation import Animation, adapted, animation_fault, moved
+from .animation import ANIMATED, Animation, adapted, moved, unfit
 from .conversion import conversion
-from .faces import declared, is_pointwise, signature
-from .group import Group, Item
 from .names import INPUTS, OUTPUTS, check_name, did_you_mean, fresh_name, pick
 from .notes import linked_routes, moved_keys, moved_layout, renamed, without, without_route
-from .parts import Control, Input, Output, Port, Settings, freeze
+from .parts import Control, Input, Output, Port, Settings, Signature, Unknown, freeze
 from .relink import moved_links, relinked
 from .values import coerced, value_fault
-from .walk import loop_sentence, neighbors, reach, route, sort
+from .walk import Wired, loop_sentence, route
 
 
 @dataclass(frozen=True)
-class Graph:
+class Group:
+    """A node whose body is another graph.
+
+    `path` is as written in the file, relative to that file; empty for a body that is part of it.
+    `values` holds settings of the body's controls by name.
+    """
+
+    graph: Graph
+    path: str = ""
+    values: Mapping[str, Plain] = field(default_factory=dict[str, Plain])
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "values", MappingProxyType(dict(self.values)))
+
+    def body(self) -> Graph:
+        """The graph inside, with the group's values put where its controls point."""
+        graph = self.graph
+        for name, plain in self.values.items():
+            if name in graph.controls:
+                graph = graph.put(graph.controls[name].target, plain)
+        return graph
+
+
+Item = Node | Group | Unknown
+
+
+@dataclass(frozen=True)
+class Graph(Wired[Item]):
     """Nodes by id, links by *target*: an input has at most one source. `animation` holds values that change over time.
 
     `ui` is the layout: nodes, ends, routes and viewers by name. `extra` keeps keys that mean nothing here, by the JSON
@@ -77,7 +100,7 @@ class Graph:
         if face.anything or port.socket in face.inputs:
             return face.inputs.get(port.socket)
         value = pick({**face.inputs, **face.values}, port.socket, f"node '{port.node}' has no input")
-        if not is_pointwise(item, port.socket):
+        if not _is_pointwise(item, port.socket):
             raise GraphError(f"'{port}' can only be set: only values of pointwise nodes can be wired")
         return value
 
@@ -88,31 +111,6 @@ class Graph:
         except GraphError as error:
             return str(error)
         return None if start is None or end is None else conversion(start, end)
-
-    def order(self) -> tuple[str, ...]:
-        """Every node after all that feed it; the same for equal graphs. Raises GraphError that names a loop."""
-        try:
-            return sort({id: sorted(self.feeding[id]) for id in sorted(self.nodes)})
-        except CycleError as error:
-            raise GraphError(loop_sentence(error.args[1])) from None
-
-    def upstream(self, id: str) -> frozenset[str]:
-        """Every node that `id` (or OUTPUTS) depends on."""
-        return frozenset(reach(id, self.feeding))
-
-    def downstream(self, id: str) -> frozenset[str]:
-        """Every node that depends on `id` (or INPUTS)."""
-        return frozenset(reach(id, self.fed))
-
-    @cached_property
-    def feeding(self) -> Mapping[str, frozenset[str]]:
-        """For every node and OUTPUTS: the nodes that feed it directly."""
-        return neighbors(self.nodes, OUTPUTS, ((end.node, start.node) for end, start in self.links.items()))
-
-    @cached_property
-    def fed(self) -> Mapping[str, frozenset[str]]:
-        """For every node and INPUTS: the nodes that it feeds directly."""
-        return neighbors(self.nodes, INPUTS, ((start.node, end.node) for end, start in self.links.items()))
 
     def bypass(self, id: str, wanted: Socket | Value | None) -> Port | None:
         """What reaches `wanted` in place of node `id`: the source of the node's first linked input that fits."""
@@ -192,7 +190,7 @@ class Graph:
         extra = self.extra if type(before) is type(item) else moved_keys(self.extra, f"nodes.{id}")
         kept_animation = {
             port: animation for port, animation in self.animation.items()
-            if port.node != id or face.anything or animation_fault(after, port, animation) is None
+            if port.node != id or face.anything or ((value := face.values.get(port.socket)) and value.type in ANIMATED)
         }
         return after._with(links=links, controls=kept, animation=kept_animation, extra=extra)
 
@@ -252,9 +250,9 @@ class Graph:
         """A graph where a value changes over time, or does not any more; then it stays what it is set to."""
         if animation is None:
             return self._with(animation=without(self.animation, port))
-        if fault := animation_fault(self, port, animation):
-            raise GraphError(fault)
         value = declared(self.node(port.node), port.socket, port.node)
+        if fault := unfit(port, value, animation):
+            raise GraphError(fault)
         return self._with(animation={**self.animation, port: adapted(value, animation)})
 
     def set_control(self, name: str, value: object) -> Self:
@@ -344,3 +342,55 @@ class Graph:
         place, there = f"{section}.{old}", f"{section}.{new}" if new else ""
         ui, extra = moved_layout(self.ui, place, there), moved_keys(self.extra, place, there)
         return self._with(**{section: ends}, links=links, ui=ui, extra=extra)
+
+
+# --- faces of nodes --------------------------------------------------------------------------------------------------
+
+
+def signature(item: Item) -> Signature:
+    """What a node shows to links. A group shows its body's ends, and its controls as values."""
+    if isinstance(item, Node):
+        outputs = {name: output.socket for name, output in item.outputs.items()}
+        return Signature(item.inputs, outputs, item.values, pointwise=isinstance(item, Pointwise))
+    if isinstance(item, Unknown):
+        return Signature({}, {}, {}, anything=True)
+    inputs = {name: end.socket(name) for name, end in item.graph.inputs.items()}
+    outputs = {name: end.socket(name) for name, end in item.graph.outputs.items()}
+    values = {name: value for name in item.graph.controls if (value := control_value(item.graph, name))}
+    return Signature(inputs, outputs, values)
+
+
+def control_value(graph: Graph, name: str) -> Value | None:
+    """The value behind a control, called by the control's name, its present setting as the default."""
+    control = graph.controls[name]
+    item = graph.nodes.get(control.target.node)
+    value = None if item is None else _present(item, control.target.socket)
+    return value and dataclasses.replace(value, name=name, doc=control.doc or value.doc)
+
+
+def declared(item: Item, name: str, id: str) -> Value:
+    """A value of a node or control of a group with its present setting as the default. Raises GraphError."""
+    if value := _present(item, name):
+        return value
+    face = signature(item)
+    if face.anything:
+        raise GraphError(f"'{id}.{name}' cannot be set: the type of node '{id}' is unknown")
+    if name in face.inputs:
+        raise GraphError(f"'{id}.{name}' is an input, not a value: link something to it")
+    raise GraphError(f"node '{id}' has no value '{name}'{did_you_mean(name, face.values)}")
+
+
+def _present(item: Item, name: str) -> Value | None:
+    if isinstance(item, Node) and name in item.values:
+        return dataclasses.replace(item.values[name], default=getattr(item, name))
+    if isinstance(item, Group) and name in item.graph.controls and (value := control_value(item.graph, name)):
+        return dataclasses.replace(value, default=item.values.get(name, value.default))
+    return None
+
+
+def _is_pointwise(item: Item, name: str) -> bool:
+    """True if value `name` of a node, or what a control of a group turns, can be wired."""
+    while isinstance(item, Group):
+        target = item.graph.controls[name].target
+        item, name = item.graph.nodes[target.node], target.socket
+    return isinstance(item, Pointwise)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from ..errors import GraphError
-from .faces import signature
-from .graph import Graph
+from .graph import Graph, signature
 from .parts import Port
 
 

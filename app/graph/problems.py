@@ -9,12 +9,10 @@ from typing import Literal
 
 from ...nodes import Node, catalogue
 from ..errors import GraphError
-from .animation import animation_fault, loop_faults
-from .faces import signature
-from .graph import Graph
-from .group import Group, Item
+from .graph import Graph, Group, Item, signature
 from .names import INPUTS, OUTPUTS, did_you_mean, name_fault, pick
 from .parts import Input, Port, Unknown
+from .still import animation_fault, loop_faults
 from .values import numbers, value_fault
 from .walk import loop_sentence, loops
 

@@ -3,8 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
+from functools import cached_property
 from graphlib import CycleError, TopologicalSorter
 from types import MappingProxyType
+from typing import Generic, TypeVar
+
+from ..errors import GraphError
+from .names import INPUTS, OUTPUTS
+from .parts import Port
 
 Steps = Mapping[str, Iterable[str]]
 
@@ -67,3 +73,38 @@ def route(start: str, goal: str, steps: Steps) -> tuple[str, ...]:
 def loop_sentence(loop: Iterable[str]) -> str:
     """What to say about nodes that feed each other."""
     return f"the nodes {' -> '.join(loop)} form a loop; remove one of these links"
+
+
+T = TypeVar("T")
+
+
+class Wired(Generic[T]):
+    """Things by name, and links between them by target."""
+
+    nodes: Mapping[str, T]
+    links: Mapping[Port, Port]
+
+    def order(self) -> tuple[str, ...]:
+        """Every node after all that feed it; the same for equal graphs. Raises GraphError that names a loop."""
+        try:
+            return sort({id: sorted(self.feeding[id]) for id in sorted(self.nodes)})
+        except CycleError as error:
+            raise GraphError(loop_sentence(error.args[1])) from None
+
+    def upstream(self, id: str) -> frozenset[str]:
+        """Every node that `id` (or OUTPUTS) depends on."""
+        return frozenset(reach(id, self.feeding))
+
+    def downstream(self, id: str) -> frozenset[str]:
+        """Every node that depends on `id` (or INPUTS)."""
+        return frozenset(reach(id, self.fed))
+
+    @cached_property
+    def feeding(self) -> Mapping[str, frozenset[str]]:
+        """For every node and OUTPUTS: the nodes that feed it directly."""
+        return neighbors(self.nodes, OUTPUTS, ((end.node, start.node) for end, start in self.links.items()))
+
+    @cached_property
+    def fed(self) -> Mapping[str, frozenset[str]]:
+        """For every node and INPUTS: the nodes that it feeds directly."""
+        return neighbors(self.nodes, INPUTS, ((start.node, end.node) for end, start in self.links.items()))

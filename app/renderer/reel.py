@@ -9,7 +9,7 @@ from ..compiler import Memory, Plan
 from ..graph import Graph
 from .decoding import Array
 from .engine import Renderer, Wanted
-from .run import Run
+from .run import Run, Timings
 from .textures import Lease
 
 KEPT_PLANS = 8
@@ -59,7 +59,23 @@ class Reel:
             start -= 1
         return range(start, frame)
 
-    def steps(self, frame: int, kept: Lease) -> Iterator[Run]:
+    def plan_next(self, frame: int) -> tuple[int, int] | None:
+        """Compile one more of the plans that lead to a frame: how many of how many are known then; None when all were.
+
+        `plan` compiles all at once, which takes long far from where the history begins.
+        """
+        begin, at = self.begin(frame), frame - 1
+        while at >= begin and (begin, at) not in self._memories:
+            at -= 1
+        if frame > begin and at + 1 < frame and self._memories.get((begin, at), True):
+            self._plan(begin, at + 1)
+        elif (begin, frame) not in self._plans:
+            self._plan(begin, frame)
+        else:
+            return None
+        return at + 2 - begin, frame + 1 - begin
+
+    def steps(self, frame: int, kept: Lease, timings: Timings | None = None) -> Iterator[Run]:
         """What runs to make a frame, one after the other; the last one is the frame itself, its outputs `kept`."""
         runner, begin = self.renderer.runner, self.begin(frame)
         for at in self.lead(frame):
@@ -67,7 +83,7 @@ class Reel:
             yield runner.steps(plan, lease, plan.remembered)
             self._hold(lease)
         plan, lease = self.plan(frame), runner.lease()
-        yield runner.steps(plan, kept, (*plan.outputs.values(), *plan.remembered))
+        yield runner.steps(plan, kept, (*plan.outputs.values(), *plan.remembered), timings=timings)
         for number in plan.remembered:
             lease.take(plan.surfaces[number].key)
         self._hold(lease)

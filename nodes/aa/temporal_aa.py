@@ -19,8 +19,8 @@ class TemporalAa(Temporal):
     ))
     depth = Field(0.0, doc="Says what is nearest, and what was hidden in the frame before.")
     share: Annotated[Fraction, Doc(
-        "How much this frame counts: little is smooth, much is quick to follow what changes. At least 0.2 where things "
-        "move by half a pixel."
+        "How much this frame counts: little is smooth, much is quick to follow what changes. At least 0.25 where "
+        "things move by half a pixel."
     )] = 0.1
     gamma: Annotated[float, Slider(
         0.5, 3.0, unit="ratio", minimum=0.0, maximum=100.0,

@@ -7,7 +7,7 @@
 const float temporal_aa_most = 65504.0;  // no sample is brighter
 const float temporal_aa_rounding = 1e-3;  // where a channel is flat, rounding must not hold the others
 
-const float temporal_aa_moving = 0.2;  // where pixels move, what is read between them softens: a shorter past is sharper
+const float temporal_aa_moving = 0.25;  // where pixels move, what is read between them softens: a shorter past is sharper
 
 // A sample as it is mixed: luma, orange and green (YCoCg, Malvar and Sullivan 2003), and alpha.
 vec4 temporal_aa_sample(vec4 image, bool weigh_light) {

@@ -46,6 +46,7 @@ ALIKE_FROM_AFAR = MappingProxyType({
     "its pattern is as fine as pixels of the proxy": (
         "crosshatch.out", "film_grain.out", "halftone.out", "worley.cell",
     ),
+    "it measures the logarithm of light, which of averages is more": ("eye_adaptation.out",),
     "its lines have hard edges, around specks too that a proxy averages away": (
         "difference_of_gaussians.out", "difference_of_gaussians.value", "distance_field.distance", "outline.line",
         "outline.out",

@@ -8,7 +8,7 @@ from imgui_bundle import imgui
 
 from ....nodes import Value
 from ...graph import Keys, Port
-from ...graph.faces import declared
+from ...graph.graph import declared
 from ..editor import Editor
 from ..inspector.fields import Edit, Fields
 from ..inspector.number_field import row_of_numbers
@@ -22,8 +22,7 @@ from .frame import Frame
 from .hits import SIDES
 from .rows import spots_of
 
-_FRAMES = Value("frame", "float", 1.0, low=0.0, high=100.0)
-_LABEL = 46.0
+_LABEL, _INF = 46.0, float("inf")
 
 
 class KeyFields:
@@ -76,12 +75,14 @@ class KeyFields:
         index = keys.frames.index(at)
         key = keys.keys[index]
         declaration = declared(frame.graph.node(port.node), port.socket, port.node)
-        rows: list[tuple[str, str, tuple[float, ...], Value]] = [("frame", "Frame", (key.frame,), _FRAMES)]
+        first, last = frame.editor.session.frames
+        time = Value("frame", "float", 1.0, low=float(first), high=float(max(last, first + 1)))
+        rows: list[tuple[str, str, tuple[float, ...], Value]] = [("frame", "Frame", (key.frame,), time)]
         if key.parts and len(key.parts) <= 4:
             kind = replace(declaration, type="int" if declaration.type == "int" else "float")
             rows.append(("value", "Value", key.value if isinstance(key.value, tuple) else (key.value,), kind))  # type: ignore
             if not frame.sheet and len(key.parts) == 1:
-                loose = replace(kind, type="float", minimum=float("-inf"), maximum=float("inf"))
+                loose = replace(kind, type="float", unit=None, low=-_INF, high=_INF, minimum=-_INF, maximum=_INF)
                 rows += [
                     (side, label, handle, loose)
                     for side, label, handle in zip(SIDES, ("In", "Out"), keys.handles(at), strict=True)

@@ -10,7 +10,7 @@ from ..theme.style import u32, ui_scale
 from ..toolkit.buttons import dropdown
 from ..toolkit.words import nothing_here
 from . import commands
-from .frame import BAR, LIST, ROW, RULER, TOOLBAR, Frame
+from .frame import BAR, LIST, ROW, RULER, TOOLBAR, Frame, small
 from .gestures import Box, Scale, Seek
 from .hits import Entries, Mark, curve_marks, sheet_marks, tips
 from .key_fields import KeyFields
@@ -147,6 +147,7 @@ class Animation:
         left, _, right, bottom = frame.list
         draw.add_rect_filled((left, frame.ruler[1]), (right, bottom), u32(palette.panel))
         draw.add_line((right - 0.5, frame.ruler[1]), (right - 0.5, bottom), u32(palette.border))
+        small(frame, left + 10.0 * frame.scale, (frame.ruler[1] + frame.plane.rect[1]) * 0.5, _count(frame), palette.dim)
         high = self._fields.height(frame)
         end = bottom - high
         if self._names.draw(frame, self._entries, end):
@@ -192,3 +193,11 @@ class Animation:
         width = imgui.calc_text_size(label).x + 2 * imgui.get_style().frame_padding.x
         imgui.set_cursor_pos_x(max((imgui.get_window_width() - width) * 0.5, 0.0))
         dropdown(editor, label, "button keys add", "Values of the selected nodes", lambda: offered(editor), lit=True)
+
+
+def _count(frame: Frame) -> str:
+    """How much there is, or is chosen."""
+    if frame.state.spots:
+        return f"{commands.spoken(frame.state.spots).replace('a key', '1 key')} selected"
+    values = sum(row.port is not None for row in frame.rows)
+    return "1 value" if values == 1 else f"{values} values" if values else "Folded, or of nodes not selected"

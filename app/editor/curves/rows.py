@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ...errors import GraphError
 from ...graph import Animation, Graph, Keys, Port
-from ...graph.faces import declared
+from ...graph.graph import declared
 
 Spot = tuple[Port, float, int]
 """A channel of a key: the value, its frame, and which number of it."""

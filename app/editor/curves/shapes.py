@@ -92,8 +92,9 @@ def points(curves: Sequence[Pieces], plane: Plane) -> list[Line]:
     screen[..., 1] = np.clip(plane.rect[3] - (whole[..., 1] - view.low) * plane.up, -1e6, 1e6)
     p0, p1, p2, p3 = (screen[:, place] for place in range(4))
     bend = np.maximum(np.hypot(*(p0 - 2.0 * p1 + p2).T), np.hypot(*(p1 - 2.0 * p2 + p3).T))
-    # Straight pieces have both handles at their ends.
-    bend[np.all(p0 == p1, axis=1) & np.all(p2 == p3, axis=1)] = 0.0
+    straight = np.all(p0 == p1, axis=1) & np.all(p2 == p3, axis=1)
+    above, below = screen[..., 1].max(axis=1) < plane.rect[1], screen[..., 1].min(axis=1) > plane.rect[3]
+    bend[straight | above | below] = 0.0
     count = np.clip(np.ceil(np.sqrt(0.75 * bend / TOLERANCE)), 1, _MOST).astype(np.int64)
     ends = np.cumsum(count)
     of = np.repeat(np.arange(len(count)), count)
@@ -156,7 +157,7 @@ def dashes(line: Line, on: float, off: float) -> list[Line]:
     found: list[Line] = []
     for begin in np.arange(0.0, along[-1], on + off)[:2000]:
         end = min(begin + on, along[-1])
-        a, b = np.searchsorted(along, (begin, end))
+        a, b = np.searchsorted(along, begin, "right"), np.searchsorted(along, end)
         corners = [begin, *along[a:b], end]
         found.append(np.stack([np.interp(corners, along, line[:, axis]) for axis in (0, 1)], axis=1))
     return found
@@ -170,7 +171,7 @@ def heights(keys: Keys, channel: int, at: Callable[[Key], bool] = lambda key: Tr
     found = [level(key, channel) for key in chosen]
     inner = pieces(keys, channel)
     frames = {key.frame for key in chosen}
-    near = [piece for piece in inner if piece[0, 0] in frames and piece[3, 0] in frames]
+    near = [piece for piece in inner if piece[0, 0] < piece[3, 0] and {piece[0, 0], piece[3, 0]} <= frames]
     found += [float(part) for piece in near for part in piece[1:3, 1]]
     return min(found), max(found)
 

@@ -8,18 +8,20 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from ....nodes import Camera, Kind, Size
+from ....nodes import Camera
 from ...compiler import Library, Plan
 from ...errors import HalationError
 from ...graph import Graph, Port
-from ...renderer import Display, Handle, Lease, Renderer, Run, Wanted
+from ...renderer import Display, Handle, Renderer
 from ..services.renders import Pending
+from .jobs import Job
+from .shown import Shelf, Shown
+from .takes import Face, Take
 from .thumbnails import Subject, Thumbnails
 from .timing import Timing, key_of, timings_of
 from .wishes import Wish, kind_of, path_of
 
 if TYPE_CHECKING:
-    from ...compiler import Pass
     from ...media.pictures import Binding
 
 PATIENCE = 0.3
@@ -27,46 +29,6 @@ PATIENCE = 0.3
 
 MOST_SECONDS = 4096
 """Passes whose times are remembered."""
-
-
-@dataclass(frozen=True)
-class Shown:
-    """A finished picture: it stays as it is until another takes its place. `texture` is scene-linear."""
-
-    port: Port
-    texture: Handle
-    size: Size
-    full_size: Size
-    """Its size at scale 1."""
-    scale: float
-    kind: Kind
-    channels: int
-    key: str
-    revision: int
-    """Greater for every picture that is not the one before."""
-
-
-@dataclass(eq=False)
-class _Job:
-    """A plan under way for some of the wanted ports."""
-
-    ports: Mapping[str, Port]
-    plan: Plan
-    run: Run
-    kept: Lease
-    timings: list[tuple[Pass, float]] | None
-
-    def close(self) -> None:
-        self.run.close()
-        self.kept.close()
-
-
-@dataclass(eq=False)
-class _Picture:
-    """What a panel shows, and the lease that keeps it."""
-
-    shown: Shown
-    lease: Lease
 
 
 @dataclass(eq=False)
@@ -89,7 +51,8 @@ class Preview:
     """Computes what is wanted, keeps what is shown.
 
     `timed` measures passes as they run. While `paused` nothing is computed; wants are remembered. `thumbnailing` draws
-    small pictures of nodes whose results happen to be there.
+    small pictures of nodes whose results happen to be there. While it `skims`, frames that are there are only shown.
+    `ahead` is a frame that is wanted soon: it is computed when nothing else is to be done.
     """
 
     def __init__(self, renderer: Renderer, display: Display) -> None:
@@ -97,21 +60,22 @@ class Preview:
         self._thumbnails = Thumbnails(renderer, display)
         self._wish: Wish | None = None
         self._round: _Round | None = None
-        self._job: _Job | None = None
-        self._pictures: dict[str, _Picture] = {}
-        self._revision = 0
+        self._job: Job | None = None
+        self._shelf = Shelf(renderer.runner)
         self._seen: Graph | None = None
         """The last graph that was wanted: it may differ from the wish in its layout."""
         self._seconds: dict[str, float] = {}
         self._timings: dict[str, Timing] = {}
-        self._full_sizes: dict[Port, Size] = {}
         self._cameras: dict[Port, Camera] = {}
         self.faults: Mapping[str, str] = MappingProxyType({})
         """What is wrong, by path of the node or input (`glow/bloom`, `inputs.beauty`); "" where no node is at fault."""
         self.paused = False
         self.timed = False
         self.thumbnailing = True
+        self.skims = False
+        self.ahead: int | None = None
         self.patience = PATIENCE
+        self._takes: list[Take] = []
 
     # --- what the editor says ----------------------------------------------------------------------------------------
 
@@ -130,9 +94,11 @@ class Preview:
                 return
             wish.world = before.world + (not before.same_world(wish))
             wish.known = before.known
+            wish.take = before.take if wish.follows(before) else wish.take
         self._wish, self._seen = wish, graph
-        for name in self._pictures.keys() - wish.ports.keys():
-            self._pictures.pop(name).lease.close()
+        if wish.take not in self._takes:
+            self._takes.append(wish.take)
+        self._shelf.keep(wish.ports)
 
     def work(self, seconds: float) -> bool:
         """Compute for about so long, one pass at least; True while there is more to do.
@@ -155,19 +121,17 @@ class Preview:
         """Look again at all files: what has changed on disk is computed anew."""
         if self._wish is not None:
             self._wish = replace(self._wish, world=self._wish.world + 1)
-        self._restart()
+        self._forget()
 
     def reload(self, library: Library) -> None:
         """Use these shaders from now on. What a broken one would draw stays as it is."""
         self.renderer.library = library
-        self._restart()
+        self._forget()
 
     def clear(self) -> None:
         """Forget every result, picture and thumbnail; all is computed anew."""
-        self._restart()
-        for picture in self._pictures.values():
-            picture.lease.close()
-        self._pictures.clear()
+        self._forget()
+        self._shelf.keep(())
         self._thumbnails.clear()
         self._seconds.clear()
         self._timings = {}
@@ -184,8 +148,7 @@ class Preview:
 
     def shown(self, name: str) -> Shown | None:
         """What a panel shows: the last good picture, until the new one is ready."""
-        picture = self._pictures.get(name)
-        return picture and picture.shown
+        return self._shelf.find(name)
 
     def fault(self, name: str) -> str | None:
         """Why a panel cannot show what it wants."""
@@ -207,14 +170,43 @@ class Preview:
     @property
     def busy(self) -> bool:
         """True while a wanted picture is not ready."""
-        return self._is_behind() or self._job is not None or bool(self._round and self._round.queue)
+        working = self._job is not None and not self._job.ahead
+        return self._is_behind() or working or bool(self._round and self._round.queue)
+
+    @property
+    def under_way(self) -> int | None:
+        """The frame that is being computed, for now or for later."""
+        return self._job.frame if self._job else None
+
+    @property
+    def frames(self) -> tuple[int, ...]:
+        """The frames that can be shown at once, of the graph as it is."""
+        return self._wish.take.frames(self._wish.ports, self.renderer) if self._wish else ()
+
+    @property
+    def frames_bytes(self) -> int:
+        """What these take on the device, as far as they are kept."""
+        return self._wish.take.nbytes if self._wish else 0
 
     @property
     def progress(self) -> tuple[int, int]:
         """Passes done, and passes to do in all, as far as they are known."""
         before = self._round.passes if self._round else 0
-        run = self._job.run if self._job else None
-        return (before + run.done, before + run.total) if run else (before, before)
+        job = self._job
+        if job is None or job.run is None or job.ahead:
+            return before, before
+        return before + job.passes + job.run.done, before + job.passes + job.run.total
+
+    @property
+    def lead(self) -> tuple[str, int, int] | None:
+        """What of the history is under way for a frame: "plan" or "pre-roll", how many frames are done, and of all."""
+        job = self._job
+        if job is None or job.ahead:
+            return None
+        if job.run is None and job.planned[1] > 1:
+            return "plan", job.planned[0], job.planned[1]
+        done, total = job.lead
+        return ("pre-roll", done, total) if total and done < total else None
 
     @property
     def timings(self) -> Mapping[str, Timing]:
@@ -230,7 +222,8 @@ class Preview:
 
     @property
     def _has_more(self) -> bool:
-        return self.busy or (self.thumbnailing and self._thumbnails.waiting)
+        draws = self.thumbnailing and self._thumbnails.waiting and not self.skims
+        return self.busy or draws or self._job is not None or self._looks_ahead
 
     def _is_behind(self) -> bool:
         return self._wish is not None and (self._round is None or self._round.wish is not self._wish)
@@ -240,66 +233,109 @@ class Preview:
             self._job.close()
         self._job = self._round = None
 
+    def _forget(self) -> None:
+        """Begin anew, with nothing that is known of any frame."""
+        self._restart()
+        for take in self._takes:
+            take.close()
+        self._takes = []
+        if self._wish is not None:
+            self._wish = replace(self._wish, take=Take())
+            self._takes.append(self._wish.take)
+
+    @property
+    def _looks_ahead(self) -> bool:
+        """True if there is a frame to be computed for later."""
+        now, frame = self._round, self.ahead
+        if frame is None or now is None or self._job is not None or now.queue or now.broken or not now.wish.ports:
+            return False
+        return now.wish.take.find(frame, now.wish.ports, self.renderer) is None
+
     def _advance(self) -> bool:
         """Do the next thing; False if there is nothing to do now."""
         if self._wish is not None and self._is_behind() and self._may_restart(self._wish):
-            self._restart()
-            ports = self._wish.ports
-            self._round = _Round(self._wish, [ports] if ports else [], time.perf_counter())
-            self._settle(self._round)
+            self._begin(self._wish)
         if self._round is None:
             return False
         if self._job is None:
             return self._compile(self._round)
-        if not self._job.run.ready:
+        if not self._job.ready:
             return False
         self._step(self._round, self._job)
         return True
 
+    def _begin(self, wish: Wish) -> None:
+        """Work on a wish, from what is there of it already."""
+        job, ports = self._job, wish.ports
+        if job is not None and job.ahead and job.frame == wish.frame and job.wish.take is wish.take:
+            job.ahead, job.wish = False, wish
+            self._round = _Round(wish, [], time.perf_counter())
+            self._settle(self._round)
+            return
+        self._restart()
+        for take in self._takes:
+            if take is not wish.take:
+                take.close()
+        self._takes = [wish.take]
+        known = wish.take.find(wish.frame, ports, self.renderer) if ports else None
+        for name, face in known.items() if known else ():
+            if name in ports:
+                self._shelf.show(name, ports[name], wish, face)
+        self._round = _Round(wish, [ports] if ports and not (known and self.skims) else [], time.perf_counter())
+        self._settle(self._round)
+
     def _may_restart(self, wish: Wish) -> bool:
         """Let a run that was begun for the same panels come to its end if that is soon."""
-        now = self._round
-        if now is None or self._job is None or now.wish.ports != wish.ports or now.wish.scale != wish.scale:
+        now, job = self._round, self._job
+        if now is None or job is None or now.wish.ports != wish.ports or now.wish.scale != wish.scale or job.ahead:
             return True
         return time.perf_counter() - now.began > self.patience
 
     def _compile(self, now: _Round) -> bool:
         """Begin with the next ports; False if there are none."""
-        if not now.queue or (now.pending is not None and not now.pending.ready()):
+        if self._looks_ahead and self.ahead is not None:
+            ports, frame, ahead = now.wish.ports, self.ahead, True
+        elif not now.queue or (now.pending is not None and not now.pending.ready()):
             return False
+        else:
+            ports, frame, ahead = now.queue.pop(0), now.wish.frame, False
         now.pending = None
-        ports, wish = now.queue.pop(0), now.wish
-        wanted = Wanted(wish.bindings, ports, wish.size, wish.scale, wish.frame)
-        timings: list[tuple[Pass, float]] | None = [] if self.timed else None
-        kept = self._runner.lease()
         try:
-            plan = self.renderer.compile(wish.graph, wanted)
-            self._cameras |= plan.cameras
-            self._job = _Job(ports, plan, self._runner.steps(plan, kept, timings=timings), kept, timings)
-        except Pending as pending:
-            now.queue.insert(0, ports)
-            now.pending = pending
-            kept.close()
-            return False
+            self._job = Job(self.renderer, now.wish, ports, frame, self.timed, ahead)
         except HalationError as error:
-            self._failed(now, ports, error)
+            return self._ended(now, ports, ahead, error)
+        if self._job.plan is not None and not ahead:
+            self._cameras |= self._job.plan.cameras
         return True
 
-    def _step(self, now: _Round, job: _Job) -> None:
+    def _step(self, now: _Round, job: Job) -> None:
         try:
-            done = next(job.run, None) is None
-            with self.renderer.device.current():
-                self.renderer.device.context.finish()
+            done = job.step()
+            if job.run is not None:
+                with self.renderer.device.current():
+                    self.renderer.device.context.finish()
         except HalationError as error:
             job.close()
             self._job = None
-            self._failed(now, job.ports, error)
+            self._ended(now, job.ports, job.ahead, error)
             return
-        if done:
-            now.passes += job.run.total
+        if done and job.plan is not None:
             self._job = None
-            self._finished(now, job)
+            now.passes += 0 if job.ahead else job.passes
+            self._finished(now, job, job.plan)
             self._settle(now)
+
+    def _ended(self, now: _Round, ports: Mapping[str, Port], ahead: bool, error: HalationError) -> bool:
+        """What could not be done: it must wait, or be tried otherwise, or is wrong. False if it must wait."""
+        if ahead:
+            self.ahead = None
+        elif isinstance(error, Pending):
+            now.queue.insert(0, ports)
+            now.pending = error
+            return False
+        else:
+            self._failed(now, ports, error)
+        return True
 
     def _failed(self, now: _Round, ports: Mapping[str, Port], error: HalationError) -> None:
         """One fault must not hide what else can be shown: try every port alone."""
@@ -315,50 +351,27 @@ class Preview:
         known = self.faults if now.queue else {}
         self.faults = MappingProxyType({**known, **now.faults})
 
-    def _finished(self, now: _Round, job: _Job) -> None:
+    def _finished(self, now: _Round, job: Job, plan: Plan) -> None:
+        wish, faces = job.wish, dict[str, Face]()
         for name, port in job.ports.items():
-            self._show(name, port, now.wish, job.plan)
+            surface = plan.surfaces[plan.outputs[name]]
+            faces[name] = Face(surface, self._shelf.full_size(port, wish, plan, surface.size))
+            if not job.ahead:
+                self._shelf.show(name, port, wish, faces[name])
+        wish.take.put(job.frame, faces, self.renderer, now.wish.frame)
         job.kept.close()
+        if job.ahead:
+            return
+        self._cameras |= plan.cameras
         if job.timings is not None:
-            self._seconds |= {key_of(job.plan, one): seconds for one, seconds in job.timings}
+            self._seconds |= {key_of(plan, one): seconds for one, seconds in job.timings}
             while len(self._seconds) > MOST_SECONDS:
                 self._seconds.pop(next(iter(self._seconds)))
-            now.timings |= timings_of(job.plan, self._seconds)
+            now.timings |= timings_of(plan, self._seconds)
             self._timings = now.timings
         subjects: dict[str, Subject] = {}
-        for port, number in job.plan.results.items() if self.thumbnailing else ():
-            path, surface = path_of(port), job.plan.surfaces[number]
+        for port, number in plan.results.items() if self.thumbnailing and not self.skims else ():
+            path, surface = path_of(port), plan.surfaces[number]
             kind = kind_of(now.wish.graph, port, surface.channels)
             subjects.setdefault(path, Subject(path, surface.key, kind, surface.channels, now.wish.mark(path)))
         self._thumbnails.offer(subjects)
-
-    def _show(self, name: str, port: Port, wish: Wish, plan: Plan) -> None:
-        surface = plan.surfaces[plan.outputs[name]]
-        before = self._pictures.get(name)
-        same = before is not None and before.shown.key == surface.key
-        lease = self._runner.lease()
-        lease.take(surface.key)
-        texture = self._runner.texture(surface.key)
-        assert texture is not None
-        self._revision += not same
-        shown = Shown(
-            port, texture.handle, surface.size, self._full_size(port, wish, plan, surface.size), wish.scale,
-            kind_of(wish.graph, port, surface.channels), surface.channels, surface.key,
-            before.shown.revision if before is not None and same else self._revision,
-        )
-        self._pictures[name] = _Picture(shown, lease)
-        if before is not None:
-            before.lease.close()
-
-    def _full_size(self, port: Port, wish: Wish, plan: Plan, size: Size) -> Size:
-        """The size at scale 1 of what was rounded at this one: as before, or that of a picture or the canvas."""
-        known = [self._full_sizes.get(port), wish.size, wish.graph.settings.size]
-        known += [plan.surfaces[upload.surface].size for upload in plan.uploads]
-        found = (round(size[0] / wish.scale), round(size[1] / wish.scale))
-        for full in known:
-            if full and (max(1, round(full[0] * wish.scale)), max(1, round(full[1] * wish.scale))) == size:
-                found = full
-                break
-        found = size if wish.scale == 1.0 or size == (1, 1) else found
-        self._full_sizes[port] = found
-        return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +11,8 @@ from ....nodes import Kind, Size
 from ...compiler import Upstream
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Port
+from ...renderer import Wanted
+from .takes import Take
 
 if TYPE_CHECKING:
     from ...media.pictures import Binding
@@ -29,6 +31,16 @@ class Wish:
     world: int = 0
     known: Upstream | None = None
     """What each node depends on, in this graph or in an earlier one."""
+    take: Take = field(default_factory=Take)
+    """What is known of all frames of it."""
+
+    def wanted(self, ports: Mapping[str, Port], frame: int) -> Wanted:
+        """The same for the renderer."""
+        return Wanted(self.bindings, ports, self.size, self.scale, frame)
+
+    def follows(self, before: Wish) -> bool:
+        """True where nothing but the frame differs."""
+        return replace(self, frame=before.frame).equals(before)
 
     def equals(self, other: Wish) -> bool:
         """True where the same pixels are wanted; layout does not matter."""
@@ -53,8 +65,8 @@ class Wish:
 def _logic(graph: Graph) -> tuple[Any, ...]:
     """All of a graph that pixels depend on."""
     return (
-        graph.nodes, graph.links, graph.inputs, graph.outputs, graph.controls, graph.settings, graph.muted,
-        graph.folder,
+        graph.nodes, graph.links, graph.inputs, graph.outputs, graph.controls, graph.animation, graph.settings,
+        graph.muted, graph.folder,
     )
 
 

@@ -24,7 +24,7 @@ from ...graph import (
     signature,
     value_at,
 )
-from ...graph.faces import declared
+from ...graph.graph import declared
 from ...graph.keys import rounded
 from ..edits.elements import clean
 from ..edits.folding import Route, inside

@@ -1,0 +1,91 @@
+"""The pictures that panels show: each stays until another takes its place."""
+
+from __future__ import annotations
+
+from collections.abc import Container
+from dataclasses import dataclass
+
+from ....nodes import Kind, Size
+from ...compiler import Plan
+from ...graph import Port
+from ...renderer import Handle, Lease, Runner
+from .takes import Face
+from .wishes import Wish, kind_of
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A finished picture: it stays as it is until another takes its place. `texture` is scene-linear."""
+
+    port: Port
+    texture: Handle
+    size: Size
+    full_size: Size
+    """Its size at scale 1."""
+    scale: float
+    kind: Kind
+    channels: int
+    key: str
+    revision: int
+    """Greater for every picture that is not the one before."""
+    frame: int = 1
+
+
+@dataclass(eq=False)
+class _Picture:
+    """What a panel shows, and the lease that keeps it."""
+
+    shown: Shown
+    lease: Lease
+
+
+class Shelf:
+    """What each panel shows, by its name."""
+
+    def __init__(self, runner: Runner) -> None:
+        self._runner = runner
+        self._pictures: dict[str, _Picture] = {}
+        self._full_sizes: dict[Port, Size] = {}
+        self._revision = 0
+
+    def find(self, name: str) -> Shown | None:
+        """What a panel shows."""
+        picture = self._pictures.get(name)
+        return picture and picture.shown
+
+    def show(self, name: str, port: Port, wish: Wish, face: Face) -> None:
+        """Let a panel show something else."""
+        surface = face.surface
+        before = self._pictures.get(name)
+        same = before is not None and before.shown.key == surface.key
+        lease = self._runner.lease()
+        lease.take(surface.key)
+        texture = self._runner.texture(surface.key)
+        assert texture is not None
+        self._revision += not same
+        shown = Shown(
+            port, texture.handle, surface.size, face.full_size, wish.scale,
+            kind_of(wish.graph, port, surface.channels), surface.channels, surface.key,
+            before.shown.revision if before is not None and same else self._revision, wish.frame,
+        )
+        self._pictures[name] = _Picture(shown, lease)
+        if before is not None:
+            before.lease.close()
+
+    def full_size(self, port: Port, wish: Wish, plan: Plan, size: Size) -> Size:
+        """The size at scale 1 of what was rounded at this one: as before, or that of a picture or the canvas."""
+        known = [self._full_sizes.get(port), wish.size, wish.graph.settings.size]
+        known += [plan.surfaces[upload.surface].size for upload in plan.uploads]
+        found = (round(size[0] / wish.scale), round(size[1] / wish.scale))
+        for full in known:
+            if full and (max(1, round(full[0] * wish.scale)), max(1, round(full[1] * wish.scale))) == size:
+                found = full
+                break
+        found = size if wish.scale == 1.0 or size == (1, 1) else found
+        self._full_sizes[port] = found
+        return found
+
+    def keep(self, names: Container[str]) -> None:
+        """Take down what no panel of these names shows."""
+        for name in [name for name in self._pictures if name not in names]:
+            self._pictures.pop(name).lease.close()
