@@ -12,7 +12,7 @@ Everything raises `HalationError` (see `halation.app.errors`) with one sentence 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from .media.pictures import Binding
     from .renderer import Renderer
 
-__all__ = ["HalationError", "load", "render", "save", "write"]
+__all__ = ["HalationError", "load", "render", "render_frames", "save", "write"]
 
 
 def load(path: str | Path) -> Graph:
@@ -46,16 +46,32 @@ def save(graph: Graph, path: str | Path) -> None:
 
 def render(
     graph: Graph, inputs: Mapping[str, Binding] | None = None, *, values: Mapping[str, Any] | None = None,
-    node: str = "", size: tuple[int, int] | None = None, scale: float = 1.0, frame: int = 1,
+    node: str = "", size: tuple[int, int] | None = None, scale: float = 1.0, frame: int | None = None,
     precision: Precision | None = None,
 ) -> dict[str, np.ndarray]:
     """Every output of a graph by name, as float arrays [height, width, channels].
 
-    `inputs` bind graph inputs to arrays, paths or `path:layer`. `values` set `node.value` or a control by name.
-    `node` renders one node (`id` or `id.output`) instead. `size` replaces the size of canvas and pictures, `scale`
-    renders a proxy with lengths in pixels shrunk too. Programs and results are kept from call to call.
+    `inputs` bind graph inputs to arrays, paths or `path:layer`; the name of a sequence has `####` for the frame.
+    `values` set `node.value` or a control by name. `node` renders one node (`id` or `id.output`) instead. `size`
+    replaces the size of canvas and pictures, `scale` renders a proxy with lengths in pixels shrunk too. `frame` is by
+    default the first of the graph. Programs and results are kept from call to call.
     """
-    from .renderer import Wanted
+    frames = None if frame is None else (frame,)
+    made = render_frames(graph, inputs, frames, values=values, node=node, size=size, scale=scale, precision=precision)
+    return next(iter(made))[1]
+
+
+def render_frames(
+    graph: Graph, inputs: Mapping[str, Binding | Callable[[int], Binding]] | None = None,
+    frames: Iterable[int] | None = None, *, values: Mapping[str, Any] | None = None, node: str = "",
+    size: tuple[int, int] | None = None, scale: float = 1.0, precision: Precision | None = None,
+) -> Iterator[tuple[int, dict[str, np.ndarray]]]:
+    """Frames of a graph, by default all that it has, one after the other, each with its outputs as `render` has them.
+
+    An input may also be bound to a function that makes the picture of a frame. Whatever the order, a frame is always
+    the same: nodes with a memory are led up to it from the first frame of the graph, or by its pre-roll.
+    """
+    from .renderer import Reel, Wanted
 
     if not 0.0 < scale <= 1.0:
         raise UsageError(f"scale {scale:g}: give a number above 0 and up to 1")
@@ -64,7 +80,13 @@ def render(
     for name, value in (values or {}).items():
         graph = graph.override(name, value)
     targets = {node: _output(graph, node)} if node else {}
-    return _renderer().render(graph, Wanted(inputs or {}, targets, size, scale, frame, precision))
+    reel = Reel(_renderer(), graph, Wanted(inputs or {}, targets, size, scale, precision=precision))
+    first, last = reel.frames
+    try:
+        for frame in range(first, last + 1) if frames is None else frames:
+            yield frame, reel.render(frame)
+    finally:
+        reel.close()
 
 
 def write(

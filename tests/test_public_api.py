@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import inspect
+from dataclasses import replace
 
 import halation.app as hal
 import numpy as np
 import pytest
 from exr_files import header, read
 from halation.app import errors
-from halation.app.graph import Graph, Input, Output, Port
+from halation.app.graph import Graph, Input, Output, Port, Settings
 from halation.nodes import Kind
 from halation.nodes.color.exposure import Exposure
+from halation.nodes.time.frame_blend import FrameBlend
 
 PICTURE = np.random.default_rng(7).random((12, 20, 4), np.float32)
 PICTURE[..., 3] = 1.0
@@ -28,12 +30,17 @@ def graph() -> Graph:
 
 def test_names_are_frozen():
     """A name here is a promise: add to the list, never take away."""
-    assert hal.__all__ == ["HalationError", "load", "render", "save", "write"]
+    assert hal.__all__ == ["HalationError", "load", "render", "render_frames", "save", "write"]
     assert {name: str(inspect.signature(getattr(hal, name))).split(" -> ")[0] for name in hal.__all__[1:]} == {
         "load": "(path: 'str | Path')",
         "render": "(graph: 'Graph', inputs: 'Mapping[str, Binding] | None' = None, *, "
                   "values: 'Mapping[str, Any] | None' = None, node: 'str' = '', size: 'tuple[int, int] | None' = None, "
-                  "scale: 'float' = 1.0, frame: 'int' = 1, precision: 'Precision | None' = None)",
+                  "scale: 'float' = 1.0, frame: 'int | None' = None, precision: 'Precision | None' = None)",
+        "render_frames": "(graph: 'Graph', "
+                         "inputs: 'Mapping[str, Binding | Callable[[int], Binding]] | None' = None, "
+                         "frames: 'Iterable[int] | None' = None, *, values: 'Mapping[str, Any] | None' = None, "
+                         "node: 'str' = '', size: 'tuple[int, int] | None' = None, scale: 'float' = 1.0, "
+                         "precision: 'Precision | None' = None)",
         "save": "(graph: 'Graph', path: 'str | Path')",
         "write": "(path: 'str | Path', picture: 'np.ndarray', *, view: 'str' = '', precision: 'Precision' = 'half', "
                  "compression: 'str' = 'zip')",
@@ -127,3 +134,15 @@ def test_every_fault_is_one_sentence(graph, tmp_path, monkeypatch, call, error, 
     with pytest.raises(error, match=sentence) as caught:
         call(graph)
     assert type(caught.value) is error and "\n" not in str(caught.value) and not list(tmp_path.iterdir())
+
+
+def test_frames_are_made_of_functions_and_remembered(graph):
+    """Exponential blending of what a function makes for a frame, against its closed form."""
+    graph = graph.set(Port("light", "stops"), 0.0).add("trail", FrameBlend(mode="persistence", persistence=0.5))
+    graph = replace(graph, settings=Settings(frames=(1, 4)))
+    graph = graph.connect(Port("light", "out"), Port("trail", "image"))
+    graph = graph.connect(Port("trail", "out"), Port("outputs", "image"))
+    found = dict(hal.render_frames(graph, {"beauty": lambda frame: np.full((2, 3, 4), float(frame), np.float32)}))
+    assert [float(found[frame]["image"][0, 0, 0]) for frame in found] == [1.0, 1.5, 2.25, 3.125]
+    last = hal.render(graph, {"beauty": np.full((2, 3, 4), 4.0, np.float32)}, frame=4)
+    assert last["image"][0, 0, 0] == 4.0

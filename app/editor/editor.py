@@ -14,6 +14,7 @@ from .dialogs import Dialogs
 from .log import Log
 from .services.renders import Renders
 from .theme.palette import PALETTES, Palette
+from .timeline.state import TimelineState
 from .viewer.state import ViewerState
 
 if TYPE_CHECKING:
@@ -61,6 +62,7 @@ class Editor:
     canvas: CanvasView = field(default_factory=CanvasView)
     viewer: ViewerState = field(default_factory=ViewerState)
     curves: CurvesState = field(default_factory=CurvesState)
+    timeline: TimelineState = field(default_factory=TimelineState)
     dialogs: Dialogs = field(default_factory=Dialogs)
     log: Log = field(default_factory=Log)
     faults: dict[str, str] = field(default_factory=dict[str, str])

@@ -74,7 +74,8 @@ class Renderer:
 
     def frames(self, graph: Graph, wanted: Wanted = Wanted()) -> tuple[int, int]:
         """The first and last frame of a graph: as it says, else those of the first sequence it reads, else of keys."""
-        return self.pictures.frames(graph, self.pictures.bind(graph, wanted.bound))
+        named = {name: item for name, item in wanted.inputs.items() if not callable(item)}
+        return self.pictures.frames(graph, self.pictures.bind(graph, named))
 
     def render(self, graph: Graph, wanted: Wanted = Wanted()) -> dict[str, Array]:
         """Every wanted output by name as [height, width, channels], scene-linear. Raises the errors of `app.errors`.

@@ -22,17 +22,21 @@ float motion_blur_length(vec4 path, vec2 times) {
 // At an antialiased edge a pixel shows two surfaces. It counts as a piece of the nearer one: a layer is the nearness of
 // that, and how much of the pixel it covers, below 0 at edges. Everywhere else that is 1.
 
-// Where nearness jumps: on surfaces it grows evenly, beside an edge by far more than on the other side.
-bool motion_blur_edge(float here) {
+// How near the two surfaces of an edge are; 0 where there is none. On surfaces nearness grows evenly, beside an edge by far
+// more than on the other side.
+vec2 motion_blur_edge(float here) {
     const float steeper = 4.0;
     float jump = 0.0;
+    vec2 bounds = vec2(here);
     for (int axis = 0; axis < 2; ++axis) {
         ivec2 next = axis == 0 ? ivec2(1, 0) : ivec2(0, 1);
-        float before = abs(nearness(depth_at(pixel - next)) - here);
-        float after = abs(nearness(depth_at(pixel + next)) - here);
-        if (max(before, after) > steeper * min(before, after)) jump = max(jump, max(before, after));
+        vec2 beside = vec2(nearness(depth_at(pixel - next)), nearness(depth_at(pixel + next)));
+        vec2 steps = abs(beside - here);
+        bounds = vec2(max(bounds.x, max(beside.x, beside.y)), min(bounds.y, min(beside.x, beside.y)));
+        float most = max(steps.x, steps.y);
+        if (most > steeper * min(steps.x, steps.y)) jump = max(jump, most);
     }
-    return jump > 0.0 && motion_blur_apart * jump > here;
+    return jump > 0.0 && motion_blur_apart * jump > here ? bounds : vec2(0.0);
 }
 
 ivec2 motion_blur_beside(int i) { return ivec2(i % 5, i / 5) - 2; }
@@ -44,35 +48,27 @@ float motion_blur_nearby(int i) {
     return 1.0 / max(square * square, 1.0);
 }
 
-// Which of 5 x 5 pixels lie well within the nearer and the farther surface of an edge, as bits. `bounds`: how near the
-// two are, and what is between them.
-uvec2 motion_blur_sides(out vec3 bounds) {
-    float near[25];
-    for (int i = 0; i < 25; ++i) near[i] = nearness(depth_at(pixel + motion_blur_beside(i)));
-    bounds = vec3(near[12]);
-    for (int i = 0; i < 9; ++i) {
-        float other = near[5 * (i / 3) + i % 3 + 6];
-        bounds.xy = vec2(max(bounds.x, other), min(bounds.y, other));
-    }
-    bounds.z = 0.5 * (bounds.x + bounds.y);
-    uvec2 sides = uvec2(0u);
-    for (int i = 0; i < 25; ++i) {
-        bool front = near[i] > bounds.z, inside = i != 12;
-        if (i % 5 > 0) inside = inside && (near[i - 1] > bounds.z) == front;
-        if (i % 5 < 4) inside = inside && (near[i + 1] > bounds.z) == front;
-        if (i / 5 > 0) inside = inside && (near[i - 5] > bounds.z) == front;
-        if (i / 5 < 4) inside = inside && (near[i + 5] > bounds.z) == front;
-        if (inside) sides[front ? 0 : 1] |= 1u << i;
-    }
-    return sides;
+// Those of 5 x 5 pixels, as bits, whose neighbors are among them too; what lies beyond counts as if it were.
+uint motion_blur_inside(uint side) {
+    uint across = (side << 1 | 0x0108421u) & (side >> 1 | 0x1084210u), down = (side << 5 | 0x1fu) & (side >> 5 | 0x1f00000u);
+    return side & across & down & ~(1u << 12);
+}
+
+// Which of 5 x 5 pixels lie well within the nearer and the farther surface of an edge; none where there is no edge.
+uvec2 motion_blur_sides(vec2 bounds) {
+    uint front = 0u;
+    int count = bounds.x > 0.0 ? 25 : 0;
+    for (int i = 0; i < count; ++i)
+        if (2.0 * nearness(depth_at(pixel + motion_blur_beside(i))) > bounds.x + bounds.y) front |= 1u << i;
+    return count > 0 ? uvec2(motion_blur_inside(front), motion_blur_inside(~front & 0x1ffffffu)) : uvec2(0u);
 }
 
 // The mean velocity of some of them.
 vec4 motion_blur_motion(uint side) {
     vec4 sum = vec4(0.0);
     float total = 0.0;
-    for (int i = 0; i < 25; ++i) {
-        if ((side >> i & 1u) == 0u) continue;
+    for (; side != 0u; side &= side - 1u) {
+        int i = findLSB(side);
         vec4 velocity = velocity_at(pixel + motion_blur_beside(i));
         if (!is_finite(velocity)) continue;
         sum += motion_blur_nearby(i) * velocity;
@@ -86,44 +82,40 @@ vec4 motion_blur_motion(uint side) {
 vec2 motion_blur_layer() {
     const float slow = 0.5, hardly = 0.01;  // pixels that motions must differ by; covers that are none
     float here = nearness(depth_at(pixel)), cover = 0.0;
-    if (!motion_blur_edge(here)) return vec2(here, 1.0);
-    vec3 bounds;
+    vec2 bounds = motion_blur_edge(here);
     uvec2 sides = motion_blur_sides(bounds);
-    if (sides.x != 0u && sides.y != 0u) {
-        vec4 back = motion_blur_motion(sides.y), apart = motion_blur_motion(sides.x) - back;
-        float square = dot(apart, apart);
-        if (square > slow * slow) cover = dot(velocity_at(pixel) - back, apart) / square;
-    }
-    if (!(cover > hardly && cover < 1.0 - hardly)) return vec2(here, -1.0);
-    return vec2(here > bounds.z ? here : bounds.x, -cover);
+    if (sides.x == 0u || sides.y == 0u) sides = uvec2(0u);
+    vec4 back = motion_blur_motion(sides.y), apart = motion_blur_motion(sides.x) - back;
+    float square = dot(apart, apart);
+    if (square > slow * slow) cover = dot(velocity_at(pixel) - back, apart) / square;
+    if (!(cover > hardly && cover < 1.0 - hardly)) return vec2(here, bounds.x > 0.0 ? -1.0 : 1.0);
+    return vec2(2.0 * here > bounds.x + bounds.y ? here : bounds.x, -cover);
 }
 
 // Velocities there are averages, and nothing moves like that: they are those of the same surface, one further in.
 vec4 motion_blur_clean() {
-    vec2 layer = layer_at(pixel);
-    if (layer.y > 0.0) return velocity_at(pixel);
-    vec3 bounds;
-    uvec2 sides = motion_blur_sides(bounds);
-    return motion_blur_motion(layer.x > bounds.z ? sides.x : sides.y);
+    vec2 layer = layer_at(pixel), bounds = motion_blur_edge(nearness(depth_at(pixel)));
+    uvec2 sides = motion_blur_sides(layer.y < 0.0 ? bounds : vec2(0.0));
+    return motion_blur_motion(2.0 * layer.x > bounds.x + bounds.y ? sides.x : sides.y);
 }
 
 // The light of the layer: that of the pixel without what is nearest behind it.
 vec4 motion_blur_front() {
     vec4 light = finite(image_at(pixel)), back = vec4(0.0);
     vec2 here = layer_at(pixel);
-    if (abs(here.y) == 1.0) return light;
+    int count = abs(here.y) < 1.0 ? 25 : 0;
     float split = here.x, total = 0.0;
-    for (int i = 0; i < 9; ++i) split = min(split, layer_at(pixel + ivec2(i % 3, i / 3) - 1).x);
+    for (int i = 0; i < min(count, 9); ++i) split = min(split, layer_at(pixel + ivec2(i % 3, i / 3) - 1).x);
     split = 0.5 * (split + here.x);
-    for (int i = 0; i < 25; ++i) {
+    for (int i = 0; i < count; ++i) {
         ivec2 at = pixel + motion_blur_beside(i);
         vec2 other = layer_at(at);
         if (abs(other.y) < 1.0 || other.x > split) continue;
         back += motion_blur_nearby(i) * finite(image_at(at));
         total += motion_blur_nearby(i);
     }
-    if (total > 0.0) back /= total;
-    return clamp(light - (1.0 + here.y) * back, vec4(0.0), max(light, 0.0));
+    if (count == 0) return light;
+    return clamp(light - (1.0 + here.y) / max(total, 1e-9) * back, vec4(0.0), max(light, 0.0));
 }
 
 // --- paths ---

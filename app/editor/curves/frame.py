@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from imgui_bundle import imgui
@@ -12,7 +13,7 @@ from ..theme.palette import RGB
 from ..theme.style import mix, u32
 from .hits import Mark, Tip
 from .plane import Plane, Rect
-from .rows import Row
+from .rows import Lane, Row
 from .shapes import Line
 from .state import CurvesState
 
@@ -21,10 +22,6 @@ TOOLBAR, LIST, RULER, BAR, ROW = 36.0, 224.0, 34.0, 12.0, 22.0
 
 SMALL = 12.5
 """Letters of axes."""
-
-Lane = tuple[Port, int]
-"""A channel of a value."""
-
 
 @dataclass
 class Frame:
@@ -42,8 +39,10 @@ class Frame:
     """The mouse, on the screen."""
     over: bool = False
     """True while nothing lies between the mouse and the part with keys, ruler and bar."""
-    marks: tuple[Mark, ...] = ()
-    tips: tuple[Tip, ...] = ()
+    marks: Sequence[Mark] = ()
+    lanes: Sequence[tuple[Lane, list[Mark]]] = ()
+    """In curves, the same by channel."""
+    tips: Sequence[Tip] = ()
     lines: tuple[tuple[Lane, Line], ...] = ()
 
     @property

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 from ...graph import Animation, Interpolation, Keys, Port
 from .editing import Side, has_handle
 from .plane import Plane, Rect
-from .rows import Row, Spot, spots_of
+from .rows import Lane, Row, Spot, spots_of
 from .shapes import Line, level
 
 REACH = 7.0
@@ -21,8 +20,7 @@ SIDES: tuple[Side, Side] = ("left", "right")
 _BEYOND = 12.0
 
 
-@dataclass(frozen=True, slots=True)
-class Mark:
+class Mark(NamedTuple):
     """A key on the screen, or all keys of a node at a frame. `look` is its shape: none for several."""
 
     x: float
@@ -32,8 +30,7 @@ class Mark:
     channel: int = 0
 
 
-@dataclass(frozen=True, slots=True)
-class Tip:
+class Tip(NamedTuple):
     """The end of a handle of a key, which is at `root`."""
 
     x: float
@@ -50,6 +47,9 @@ K = TypeVar("K")
 
 Entry = tuple[float, frozenset[Spot], Interpolation | None]
 """A frame, the keys there, and their shape: none for several."""
+
+Point = tuple[float, float, frozenset[Spot], Interpolation]
+"""A frame, a value, the key there, and its shape."""
 
 
 class Entries:
@@ -85,28 +85,45 @@ def sheet_marks(
     return found
 
 
-def curve_marks(rows: Iterable[Row], hidden: Collection[tuple[Port, int]], plane: Plane) -> list[Mark]:
-    """Every channel of every key that is seen."""
-    found: list[Mark] = []
-    first, last = plane.frame(plane.rect[0] - _BEYOND), plane.frame(plane.rect[2] + _BEYOND)
-    left, across, bottom, up = plane.x(0.0), plane.across, plane.y(0.0), plane.up
-    for row in rows:
-        port, keys = row.port, row.keys
-        if port is None or keys is None:
-            continue
-        for channel in range(len(row.channels) or 1):
-            if (port, channel) in hidden:
+class Lanes:
+    """The keys of curves, made once for each animation."""
+
+    def __init__(self) -> None:
+        self._known: dict[Lane, tuple[Keys, tuple[Point, ...]]] = {}
+
+    def marks(
+        self, rows: Iterable[Row], hidden: Collection[Lane], plane: Plane
+    ) -> list[tuple[Lane, list[Mark]]]:
+        """Every channel with those of its keys that are seen."""
+        found: list[tuple[Lane, list[Mark]]] = []
+        first, last = plane.frame(plane.rect[0] - _BEYOND), plane.frame(plane.rect[2] + _BEYOND)
+        left, across, bottom, up = plane.x(0.0), plane.across, plane.y(0.0), plane.up
+        for row in rows:
+            if row.port is None or row.keys is None:
                 continue
-            found += [
-                Mark(left + key.frame * across, bottom - level(key, channel) * up,
-                     frozenset(((port, key.frame, channel),)), key.interpolation, channel)
-                for key in keys.keys if first <= key.frame <= last
-            ]
-    return found
+            for channel in range(len(row.channels) or 1):
+                lane = row.port, channel
+                if lane not in hidden:
+                    found.append((lane, [
+                        Mark(left + frame * across, bottom - value * up, spots, look, channel)
+                        for frame, value, spots, look in self._of(lane, row.keys) if first <= frame <= last
+                    ]))
+        return found
+
+    def _of(self, lane: Lane, keys: Keys) -> tuple[Point, ...]:
+        before, found = self._known.get(lane, (None, ()))
+        if before is not keys:
+            port, channel = lane
+            found = tuple(
+                (key.frame, level(key, channel), frozenset(((port, key.frame, channel),)), key.interpolation)
+                for key in keys.keys
+            )
+            self._known[lane] = keys, found
+        return found
 
 
 def tips(
-    animation: Mapping[Port, Animation], spots: Iterable[Spot], hidden: Collection[tuple[Port, int]], plane: Plane
+    animation: Mapping[Port, Animation], spots: Iterable[Spot], hidden: Collection[Lane], plane: Plane
 ) -> list[Tip]:
     """The handles of chosen keys, where the curve has some."""
     found: list[Tip] = []

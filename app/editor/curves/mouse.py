@@ -11,11 +11,11 @@ from ...graph import Keys
 from ..editor import Editor
 from . import commands
 from .editing import Change, aligned, extent
-from .frame import Frame, Lane, holds
+from .frame import Frame, holds
 from .gestures import Bend, Box, Gesture, Move, Pan, Scale, Seek
 from .hits import REACH, Mark, Tip, boxed, line_at, nearest
 from .paint import grips
-from .rows import Spot, limits
+from .rows import Lane, Spot, limits
 from .shapes import level
 
 LEFT, RIGHT, MIDDLE = imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.MouseButton_.middle

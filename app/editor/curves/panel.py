@@ -12,7 +12,7 @@ from ..toolkit.words import nothing_here
 from . import commands
 from .frame import BAR, LIST, ROW, RULER, TOOLBAR, Frame, small
 from .gestures import Box, Scale, Seek
-from .hits import Entries, Mark, curve_marks, sheet_marks, tips
+from .hits import Entries, Mark, sheet_marks, tips
 from .key_fields import KeyFields
 from .mouse import Mouse, hot_of
 from .names import Names, value_menu
@@ -133,13 +133,12 @@ class Animation:
             self._grouped = sheet_marks(
                 frame.rows, frame.graph.animation, self._entries, frame.plane, frame.top, frame.high
             )
-            frame.marks = tuple(mark for marks in self._grouped for mark in marks)
+            frame.marks = [mark for marks in self._grouped for mark in marks]
             return
-        frame.lines = self._plot.lines(frame, shown)
-        frame.marks = tuple(curve_marks(shown, frame.state.hidden, frame.plane))
+        self._plot.see(frame, shown)
         ports = {row.port for row in shown}
         spots = [spot for spot in frame.state.spots if spot[0] in ports]
-        frame.tips = tuple(tips(frame.graph.animation, spots, frame.state.hidden, frame.plane))
+        frame.tips = tips(frame.graph.animation, spots, frame.state.hidden, frame.plane)
 
     def _left(self, frame: Frame) -> None:
         """The names, and the numbers of the key that is chosen."""

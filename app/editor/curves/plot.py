@@ -6,11 +6,11 @@ from imgui_bundle import ImVec2, imgui
 
 from ...graph import Keys, Port
 from ..theme.style import mix, u32
-from .frame import Frame, Lane, color_of, small
-from .hits import Mark, Tip
+from .frame import Frame, color_of, small
+from .hits import Lanes, Mark, Tip
 from .paint import KEY, paint_key
 from .plane import Plane, ticks
-from .rows import Row
+from .rows import Lane, Row
 from .shapes import Line, Pieces, Samples, dashes, outside, pieces, points
 
 Drawn = list[imgui.ImVec2Like]
@@ -25,17 +25,23 @@ class Plot:
         self._of: tuple[object, ...] = ()
         self._drawn: list[tuple[Lane, Drawn, str]] = []
         self._lines: tuple[tuple[Lane, Line], ...] = ()
+        self._keys = Lanes()
+        self._marks: list[tuple[Lane, list[Mark]]] = []
+        self._flat: list[Mark] = []
+        self._inks: tuple[tuple[object, ...], dict[Lane, tuple[int, int]]] = ((), {})
 
-    def lines(self, frame: Frame, rows: tuple[Row, ...]) -> tuple[tuple[Lane, Line], ...]:
-        """The curves of keys on the screen, within their first and last one."""
+    def see(self, frame: Frame, rows: tuple[Row, ...]) -> None:
+        """Find curves and keys on the screen; nothing is made anew while nothing has changed."""
         graph, settings = frame.graph, frame.editor.session.settings
         of = (graph.animation, graph.nodes, graph.controls, settings, rows)
         also = (frame.plane, frozenset(frame.state.hidden), frame.scale)
-        same = len(self._of) == 2 and all(a is b for a, b in zip(of[:4], self._of[0][:4], strict=True))  # type: ignore
-        if not same or self._of[0][4] != rows or self._of[1] != also:  # type: ignore
+        before = self._of
+        if len(before) != 8 or any(a is not b for a, b in zip(of, before[:5], strict=True)) or before[5:] != also:
+            self._of = (*of, *also)
             self._make(frame, rows)
-            self._of = of, also
-        return self._lines
+            self._marks = self._keys.marks(rows, frame.state.hidden, frame.plane)
+            self._flat = [mark for _, marks in self._marks for mark in marks]
+        frame.lines, frame.lanes, frame.marks = self._lines, self._marks, self._flat
 
     def _make(self, frame: Frame, rows: tuple[Row, ...]) -> None:
         view, plane = frame.plane.view, frame.plane
@@ -86,32 +92,42 @@ class Plot:
     def paint(self, frame: Frame, rows: tuple[Row, ...], hot: Mark | Tip | None, lit: Lane | None) -> None:
         """Draw the grid of values, the curves, and on top of them keys and handles."""
         draw, scale = imgui.get_window_draw_list(), frame.scale
-        colors = {
-            (row.port, channel): color_of(frame.editor, row, channel, place)
-            for place, row in enumerate(row for row in frame.rows if row.port) if row in rows
-            for channel in range(len(row.channels) or 1)
-        }
-        inks = {lane: (u32(color), u32(color, 0.32)) for lane, color in colors.items()}
+        inks = self._colors(frame, rows)
         for lane, line, sort in self._drawn:
-            ink = inks.get(lane)
-            if ink:
-                thick = 2.5 if lane == lit and sort == "inside" else 1.6
-                draw.add_polyline(line, ink[sort == "outside"], thick * scale, 0)
-        self._tips(frame, hot)
+            ink = inks[lane]
+            thick = 2.5 if lane == lit and sort == "inside" else 1.6
+            draw.add_polyline(line, ink[sort == "outside"], thick * scale, 0)
+        self._tips(frame)
         spots, palette = frame.state.spots, frame.editor.palette
-        chosen = u32(palette.accent)
+        chosen, ring = u32(palette.accent), u32(palette.canvas)
         size = KEY * scale * 0.85
-        for mark in frame.marks:
-            if spots.isdisjoint(mark.spots):
-                (port, _, channel), = mark.spots
-                paint_key(draw, mark.x, mark.y, size, mark.look, inks[port, channel][0])
-        ring = u32(palette.canvas)
-        for mark in frame.marks:
-            if not spots.isdisjoint(mark.spots):
-                draw.add_circle_filled((mark.x, mark.y), size * 1.75, ring, 16)
-                paint_key(draw, mark.x, mark.y, size * 1.2, mark.look, chosen)
+        on_top: list[Mark] = []
+        for lane, marks in frame.lanes:
+            ink = inks[lane][0]
+            for mark in marks:
+                if spots and not spots.isdisjoint(mark.spots):
+                    on_top.append(mark)
+                else:
+                    paint_key(draw, mark.x, mark.y, size, mark.look, ink)
+        for mark in on_top:
+            draw.add_circle_filled((mark.x, mark.y), size * 1.75, ring, 16)
+            paint_key(draw, mark.x, mark.y, size * 1.2, mark.look, chosen)
         if hot:
             draw.add_circle((hot.x, hot.y), size * 1.9, u32(palette.accent, 0.9), 20, 1.5 * scale)
+
+    def _colors(self, frame: Frame, rows: tuple[Row, ...]) -> dict[Lane, tuple[int, int]]:
+        """What curves are drawn with inside and outside of their keys."""
+        of = frame.rows, rows, frame.editor.palette
+        if len(self._inks[0]) != 3 or any(a is not b for a, b in zip(of, self._inks[0], strict=True)):
+            shown = {row.port for row in rows}
+            found: dict[Lane, tuple[int, int]] = {}
+            for place, row in enumerate(row for row in frame.rows if row.port):
+                for channel in range(len(row.channels) or 1):
+                    if row.port in shown:
+                        color = color_of(frame.editor, row, channel, place)
+                        found[row.port, channel] = u32(color), u32(color, 0.32)
+            self._inks = of, found
+        return self._inks[1]
 
     def grid(self, frame: Frame) -> None:
         """Lines of values."""
@@ -138,7 +154,7 @@ class Plot:
             )
             small(frame, left + 6.0 * scale, y, tick.label, palette.dim)
 
-    def _tips(self, frame: Frame, hot: Mark | Tip | None) -> None:
+    def _tips(self, frame: Frame) -> None:
         draw, palette, scale = imgui.get_window_draw_list(), frame.editor.palette, frame.scale
         line, fill = u32(palette.text, 0.55), u32(palette.text)
         for tip in frame.tips:

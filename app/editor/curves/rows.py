@@ -12,6 +12,9 @@ from ...graph.graph import declared
 Spot = tuple[Port, float, int]
 """A channel of a key: the value, its frame, and which number of it."""
 
+Lane = tuple[Port, int]
+"""A channel of a value."""
+
 COLORS, VECTORS = "rgba", "xyzw"
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -42,6 +41,7 @@ class CurvesState:
     hovered: bool = False
     """True while the mouse is over the panel."""
     _rows: tuple[tuple[object, ...], tuple[Row, ...]] = ((), ())
+    _curves: tuple[tuple[Row, ...] | None, frozenset[Port] | None, tuple[Row, ...]] = (None, None, ())
     _kept: tuple[object, ...] = ()
 
     def rows(self, graph: Graph, selection: frozenset[str]) -> tuple[Row, ...]:
@@ -53,12 +53,15 @@ class CurvesState:
             self._rows = of, rows(graph, selection, self.only_selected, self.folded)
         return self._rows[1]
 
-    def curves(self, all: Iterable[Row]) -> tuple[Row, ...]:
+    def curves(self, all: tuple[Row, ...]) -> tuple[Row, ...]:
         """The rows whose curves are drawn; values of folded nodes are not."""
-        values = [row for row in all if row.port]
-        if not any(row.port in self.shown for row in values):
-            return tuple(values)
-        return tuple(row for row in values if row.port in self.shown)
+        known, shown, found = self._curves
+        if known is not all or shown is not self.shown:
+            found = tuple(row for row in all if row.port)
+            if any(row.port in self.shown for row in found):
+                found = tuple(row for row in found if row.port in self.shown)
+            self._curves = all, self.shown, found
+        return found
 
     def tidy(self, graph: Graph) -> None:
         """Forget what is not there any more."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from ....nodes import Camera
+from ....nodes import Camera, Size
 from ...compiler import Library, Plan
 from ...errors import HalationError
 from ...graph import Graph, Port

@@ -62,7 +62,6 @@ class Animating(State):
         wanted = min(max(rounded(frame), -MOST), MOST)
         if wanted != self._frame:
             self._frame = wanted
-            self._touch()
 
     @property
     def frames(self) -> tuple[int, int]:
@@ -73,7 +72,6 @@ class Animating(State):
     def look_again(self) -> None:
         """Find the range anew: files have changed."""
         self._cache.pop("frames", None)
-        self._touch()
 
     @property
     def settings(self) -> Settings:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from halation.app.editor.curves.hits import Entries, boxed, curve_marks, line_at, nearest, sheet_marks, tips
+from halation.app.editor.curves.hits import Entries, Lanes, boxed, line_at, nearest, sheet_marks, tips
 from halation.app.editor.curves.plane import Plane, View
 from halation.app.editor.curves.rows import rows
 from halation.app.graph import Graph, Key, Keys, Port
@@ -41,7 +41,9 @@ def test_keys_of_the_sheet() -> None:
 
 def test_keys_and_handles_of_curves() -> None:
     found = graph()
-    marks = curve_marks(rows(found), {(TINT, 3)}, PLANE)
+    lanes = Lanes().marks(rows(found), {(TINT, 3)}, PLANE)
+    assert [lane for lane, _ in lanes] == [(GAIN, 0), (TINT, 0), (TINT, 1), (TINT, 2)]
+    marks = [mark for _, some in lanes for mark in some]
     assert len(marks) == 2 + 3 * 2
     assert nearest(marks, 99.0, 301.0, 6.0).spots <= {(GAIN, 10.0, 0), (TINT, 10.0, 0)}
     ends = tips(found.animation, [(GAIN, 40.0, 0), (TINT, 10.0, 0), (GAIN, 77.0, 0)], (), PLANE)

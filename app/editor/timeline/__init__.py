@@ -1,0 +1,1 @@
+"""The bar at the bottom of the window: frames, and playing them."""

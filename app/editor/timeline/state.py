@@ -1,0 +1,97 @@
+"""What the timeline remembers of one window. Nothing here changes the document."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from .playback import LOOPS, Course, Loop, Playback
+
+if TYPE_CHECKING:
+    from ..session import Session
+
+LEAST_VIEW = 4.0
+"""Frames that are seen at least."""
+
+
+@dataclass
+class TimelineState:
+    """Playing, the part that is played, and the part that is seen."""
+
+    playback: Playback = field(default_factory=Playback)
+    loop: Loop = "loop"
+    every: bool = False
+    """True drops no frame."""
+    part: tuple[int, int] | None = None
+    """The frames that are played; None for all."""
+    view: tuple[float, float] | None = None
+    """The frames that are seen, at the borders of the ruler; None for all."""
+    scrubbing: bool = False
+    hovered: bool = False
+    report: str = ""
+    """How playing went last."""
+
+    def span(self, session: Session) -> tuple[int, int]:
+        """The frames that are played: the chosen part as far as it lies in the range."""
+        first, last = session.frames
+        if self.part is None:
+            return first, last
+        low, high = max(self.part[0], first), min(self.part[1], last)
+        return (low, high) if low <= high else (first, last)
+
+    def set_part(self, session: Session, low: int, high: int) -> None:
+        """Play only some frames; all of them is no part."""
+        first, last = session.frames
+        low, high = min(max(low, first), last), max(min(high, last), first)
+        self.part = None if (min(low, high), max(low, high)) == (first, last) else (min(low, high), max(low, high))
+
+    def course(self, session: Session, every: bool) -> Course:
+        """What is played as things are; a history cannot leave frames out."""
+        first, last = self.span(session)
+        return Course(first, last, session.settings.rate, self.loop, self.every or every)
+
+    def play(self, session: Session, every: bool = False) -> None:
+        """Play, or stop."""
+        if self.playback.playing:
+            self.stop()
+        else:
+            self.playback.start(self.course(session, every), session.frame, time.monotonic())
+            session.seek(self.playback.frame)
+
+    def stop(self) -> None:
+        """Stay where it is."""
+        if self.playback.playing:
+            self.report = self.playback.words
+        self.playback.stop()
+
+    def next_loop(self) -> None:
+        """Another way to go on at the end."""
+        self.loop = LOOPS[(LOOPS.index(self.loop) + 1) % len(LOOPS)]
+
+    def seen(self, session: Session) -> tuple[float, float]:
+        """The frames at the borders of the ruler."""
+        first, last = session.frames
+        if self.view is None:
+            return first - 0.5, max(last, first + 1) + 0.5
+        return self.view
+
+    def zoom(self, session: Session, frame: float, factor: float) -> None:
+        """See so many times as much detail, with one frame staying where it is; all of it is what is seen at most."""
+        low, high = self.seen(session)
+        first, last = session.frames
+        widest = max(last - first + 1.0, LEAST_VIEW) * 1.5
+        wide = min(max((high - low) / factor, LEAST_VIEW), widest)
+        ratio = wide / (high - low)
+        self.view = frame + (low - frame) * ratio, frame + (high - frame) * ratio
+        if wide >= last - first + 1 and factor < 1.0 and wide >= widest:
+            self.view = None
+
+    def pan(self, session: Session, frames: float) -> None:
+        """See what lies so many frames later; the range never leaves the ruler altogether."""
+        if self.view is None:
+            return
+        low, high = self.view
+        first, last = session.frames
+        by = min(max(frames, first - high + 1.0), last - low - 1.0)
+        self.view = low + by, high + by
