@@ -13,7 +13,7 @@ from . import parsing
 from .options import AsJson, GraphFile, Inputs, Lazy, Node, Scale, Sets, SizeText, bound, opened, report_problems
 from .outcome import note, print_json
 from .progress import told_to
-from .sharing import independent, share
+from .sharing import independent, piped, share
 
 if TYPE_CHECKING:
     from ..renderer.job import Report
@@ -82,9 +82,11 @@ def render(
         first, last = Lazy().frames(opened_graph, inputs or ())
         chosen = tuple(range(first, last + 1)) if parsing.numbered(destinations) else (first,)
     if min(jobs, len(chosen)) > 1 and independent(opened_graph, targets, inputs or (), chosen[0]):
-        words = _words(graph, output, inputs, sets, node, size, scale, resume, precision, view, compression, form)
+        # What came from standard input goes on with its values set.
+        rest = sets if str(graph) != "-" else ()
+        words = _words(graph, output, inputs, rest, node, size, scale, resume, precision, view, compression, form)
         with told_to(told, len(chosen)) as hears:
-            reports = share(words, chosen, jobs, hears)
+            reports = share(words, chosen, jobs, hears, piped(graph, opened_graph))
         return _told(_added(reports), time.perf_counter() - started, as_json)
     loaded = time.perf_counter()
     renderer = Renderer(open_device(passes), budget=DEFAULT_BUDGET if len(chosen) > 1 else 0)

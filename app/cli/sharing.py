@@ -34,8 +34,17 @@ def independent(graph: Graph, targets: Mapping[str, Port], inputs: Sequence[str]
     return not plan.memories
 
 
-def share(words: Sequence[str], frames: Sequence[int], jobs: int, progress: Progress) -> list[dict[str, Any]]:
-    """Run `halation render` with those words in several processes; their reports.
+def piped(path: Path, graph: Graph) -> str:
+    """What the processes shall read from standard input: the graph, if it came from there."""
+    from .. import document
+
+    return document.dumps(graph) if str(path) == "-" else ""
+
+
+def share(
+    words: Sequence[str], frames: Sequence[int], jobs: int, progress: Progress, text: str
+) -> list[dict[str, Any]]:
+    """Run `halation render` with those words in several processes, which read `text`; their reports.
 
     Raises HalationError with the sentence and exit code of the first one that fails; the others are stopped.
     """
@@ -48,12 +57,12 @@ def share(words: Sequence[str], frames: Sequence[int], jobs: int, progress: Prog
     command = [sys.executable, "-P", "-m", "halation.app.cli", "render", *words, "--json", "--progress=json"]
     crew = [
         subprocess.Popen(
-            [*command, f"--frames={format_frames(part)}"], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+            [*command, f"--frames={format_frames(part)}"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
             stderr=subprocess.PIPE, encoding="utf-8", errors="surrogateescape", env=environment,
         )
         for part in parts
     ]
-    listener = _Listener(progress, len(frames))
+    listener = _Listener(progress, len(frames), text)
     threads_ = [threading.Thread(target=listener.follow, args=(one, crew), daemon=True) for one in crew]
     for thread in threads_:
         thread.start()
@@ -73,7 +82,8 @@ def share(words: Sequence[str], frames: Sequence[int], jobs: int, progress: Prog
 class _Listener:
     """Collects what processes say."""
 
-    def __init__(self, progress: Progress, total: int) -> None:
+    def __init__(self, progress: Progress, total: int, text: str) -> None:
+        self._text = text
         self._progress, self._total, self._lock = progress, total, threading.Lock()
         self._done, self._said = 0, set[str]()
         self.reports: list[dict[str, Any]] = []
@@ -85,7 +95,11 @@ class _Listener:
 
         report: dict[str, Any] = {}
         with process:
-            assert process.stdout and process.stderr
+            assert process.stdin and process.stdout and process.stderr
+            with contextlib.suppress(OSError):  # it may end before it has read everything
+                process.stdin.write(self._text)
+            with contextlib.suppress(OSError):
+                process.stdin.close()
             for line in process.stderr:
                 with self._lock:
                     self._line(line.rstrip())

@@ -22,8 +22,8 @@ float motion_blur_length(vec4 path, vec2 times) {
 // At an antialiased edge a pixel shows two surfaces. It counts as a piece of the nearer one: a layer is the nearness of
 // that, and how much of the pixel it covers, below 0 at edges. Everywhere else that is 1.
 
-// How near the two surfaces of an edge are; 0 where there is none. On surfaces nearness grows evenly, beside an edge by far
-// more than on the other side.
+// How near the two surfaces of an edge are; 0 where there is none. On surfaces nearness grows evenly, beside an edge by
+// far more than on the other side.
 vec2 motion_blur_edge(float here) {
     const float steeper = 4.0;
     float jump = 0.0;
@@ -50,7 +50,8 @@ float motion_blur_nearby(int i) {
 
 // Those of 5 x 5 pixels, as bits, whose neighbors are among them too; what lies beyond counts as if it were.
 uint motion_blur_inside(uint side) {
-    uint across = (side << 1 | 0x0108421u) & (side >> 1 | 0x1084210u), down = (side << 5 | 0x1fu) & (side >> 5 | 0x1f00000u);
+    uint across = (side << 1 | 0x0108421u) & (side >> 1 | 0x1084210u);
+    uint down = (side << 5 | 0x000001fu) & (side >> 5 | 0x1f00000u);
     return side & across & down & ~(1u << 12);
 }
 
@@ -197,100 +198,160 @@ float motion_blur_unlike(float apart, float far) {
     return clamp(4.0 * apart / max(far, motion_blur_still) - 1.0, 0.0, 1.0);
 }
 
-// Times along a path: steps of a pixel, so that nothing is missed, or longer ones if those are too many.
-float motion_blur_step(vec4 path, vec2 times, int samples) {
+// What of a path is looked at: stops at even times, from the first to the last.
+struct MotionBlurRun { vec4 path; float step, shift; bool sparse; int first, last; };
+
+// Steps of a pixel, so that nothing is missed, or longer ones, at random, if those are too many.
+MotionBlurRun motion_blur_run(vec4 path, vec2 times, int samples, float noise) {
     vec2 middle = 0.5 * (path.xy + path.zw), bend = path.zw - path.xy;
     vec2 speed = max(abs(middle + times.x * bend), abs(middle + times.y * bend));
-    float open = times.y - times.x, fastest = max(max(speed.x, speed.y), 1e-6);
-    return max(1.0 / fastest, open / float(samples));
+    float exact = 1.0 / max(max(speed.x, speed.y), 1e-6), longer = (times.y - times.x) / float(samples);
+    MotionBlurRun run;
+    run.path = path;
+    run.step = max(exact, longer);
+    run.sparse = longer > exact;
+    run.shift = run.sparse ? noise * run.step : 0.0;
+    run.first = int(round((times.x - run.shift) / run.step));
+    run.last = int(round((times.y - run.shift) / run.step));
+    return run;
+}
+
+float motion_blur_time(MotionBlurRun run, int i) { return float(i) * run.step + run.shift; }
+
+// When the shutter is open while the path is at a stop.
+vec2 motion_blur_open(MotionBlurRun run, int i, vec2 times) {
+    return clamp(motion_blur_time(run, i) + vec2(-0.5, 0.5) * run.step, times.x, times.y);
 }
 
 // The two pixels that a place on a path lies between: the first, the step to the second, and how far the place is on the
 // way there. They lie across the path, along which the place counts as in the middle of its pixel; where samples are
 // `sparse`, along it.
-float motion_blur_between(vec2 at, vec2 way, bool sparse, out ivec2 cell, out ivec2 side) {
+float motion_blur_between(MotionBlurRun run, int i, out ivec2 cell, out ivec2 side) {
+    float time = motion_blur_time(run, i);
+    vec2 at = vec2(pixel) + 0.5 - motion_blur_place(run.path, time);
+    vec2 way = 0.5 * (run.path.xy + run.path.zw) + time * (run.path.zw - run.path.xy);
     bool steep = abs(way.y) > abs(way.x);
     vec2 slide = (floor(at) + 0.5 - at) / way;
-    if (!sparse && way != vec2(0.0)) at += (steep ? slide.y : slide.x) * way;
-    side = steep == sparse ? ivec2(0, 1) : ivec2(1, 0);
+    if (!run.sparse && way != vec2(0.0)) at += (steep ? slide.y : slide.x) * way;
+    side = steep == run.sparse ? ivec2(0, 1) : ivec2(1, 0);
     at -= 0.5 * vec2(side);
     cell = ivec2(floor(at));
-    return fract(steep == sparse ? at.y : at.x);
+    return fract(steep == run.sparse ? at.y : at.x);
+}
+
+bool motion_blur_outside(ivec2 at) { return any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, image_size)); }
+
+// Loops run as often as any pixel nearby needs them: what is not wanted has no stops.
+MotionBlurRun motion_blur_only(bool wanted, MotionBlurRun run) {
+    run.last = wanted ? run.last : run.first - 1;
+    return run;
+}
+
+// Where everything moves alike: exactly a box filter along the path.
+vec4 motion_blur_box(MotionBlurRun run, vec2 times, vec4 here) {
+    vec4 sum = vec4(0.0);
+    float total = 0.0;
+    bool bent = length(run.path.zw - run.path.xy) > 0.1 * length(run.path);
+    MotionBlurRun even = motion_blur_only(!bent, run);
+    for (int i = even.first; i <= even.last; ++i) {
+        ivec2 cell, side;
+        vec2 open = motion_blur_open(even, i, times);
+        float part = motion_blur_between(even, i, cell, side);
+        for (int k = part > 0.0 ? 0 : 1; k < 2; ++k) {
+            ivec2 at = cell + (1 - k) * side;
+            if (motion_blur_outside(at)) continue;
+            float spent = (open.y - open.x) * (k == 1 ? 1.0 - part : part);
+            sum += spent * finite(fronts_at(at));
+            total += spent;
+        }
+    }
+    // In even steps of time, pixels of a bent path are passed unevenly.
+    run = motion_blur_only(bent, run);
+    for (int i = run.first; i <= run.last; ++i) {
+        vec2 open = motion_blur_open(run, i, times);
+        vec2 at = vec2(pixel) + 0.5 - motion_blur_place(run.path, 0.5 * (open.x + open.y));
+        if (motion_blur_outside(ivec2(floor(at)))) continue;
+        sum += (open.y - open.x) * finite(fronts_near(at));
+        total += open.y - open.x;
+    }
+    return total > 0.0 ? sum / total : here;
+}
+
+// What is met at a stop, against what is here.
+struct MotionBlurMet { vec4 light, path; float cover, before, after; };
+
+MotionBlurMet motion_blur_met(ivec2 cell, vec4 own, float far, float near, vec2 times) {
+    MotionBlurMet met;
+    vec2 layer = layer_at(cell);
+    met.light = finite(fronts_at(cell));
+    met.path = paths_at(cell);
+    met.cover = abs(layer.y);
+    float unlike = motion_blur_unlike(motion_blur_length(met.path - own, times), far);
+    float before = cell == pixel ? 0.0 : motion_blur_before(layer.x, near);
+    met.before = before * unlike;
+    met.after = clamp(1.0 - 2.0 * before, 0.0, 1.0) * unlike;
+    return met;
 }
 
 vec4 motion_blur(vec2 times, int tile, int samples) {
     const float certain = 4.0;  // how much what is seen behind a layer counts more than what is seen a pixel away
-    vec4 fast = around_at(pixel / tile), here = finite(image_at(pixel));
-    if (motion_blur_length(fast, times) < 1.0) return here;
-    vec4 own = paths_at(pixel);
-    float far = motion_blur_length(own, times);
+    vec4 fast = around_at(pixel / tile), here = finite(image_at(pixel)), own = paths_at(pixel);
+    float far = motion_blur_length(own, times), noise = blue_noise(pixel) - 0.5;
+    bool still = motion_blur_length(fast, times) < 1.0;
     bool alone = motion_blur_unlike(variety_at(pixel / tile) + motion_blur_length(fast - own, times), far) == 0.0;
-    bool bent = length(own.zw - own.xy) > 0.1 * length(own);
-    vec2 mine = layer_at(pixel);
-    float noise = blue_noise(pixel) - 0.5;
+    vec2 layer = layer_at(pixel);
+    MotionBlurRun run = motion_blur_run(own, times, samples, noise);
+    vec4 box = motion_blur_box(motion_blur_only(alone && !still, run), times, here);
 
-    // Loop 0 follows the fastest motion around: what passes before this pixel, and what moves behind it. Loop 1 follows
-    // the pixel's own path: what it shows of itself, and of what is behind it. Where everything moves alike, only loop 1
-    // counts, and is exactly a box filter along the path.
-    vec4 front = vec4(0.0), same = vec4(0.0), behind = vec4(0.0), moving = vec4(0.0);  // sums of light
-    float covers = 0.0, stays = 0.0, bares = 0.0, nearby = 0.0, moves = 0.0;           // sums of the weights
-    for (int loop = alone ? 1 : 0; loop < 2; ++loop) {
-        vec4 path = loop == 0 ? fast : own;
-        float step = motion_blur_step(path, times, samples), exact = motion_blur_step(path, times, 1 << 20);
-        float shift = step > exact ? noise * step : 0.0;
-        int first = int(round((times.x - shift) / step)), last = int(round((times.y - shift) / step));
-        for (int i = first; i <= last; ++i) {
-            float time = float(i) * step + shift;
-            vec2 open = clamp(time + vec2(-0.5, 0.5) * step, times.x, times.y);
-            float spent = (open.y - open.x) / (times.y - times.x);
-            vec2 away = motion_blur_place(path, time);
-            if (alone && bent) {  // in even steps of time, pixels are passed unevenly
-                vec2 at = vec2(pixel) + 0.5 - motion_blur_place(path, 0.5 * (open.x + open.y));
-                if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, vec2(image_size)))) continue;
-                same += spent * finite(fronts_near(at));
-                stays += spent;
-                continue;
-            }
-            vec2 from = motion_blur_place(path, time - 0.5 * step), to = motion_blur_place(path, time + 0.5 * step);
-            ivec2 cell, side;
-            float part = motion_blur_between(vec2(pixel) + 0.5 - away, to - from, step > exact, cell, side);
-            for (int k = 0; k < 2; ++k, cell += side, part = 1.0 - part) {
-                if (part == 1.0 || any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, image_size))) continue;
-                vec4 light = finite(fronts_at(cell));
-                float passes = (1.0 - part) * spent;
-                if (alone) {
-                    same += passes * light;
-                    stays += passes;
-                    continue;
-                }
-                vec4 other = paths_at(cell);
-                vec2 layer = layer_at(cell);
-                float cover = abs(layer.y), unlike = motion_blur_unlike(motion_blur_length(other - own, times), far);
-                float before = cell == pixel ? 0.0 : motion_blur_before(layer.x, mine.x);
-                float after = clamp(1.0 - 2.0 * before, 0.0, 1.0) * unlike;
-                before *= unlike;
-                if (loop == 0) {
-                    float share = (1.0 - part) * motion_blur_share(other, times, from, to);
-                    front += before * share * light;
-                    covers += before * share * cover;
-                    moving += after * share * light;
-                    moves += after * share * cover;
-                    continue;
-                }
-                float share = passes * (1.0 - before);
-                same += (1.0 - after) * share * light;
-                stays += (1.0 - after) * share * cover;
-                bares += share * (1.0 - (1.0 - after) * cover);
-                // What is hidden is most like what is nearest to it.
-                float weight = after * share / max(dot(away, away), 1.0);
-                behind += weight * light;
-                nearby += weight * cover;
-            }
+    // Along the fastest motion around: what passes before this pixel, and what moves behind it.
+    vec4 front = vec4(0.0), moving = vec4(0.0);  // sums of light
+    float covers = 0.0, moves = 0.0;             // sums of the weights
+    MotionBlurRun passing = motion_blur_only(!alone && !still, motion_blur_run(fast, times, samples, noise));
+    for (int i = passing.first; i <= passing.last; ++i) {
+        ivec2 cell, side;
+        float part = motion_blur_between(passing, i, cell, side), time = motion_blur_time(passing, i);
+        float half_step = 0.5 * passing.step;
+        vec2 from = motion_blur_place(fast, time - half_step), to = motion_blur_place(fast, time + half_step);
+        for (int k = part > 0.0 ? 0 : 1; k < 2; ++k) {
+            ivec2 at = cell + (1 - k) * side;
+            if (motion_blur_outside(at)) continue;
+            MotionBlurMet met = motion_blur_met(at, own, far, layer.x, times);
+            float share = (k == 1 ? 1.0 - part : part) * motion_blur_share(met.path, times, from, to);
+            front += met.before * share * met.light;
+            covers += met.before * share * met.cover;
+            moving += met.after * share * met.light;
+            moves += met.after * share * met.cover;
         }
     }
-    if (abs(mine.y) < 1.0) {
+
+    // Along the pixel's own path: what it shows of itself, and of what is behind it.
+    vec4 same = vec4(0.0), behind = vec4(0.0);
+    float stays = 0.0, bares = 0.0, nearby = 0.0;
+    run = motion_blur_only(!alone && !still, run);
+    for (int i = run.first; i <= run.last; ++i) {
+        ivec2 cell, side;
+        float part = motion_blur_between(run, i, cell, side);
+        vec2 open = motion_blur_open(run, i, times), away = motion_blur_place(own, motion_blur_time(run, i));
+        float spent = (open.y - open.x) / (times.y - times.x);
+        for (int k = part > 0.0 ? 0 : 1; k < 2; ++k) {
+            ivec2 at = cell + (1 - k) * side;
+            if (motion_blur_outside(at)) continue;
+            MotionBlurMet met = motion_blur_met(at, own, far, layer.x, times);
+            float share = (k == 1 ? 1.0 - part : part) * spent * (1.0 - met.before);
+            same += (1.0 - met.after) * share * met.light;
+            stays += (1.0 - met.after) * share * met.cover;
+            bares += share * (1.0 - (1.0 - met.after) * met.cover);
+            // What is hidden is most like what is nearest to it.
+            float weight = met.after * share / max(dot(away, away), 1.0);
+            behind += weight * met.light;
+            nearby += weight * met.cover;
+        }
+    }
+    if (still || alone) return still ? here : box;
+
+    if (abs(layer.y) < 1.0) {
         behind += certain * (here - finite(fronts_at(pixel)));
-        nearby += certain * (1.0 - abs(mine.y));
+        nearby += certain * (1.0 - abs(layer.y));
     }
     if (nearby > 0.0) behind /= nearby;
     if (moves > 0.0) behind = mix(behind, moving / moves, nearby > 0.0 ? min(2.0 * moves, 1.0) : 1.0);

@@ -2,8 +2,9 @@
 
     python killed.py COUNT WORDS...
 
-The first one may end, to see how long it takes. Prints how many were killed before they had ended, and how many times there was a file to look at. Modules are loaded
-once: every render is a fork of this process, which never touches OpenGL itself.
+The first one may end, to see how long it takes. Prints how many were killed before they had ended, and how many times
+there was a file to look at. Modules are loaded once: every render is a fork of this process, which never touches OpenGL
+itself.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from imgui_bundle import imgui
@@ -14,7 +14,6 @@ from ..theme.style import mix, u32
 from .hits import Mark, Tip
 from .plane import Plane, Rect
 from .rows import Lane, Row
-from .shapes import Line
 from .state import CurvesState
 
 TOOLBAR, LIST, RULER, BAR, ROW = 36.0, 224.0, 34.0, 12.0, 22.0
@@ -43,7 +42,8 @@ class Frame:
     lanes: Sequence[tuple[Lane, list[Mark]]] = ()
     """In curves, the same by channel."""
     tips: Sequence[Tip] = ()
-    lines: tuple[tuple[Lane, Line], ...] = ()
+    lane_at: Callable[[float, float, float], Lane | None] = lambda x, y, reach: None
+    """The curve that passes within reach of a point of the screen."""
 
     @property
     def state(self) -> CurvesState:

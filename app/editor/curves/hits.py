@@ -114,10 +114,11 @@ class Lanes:
         before, found = self._known.get(lane, (None, ()))
         if before is not keys:
             port, channel = lane
-            found = tuple(
+            made: list[Point] = [
                 (key.frame, level(key, channel), frozenset(((port, key.frame, channel),)), key.interpolation)
                 for key in keys.keys
-            )
+            ]
+            found = tuple(made)
             self._known[lane] = keys, found
         return found
 

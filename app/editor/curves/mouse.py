@@ -13,7 +13,7 @@ from . import commands
 from .editing import Change, aligned, extent
 from .frame import Frame, holds
 from .gestures import Bend, Box, Gesture, Move, Pan, Scale, Seek
-from .hits import REACH, Mark, Tip, boxed, line_at, nearest
+from .hits import REACH, Mark, Tip, boxed, nearest
 from .paint import grips
 from .rows import Lane, Spot, limits
 from .shapes import level
@@ -74,7 +74,7 @@ class Mouse:
         elif abs(x - frame.plane.x(frame.editor.session.frame)) <= _LINE * frame.scale:
             self.part = "now"
         else:
-            self.lane = line_at(frame.lines, x, y, reach)
+            self.lane = frame.lane_at(x, y, reach)
             self.part = "curve" if self.lane else "open"
 
     def _marks(self, frame: Frame) -> list[Mark]:

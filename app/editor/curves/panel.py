@@ -146,7 +146,8 @@ class Animation:
         left, _, right, bottom = frame.list
         draw.add_rect_filled((left, frame.ruler[1]), (right, bottom), u32(palette.panel))
         draw.add_line((right - 0.5, frame.ruler[1]), (right - 0.5, bottom), u32(palette.border))
-        small(frame, left + 10.0 * frame.scale, (frame.ruler[1] + frame.plane.rect[1]) * 0.5, _count(frame), palette.dim)
+        middle = (frame.ruler[1] + frame.plane.rect[1]) * 0.5
+        small(frame, left + 10.0 * frame.scale, middle, _count(frame), palette.dim)
         high = self._fields.height(frame)
         end = bottom - high
         if self._names.draw(frame, self._entries, end):

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from imgui_bundle import ImVec2, imgui
 
 from ...graph import Keys, Port
 from ..theme.style import mix, u32
 from .frame import Frame, color_of, small
-from .hits import Lanes, Mark, Tip
+from .hits import Lanes, Mark, Tip, line_at
 from .paint import KEY, paint_key
-from .plane import Plane, ticks
+from .plane import ticks
 from .rows import Lane, Row
-from .shapes import Line, Pieces, Samples, dashes, outside, pieces, points
+from .shapes import Pieces, Samples, dashes, on_screen, outside, pieces, points, within
 
 Drawn = list[imgui.ImVec2Like]
+Step = ImVec2 | tuple[ImVec2, ImVec2, ImVec2]
+"""A straight way to a point, or a bent one by two handles."""
 
 
 class Plot:
@@ -23,8 +27,9 @@ class Plot:
         self.samples = Samples()
         self._pieces: dict[Lane, tuple[Keys, Pieces]] = {}
         self._of: tuple[object, ...] = ()
-        self._drawn: list[tuple[Lane, Drawn, str]] = []
-        self._lines: tuple[tuple[Lane, Line], ...] = ()
+        self._paths: list[tuple[Lane, bool, ImVec2, list[Step]]] = []
+        self._dashes: list[tuple[Lane, Drawn]] = []
+        self._whole: list[tuple[Lane, Pieces]] = []
         self._keys = Lanes()
         self._marks: list[tuple[Lane, list[Mark]]] = []
         self._flat: list[Mark] = []
@@ -41,13 +46,20 @@ class Plot:
             self._make(frame, rows)
             self._marks = self._keys.marks(rows, frame.state.hidden, frame.plane)
             self._flat = [mark for _, marks in self._marks for mark in marks]
-        frame.lines, frame.lanes, frame.marks = self._lines, self._marks, self._flat
+        frame.lanes, frame.marks, frame.lane_at = self._marks, self._flat, partial(self.lane_at, frame)
+
+    def lane_at(self, frame: Frame, x: float, y: float, reach: float) -> Lane | None:
+        """The curve that passes closest to a point, within reach."""
+        first, last = frame.plane.frame(x - reach), frame.plane.frame(x + reach)
+        near = [(lane, found) for lane, whole in self._whole if len(found := within(whole, first, last))]
+        lines = points([found for _, found in near], frame.plane)
+        return line_at(((lane, line) for (lane, _), line in zip(near, lines, strict=True)), x, y, reach)
 
     def _make(self, frame: Frame, rows: tuple[Row, ...]) -> None:
         view, plane = frame.plane.view, frame.plane
-        lanes: list[tuple[Lane, str]] = []
+        lanes: list[tuple[Lane, bool]] = []
         shapes: list[Pieces] = []
-        self._drawn = []
+        self._dashes, self._whole = [], []
         for row in rows:
             if row.port is None:
                 continue
@@ -56,19 +68,26 @@ class Plot:
                 if lane in frame.state.hidden:
                     continue
                 if row.keys is None:
-                    self._drawn += self._dashed(frame, row.port, channel)
+                    self._dashes += self._dashed(frame, row.port, channel)
                     continue
                 inner = self._inner(lane, row.keys)
+                self._whole.append((lane, inner))
                 before, after = outside(row.keys, channel, inner, view.first, view.last)
-                lanes += [(lane, "inside"), (lane, "outside"), (lane, "outside")]
+                lanes += [(lane, False), (lane, True), (lane, True)]
                 shapes += [inner, before, after]
-        found = points(shapes, plane)
-        self._lines = tuple(
-            (lane, line) for (lane, sort), line in zip(lanes, found, strict=True) if sort == "inside" and len(line)
-        )
-        self._drawn += [
-            (lane, drawn(line), sort) for (lane, sort), line in zip(lanes, found, strict=True) if len(line) > 1
-        ]
+        shapes = [within(shape, view.first, view.last) for shape in shapes]
+        screen, bent = on_screen(shapes, plane)
+        flat = list(map(ImVec2, screen[..., 0].ravel().tolist(), screen[..., 1].ravel().tolist()))
+        curved = bent.tolist()
+        self._paths, place = [], 0
+        for (lane, beyond), shape in zip(lanes, shapes, strict=True):
+            count = len(shape)
+            if count:
+                self._paths.append((lane, beyond, flat[4 * place], [
+                    (flat[4 * one + 1], flat[4 * one + 2], flat[4 * one + 3]) if curved[one] else flat[4 * one + 3]
+                    for one in range(place, place + count)
+                ]))
+            place += count
 
     def _inner(self, lane: Lane, keys: Keys) -> Pieces:
         known = self._pieces.get(lane)
@@ -76,14 +95,16 @@ class Plot:
             known = self._pieces[lane] = keys, pieces(keys, lane[1])
         return known[1]
 
-    def _dashed(self, frame: Frame, port: Port, channel: int) -> list[tuple[Lane, Drawn, str]]:
+    def _dashed(self, frame: Frame, port: Port, channel: int) -> list[tuple[Lane, Drawn]]:
         plane, view, scale = frame.plane, frame.plane.view, frame.scale
-        found: list[tuple[Lane, Drawn, str]] = []
+        found: list[tuple[Lane, Drawn]] = []
         settings = frame.editor.session.settings
         for line in self.samples.line(frame.graph, settings, port, channel, view.first, view.last):
-            line = on_screen(line, plane)
+            line[:, 0] = plane.rect[0] + (line[:, 0] - view.first) * plane.across
+            line[:, 1] = (plane.rect[3] - (line[:, 1] - view.low) * plane.up).clip(-1e6, 1e6)
             found += [
-                ((port, channel), drawn(dash), "inside") for dash in dashes(line, 6.0 * scale, 4.0 * scale)
+                ((port, channel), list(map(ImVec2, *dash.T.tolist())))
+                for dash in dashes(line, 6.0 * scale, 4.0 * scale)
             ]
         return found
 
@@ -93,10 +114,17 @@ class Plot:
         """Draw the grid of values, the curves, and on top of them keys and handles."""
         draw, scale = imgui.get_window_draw_list(), frame.scale
         inks = self._colors(frame, rows)
-        for lane, line, sort in self._drawn:
-            ink = inks[lane]
-            thick = 2.5 if lane == lit and sort == "inside" else 1.6
-            draw.add_polyline(line, ink[sort == "outside"], thick * scale, 0)
+        to, bend, stroke = draw.path_line_to, draw.path_bezier_cubic_curve_to, draw.path_stroke
+        for lane, beyond, begin, steps in self._paths:
+            to(begin)
+            for step in steps:
+                if type(step) is tuple:
+                    bend(*step)
+                else:
+                    to(step)
+            stroke(inks[lane][beyond], (2.5 if lane == lit and not beyond else 1.6) * scale)
+        for lane, dash in self._dashes:
+            draw.add_polyline(dash, inks[lane][0], 1.6 * scale, 0)
         self._tips(frame)
         spots, palette = frame.state.spots, frame.editor.palette
         chosen, ring = u32(palette.accent), u32(palette.canvas)
@@ -123,7 +151,7 @@ class Plot:
             found: dict[Lane, tuple[int, int]] = {}
             for place, row in enumerate(row for row in frame.rows if row.port):
                 for channel in range(len(row.channels) or 1):
-                    if row.port in shown:
+                    if row.port and row.port in shown:
                         color = color_of(frame.editor, row, channel, place)
                         found[row.port, channel] = u32(color), u32(color, 0.32)
             self._inks = of, found
@@ -161,16 +189,3 @@ class Plot:
             draw.add_line(tip.root, (tip.x, tip.y), line, 1.25 * scale)
             draw.add_circle_filled((tip.x, tip.y), 3.5 * scale, fill, 12)
             draw.add_circle_filled((tip.x, tip.y), 1.9 * scale, u32(palette.canvas), 10)
-
-
-def drawn(line: Line) -> Drawn:
-    """Points as draw lists want them."""
-    return list(map(ImVec2, *line.T.tolist()))
-
-
-def on_screen(line: Line, plane: Plane) -> Line:
-    """A line of frames and values in pixels."""
-    found = line.copy()
-    found[:, 0] = plane.rect[0] + (line[:, 0] - plane.view.first) * plane.across
-    found[:, 1] = (plane.rect[3] - (line[:, 1] - plane.view.low) * plane.up).clip(-1e6, 1e6)
-    return found

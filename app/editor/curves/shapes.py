@@ -80,21 +80,32 @@ def number(value: object, channel: int) -> float:
     return float(part) if isinstance(part, int | float) else 0.0
 
 
+def within(curve: Pieces, first: float, last: float) -> Pieces:
+    """The pieces of a curve that have a part between two frames."""
+    low, high = np.searchsorted(curve[:, 3, 0], first), np.searchsorted(curve[:, 0, 0], last, "right")
+    return curve[low:high]
+
+
+def on_screen(curves: Sequence[Pieces], plane: Plane) -> tuple[Pieces, NDArray[np.bool_]]:
+    """All pieces in pixels, and which of them are bent where they can be seen."""
+    screen = np.concatenate([np.empty((0, 4, 2)), *curves])
+    screen[..., 0] = plane.rect[0] + (screen[..., 0] - plane.view.first) * plane.across
+    screen[..., 1] = np.clip(plane.rect[3] - (screen[..., 1] - plane.view.low) * plane.up, -1e6, 1e6)
+    heights = screen[..., 1]
+    hidden = (heights.max(axis=1, initial=-np.inf) < plane.rect[1]) | (heights.min(axis=1, initial=np.inf)
+                                                                         > plane.rect[3])
+    straight = (screen[:, 0] == screen[:, 1]).all(axis=1) & (screen[:, 2] == screen[:, 3]).all(axis=1)
+    return screen, ~(hidden | straight)
+
+
 def points(curves: Sequence[Pieces], plane: Plane) -> list[Line]:
     """Every curve as points on the screen, as far as it is seen: none where nothing of it is."""
-    view = plane.view
-    kept = [curve[(curve[:, 3, 0] >= view.first) & (curve[:, 0, 0] <= view.last)] for curve in curves]
-    whole = np.concatenate(kept) if kept else np.empty((0, 4, 2))
-    if not len(whole):
+    kept = [within(curve, plane.view.first, plane.view.last) for curve in curves]
+    screen, bent = on_screen(kept, plane)
+    if not len(screen):
         return [np.empty((0, 2)) for _ in kept]
-    screen = np.empty_like(whole)
-    screen[..., 0] = plane.rect[0] + (whole[..., 0] - view.first) * plane.across
-    screen[..., 1] = np.clip(plane.rect[3] - (whole[..., 1] - view.low) * plane.up, -1e6, 1e6)
     p0, p1, p2, p3 = (screen[:, place] for place in range(4))
-    bend = np.maximum(np.hypot(*(p0 - 2.0 * p1 + p2).T), np.hypot(*(p1 - 2.0 * p2 + p3).T))
-    straight = np.all(p0 == p1, axis=1) & np.all(p2 == p3, axis=1)
-    above, below = screen[..., 1].max(axis=1) < plane.rect[1], screen[..., 1].min(axis=1) > plane.rect[3]
-    bend[straight | above | below] = 0.0
+    bend = np.maximum(np.hypot(*(p0 - 2.0 * p1 + p2).T), np.hypot(*(p1 - 2.0 * p2 + p3).T)) * bent
     count = np.clip(np.ceil(np.sqrt(0.75 * bend / TOLERANCE)), 1, _MOST).astype(np.int64)
     ends = np.cumsum(count)
     of = np.repeat(np.arange(len(count)), count)
