@@ -9,11 +9,13 @@ import sys
 from dataclasses import fields
 from pathlib import Path
 from types import ModuleType
+from typing import get_args
 
 from halation.app import document
 from halation.app.cli.outcome import EXIT_CODES
-from halation.app.graph import problems
-from halation.nodes import Pointwise
+from halation.app.graph import Interpolation, problems
+from halation.app.graph.expressions import FUNCTIONS
+from halation.nodes import Pointwise, Temporal, catalogue
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -73,3 +75,19 @@ def test_its_python_names_exist() -> None:
     # The parts of app are attributes of it as soon as they are loaded, and must not shadow a function of its face.
     for name in re.findall(r"\bhal\.(\w+)\(", README):
         assert callable(getattr(halation.app, name)), name
+
+
+def test_the_page_on_time_knows_everything_there_is() -> None:
+    page = (ROOT / "docs" / "time.md").read_text(encoding="utf-8")
+    graph = document.loads(next(re.finditer(r"```json\n(.*?)```", page, re.S))[1])
+    assert problems(graph) == () and len(graph.animation) == 2
+    assert re.findall(r"^\| `(.*?)` \| (.*) \|$", page.partition("## Expressions")[2], re.M) == [
+        (function.signature, function.doc) for function in FUNCTIONS.values()
+    ]
+    named = set(re.findall(r"`(\w+)`", page.partition("Time can be bent")[2].partition("## Keys")[0]))
+    named |= set(re.findall(r"`(\w+)`", page.partition("## Nodes with a memory")[2].partition("With `")[0]))
+    assert named <= catalogue().keys()
+    remembering = {node.id for node in catalogue().values() if issubclass(node, Temporal)}
+    assert remembering <= named
+    ways = re.findall(r"^\| `(\w+)` \|", page.partition("## Keys")[2].partition("## Expressions")[0], re.M)
+    assert set(ways) == set(get_args(Interpolation))

@@ -171,10 +171,10 @@ def test_jitter_samples_pixels_elsewhere_by_halton(renderer):
     for frame in (1, 2, 7, 15, 16, 31):
         node = Scene(jitter=1.0, orbit=1.0)
         found = rendered(renderer, node, frame)
-        seen = found["depth"][..., 0] < 10.0  # farther away, places are as coarse as 32 bits are
+        seen = found["object_id"][..., 0] > 1  # places on the vast floor are as coarse as 32 bits are
         at = project(camera_of(node, frame), found["position"][seen])
         pixels = np.argwhere(seen)[:, ::-1]
-        assert seen.sum() > 1000 and np.abs(at - pixels - halton[frame % 16]).max() < 1e-3, frame
+        assert seen.sum() > 500 and np.abs(at - pixels - halton[frame % 16]).max() < 1e-3, frame
 
 
 def test_jitter_is_no_motion(renderer):

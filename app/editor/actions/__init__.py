@@ -8,14 +8,15 @@ from .documents import DOCUMENTS
 from .edits import EDITS
 from .graph import GRAPH
 from .handles import HANDLES
+from .playback import PLAYBACK
 from .view import VIEW
 from .viewer import VIEWER
 
 __all__ = ["MENUS", "table"]
 
-MENUS = ("File", "Edit", "Graph", "Viewer", "View", "Help")
+MENUS = ("File", "Edit", "Graph", "Viewer", "Time", "View", "Help")
 
 
 def table() -> tuple[Action, ...]:
     """Every action, in the order of the menus."""
-    return (*DOCUMENTS, *EDITS, *GRAPH, *VIEWER, *HANDLES, *ANIMATION, *VIEW)
+    return (*DOCUMENTS, *EDITS, *GRAPH, *VIEWER, *HANDLES, *PLAYBACK, *ANIMATION, *VIEW)

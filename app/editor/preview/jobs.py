@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
@@ -27,6 +28,7 @@ class Job:
         self.timings: list[tuple[Pass, float]] | None = [] if timed else None
         self.plan: Plan | None = None
         self.run: Run | None = None
+        self.began = time.perf_counter()
         self.passes = 0
         """Passes of runs that have ended."""
         self.lead = (0, 0)

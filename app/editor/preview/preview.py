@@ -39,6 +39,8 @@ class _Round:
     queue: list[Mapping[str, Port]]
     began: float
     passes: int = 0
+    skimmed: bool = False
+    """True if its pictures were there, and nothing else was looked at."""
     faults: dict[str, str] = field(default_factory=dict[str, str])
     pending: Pending | None = None
     """The render that the first of the queue waits for."""
@@ -75,6 +77,8 @@ class Preview:
         self.skims = False
         self.ahead: int | None = None
         self.patience = PATIENCE
+        self.seconds = 0.0
+        """How long the frame took that was finished last."""
         self._takes: list[Take] = []
 
     # --- what the editor says ----------------------------------------------------------------------------------------
@@ -174,6 +178,11 @@ class Preview:
         return self._is_behind() or working or bool(self._round and self._round.queue)
 
     @property
+    def remembers(self) -> bool:
+        """True if frames are known to need the ones before."""
+        return self._wish is not None and self._wish.take.remembers
+
+    @property
     def under_way(self) -> int | None:
         """The frame that is being computed, for now or for later."""
         return self._job.frame if self._job else None
@@ -222,7 +231,8 @@ class Preview:
 
     @property
     def _has_more(self) -> bool:
-        draws = self.thumbnailing and self._thumbnails.waiting and not self.skims
+        skimmed = self._round is not None and self._round.skimmed and not self.skims
+        draws = skimmed or self.thumbnailing and self._thumbnails.waiting and not self.skims
         return self.busy or draws or self._job is not None or self._looks_ahead
 
     def _is_behind(self) -> bool:
@@ -249,7 +259,8 @@ class Preview:
         now, frame = self._round, self.ahead
         if frame is None or now is None or self._job is not None or now.queue or now.broken or not now.wish.ports:
             return False
-        return now.wish.take.find(frame, now.wish.ports, self.renderer) is None
+        take = now.wish.take
+        return frame not in take.hopeless and take.find(frame, now.wish.ports, self.renderer) is None
 
     def _advance(self) -> bool:
         """Do the next thing; False if there is nothing to do now."""
@@ -257,6 +268,8 @@ class Preview:
             self._begin(self._wish)
         if self._round is None:
             return False
+        if self._round.skimmed and not self.skims and self._job is None:
+            self._round.skimmed, self._round.queue = False, [self._round.wish.ports]
         if self._job is None:
             return self._compile(self._round)
         if not self._job.ready:
@@ -281,7 +294,8 @@ class Preview:
         for name, face in known.items() if known else ():
             if name in ports:
                 self._shelf.show(name, ports[name], wish, face)
-        self._round = _Round(wish, [ports] if ports and not (known and self.skims) else [], time.perf_counter())
+        skimmed = bool(known and self.skims)
+        self._round = _Round(wish, [ports] if ports and not skimmed else [], time.perf_counter(), skimmed=skimmed)
         self._settle(self._round)
 
     def _may_restart(self, wish: Wish) -> bool:
@@ -320,7 +334,7 @@ class Preview:
             self._ended(now, job.ports, job.ahead, error)
             return
         if done and job.plan is not None:
-            self._job = None
+            self._job, self.seconds = None, time.perf_counter() - job.began
             now.passes += 0 if job.ahead else job.passes
             self._finished(now, job, job.plan)
             self._settle(now)
@@ -328,7 +342,7 @@ class Preview:
     def _ended(self, now: _Round, ports: Mapping[str, Port], ahead: bool, error: HalationError) -> bool:
         """What could not be done: it must wait, or be tried otherwise, or is wrong. False if it must wait."""
         if ahead:
-            self.ahead = None
+            now.wish.take.hopeless.add(self.ahead if self.ahead is not None else now.wish.frame)
         elif isinstance(error, Pending):
             now.queue.insert(0, ports)
             now.pending = error

@@ -45,6 +45,8 @@ class Take:
         self._leases: dict[int, Lease] = {}
         self._reels: dict[tuple[tuple[str, Port], ...], Reel] = {}
         self.closed = False
+        self.hopeless: set[int] = set()
+        """Frames that cannot be made."""
 
     # --- frames ------------------------------------------------------------------------------------------------------
 
@@ -83,6 +85,11 @@ class Take:
     def reel(self, ports: Mapping[str, Port]) -> Reel | None:
         """The history of these ports, if they are known to have one."""
         return self._reels.get(tuple(ports.items()))
+
+    @property
+    def remembers(self) -> bool:
+        """True if frames are known to need the ones before."""
+        return bool(self._reels)
 
     def begin(self, renderer: Renderer, wish: Wish, ports: Mapping[str, Port]) -> Reel:
         """Begin one."""

@@ -17,6 +17,9 @@ from ..viewer.wanted import wanted
 FRAME_BUDGET = 0.012
 """Seconds of rendering per frame: the rest of a sixtieth is for drawing panels."""
 
+PLAY_BUDGET = 0.030
+"""The same while frames are played, which is what is looked at then."""
+
 
 @dataclass
 class Heartbeat:
@@ -50,11 +53,29 @@ class Heartbeat:
         preview, likes = editor.preview, editor.store.now
         preview.thumbnailing, preview.timed = likes.thumbnails, likes.timings
         preview.paused = editor.viewer.paused
+        self._play(editor)
         ports, scale = wanted(editor)
         place = editor.session.place
         flat = {name: Port("/".join((*place, port.node)), port.socket) for name, port in ports.items()}
-        preview.want(editor.session.root, flat, bindings=editor.session.bindings, scale=scale)
-        preview.work(FRAME_BUDGET)
+        preview.want(editor.session.root, flat, bindings=editor.session.bindings, scale=scale,
+                     frame=editor.session.frame)
+        preview.work(PLAY_BUDGET if editor.timeline.playback.playing else FRAME_BUDGET)
+
+    def _play(self, editor: Editor) -> None:
+        """Go on to the frame that is due."""
+        timeline, preview, session = editor.timeline, editor.preview, editor.session
+        playback, now = timeline.playback, time.monotonic()
+        if playback.playing:
+            playback.keep(timeline.course(session, preview.remembers), session.frame, now)
+            if not preview.busy:
+                playback.note(now)
+            words = playback.words
+            frame = playback.tick(now, preview.busy and not preview.paused, preview.under_way)
+            timeline.report = words
+            if frame is not None:
+                session.seek(frame)
+        preview.skims = playback.playing or timeline.scrubbing
+        preview.ahead = playback.ahead(preview.seconds)
 
     def _watch(self, editor: Editor) -> None:
         """Watch the files that the graph reads."""
@@ -76,6 +97,7 @@ class Heartbeat:
                 editor.session.reload_groups()
             case "picture":
                 editor.preview.refresh()
+                editor.session.look_again()
                 editor.say(f"{change.path.name} changed on disk and was read again")
             case "shader":
                 installed.cache_clear()

@@ -1,0 +1,58 @@
+"""Frames that sequences lack, looked for now and then."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from ...compiler import named_files
+from ...errors import HalationError
+from ...graph import Graph
+from ...media.pictures import split_layer
+from ...media.sequences import find_sequence
+from ..session import Session
+
+EVERY = 1.0
+"""Seconds between two looks at most, while the graph changes."""
+
+STALE = 5.0
+"""Seconds after which files are looked at again in any case."""
+
+Gaps = tuple[tuple[int, int], ...]
+"""The first and last frame of each."""
+
+
+@dataclass
+class Missing:
+    """What is known of the gaps of one document."""
+
+    found: Gaps = ()
+    _of: tuple[object, ...] = ()
+    _at: float = field(default=float("-inf"))
+
+    def gaps(self, session: Session) -> Gaps:
+        """The frames between the first and the last one of a sequence that have no file."""
+        now, of = time.monotonic(), (session.root, dict(session.bindings))
+        if now - self._at > STALE or (now - self._at > EVERY and (not self._of or of[0] is not self._of[0])):
+            self._at, self._of = now, of
+            self.found = gaps_of(session.root, session.bindings)
+        return self.found
+
+
+def gaps_of(graph: Graph, bindings: Mapping[str, str]) -> Gaps:
+    """The gaps of every sequence that a graph reads; what cannot be looked at has none."""
+    paths = [split_layer(file)[0] for file in bindings.values()]
+    try:
+        paths += [path for path, owner, _ in named_files(graph, {}) if owner.removeprefix("inputs.") not in bindings]
+    except HalationError:
+        pass
+    found: set[tuple[int, int]] = set()
+    for path in dict.fromkeys(paths):
+        try:
+            sequence = find_sequence(path)
+        except HalationError:
+            continue
+        if sequence is not None:
+            found.update(sequence.gaps)
+    return tuple(sorted(found))

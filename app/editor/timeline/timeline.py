@@ -1,0 +1,161 @@
+"""The bar: transport, ruler, range and rate in one row."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import imgui
+
+from ....nodes import Value
+from ..inspector.fields import Edit, Fields
+from ..inspector.number_field import number_field
+from ..theme.palette import DARK
+from ..theme.style import ui_scale
+from ..toolkit.buttons import entry, quiet, tip_of, tool
+from ..toolkit.places import item_rect
+from ..toolkit.words import SMALL, font, tip, write
+from .playback import Loop
+from .ruler import Ruler
+
+if TYPE_CHECKING:
+    from ..editor import Editor
+
+HEIGHT = 40.0
+"""Of the bar, at UI scale 1."""
+
+_FRAME = Value("frame", "int", 1, low=1.0, high=200.0)
+_RATE = Value("rate", "float", 24.0, low=1.0, high=60.0, minimum=0.01, maximum=1000.0)
+_LOOPS: dict[Loop, str] = {
+    "loop": icons.ICON_FA_REPEAT, "once": icons.ICON_FA_ARROW_RIGHT_TO_BRACKET,
+    "ping-pong": icons.ICON_FA_RIGHT_LEFT,
+}
+_ROOMY, _NARROW = 1050.0, 760.0
+"""Widths below which words, then the fields of the range, are left out."""
+
+
+class Timeline:
+    """Frames, and playing them."""
+
+    title = "Timeline"
+
+    def __init__(self) -> None:
+        self._fields = Fields(DARK)
+        self._ruler = Ruler()
+
+    def draw(self, editor: Editor) -> None:
+        """Draw into the current window."""
+        fields, scale = self._fields, ui_scale()
+        fields.palette, fields.places, fields.lights = editor.palette, editor.places, editor.lights
+        dragged = fields.dragging
+        fields.begin(imgui.is_mouse_down(imgui.MouseButton_.left))
+        start, size = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail()
+        high = imgui.get_frame_height()
+        top = start.y + max((size.y - high) * 0.5, 0.0)
+        imgui.set_cursor_screen_pos((start.x + 6.0 * scale, top))
+        imgui.push_style_var(imgui.StyleVar_.item_spacing, (2.0 * scale, 0.0))
+        self._transport(editor)
+        imgui.same_line(0.0, 6.0 * scale)
+        self._frame(editor, 60.0 * scale)
+        imgui.same_line(0.0, 8.0 * scale)
+        left = imgui.get_cursor_screen_pos().x
+        wide = size.x / scale
+        words, range_wide = (196.0 if wide > _ROOMY else 0.0) * scale, (196.0 if wide > _NARROW else 0.0) * scale
+        right = start.x + size.x - words - range_wide - 8.0 * scale
+        pad = 4.0 * scale
+        asked = self._ruler.draw(editor, (left, start.y + pad, max(right, left + 8.0), start.y + size.y - pad))
+        if range_wide:
+            imgui.set_cursor_screen_pos((right + 8.0 * scale, top))
+            self._range(editor, scale)
+        if words:
+            self._words(editor, (right + range_wide + 12.0 * scale, top, start.x + size.x - 8.0 * scale, top + high))
+        imgui.pop_style_var()
+        if asked:
+            imgui.open_popup("timeline menu")
+        if imgui.begin_popup("timeline menu"):
+            for action in editor.actions.context("timeline"):
+                if action.separated:
+                    imgui.separator()
+                entry(editor, action)
+            imgui.end_popup()
+        if dragged and not fields.dragging:
+            editor.session.seal()
+        fields.end()
+
+    # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _transport(self, editor: Editor) -> None:
+        playing, timeline = editor.timeline.playback.playing, editor.timeline
+        tool(editor, icons.ICON_FA_BACKWARD_FAST, "time.first")
+        imgui.same_line()
+        tool(editor, icons.ICON_FA_BACKWARD_STEP, "time.previous")
+        imgui.same_line()
+        tool(editor, icons.ICON_FA_PAUSE if playing else icons.ICON_FA_PLAY, "time.play")
+        imgui.same_line()
+        tool(editor, icons.ICON_FA_FORWARD_STEP, "time.next")
+        imgui.same_line()
+        tool(editor, icons.ICON_FA_FORWARD_FAST, "time.last")
+        imgui.same_line()
+        action = editor.actions[f"time.{timeline.loop.replace('-', '_')}"]
+        if quiet(editor, _LOOPS[timeline.loop], "button time.loops", f"{tip_of(editor, action)}\nClick for another way"):
+            timeline.next_loop()
+
+    def _frame(self, editor: Editor, width: float) -> None:
+        edit = self._number(editor, "timeline frame", editor.session.frame, width, "The frame that is looked at")
+        if edit and isinstance(edit.value, int | float):
+            editor.timeline.stop()
+            editor.session.seek(edit.value)
+
+    def _range(self, editor: Editor, scale: float) -> None:
+        """The range and the rate, which are the document's."""
+        session = editor.session
+        first, last = session.frames
+        stated = session.settings.frames is not None
+        doc = "frame of the graph" + ("" if stated else ": that of what it reads or of its keys; a number here states it")
+        edit = self._number(editor, "timeline first", first, 52.0 * scale, f"First {doc}")
+        if edit and isinstance(edit.value, int | float):
+            value = int(edit.value)
+            editor.attempt(lambda: session.set_frames(value, max(last, value), merge=edit.merge))
+        imgui.same_line(0.0, 3.0 * scale)
+        edit = self._number(editor, "timeline last", last, 52.0 * scale, f"Last {doc}")
+        if edit and isinstance(edit.value, int | float):
+            value = int(edit.value)
+            editor.attempt(lambda: session.set_frames(min(first, value), value, merge=edit.merge))
+        imgui.same_line(0.0, 8.0 * scale)
+        rate = number_field(
+            self._fields, "timeline rate", session.settings.rate, _RATE, 76.0 * scale, suffix="fps"
+        )
+        editor.places["field timeline rate"] = item_rect()
+        tip("Frames per second of the graph")
+        if rate and isinstance(rate.value, int | float):
+            value = float(rate.value)
+            editor.attempt(lambda: session.set_rate(value, merge=rate.merge))
+
+    def _number(self, editor: Editor, id: str, value: int, width: float, doc: str) -> Edit | None:
+        edit = number_field(self._fields, id, value, _FRAME, width)
+        editor.places[f"field {id}"] = item_rect()
+        tip(doc)
+        return edit
+
+    def _words(self, editor: Editor, rect: tuple[float, float, float, float]) -> None:
+        """How playing goes, else what is computed, else what is ready."""
+        timeline, preview, palette = editor.timeline, editor.preview, editor.palette
+        text, color = timeline.playback.words, palette.text
+        lead = preview.lead
+        if lead:
+            kind, done, total = lead
+            text = f"pre-roll {done} of {total}" if kind == "pre-roll" else f"planning {done} of {total} frames"
+            color = palette.accent
+        elif not text:
+            first, last = editor.session.frames
+            ready = sum(first <= frame <= last for frame in preview.frames)
+            text, color = timeline.report, palette.dim
+            if last > first and not text:
+                text = f"{ready} of {last - first + 1} ready, {preview.frames_bytes / 2**20:.0f} MiB"
+        with font(editor, "text", SMALL):
+            write(rect, text, color)
+        editor.places["timeline words"] = rect
+        imgui.set_cursor_screen_pos(rect[:2])
+        imgui.dummy((max(rect[2] - rect[0], 1.0), rect[3] - rect[1]))
+        tip("Frames that are ready are shown at once. They keep to a half of the memory budget.")
+
