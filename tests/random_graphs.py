@@ -6,7 +6,7 @@ from random import Random
 
 import numpy as np
 from halation.app.graph import Graph, Input, Output, Port, conversion, signature
-from halation.nodes import Kind, Node, Source, catalogue, look_at
+from halation.nodes import Kind, Node, Source, Temporal, catalogue, look_at
 
 SIZE = (37, 23)
 CLASSES = [node for node in catalogue().values() if not issubclass(node, Source)]
@@ -47,6 +47,7 @@ def random_graph(seed: int, length: int = 10) -> Graph:
             fitting = [
                 port for port in sources(graph, name)
                 if conversion(graph.source(port), graph.target(Port(name, target))) is None
+                and not (looks_around(graph.nodes[name]) and remembers(graph, port.node))
             ]
             if fitting and (target in wires or not face.inputs[target].optional or rng.random() < 0.7):
                 # Late nodes are more likely, so that chains grow long.
@@ -62,6 +63,16 @@ def random_graph(seed: int, length: int = 10) -> Graph:
         name = f"o{number}"
         graph = graph.add_output(name, Output(kind, socket.channels)).connect(port, Port("outputs", name))
     return graph
+
+
+def looks_around(node: Node) -> bool:
+    """True if it may see other frames, which nothing that remembers can show."""
+    return type(node).times is not Node.times
+
+
+def remembers(graph: Graph, id: str) -> bool:
+    """True if a node, or one before it, has a memory."""
+    return id in graph.nodes and any(isinstance(graph.nodes[one], Temporal) for one in {id, *graph.upstream(id)})
 
 
 def sources(graph: Graph, but: str) -> list[Port]:

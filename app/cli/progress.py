@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Literal
 
@@ -36,6 +36,10 @@ def told_to(kind: Literal["bar", "json"], frames: int) -> Iterator[Progress]:
 
 class Lines:
     """One JSON object on standard error for every pass and every frame."""
+
+    def shared(self, processes: Sequence[int]) -> None:
+        """Say which processes share the frames: who kills this one has to kill them too."""
+        note(json.dumps({"processes": list(processes)}))
 
     def passed(self, frame: int, done: int, total: int, one: Pass) -> None:
         """Say which pass is through."""

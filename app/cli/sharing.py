@@ -62,6 +62,7 @@ def share(
         )
         for part in parts
     ]
+    getattr(progress, "shared", bool)([one.pid for one in crew])
     listener = _Listener(progress, len(frames), text)
     threads_ = [threading.Thread(target=listener.follow, args=(one, crew), daemon=True) for one in crew]
     for thread in threads_:

@@ -12,13 +12,13 @@ SIZE = (37, 23)
 
 @pytest.fixture(scope="session")
 def plan():
-    """`plan(graph, scale=0.5, fusion=False, ...)` with every graph input bound."""
+    """`plan(graph, scale=0.5, fusion=False, ...)` with every graph input bound, but single values with a default."""
 
     def planned(graph: Graph, **options) -> Plan:
         asked = {name: options.pop(name) for name in ("scale", "size", "targets", "frame") if name in options}
         bindings = {
             name: Picture(name, "", item.kind, item.socket().channels, in_memory=True)
-            for name, item in graph.inputs.items()
+            for name, item in graph.inputs.items() if item.default is None or not item.socket().single
         }
         return compile_graph(graph, Request(bindings=bindings, **asked), Headers(SIZE), **options)
 

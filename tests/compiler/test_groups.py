@@ -106,12 +106,12 @@ def test_an_unknown_node_is_an_error_only_where_it_is_needed(plan):
 
 @pytest.mark.parametrize("name", sorted(NODES))
 def test_muted_outputs_keep_their_type(plan, name):
-    """An input of the same type, else one that fits, else nothing. Cameras are no pictures."""
+    """An input of the same type, else one that fits, else nothing. Cameras and single values are no pictures."""
     node = NODES[name]
     drawn = {key: made for key, made in node.outputs.items() if made.socket.kind is not Kind.CAMERA}
     ends = {key: Output(made.socket.kind, made.socket.channels) for key, made in drawn.items()}
     inputs = {
-        key: Input(socket.kind, socket.channels, default=(0.0,) * 12 if socket.kind is Kind.CAMERA else None)
+        key: Input(socket.kind, socket.channels, default=(0.0,) * socket.channels if socket.single else None)
         for key, socket in node.inputs.items()
     }
     if not ends:
@@ -122,7 +122,7 @@ def test_muted_outputs_keep_their_type(plan, name):
         surface = made.surfaces[made.outputs[key]]
         assert surface.channels == output.socket.channels
         assert output.socket.single == (surface.size == (1, 1))
-        same = [socket for socket in node.inputs.values() if socket.kind is output.socket.kind]
+        same = [made for made in node.inputs.values() if made.kind is output.socket.kind and not made.single]
         if any(socket.channels == output.socket.channels for socket in same):
             assert made.outputs[key] in {upload.surface for upload in made.uploads}
 

@@ -38,12 +38,15 @@ class Frame:
     """The mouse, on the screen."""
     over: bool = False
     """True while nothing lies between the mouse and the part with keys, ruler and bar."""
-    marks: Sequence[Mark] = ()
-    lanes: Sequence[tuple[Lane, list[Mark]]] = ()
-    """In curves, the same by channel."""
-    tips: Sequence[Tip] = ()
+    marks: Callable[[], Sequence[Mark]] = tuple
+    """All keys that are seen."""
+    near: Callable[[float, float, float], Mark | None] = lambda x, y, reach: None
+    """The key within reach of a point of the screen."""
     lane_at: Callable[[float, float, float], Lane | None] = lambda x, y, reach: None
     """The curve that passes within reach of a point of the screen."""
+    count: int = 0
+    """How many keys are seen."""
+    tips: Sequence[Tip] = ()
 
     @property
     def state(self) -> CurvesState:

@@ -48,9 +48,6 @@ K = TypeVar("K")
 Entry = tuple[float, frozenset[Spot], Interpolation | None]
 """A frame, the keys there, and their shape: none for several."""
 
-Point = tuple[float, float, frozenset[Spot], Interpolation]
-"""A frame, a value, the key there, and its shape."""
-
 
 class Entries:
     """The keys of rows, made once for each animation."""
@@ -83,44 +80,6 @@ def sheet_marks(
             for frame, spots, look in entries.of(row, animation) if first <= frame <= last
         ])
     return found
-
-
-class Lanes:
-    """The keys of curves, made once for each animation."""
-
-    def __init__(self) -> None:
-        self._known: dict[Lane, tuple[Keys, tuple[Point, ...]]] = {}
-
-    def marks(
-        self, rows: Iterable[Row], hidden: Collection[Lane], plane: Plane
-    ) -> list[tuple[Lane, list[Mark]]]:
-        """Every channel with those of its keys that are seen."""
-        found: list[tuple[Lane, list[Mark]]] = []
-        first, last = plane.frame(plane.rect[0] - _BEYOND), plane.frame(plane.rect[2] + _BEYOND)
-        left, across, bottom, up = plane.x(0.0), plane.across, plane.y(0.0), plane.up
-        for row in rows:
-            if row.port is None or row.keys is None:
-                continue
-            for channel in range(len(row.channels) or 1):
-                lane = row.port, channel
-                if lane not in hidden:
-                    found.append((lane, [
-                        Mark(left + frame * across, bottom - value * up, spots, look, channel)
-                        for frame, value, spots, look in self._of(lane, row.keys) if first <= frame <= last
-                    ]))
-        return found
-
-    def _of(self, lane: Lane, keys: Keys) -> tuple[Point, ...]:
-        before, found = self._known.get(lane, (None, ()))
-        if before is not keys:
-            port, channel = lane
-            made: list[Point] = [
-                (key.frame, level(key, channel), frozenset(((port, key.frame, channel),)), key.interpolation)
-                for key in keys.keys
-            ]
-            found = tuple(made)
-            self._known[lane] = keys, found
-        return found
 
 
 def tips(

@@ -69,18 +69,13 @@ class Mouse:
                 self.part = "left" if x <= found[0] + found[2] else "right" if x >= found[1] - found[2] else "bar"
         elif tip := nearest(frame.tips, x, y, reach):
             self.part, self.tip = "tip", tip
-        elif mark := nearest(self._marks(frame), x, y, reach):
+        elif mark := frame.near(x, y, reach):
             self.part, self.mark = "key", mark
         elif abs(x - frame.plane.x(frame.editor.session.frame)) <= _LINE * frame.scale:
             self.part = "now"
         else:
             self.lane = frame.lane_at(x, y, reach)
             self.part = "curve" if self.lane else "open"
-
-    def _marks(self, frame: Frame) -> list[Mark]:
-        """All keys, chosen ones on top."""
-        spots = frame.state.spots
-        return sorted(frame.marks, key=lambda mark: not spots.isdisjoint(mark.spots))
 
     def _cursor(self) -> None:
         gesture = self.gesture
@@ -253,7 +248,7 @@ class Mouse:
             case Box():
                 rect = (*frame.back(gesture.start), *frame.at)
                 if self._far(frame):
-                    found = boxed(frame.marks, rect)
+                    found = boxed(frame.marks(), rect)
                     state.choose(found, gesture.how)  # type: ignore[arg-type]
                 elif gesture.how == "replace":
                     state.spots = frozenset()

@@ -12,7 +12,7 @@ from ..toolkit.words import nothing_here
 from . import commands
 from .frame import BAR, LIST, ROW, RULER, TOOLBAR, Frame, small
 from .gestures import Box, Scale, Seek
-from .hits import Entries, Mark, sheet_marks, tips
+from .hits import Entries, Mark, nearest, sheet_marks, tips
 from .key_fields import KeyFields
 from .mouse import Mouse, hot_of
 from .names import Names, value_menu
@@ -133,7 +133,9 @@ class Animation:
             self._grouped = sheet_marks(
                 frame.rows, frame.graph.animation, self._entries, frame.plane, frame.top, frame.high
             )
-            frame.marks = [mark for marks in self._grouped for mark in marks]
+            flat = [mark for marks in self._grouped for mark in marks]
+            frame.marks, frame.count = lambda: flat, len(flat)
+            frame.near = lambda x, y, reach: nearest(flat, x, y, reach)
             return
         self._plot.see(frame, shown)
         ports = {row.port for row in shown}
@@ -170,9 +172,7 @@ class Animation:
     def _record(self, frame: Frame) -> None:
         """Where keys and handles are."""
         places, size = frame.editor.places, 4.0 * frame.scale
-        if len(frame.marks) > 200:
-            return
-        for mark in frame.marks:
+        for mark in frame.marks() if frame.count <= 200 else ():
             if frame.sheet and len({spot[0] for spot in mark.spots}) > 1:
                 continue
             port, at, channel = min(mark.spots, key=lambda spot: spot[2])

@@ -2,110 +2,117 @@
 
 from __future__ import annotations
 
-from functools import partial
+from collections.abc import Mapping
+from itertools import compress
+from operator import not_
 
 from imgui_bundle import ImVec2, imgui
 
-from ...graph import Keys, Port
+from ...graph import Interpolation, Port
 from ..theme.style import mix, u32
+from .bundle import Bundle, Bundles
 from .frame import Frame, color_of, small
-from .hits import Lanes, Mark, Tip, line_at
+from .hits import Mark, Tip
 from .paint import KEY, paint_key
-from .plane import ticks
+from .plane import Plane, View, ticks
 from .rows import Lane, Row
-from .shapes import Pieces, Samples, dashes, on_screen, outside, pieces, points, within
+from .shapes import Pieces, Samples, dashes
 
 Drawn = list[imgui.ImVec2Like]
-Step = ImVec2 | tuple[ImVec2, ImVec2, ImVec2]
-"""A straight way to a point, or a bent one by two handles."""
+
+
+class Ways:
+    """Pieces on the screen: straight ways to a point, and bent ones by two handles. Few objects, for the many."""
+
+    def __init__(self, screen: Pieces, bent: list[bool], cuts: list[int], lanes: list[tuple[Lane, bool]]) -> None:
+        flat = list(map(ImVec2, screen[..., 0].ravel().tolist(), screen[..., 1].ravel().tolist()))
+        self._points = flat[0::4], flat[1::4], flat[2::4], flat[3::4]
+        self._bent, self._cuts, self._lanes = bent, cuts, lanes
+
+    def draw(
+        self, draw: imgui.ImDrawList, inks: Mapping[Lane, tuple[int, int]], lit: Lane | None, scale: float
+    ) -> None:
+        """Draw them, in the color of their lane inside or outside of its keys."""
+        to, bend, stroke = draw.path_line_to, draw.path_bezier_cubic_curve_to, draw.path_stroke
+        starts, ones, twos, ends = self._points
+        for (lane, beyond), begin, stop in zip(self._lanes, self._cuts, self._cuts[1:], strict=False):
+            if begin == stop:
+                continue
+            to(starts[begin])
+            pieces = zip(ones[begin:stop], twos[begin:stop], ends[begin:stop], self._bent[begin:stop], strict=True)
+            for one, two, end, bends in pieces:
+                if bends:
+                    bend(one, two, end)
+                else:
+                    to(end)
+            stroke(inks[lane][beyond], (2.5 if lane == lit and not beyond else 1.6) * scale)
 
 
 class Plot:
-    """Knows the curves of all values that are shown, and their points on the screen as long as nothing moves."""
+    """Knows the curves of all values that are shown, and where they are on the screen as long as nothing moves."""
 
     def __init__(self) -> None:
         self.samples = Samples()
-        self._pieces: dict[Lane, tuple[Keys, Pieces]] = {}
-        self._of: tuple[object, ...] = ()
-        self._paths: list[tuple[Lane, bool, ImVec2, list[Step]]] = []
+        self._bundles = Bundles()
+        self._bundle = Bundle()
+        self._seen = self._bundle.seen(Plane(View(), (0.0, 0.0, 1.0, 1.0)))
+        self._made_of: tuple[object, ...] = ()
+        self._seen_of: tuple[object, ...] = ()
+        self._chosen_of: tuple[object, ...] = ()
+        self._inks_of: tuple[object, ...] = ()
+        self._ways: list[Ways] = []
         self._dashes: list[tuple[Lane, Drawn]] = []
-        self._whole: list[tuple[Lane, Pieces]] = []
-        self._keys = Lanes()
-        self._marks: list[tuple[Lane, list[Mark]]] = []
-        self._flat: list[Mark] = []
-        self._inks: tuple[tuple[object, ...], dict[Lane, tuple[int, int]]] = ((), {})
+        self._keys: tuple[list[float], list[float], list[Interpolation], list[int]] = [], [], [], []
+        """The keys that are seen: places, shapes, and the numbers of their channels."""
+        self._chosen: list[bool] = []
+        self._inks: dict[Lane, tuple[int, int]] = {}
 
     def see(self, frame: Frame, rows: tuple[Row, ...]) -> None:
         """Find curves and keys on the screen; nothing is made anew while nothing has changed."""
-        graph, settings = frame.graph, frame.editor.session.settings
-        of = (graph.animation, graph.nodes, graph.controls, settings, rows)
-        also = (frame.plane, frozenset(frame.state.hidden), frame.scale)
-        before = self._of
-        if len(before) != 8 or any(a is not b for a, b in zip(of, before[:5], strict=True)) or before[5:] != also:
-            self._of = (*of, *also)
-            self._make(frame, rows)
-            self._marks = self._keys.marks(rows, frame.state.hidden, frame.plane)
-            self._flat = [mark for _, marks in self._marks for mark in marks]
-        frame.lanes, frame.marks, frame.lane_at = self._marks, self._flat, partial(self.lane_at, frame)
+        hidden = frozenset(frame.state.hidden)
+        if not _same(self._made_of[:1], (rows,)) or self._made_of[1:] != (hidden,):
+            self._made_of = rows, hidden
+            self._bundle = self._bundles.make(rows, hidden)
+        graph = frame.graph
+        of = self._bundle, graph.animation, graph.nodes, graph.controls, frame.editor.session.settings
+        also = frame.plane, frame.scale
+        if not _same(self._seen_of[:5], of) or self._seen_of[5:] != also:
+            self._seen_of = *of, *also
+            self._project(frame, rows)
+        spots = frame.state.spots
+        seen = self._seen
+        if not _same(self._chosen_of, (self._bundle, spots)):
+            self._chosen_of = self._bundle, spots
+            self._chosen = [not spots.isdisjoint(one) for one in self._bundle.spots] if spots else []
+        frame.marks, frame.count, frame.lane_at = seen.marks, len(seen.shown), seen.lane_at
+        frame.near = lambda x, y, reach: seen.near(x, y, reach, spots)
 
-    def lane_at(self, frame: Frame, x: float, y: float, reach: float) -> Lane | None:
-        """The curve that passes closest to a point, within reach."""
-        first, last = frame.plane.frame(x - reach), frame.plane.frame(x + reach)
-        near = [(lane, found) for lane, whole in self._whole if len(found := within(whole, first, last))]
-        lines = points([found for _, found in near], frame.plane)
-        return line_at(((lane, line) for (lane, _), line in zip(near, lines, strict=True)), x, y, reach)
-
-    def _make(self, frame: Frame, rows: tuple[Row, ...]) -> None:
-        view, plane = frame.plane.view, frame.plane
-        lanes: list[tuple[Lane, bool]] = []
-        shapes: list[Pieces] = []
-        self._dashes, self._whole = [], []
-        for row in rows:
-            if row.port is None:
-                continue
-            for channel in range(len(row.channels) or 1):
-                lane = row.port, channel
-                if lane in frame.state.hidden:
-                    continue
-                if row.keys is None:
-                    self._dashes += self._dashed(frame, row.port, channel)
-                    continue
-                inner = self._inner(lane, row.keys)
-                self._whole.append((lane, inner))
-                before, after = outside(row.keys, channel, inner, view.first, view.last)
-                lanes += [(lane, False), (lane, True), (lane, True)]
-                shapes += [inner, before, after]
-        shapes = [within(shape, view.first, view.last) for shape in shapes]
-        screen, bent = on_screen(shapes, plane)
-        flat = list(map(ImVec2, screen[..., 0].ravel().tolist(), screen[..., 1].ravel().tolist()))
-        curved = bent.tolist()
-        self._paths, place = [], 0
-        for (lane, beyond), shape in zip(lanes, shapes, strict=True):
-            count = len(shape)
-            if count:
-                self._paths.append((lane, beyond, flat[4 * place], [
-                    (flat[4 * one + 1], flat[4 * one + 2], flat[4 * one + 3]) if curved[one] else flat[4 * one + 3]
-                    for one in range(place, place + count)
-                ]))
-            place += count
-
-    def _inner(self, lane: Lane, keys: Keys) -> Pieces:
-        known = self._pieces.get(lane)
-        if known is None or known[0] is not keys:
-            known = self._pieces[lane] = keys, pieces(keys, lane[1])
-        return known[1]
+    def _project(self, frame: Frame, rows: tuple[Row, ...]) -> None:
+        """Put everything on the screen."""
+        bundle = self._bundle
+        seen = self._seen = bundle.seen(frame.plane)
+        of, ends, bent, cuts = bundle.ends(frame.plane)
+        self._ways = [
+            Ways(ends, bent.tolist(), cuts, [(bundle.lanes[one], True) for one in of]),
+            Ways(seen.screen, seen.bent.tolist(), seen.cuts, [(lane, False) for lane in bundle.lanes]),
+        ]
+        looks = [bundle.looks[key] for key in seen.shown.tolist()]
+        self._keys = seen.xs.tolist(), seen.ys.tolist(), looks, bundle.key_of[seen.shown].tolist()
+        self._dashes = [
+            dash for row in rows if row.port and row.keys is None for channel in range(len(row.channels) or 1)
+            if (row.port, channel) not in frame.state.hidden for dash in self._dashed(frame, row.port, channel)
+        ]
 
     def _dashed(self, frame: Frame, port: Port, channel: int) -> list[tuple[Lane, Drawn]]:
         plane, view, scale = frame.plane, frame.plane.view, frame.scale
         found: list[tuple[Lane, Drawn]] = []
+        lane = port, channel
         settings = frame.editor.session.settings
         for line in self.samples.line(frame.graph, settings, port, channel, view.first, view.last):
             line[:, 0] = plane.rect[0] + (line[:, 0] - view.first) * plane.across
             line[:, 1] = (plane.rect[3] - (line[:, 1] - view.low) * plane.up).clip(-1e6, 1e6)
-            found += [
-                ((port, channel), list(map(ImVec2, *dash.T.tolist())))
-                for dash in dashes(line, 6.0 * scale, 4.0 * scale)
-            ]
+            for dash in dashes(line, 6.0 * scale, 4.0 * scale):
+                found.append((lane, list(map(ImVec2, *dash.T.tolist()))))
         return found
 
     # --- painting ----------------------------------------------------------------------------------------------------
@@ -114,48 +121,39 @@ class Plot:
         """Draw the grid of values, the curves, and on top of them keys and handles."""
         draw, scale = imgui.get_window_draw_list(), frame.scale
         inks = self._colors(frame, rows)
-        to, bend, stroke = draw.path_line_to, draw.path_bezier_cubic_curve_to, draw.path_stroke
-        for lane, beyond, begin, steps in self._paths:
-            to(begin)
-            for step in steps:
-                if type(step) is tuple:
-                    bend(*step)
-                else:
-                    to(step)
-            stroke(inks[lane][beyond], (2.5 if lane == lit and not beyond else 1.6) * scale)
+        for ways in self._ways:
+            ways.draw(draw, inks, lit, scale)
         for lane, dash in self._dashes:
             draw.add_polyline(dash, inks[lane][0], 1.6 * scale, 0)
         self._tips(frame)
-        spots, palette = frame.state.spots, frame.editor.palette
-        chosen, ring = u32(palette.accent), u32(palette.canvas)
-        size = KEY * scale * 0.85
-        on_top: list[Mark] = []
-        for lane, marks in frame.lanes:
-            ink = inks[lane][0]
-            for mark in marks:
-                if spots and not spots.isdisjoint(mark.spots):
-                    on_top.append(mark)
-                else:
-                    paint_key(draw, mark.x, mark.y, size, mark.look, ink)
-        for mark in on_top:
-            draw.add_circle_filled((mark.x, mark.y), size * 1.75, ring, 16)
-            paint_key(draw, mark.x, mark.y, size * 1.2, mark.look, chosen)
+        palette, size = frame.editor.palette, KEY * scale * 0.85
+        colors = [inks[lane][0] for lane in self._bundle.lanes]
+        chosen = [self._chosen[key] for key in self._seen.shown.tolist()] if self._chosen else None
+        if chosen is None:
+            for x, y, look, of in zip(*self._keys, strict=True):
+                paint_key(draw, x, y, size, look, colors[of])
+        else:
+            for x, y, look, of in compress(zip(*self._keys, strict=True), map(not_, chosen)):
+                paint_key(draw, x, y, size, look, colors[of])
+            ring, ink = u32(palette.canvas), u32(palette.accent)
+            for x, y, look, _ in compress(zip(*self._keys, strict=True), chosen):
+                draw.add_circle_filled((x, y), size * 1.75, ring, 16)
+                paint_key(draw, x, y, size * 1.2, look, ink)
         if hot:
             draw.add_circle((hot.x, hot.y), size * 1.9, u32(palette.accent, 0.9), 20, 1.5 * scale)
 
     def _colors(self, frame: Frame, rows: tuple[Row, ...]) -> dict[Lane, tuple[int, int]]:
         """What curves are drawn with inside and outside of their keys."""
         of = frame.rows, rows, frame.editor.palette
-        if len(self._inks[0]) != 3 or any(a is not b for a, b in zip(of, self._inks[0], strict=True)):
+        if not _same(self._inks_of, of):
+            self._inks_of, self._inks = of, {}
             shown = {row.port for row in rows}
-            found: dict[Lane, tuple[int, int]] = {}
             for place, row in enumerate(row for row in frame.rows if row.port):
                 for channel in range(len(row.channels) or 1):
                     if row.port and row.port in shown:
                         color = color_of(frame.editor, row, channel, place)
-                        found[row.port, channel] = u32(color), u32(color, 0.32)
-            self._inks = of, found
-        return self._inks[1]
+                        self._inks[row.port, channel] = u32(color), u32(color, 0.32)
+        return self._inks
 
     def grid(self, frame: Frame) -> None:
         """Lines of values."""
@@ -189,3 +187,7 @@ class Plot:
             draw.add_line(tip.root, (tip.x, tip.y), line, 1.25 * scale)
             draw.add_circle_filled((tip.x, tip.y), 3.5 * scale, fill, 12)
             draw.add_circle_filled((tip.x, tip.y), 1.9 * scale, u32(palette.canvas), 10)
+
+
+def _same(before: tuple[object, ...], now: tuple[object, ...]) -> bool:
+    return len(before) == len(now) and all(a is b for a, b in zip(before, now, strict=True))

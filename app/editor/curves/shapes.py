@@ -80,28 +80,28 @@ def number(value: object, channel: int) -> float:
     return float(part) if isinstance(part, int | float) else 0.0
 
 
-def within(curve: Pieces, first: float, last: float) -> Pieces:
-    """The pieces of a curve that have a part between two frames."""
-    low, high = np.searchsorted(curve[:, 3, 0], first), np.searchsorted(curve[:, 0, 0], last, "right")
-    return curve[low:high]
+def is_straight(curve: Pieces) -> NDArray[np.bool_]:
+    """Which pieces have both handles at their ends."""
+    return (curve[:, 0] == curve[:, 1]).all(axis=1) & (curve[:, 2] == curve[:, 3]).all(axis=1)
 
 
-def on_screen(curves: Sequence[Pieces], plane: Plane) -> tuple[Pieces, NDArray[np.bool_]]:
-    """All pieces in pixels, and which of them are bent where they can be seen."""
-    screen = np.concatenate([np.empty((0, 4, 2)), *curves])
-    screen[..., 0] = plane.rect[0] + (screen[..., 0] - plane.view.first) * plane.across
-    screen[..., 1] = np.clip(plane.rect[3] - (screen[..., 1] - plane.view.low) * plane.up, -1e6, 1e6)
-    heights = screen[..., 1]
-    hidden = (heights.max(axis=1, initial=-np.inf) < plane.rect[1]) | (heights.min(axis=1, initial=np.inf)
-                                                                         > plane.rect[3])
-    straight = (screen[:, 0] == screen[:, 1]).all(axis=1) & (screen[:, 2] == screen[:, 3]).all(axis=1)
-    return screen, ~(hidden | straight)
+def on_screen(
+    curve: Pieces, plane: Plane, straight: NDArray[np.bool_] | None = None
+) -> tuple[Pieces, NDArray[np.bool_]]:
+    """Pieces in pixels, and which of them are bent where they can be seen."""
+    screen = np.empty_like(curve)
+    screen[..., 0] = plane.rect[0] + (curve[..., 0] - plane.view.first) * plane.across
+    screen[..., 1] = np.clip(plane.rect[3] - (curve[..., 1] - plane.view.low) * plane.up, -1e6, 1e6)
+    tops, bottoms = screen[..., 1].min(axis=1, initial=np.inf), screen[..., 1].max(axis=1, initial=-np.inf)
+    unseen = (bottoms < plane.rect[1]) | (tops > plane.rect[3])
+    return screen, ~(unseen | (is_straight(curve) if straight is None else straight))
 
 
 def points(curves: Sequence[Pieces], plane: Plane) -> list[Line]:
     """Every curve as points on the screen, as far as it is seen: none where nothing of it is."""
-    kept = [within(curve, plane.view.first, plane.view.last) for curve in curves]
-    screen, bent = on_screen(kept, plane)
+    view = plane.view
+    kept = [curve[(curve[:, 3, 0] >= view.first) & (curve[:, 0, 0] <= view.last)] for curve in curves]
+    screen, bent = on_screen(np.concatenate([np.empty((0, 4, 2)), *kept]), plane)
     if not len(screen):
         return [np.empty((0, 2)) for _ in kept]
     p0, p1, p2, p3 = (screen[:, place] for place in range(4))

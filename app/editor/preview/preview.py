@@ -232,7 +232,7 @@ class Preview:
     @property
     def _has_more(self) -> bool:
         skimmed = self._round is not None and self._round.skimmed and not self.skims
-        draws = skimmed or self.thumbnailing and self._thumbnails.waiting and not self.skims
+        draws = skimmed or (self.thumbnailing and self._thumbnails.waiting and not self.skims)
         return self.busy or draws or self._job is not None or self._looks_ahead
 
     def _is_behind(self) -> bool:
@@ -317,7 +317,7 @@ class Preview:
         try:
             self._job = Job(self.renderer, now.wish, ports, frame, self.timed, ahead)
         except HalationError as error:
-            return self._ended(now, ports, ahead, error)
+            return self._ended(now, ports, frame if ahead else None, error)
         if self._job.plan is not None and not ahead:
             self._cameras |= self._job.plan.cameras
         return True
@@ -331,7 +331,7 @@ class Preview:
         except HalationError as error:
             job.close()
             self._job = None
-            self._ended(now, job.ports, job.ahead, error)
+            self._ended(now, job.ports, job.frame if job.ahead else None, error)
             return
         if done and job.plan is not None:
             self._job, self.seconds = None, time.perf_counter() - job.began
@@ -339,10 +339,10 @@ class Preview:
             self._finished(now, job, job.plan)
             self._settle(now)
 
-    def _ended(self, now: _Round, ports: Mapping[str, Port], ahead: bool, error: HalationError) -> bool:
+    def _ended(self, now: _Round, ports: Mapping[str, Port], ahead: int | None, error: HalationError) -> bool:
         """What could not be done: it must wait, or be tried otherwise, or is wrong. False if it must wait."""
-        if ahead:
-            now.wish.take.hopeless.add(self.ahead if self.ahead is not None else now.wish.frame)
+        if ahead is not None:
+            now.wish.take.hopeless.add(ahead)
         elif isinstance(error, Pending):
             now.queue.insert(0, ports)
             now.pending = error

@@ -1,147 +1,77 @@
-"""Renders to files in a process of its own: the interface stays quick, and a fault there harms nothing here."""
+"""Renders to files in processes of their own: the interface stays quick, and a fault there harms nothing here."""
 
 from __future__ import annotations
 
-import contextlib
-import json
 import os
-import signal
-import subprocess
 import sys
-import threading
-import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from threading import RLock
 
 from ... import document
 from ...compiler import Precision
-from ...errors import OutputError, UsageError
+from ...errors import UsageError
 from ...graph import Graph
-from ...media.store import part_prefix
+from ...graph.frames import format_frames
+from .export import Export, Job, State
 
-State = Literal["running", "done", "failed", "cancelled"]
-
-_PATIENCE = 0.6
-"""Seconds that a render may take to stop by itself."""
+__all__ = ["Export", "Exports", "Options", "State"]
 
 
 @dataclass(frozen=True)
 class Options:
-    """What to render and how to write it, as `halation render` has it."""
+    """What to render and how to write it, as `halation render` has it. Without `frames`, the first of the graph."""
 
     node: str = ""
     size: tuple[int, int] | None = None
     scale: float = 1.0
-    frame: int = 1
+    frames: tuple[int, ...] = ()
     precision: Precision | None = None
     view: str = ""
     compression: str = "zip"
+    jobs: int = 1
+    resume: bool = False
 
     def words(self) -> Iterator[str]:
         """The flags for it."""
-        yield from (f"--scale={self.scale!r}", f"--frame={self.frame}", f"--compression={self.compression}")
+        yield from (f"--scale={self.scale!r}", f"--compression={self.compression}")
+        if self.frames:
+            yield f"--frames={format_frames(self.frames)}"
         if self.size:
             yield f"--size={self.size[0]}x{self.size[1]}"
+        if self.jobs > 1:
+            yield f"--jobs={self.jobs}"
+        if self.resume:
+            yield "--resume"
         for flag, text in (("node", self.node), ("precision", self.precision), ("view", self.view)):
             if text:
                 yield f"--{flag}={text}"
 
 
-class Export:
-    """One render that is under way. Everything may be read at any time.
-
-    `done` and `total` count passes and `node` is what was rendered last; after the last pass files are written.
-    `sentence` says why it failed, `notes` what else there is to know, `written` what there is now.
-    """
-
-    def __init__(self, process: subprocess.Popen[str], text: str, destinations: Sequence[tuple[str, Path]]) -> None:
-        self.destinations = tuple(destinations)
-        self.started = time.monotonic()
-        self.state: State = "running"
-        self.done = self.total = 0
-        self.node = self.sentence = ""
-        self.notes: tuple[str, ...] = ()
-        self.written: tuple[Path, ...] = ()
-        self._process = process
-        self._cancelled = False
-        self._thread = threading.Thread(target=self._follow, args=(text,), name="export", daemon=True)
-        self._thread.start()
-
-    def cancel(self) -> None:
-        """Stop it, within a second; files stay as they were. Nothing happens if it has ended."""
-        if self.state != "running" or self._cancelled:
-            return
-        self._cancelled = True
-        # Killed at once, it could not remove what it had begun to write. It may be busy, so it gets a moment.
-        if sys.platform != "win32":
-            self._process.send_signal(signal.SIGINT)
-        deadline = threading.Timer(_PATIENCE if sys.platform != "win32" else 0.0, self._process.kill)
-        deadline.daemon = True
-        deadline.start()
-
-    def wait(self, timeout: float | None = None) -> bool:
-        """Wait until it has ended, at most `timeout` seconds; False if it has not."""
-        self._thread.join(timeout)
-        return not self._thread.is_alive()
-
-    # --- on the thread of its own ------------------------------------------------------------------------------
-
-    def _follow(self, text: str) -> None:
-        with self._process as process:
-            assert process.stdin and process.stdout and process.stderr
-            with contextlib.suppress(OSError):  # it may end before it has read everything
-                process.stdin.write(text)
-            with contextlib.suppress(OSError):
-                process.stdin.close()
-            for line in process.stderr:
-                self._hear(line.rstrip())
-            said = process.stdout.read()
-        self._tidy()
-        self._end(process.returncode, said)
-
-    def _hear(self, line: str) -> None:
-        """One line of what the process tells."""
-        with contextlib.suppress(ValueError, KeyError, TypeError, IndexError):
-            told = json.loads(line)
-            self.node, self.done, self.total = str(told["nodes"][-1]), int(told["pass"]), int(told["passes"])
-            return
-        if line:
-            self.notes = (*self.notes, line.removeprefix("-: "))
-
-    def _end(self, code: int, said: str) -> None:
-        report: dict[str, Any] = {}
-        with contextlib.suppress(ValueError):
-            report = json.loads(said)
-        if code == 0:
-            self.written = tuple(Path(path) for path in report.get("written", ()))
-            self.state = "done"
-        elif self._cancelled:
-            self.state = "cancelled"
-        else:
-            fault = report.get("error", {}).get("message") or (self.notes[-1] if self.notes else "it gave no reason")
-            self.sentence = str(fault).removeprefix("-: ") if code > 0 else f"the export was ended by signal {-code}"
-            self.state = "failed"
-
-    def _tidy(self) -> None:
-        """Remove what the process had not finished when it was killed."""
-        for folder in {Path(os.path.realpath(path)).parent for _, path in self.destinations}:
-            for part in folder.glob(f"{part_prefix(self._process.pid)}*"):
-                with contextlib.suppress(OSError):
-                    part.unlink()
-
-
 class Exports:
-    """The exports of one editor."""
+    """The exports of one editor: so many run `at_once`, the others wait in their order."""
 
-    def __init__(self) -> None:
+    def __init__(self, at_once: int = 1) -> None:
         self.all: tuple[Export, ...] = ()
+        self.at_once = at_once
+        self._lock = RLock()
+        self._closed = False
 
     @property
     def running(self) -> tuple[Export, ...]:
-        """Those that have not ended."""
+        """Those that are computed now."""
         return tuple(one for one in self.all if one.state == "running")
+
+    @property
+    def waiting(self) -> tuple[Export, ...]:
+        """Those whose turn is still to come, the next one first."""
+        return tuple(one for one in self.all if one.state == "waiting")
+
+    @property
+    def unfinished(self) -> tuple[Export, ...]:
+        """Those that run or wait."""
+        return tuple(one for one in self.all if one.state in ("running", "waiting"))
 
     def start(
         self, graph: Graph, destinations: Sequence[tuple[str, Path]], bindings: Mapping[str, object] | None = None,
@@ -149,42 +79,68 @@ class Exports:
     ) -> Export:
         """Render the graph as it is now, saved or not, to pairs of an output's name and a file; "" is all outputs.
 
-        `bindings` are files for graph inputs. Raises UsageError, OutputError, and GraphError for what JSON cannot hold.
+        `bindings` are files for graph inputs. It waits for those before it. Raises UsageError, and GraphError for what
+        JSON cannot hold.
         """
         if not destinations:
             raise UsageError("nothing says where to write: choose a file")
-        files = [(name, path.absolute()) for name, path in destinations]
-        words = [
-            # -P: a folder with graphs in it is no place to import modules from.
-            sys.executable, "-P", "-m", "halation.app.cli", "render", "-", "--json", "--progress=json",
-            *options.words(),
-        ]
+        files = tuple((name, path.absolute()) for name, path in destinations)
+        # -P: a folder with graphs in it is no place to import modules from.
+        words = [sys.executable, "-P", "-m", "halation.app.cli", "render", "-", "--json", "--progress=json"]
         for name, path in files:
             words += ["-o", f"{name}={path}" if name else str(path)]
         for name, item in (bindings or {}).items():
             if not isinstance(item, str | Path):
                 raise UsageError(f"input '{name}' is filled from memory, which an export cannot see: save it to a file")
             words += ["-i", f"{name}={os.path.abspath(item)}"]  # noqa: PTH100 - a layer may follow the path
-        text, folder = document.dumps(graph), graph.folder or "."
-        try:
-            process = subprocess.Popen(
-                words, cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                encoding="utf-8", errors="surrogateescape", env={**os.environ, "PYTHONIOENCODING": "utf-8"},
-                start_new_session=True,
-            )
-        except OSError as fault:
-            raise OutputError(f"the export cannot be started: {fault.filename or ''} {fault.strerror}") from None
-        self.all = (*self.all, Export(process, text, files))
-        return self.all[-1]
+        words += options.words()
+        frames = options.frames or (0,)
+        return self._queue(Job(tuple(words), document.dumps(graph), graph, files, frames, options.jobs))
+
+    def again(self, export: Export) -> Export:
+        """Go on with one that has ended, in its place: frames that are finished and would be the same are kept."""
+        if export not in self.all or export in self.unfinished:
+            return export
+        words = tuple(word for word in export.job.words if word != "--resume")
+        return self._queue(replace(export.job, words=(*words, "--resume")), export)
+
+    def move(self, export: Export, by: int) -> None:
+        """Let one that waits have its turn earlier or later."""
+        with self._lock:
+            line = list(self.waiting)
+            if export not in line:
+                return
+            place = line.index(export)
+            line.insert(min(max(place + by, 0), len(line) - 1), line.pop(place))
+            turns = iter(line)
+            self.all = tuple(next(turns) if one.state == "waiting" else one for one in self.all)
 
     def clear(self) -> None:
         """Forget those that have ended."""
-        self.all = self.running
+        with self._lock:
+            self.all = self.unfinished
 
     def close(self, wait: bool = False) -> None:
-        """Cancel what is running, or wait for it."""
-        for one in self.running:
-            if not wait:
+        """Cancel what runs and waits, or wait for it."""
+        if not wait:
+            self._closed = True
+            for one in reversed(self.unfinished):
                 one.cancel()
         for one in self.all:
             one.wait()
+
+    def _queue(self, job: Job, instead: Export | None = None) -> Export:
+        made = Export(job, self._go_on)
+        with self._lock:
+            if instead is None:
+                self.all = (*self.all, made)
+            else:
+                self.all = tuple(made if one is instead else one for one in self.all)
+        self._go_on()
+        return made
+
+    def _go_on(self) -> None:
+        """Begin with the next ones; also called on the threads of those that end."""
+        with self._lock:
+            while not self._closed and self.waiting and len(self.running) < self.at_once:
+                self.waiting[0].begin()

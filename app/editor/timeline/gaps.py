@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 from ...compiler import named_files
@@ -43,10 +44,8 @@ class Missing:
 def gaps_of(graph: Graph, bindings: Mapping[str, str]) -> Gaps:
     """The gaps of every sequence that a graph reads; what cannot be looked at has none."""
     paths = [split_layer(file)[0] for file in bindings.values()]
-    try:
+    with suppress(HalationError):
         paths += [path for path, owner, _ in named_files(graph, {}) if owner.removeprefix("inputs.") not in bindings]
-    except HalationError:
-        pass
     found: set[tuple[int, int]] = set()
     for path in dict.fromkeys(paths):
         try:

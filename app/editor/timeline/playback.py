@@ -112,8 +112,8 @@ class Playback:
             return self.frame
         place = self._place + 1 if course.every else due
         if under_way is not None:
-            coming = next((at for at in range(self._place + 1, self._place + 1 + FURTHEST) if course.at(at) == under_way),
-                          place)
+            near = range(self._place + 1, self._place + 1 + FURTHEST)
+            coming = next((at for at in near if course.at(at) == under_way), place)
             if coming > due:
                 return self.frame
             place = coming if not course.every else place

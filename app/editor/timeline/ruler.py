@@ -180,8 +180,8 @@ def _handle(editor: Editor, plane: Plane, x: float, y: float) -> Hold:
         return ""
     low, high = editor.timeline.span(editor.session)
     ends: tuple[tuple[Hold, float], ...] = (("in", plane.x(low - 0.5)), ("out", plane.x(high + 0.5)))
-    near = [(abs(x - at), name) for name, at in ends if abs(x - at) <= NEAR * ui_scale()]
-    return min(near)[1] if near else ""
+    name, at = min(ends, key=lambda end: abs(x - end[1]))
+    return name if abs(x - at) <= NEAR * ui_scale() else ""
 
 
 def _handles(editor: Editor, plane: Plane, low: int, high: int) -> None:
@@ -210,9 +210,9 @@ def _now(editor: Editor, plane: Plane, held: bool) -> None:
         half = imgui.calc_text_size(text).x * 0.5 + 5.0 * scale
         middle = min(max(x, left + half), right - half)
         high = imgui.get_font_size() + 3.0 * scale
-        draw.add_rect_filled((middle - half, top + 1.0), (middle + half, top + 1.0 + high), u32(palette.accent),
-                             3.0 * scale)
-        draw.add_text((round(middle - half + 5.0 * scale), round(top + 1.0 + 1.0 * scale)), u32(palette.on_accent), text)
+        box = (middle - half, top + 1.0), (middle + half, top + 1.0 + high)
+        draw.add_rect_filled(*box, u32(palette.accent), 3.0 * scale)
+        draw.add_text((round(box[0][0] + 5.0 * scale), round(top + 1.0 + scale)), u32(palette.on_accent), text)
     editor.places["ruler now"] = (middle - half, top, middle + half, top + high)
 
 

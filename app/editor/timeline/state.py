@@ -29,6 +29,8 @@ class TimelineState:
     """The frames that are seen, at the borders of the ruler; None for all."""
     scrubbing: bool = False
     hovered: bool = False
+    tapped: bool = False
+    """True while Space is held and nothing else was done meanwhile."""
     report: str = ""
     """How playing went last."""
 

@@ -97,7 +97,8 @@ class Timeline:
         tool(editor, icons.ICON_FA_FORWARD_FAST, "time.last")
         imgui.same_line()
         action = editor.actions[f"time.{timeline.loop.replace('-', '_')}"]
-        if quiet(editor, _LOOPS[timeline.loop], "button time.loops", f"{tip_of(editor, action)}\nClick for another way"):
+        doc = f"{tip_of(editor, action)}\nClick for another way"
+        if quiet(editor, _LOOPS[timeline.loop], "button time.loops", doc):
             timeline.next_loop()
 
     def _frame(self, editor: Editor, width: float) -> None:
@@ -111,25 +112,22 @@ class Timeline:
         session = editor.session
         first, last = session.frames
         stated = session.settings.frames is not None
-        doc = "frame of the graph" + ("" if stated else ": that of what it reads or of its keys; a number here states it")
-        edit = self._number(editor, "timeline first", first, 52.0 * scale, f"First {doc}")
-        if edit and isinstance(edit.value, int | float):
-            value = int(edit.value)
-            editor.attempt(lambda: session.set_frames(value, max(last, value), merge=edit.merge))
-        imgui.same_line(0.0, 3.0 * scale)
-        edit = self._number(editor, "timeline last", last, 52.0 * scale, f"Last {doc}")
-        if edit and isinstance(edit.value, int | float):
-            value = int(edit.value)
-            editor.attempt(lambda: session.set_frames(min(first, value), value, merge=edit.merge))
-        imgui.same_line(0.0, 8.0 * scale)
+        doc = "frame of the graph" + ("" if stated else ": as what it reads, or its keys, say; a number here states it")
+        for name, value, gap in (("first", first, 3.0), ("last", last, 8.0)):
+            edit = self._number(editor, f"timeline {name}", value, 52.0 * scale, f"{name.title()} {doc}")
+            imgui.same_line(0.0, gap * scale)
+            if edit and isinstance(edit.value, int | float):
+                at, merge = int(edit.value), edit.merge
+                low, high = (at, max(last, at)) if name == "first" else (min(first, at), at)
+                editor.attempt(lambda low=low, high=high, merge=merge: session.set_frames(low, high, merge=merge))
         rate = number_field(
             self._fields, "timeline rate", session.settings.rate, _RATE, 76.0 * scale, suffix="fps"
         )
         editor.places["field timeline rate"] = item_rect()
         tip("Frames per second of the graph")
         if rate and isinstance(rate.value, int | float):
-            value = float(rate.value)
-            editor.attempt(lambda: session.set_rate(value, merge=rate.merge))
+            value, merge = float(rate.value), rate.merge
+            editor.attempt(lambda: session.set_rate(value, merge=merge))
 
     def _number(self, editor: Editor, id: str, value: int, width: float, doc: str) -> Edit | None:
         edit = number_field(self._fields, id, value, _FRAME, width)

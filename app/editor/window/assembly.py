@@ -7,6 +7,8 @@ from pathlib import Path
 
 from imgui_bundle import imgui
 
+from ...graph import Graph
+from ...media.pictures import Pictures
 from ...renderer import Device, Renderer
 from ...renderer.display import Display
 from ...renderer.probe import Probe
@@ -37,13 +39,19 @@ def assemble(device: Device, state: Path | None = None) -> Editor:
     folder = state or state_folder()
     store = Store(folder)
     renderer = Renderer(device, budget=store.now.memory_budget * 2**20)
-    renders = Renders()
+    renders, session = Renders(), Session()
+    session.measure = _measure
     renderer.pictures.look = renders.render
     display = Display(device)
     return Editor(
-        Session(), Preview(renderer, display), store, Actions(table(), lambda: store.now.shortcuts), Exports(),
+        session, Preview(renderer, display), store, Actions(table(), lambda: store.now.shortcuts), Exports(),
         Recovery(folder, store.now.autosave), Watcher(), SystemClipboard(), display, Probe(device), renders=renders,
     )
+
+
+def _measure(graph: Graph, bindings: Mapping[str, str]) -> tuple[int, int]:
+    pictures = Pictures()
+    return pictures.frames(graph, pictures.bind(graph, bindings))
 
 
 def open_first(editor: Editor, path: Path | None, bindings: Mapping[str, str]) -> None:

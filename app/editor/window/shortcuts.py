@@ -17,15 +17,43 @@ def note_scope(editor: Editor) -> None:
 def run_shortcuts(editor: Editor) -> None:
     """Do what the keys pressed in this frame ask for; keys that go into a text field do nothing else."""
     if editor.dialogs.any or imgui.get_io().want_text_input or imgui.is_popup_open("", _ANY_POPUP):
+        editor.timeline.tapped = False
         return
+    if imgui.is_key_pressed(imgui.Key.space, False):
+        editor.timeline.tapped = True
+    for button in range(3):
+        editor.timeline.tapped &= not imgui.is_mouse_down(button)
+    done = False
     for action in editor.actions.all:
         text = editor.actions.shortcut(action.id)
-        flags = _ROUTE | _REPEAT if action.repeats else _ROUTE
-        if text and action.scope in ("", editor.scope) and imgui.shortcut(chord(text), flags):
+        if not done and text and action.scope in ("", editor.scope) and _pressed(editor, text, action.repeats):
             editor.actions.run(action.id, editor)
-            return
+            done = True
+    for key in _TAKEN:
+        imgui.internal.set_key_owner(key, _OURS)
+
+
+def _pressed(editor: Editor, text: str, repeats: bool) -> bool:
+    keys = chord(text)
+    key = imgui.Key(keys & ~_MODIFIERS)
+    if key not in _TAKEN:
+        return imgui.shortcut(keys, _ROUTE | _REPEAT if repeats else _ROUTE)
+    if int(imgui.get_io().key_mods) != keys & _MODIFIERS:
+        return False
+    if key == imgui.Key.space:  # held, it lets the mouse pan
+        return editor.timeline.tapped and imgui.is_key_released(key)
+    return imgui.is_key_pressed(key, repeats)
 
 
 _ROUTE = int(imgui.InputFlags_.route_global)
 _REPEAT = int(imgui.InputFlags_.repeat)
 _ANY_POPUP = int(imgui.PopupFlags_.any_popup)
+_MODIFIERS = sum(int(item) for item in (
+    imgui.Key.mod_ctrl, imgui.Key.mod_shift, imgui.Key.mod_alt, imgui.Key.mod_super
+))
+_TAKEN = (
+    imgui.Key.space, imgui.Key.left_arrow, imgui.Key.right_arrow, imgui.Key.up_arrow, imgui.Key.down_arrow
+)
+"""Keys that would press buttons, or move on to the next one, if they were not ours."""
+
+_OURS = 0x48414C41

@@ -71,6 +71,8 @@ def _figures(editor: Editor) -> str:
     parts = [f"{count} node{'' if count == 1 else 's'}", f"{used / 2**20:.0f} of {budget / 2**20:.0f} MiB"]
     if editor.preview.paused:
         parts.insert(0, f"{icons.ICON_FA_PAUSE} paused")
+    elif lead := editor.preview.lead:
+        parts.insert(0, f"{'pre-roll' if lead[0] == 'pre-roll' else 'planning'} {lead[1]} of {lead[2]}")
     elif editor.preview.busy:
         parts.insert(0, f"pass {done} of {total}")
     return "   ".join(parts)

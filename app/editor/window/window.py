@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from imgui_bundle import glfw_utils, hello_imgui, imgui
+from imgui_bundle import ImVec2, glfw_utils, hello_imgui, imgui
 
 import glfw  # isort: skip
 
@@ -18,6 +18,7 @@ from ..dialogs import Browse
 from ..editor import Editor
 from ..theme import fonts, style
 from ..theme.palette import Palette
+from ..timeline.timeline import HEIGHT, Timeline
 from .arriving import arrived
 from .assembly import assemble, open_first, take_apart
 from .guard import failed, forgive, guarded
@@ -46,6 +47,7 @@ class Window:
         self.editor: Editor
         self._panels: dict[str, Panel] = {}
         self._overlays: dict[str, Panel] = {}
+        self._timeline = Timeline()
         self._heartbeat = Heartbeat()
         self._dropped: list[str] = []
         self._title = ""
@@ -87,6 +89,8 @@ class Window:
         calls.post_new_frame = self._before_panels
         calls.show_menus = self._draw_menus
         calls.show_status = self._draw_status
+        bar = hello_imgui.EdgeToolbarOptions(size_em=HEIGHT / style.EM, window_padding_em=ImVec2(0.0, 0.0))
+        calls.add_edge_toolbar(hello_imgui.EdgeToolbarType.bottom, self._draw_timeline, bar)
         calls.show_gui = self._draw_overlays
         calls.before_imgui_render = self._after_panels
         calls.confirm_exit = self._confirm_exit
@@ -161,7 +165,8 @@ class Window:
             self.params.app_shall_exit = True
         self._serve_requests()
         resting = self.params.fps_idling
-        resting.enable_idling = not (editor.preview.busy and not editor.preview.paused)
+        computes = editor.preview.busy and not editor.preview.paused
+        resting.enable_idling = not (computes or editor.timeline.playback.playing)
         resting.fps_idle = 10.0 if editor.exports.running or editor.dialogs.any else 2.0
 
     def _draw_menus(self) -> None:
@@ -173,6 +178,9 @@ class Window:
 
     def _draw_status(self) -> None:
         guarded(self.editor, "Status", lambda: draw_status(self.editor))
+
+    def _draw_timeline(self) -> None:
+        self._draw_inside("Timeline")
 
     def _draw_panel(self, docked: Docked) -> None:
         host = self.params.docking_params.dockable_window_of_name(docked.title)
@@ -192,7 +200,8 @@ class Window:
         if title in self.editor.faults:
             failed(self.editor, title)
         else:
-            guarded(self.editor, title, lambda: self._panels[title].draw(self.editor))
+            panel = self._timeline if title == "Timeline" else self._panels[title]
+            guarded(self.editor, title, lambda: panel.draw(self.editor))
 
     def _draw_overlays(self) -> None:
         for name, overlay in self._overlays.items():

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from halation.app.editor.curves.hits import Entries, Lanes, boxed, line_at, nearest, sheet_marks, tips
+from halation.app.editor.curves.bundle import Bundles
+from halation.app.editor.curves.hits import Entries, boxed, line_at, nearest, sheet_marks, tips
 from halation.app.editor.curves.plane import Plane, View
 from halation.app.editor.curves.rows import rows
 from halation.app.graph import Graph, Key, Keys, Port
@@ -41,11 +42,20 @@ def test_keys_of_the_sheet() -> None:
 
 def test_keys_and_handles_of_curves() -> None:
     found = graph()
-    lanes = Lanes().marks(rows(found), {(TINT, 3)}, PLANE)
-    assert [lane for lane, _ in lanes] == [(GAIN, 0), (TINT, 0), (TINT, 1), (TINT, 2)]
-    marks = [mark for _, some in lanes for mark in some]
-    assert len(marks) == 2 + 3 * 2
-    assert nearest(marks, 99.0, 301.0, 6.0).spots <= {(GAIN, 10.0, 0), (TINT, 10.0, 0)}
+    made = Bundles()
+    bundle = made.make(rows(found), {(TINT, 3)})
+    assert bundle.lanes == ((GAIN, 0), (TINT, 0), (TINT, 1), (TINT, 2))
+    assert made.make(rows(found), ()).shapes[1] is bundle.shapes[1]
+    seen = bundle.seen(PLANE)
+    assert len(seen.marks()) == 2 + 3 * 2
+    for chosen in ((GAIN, 10.0, 0), (TINT, 10.0, 0)):
+        assert seen.near(99.0, 301.0, 6.0, {chosen}).spots == {chosen}
+    assert seen.near(99.0, 320.0, 6.0, ()) is None
+    middle = found.animation[GAIN].at(30)
+    assert seen.lane_at(PLANE.x(30.0), PLANE.y(middle) + 3.0, 5.0) == (GAIN, 0)
+    of, _, bent, cuts = bundle.ends(PLANE)
+    assert of == [0, 1, 1, 2, 2, 3, 3] and cuts == list(range(8)) and not bent.any()
+    assert Bundles().make((), ()).seen(PLANE).marks() == []
     ends = tips(found.animation, [(GAIN, 40.0, 0), (TINT, 10.0, 0), (GAIN, 77.0, 0)], (), PLANE)
     assert [tip.side for tip in ends] == ["left", "right"]
     left, right = found.animation[GAIN].handles(40.0)
