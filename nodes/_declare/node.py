@@ -119,5 +119,6 @@ class Reader(Source):
 class Temporal(Filter):
     """A filter that owns history: `draw.history` gives what `draw.remember` kept of the frame before.
 
-    The first frame of the graph's range has none, nor has any before it.
+    The first frame of the graph's range has none, nor has any before it. It is never neutral: values may be keyed, and
+    a frame that they do not change is remembered too.
     """

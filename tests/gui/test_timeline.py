@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
-from halation.app.graph import Graph, Keys, Output, Port, Settings
+from halation.app.graph import Expression, Graph, Output, Port, Settings
 from halation.app.renderer import Reel, Wanted
 from halation.nodes import catalogue
 
@@ -74,5 +75,251 @@ def test_scrubbing_shows_other_frames(gui, tmp_path) -> None:
         np.testing.assert_array_equal(seen(ui), first)
         assert len(ui.session.history.steps) == steps, "the frame is no part of the document"
         assert {1, 12} <= set(ui.editor.preview.frames)
+
+    gui(body)
+
+
+def test_playing_goes_on_loops_and_stops(gui, tmp_path) -> None:
+    path = shot(tmp_path)
+
+    def body(ui) -> None:
+        start(ui, graph_of(path, "exposure", frames=(1, 12), rate=24.0))
+        timeline, frames = ui.editor.timeline, []
+        ui.move("Viewer")
+        ui.keys("Space")
+        assert timeline.playback.playing and not ui.window.params.fps_idling.enable_idling
+        shown = set()
+
+        def looped() -> bool:
+            frames.append(ui.session.frame)
+            shown.add(ui.editor.preview.shown("A").frame)
+            return any(after < before for before, after in pairwise(frames)) and len(shown) > 3
+
+        ui.until(looped)
+        ui.shot("playing.png")
+        ui.until(lambda: set(ui.editor.preview.frames) == set(range(1, 13)), 60.0)
+        ui.wait(20)
+        assert "of 24 fps" in timeline.playback.words and timeline.playback.rate > 1.0
+        ui.keys("Space")
+        assert not timeline.playback.playing and timeline.report
+        ui.settled()
+        assert ui.window.params.fps_idling.enable_idling
+        here = ui.session.frame
+        ui.keys("RightArrow")
+        assert ui.session.frame == here % 12 + 1
+        ui.keys("Shift+LeftArrow")
+        assert ui.session.frame == 1
+        ui.keys("LeftArrow")
+        assert ui.session.frame == 12, "round the corner"
+        ui.settled()
+        ui.shot("ready.png")
+
+        ui.click("button time.loops")
+        assert timeline.loop == "once"
+        ui.keys("Shift+LeftArrow")
+        ui.click("button time.play")
+        ui.until(lambda: not timeline.playback.playing)
+        assert ui.session.frame == 12
+
+        ui.drag("ruler in", ui.at("ruler", (0.34, 0.1)))
+        assert timeline.part is not None and timeline.part[1] == 12 and timeline.span(ui.session)[0] > 3
+        ui.keys("Shift+LeftArrow")
+        assert ui.session.frame == timeline.part[0]
+        ui.shot("part.png")
+
+        ui.click("field timeline frame")
+        ui.type("7")
+        assert ui.session.frame == 7
+        ui.move("ruler")
+        ui.wheel(4.0)
+        low, high = timeline.view
+        assert high - low < 11.0
+        ui.drag("ruler", ui.at("ruler", (0.7, 0.5)), button=2)
+        assert timeline.view[0] < low and ui.session.frame == 7
+        steps = len(ui.session.history.steps)
+        ui.click("field timeline last")
+        ui.type("9")
+        assert ui.session.frames == (1, 9) and len(ui.session.history.steps) == steps + 1
+        ui.keys("Ctrl+Z")
+        assert ui.session.frames == (1, 12)
+
+    gui(body)
+
+
+def test_keys_by_diamond_and_by_dragging(gui, tmp_path) -> None:
+    path, stops = shot(tmp_path), Port("exposure", "stops")
+
+    def body(ui) -> None:
+        session = ui.session
+        start(ui, graph_of(path, "exposure", frames=(1, 12)))
+        session.select(["exposure"])
+        ui.wait(3)
+        first = seen(ui)
+        ui.click("diamond exposure.stops")
+        assert session.key_at(stops).value == 0.0
+        ui.keys("Shift+RightArrow")
+        ui.settled()
+        steps = len(session.history.steps)
+        x, y = ui.at("field exposure.stops")
+        ui.drag((x, y), (x + 40.0, y))
+        assert len(session.history.steps) == steps + 1
+        assert session.animation(stops).frames == (1.0, 12.0) and session.key_at(stops).value > 0.2
+        ui.settled()
+        bright = seen(ui)
+        ui.keys("DownArrow")
+        assert session.frame == 1
+        ui.settled()
+        np.testing.assert_array_equal(seen(ui), first)
+        session.seek(6)
+        ui.settled()
+        assert 0.0 < session.value_now(stops) < session.animation(stops).keys[1].value
+        ui.move("diamond exposure.stops")
+        ui.shot("keys.png")
+        ui.keys("UpArrow")
+        assert session.frame == 12
+        ui.settled()
+        np.testing.assert_array_equal(seen(ui), bright)
+        ui.keys("Ctrl+Z")
+        assert session.animation(stops).frames == (1.0,), "a drag is one step"
+
+        session.seek(5)
+        ui.wait(3)
+        x, y = ui.at("field exposure.stops")
+        ui.drag((x, y), (x + 40.0, y), release=False)
+        assert session.animation(stops).frames == (1.0, 5.0)
+        ui.keys("Escape")
+        ui.ctx.mouse_up(0)
+        ui.wait(3)
+        assert session.animation(stops).frames == (1.0,), "and none if it is cancelled"
+
+        ui.click("diamond exposure.stops")
+        assert session.animation(stops).frames == (1.0, 5.0)
+        ui.click("diamond exposure.stops", button=1)
+        ui.shot("menu.png")
+        ui.click("menu Copy Animation")
+        ui.click("diamond exposure.stops", button=1)
+        ui.click("menu Remove All Keys")
+        assert session.animation(stops) is None
+        ui.click("diamond exposure.stops", button=1)
+        ui.click("menu Paste Animation")
+        assert session.animation(stops).frames == (1.0, 5.0)
+        ui.double_click("name exposure.stops")
+        assert session.animation(stops) is None
+
+    gui(body)
+
+
+def test_an_expression_is_typed_after_an_equals_sign(gui, tmp_path) -> None:
+    path, stops = shot(tmp_path), Port("exposure", "stops")
+
+    def body(ui) -> None:
+        session = ui.session
+        start(ui, graph_of(path, "exposure", frames=(1, 12)))
+        session.select(["exposure"])
+        ui.wait(3)
+        ui.click("field exposure.stops")
+        ui.type("=sin(frame / 12 * tau) * 2")
+        assert isinstance(session.animation(stops), Expression)
+        session.seek(4)
+        ui.settled()
+        assert abs(session.value_now(stops) - 1.732) < 0.001
+        ui.move("ruler")
+        ui.shot("expression.png")
+        ui.click("field exposure.stops")
+        ui.type("frame / (2 +")
+        assert session.animation(stops).text == "sin(frame / 12 * tau) * 2", "what was there goes on"
+        ui.shot("expression_fault.png")
+        ui.editor.store.change(theme="light")
+        ui.wait(4)
+        ui.shot("expression_light.png")
+        ui.editor.store.change(theme="dark")
+        ui.click("field exposure.stops")
+        ui.type("frame / 8")
+        assert session.animation(stops).text == "frame / 8"
+        ui.click("diamond exposure.stops", button=1)
+        ui.click("menu Bake to Keys")
+        assert [key.value for key in session.animation(stops).keys] == [frame / 8 for frame in range(1, 13)]
+        ui.shot("baked.png")
+
+    gui(body)
+
+
+def test_the_graphs_range_rate_and_preroll(gui, tmp_path) -> None:
+    path = shot(tmp_path, range(1001, 1009))
+
+    def body(ui) -> None:
+        session = ui.session
+        start(ui, graph_of(path, "exposure"))
+        assert session.frames == (1001, 1008) and session.frame == 1001
+        ui.click("field frames#0")
+        ui.type("1003")
+        assert session.settings.frames == (1003, 1008)
+        ui.click("field preroll")
+        assert session.settings.preroll == 12
+        ui.click("field rate")
+        ui.type("25")
+        assert session.settings.rate == 25.0
+        ui.shot("graph.png")
+        ui.click("button automatic frames")
+        ui.click("button automatic preroll")
+        assert (session.settings.frames, session.settings.preroll) == (None, None)
+
+    gui(body)
+
+
+def test_missing_frames_are_marked(gui, tmp_path) -> None:
+    path = shot(tmp_path)
+    for frame in (5, 6):
+        (tmp_path / f"bar.{frame:04d}.exr").unlink()
+
+    def body(ui) -> None:
+        start(ui, graph_of(path, "exposure"))
+        ui.wait(3)
+        assert ui.window._timeline._ruler.missing.found == ((5, 6),)
+        session = ui.session
+        session.seek(5)
+        ui.settled()
+        assert "no such file" in ui.editor.preview.fault("A")
+        ui.shot("missing.png")
+        session.set(Port("read", "missing"), "nearest")
+        ui.settled()
+        assert ui.editor.preview.fault("A") is None
+        ui.keys("Space")
+        ui.until(lambda: len(ui.editor.preview.frames) > 8)
+        ui.keys("Space")
+
+    gui(body)
+
+
+def test_a_far_frame_of_a_graph_with_a_memory_is_what_a_reel_renders(gui, tmp_path) -> None:
+    path = shot(tmp_path)
+    graph = graph_of(path, "light_trails", frames=(1, 12))
+
+    def body(ui) -> None:
+        start(ui, graph)
+        wanted = Wanted(targets={"A": OUT})
+
+        def rendered(frame: int) -> np.ndarray:
+            reel = Reel(ui.editor.preview.renderer, graph, wanted)
+            try:
+                return reel.render(frame)["A"].copy()
+            finally:
+                reel.close()
+
+        ui.session.seek(10)
+        ui.wait(1)
+        ui.settled()
+        assert ui.editor.preview.remembers and ui.editor.preview.shown("A").frame == 10
+        far = seen(ui)
+        ui.shot("trails.png")
+        for frame in (3, 12, 9, 10):
+            ui.session.seek(frame)
+            ui.settled()
+        np.testing.assert_array_equal(seen(ui), far, "whatever was shown before")
+        np.testing.assert_array_equal(far, ui.ask(lambda: rendered(10)))
+        ui.keys("Space")
+        ui.until(lambda: len(ui.editor.preview.frames) == 12, 60.0)
+        assert ui.editor.timeline.playback.dropped == 0, "a history leaves no frame out"
+        ui.keys("Space")
 
     gui(body)

@@ -59,8 +59,9 @@ def test_measured_peak_is_the_planned_one(seed):
     plan = engine.compile(random_graph(seed), wanted)
     engine.runner.run(plan)
     peak = engine.runner.textures.peak
-    # One frame alone keeps nothing for the next.
-    assert peak <= plan.peak_bytes if plan.memories else peak == plan.peak_bytes
+    # Surfaces of one key are made once, and one frame alone keeps nothing for the next.
+    saved = plan.memories or len({surface.key for surface in plan.surfaces}) < len(plan.surfaces)
+    assert peak <= plan.peak_bytes if saved else peak == plan.peak_bytes
     engine.close()
 
 

@@ -25,9 +25,9 @@ _OUTSIDE: tuple[tuple[Outside, str, str], ...] = (
 )
 
 
-def _interpolation(place: int, how: Interpolation, doc: str) -> Action:
+def _interpolation(how: Interpolation, doc: str) -> Action:
     return Action(
-        f"keys.{how}", how.title(), commands.interpolate(how), shortcut=str(place + 1), scope="animation",
+        f"keys.{how}", how.title(), commands.interpolate(how), shortcut=how[0].upper(), scope="animation",
         enabled=some, contexts=frozenset({"keys interpolation"}), doc=doc,
     )
 
@@ -64,7 +64,7 @@ ANIMATION: tuple[Action, ...] = (
            scope="animation", enabled=some, repeats=True),
     Action("keys.later", "Keys One Frame Later", commands.nudge(1.0), shortcut="Alt+RightArrow", scope="animation",
            enabled=some, repeats=True),
-    *(_interpolation(place, *one) for place, one in enumerate(_HOW)),
+    *(_interpolation(*one) for one in _HOW),
     Action("keys.ease_in", "Ease In", commands.ease("in"), shortcut="Shift+I", scope="animation", enabled=some,
            contexts=frozenset({"keys ease"}), doc="Arrive gently: the handle before the key lies flat."),
     Action("keys.ease_out", "Ease Out", commands.ease("out"), shortcut="Shift+O", scope="animation", enabled=some,

@@ -15,7 +15,7 @@ _CHANNELS: tuple[tuple[Channels, str, str], ...] = (
     ("alpha", "Alpha", "A"), ("luminance", "Luminance", "L"), ("false color", "False Color", "Shift+L"),
 )
 _COMPARES: tuple[tuple[Compare, str, str], ...] = (
-    ("wipe", "Wipe", "W"), ("difference", "Difference", "D"), ("toggle", "A or B", ""),
+    ("wipe", "Wipe", "W"), ("beside", "Side by Side", "S"), ("difference", "Difference", "D"), ("toggle", "A or B", ""),
 )
 _SHOWN = frozenset({"viewer"})
 

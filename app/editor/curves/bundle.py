@@ -69,7 +69,7 @@ class Bundle:
         return Seen(self, plane, screen, bent, cuts.tolist(), shown, xs, ys)
 
     def ends(self, plane: Plane) -> tuple[list[int], Pieces, NDArray[np.bool_], list[int]]:
-        """What lies beyond the keys, on the screen: channels of the ways, their pieces, which are bent, where ways end."""
+        """What lies beyond the keys, on the screen: channels of ways, their pieces, which are bent, where ways end."""
         view = plane.view
         of: list[int] = []
         found: list[Pieces] = []

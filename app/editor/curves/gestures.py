@@ -48,7 +48,7 @@ class Move:
     start: At
     merge: str
     going: bool = False
-    alone: frozenset[Spot] = frozenset()
+    clicked: frozenset[Spot] | None = None
     """What is chosen instead if the mouse was let go without moving."""
 
     def change(self, at: At, snap: bool, limits: Limits, *, across: bool = True, up: bool = True) -> Change:

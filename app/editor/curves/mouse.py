@@ -91,7 +91,7 @@ class Mouse:
     def _begin(self, frame: Frame, io: imgui.IO) -> None:
         state = frame.state
         self._pressed = frame.at
-        if imgui.is_mouse_clicked(MIDDLE) or (imgui.is_mouse_clicked(LEFT) and imgui.is_key_down(imgui.Key.space)):
+        if imgui.is_mouse_clicked(MIDDLE):
             self.gesture = Pan(frame.at, state.view, state.scroll)
         elif imgui.is_mouse_clicked(RIGHT):
             if self.mark and state.spots.isdisjoint(self.mark.spots):
@@ -118,7 +118,7 @@ class Mouse:
             case "bar":
                 span = extent(state.spots)
                 if span:
-                    self._move(frame, span[0], frozenset())
+                    self._move(frame, span[0], None)
             case "key" if self.mark:
                 self._take_key(frame, io, self.mark)
             case "curve" if self.lane:
@@ -132,26 +132,20 @@ class Mouse:
 
     def _take_key(self, frame: Frame, io: imgui.IO, mark: Mark) -> None:
         state = frame.state
-        alone: frozenset[Spot] = frozenset()
-        if io.key_shift:
-            state.choose(mark.spots, "add")
-        elif io.key_ctrl:
-            state.choose(mark.spots, "toggle")
-        elif mark.spots <= state.spots:
-            alone = mark.spots
+        clicked: frozenset[Spot] | None = None
+        if mark.spots <= state.spots and not io.key_shift:
+            clicked = state.spots - mark.spots if io.key_ctrl else mark.spots
         else:
-            state.choose(mark.spots)
-        if mark.spots.isdisjoint(state.spots):
-            return
+            state.choose(mark.spots, "add" if io.key_shift or io.key_ctrl else "replace")
         grabbed = next(iter(mark.spots))[1]
         if io.key_alt:
             self._scale(frame, grabbed)
         else:
-            self._move(frame, grabbed, alone)
+            self._move(frame, grabbed, clicked)
 
-    def _move(self, frame: Frame, grabbed: float, alone: frozenset[Spot]) -> None:
+    def _move(self, frame: Frame, grabbed: float, clicked: frozenset[Spot] | None) -> None:
         self.gesture = Move(
-            frame.graph.animation, frame.state.spots, grabbed, frame.where(), self._token(), alone=alone
+            frame.graph.animation, frame.state.spots, grabbed, frame.where(), self._token(), clicked=clicked
         )
 
     def _scale(self, frame: Frame, grabbed: float) -> None:
@@ -193,8 +187,7 @@ class Mouse:
         if imgui.is_key_pressed(imgui.Key.escape):
             self._cancel(frame)
             return
-        button = MIDDLE if isinstance(gesture, Pan) and imgui.is_mouse_down(MIDDLE) else LEFT
-        if not imgui.is_mouse_down(button):
+        if not imgui.is_mouse_down(MIDDLE if isinstance(gesture, Pan) else LEFT):
             self._end(frame, io)
             return
         at = frame.where()
@@ -253,8 +246,8 @@ class Mouse:
                 elif gesture.how == "replace":
                     state.spots = frozenset()
             case Move():
-                if not gesture.going and gesture.alone:
-                    state.choose(gesture.alone)
+                if not gesture.going and gesture.clicked is not None:
+                    state.choose(gesture.clicked)
                 frame.editor.session.seal()
             case Scale() | Bend():
                 frame.editor.session.seal()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...graph import Keys
 from ..editor import Editor
 from ..theme.style import u32, ui_scale
 from ..toolkit.buttons import dropdown
@@ -17,7 +18,7 @@ from .key_fields import KeyFields
 from .mouse import Mouse, hot_of
 from .names import Names, value_menu
 from .paint import paint_bar, paint_box, paint_now, paint_ruler, paint_time
-from .plane import Plane
+from .plane import Plane, View
 from .plot import Plot
 from .rows import Row
 from .sheet import SheetPainter
@@ -43,6 +44,9 @@ class Animation:
         self._fields = KeyFields()
         self._place: tuple[object, ...] = ()
         self._grouped: list[list[Mark]] = []
+        self._untouched: View | None = None
+        """The view that showed everything."""
+        self._of: tuple[object, tuple[int, int]] = None, (0, 0)
 
     def draw(self, editor: Editor) -> None:
         """Draw into the current window."""
@@ -77,8 +81,11 @@ class Animation:
         rows = state.rows(session.graph, session.selection)
         middle = left + round(min(LIST * scale, (right - left) * 0.4))
         ruler, bar = top + round(RULER * scale), top + round((RULER + BAR) * scale)
+        if self._grown(editor) and self._mouse.gesture is None:
+            state.fit()
         if state.wanted and bottom > bar:
             state.view = commands.fitted(editor, self._plot.samples)
+            self._untouched = state.view if state.wanted == "all" else None
             state.wanted = ""
         room = max(len(rows) * round(ROW * scale) - (bottom - bar), 0.0)
         state.scroll = min(max(state.scroll, 0.0), room)
@@ -87,6 +94,17 @@ class Animation:
             editor, rows, Plane(state.view, (middle, bar, right, bottom)), (left, bar, middle, bottom),
             (middle, top, right, ruler), (middle, ruler, right, bar), scale, (mouse.x, mouse.y),
         )
+
+    def _grown(self, editor: Editor) -> bool:
+        """True if there are new keys outside of a view that shows everything and that nobody has moved."""
+        state, session = editor.curves, editor.session
+        of = session.graph.animation, session.frames
+        if state.view != self._untouched or (self._of[0] is of[0] and self._of[1] == of[1]):
+            return False
+        self._of = of
+        every = [keys.frames for keys in of[0].values() if isinstance(keys, Keys) and keys.keys]
+        ends = [of[1], *((frames[0], frames[-1]) for frames in every)]
+        return any(first < state.view.first or last > state.view.last for first, last in ends)
 
     # --- drawing -----------------------------------------------------------------------------------------------------
 

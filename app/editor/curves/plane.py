@@ -113,6 +113,8 @@ def ticks(low: float, high: float, scale: float, apart: float, whole: bool = Fal
 
 
 def _spread(low: float, high: float, about: float, factor: float, limits: tuple[float, float]) -> tuple[float, float]:
+    if factor == 1.0:
+        return low, high
     width = min(max((high - low) / factor, limits[0]), limits[1])
     ratio = width / (high - low)
     return about + (low - about) * ratio, about + (high - about) * ratio

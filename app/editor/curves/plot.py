@@ -21,6 +21,10 @@ from .shapes import Pieces, Samples, dashes
 Drawn = list[imgui.ImVec2Like]
 
 
+CROWD = 400
+"""So many keys in view are all drawn alike: their shapes could not be told apart."""
+
+
 class Ways:
     """Pieces on the screen: straight ways to a point, and bent ones by two handles. Few objects, for the many."""
 
@@ -129,7 +133,11 @@ class Plot:
         palette, size = frame.editor.palette, KEY * scale * 0.85
         colors = [inks[lane][0] for lane in self._bundle.lanes]
         chosen = [self._chosen[key] for key in self._seen.shown.tolist()] if self._chosen else None
-        if chosen is None:
+        if chosen is None and len(colors) and len(self._keys[0]) > CROWD:
+            mark = draw.add_ngon_filled
+            for x, y, _, of in zip(*self._keys, strict=True):
+                mark((x, y), size, colors[of], 4)
+        elif chosen is None:
             for x, y, look, of in zip(*self._keys, strict=True):
                 paint_key(draw, x, y, size, look, colors[of])
         else:

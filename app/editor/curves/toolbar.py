@@ -27,7 +27,7 @@ _MEANING = {
 _MOUSE = (
     ("Drag keys", "move them; Shift between frames"), ("Alt + drag, ends of the bar", "draw keys out or together"),
     ("Drag on nothing", "select with a box; Shift adds, Ctrl toggles"), ("Double click", "a key on the curve"),
-    ("Wheel", "zoom; in curves Ctrl time alone, Shift values alone"), ("Middle drag, Space + drag", "pan"),
+    ("Wheel", "zoom; in curves Ctrl time alone, Shift values alone"), ("Middle drag", "pan"),
     ("Curves: Ctrl, Shift + drag", "along values alone, along time alone"),
     ("Alt + drag a handle", "turn it alone; Shift keeps it level"),
 )

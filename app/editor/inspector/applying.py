@@ -22,10 +22,8 @@ def apply(session: Session, ports: Ports, declaration: Value, edit: Edit) -> Non
     if len(ports) == 1:
         session.set(ports[0], edit.value, merge=edit.merge)
         return
-    graph = session.graph
-    for port in ports:
-        graph = graph.set(port, _for_one(graph, port, declaration, edit))
-    session.edit(f"Set {declaration.name} of {len(ports)} nodes", graph, merge=edit.merge)
+    values = {port: _for_one(session, port, declaration, edit) for port in ports}
+    session.set_all(values, f"Set {declaration.name} of {len(ports)} nodes", merge=edit.merge)
 
 
 def reset(session: Session, ports: Ports) -> None:
@@ -35,7 +33,7 @@ def reset(session: Session, ports: Ports) -> None:
         return
     graph = session.graph
     for port in ports:
-        graph = graph.set(port, default_of(graph, port))
+        graph = graph.animate(port, None).set(port, default_of(graph, port))
     session.edit(f"Reset {ports[0].socket} of {len(ports)} nodes", graph)
 
 
@@ -73,8 +71,8 @@ def from_text(text: str) -> Plain:
     return found
 
 
-def _for_one(graph: Graph, port: Port, declaration: Value, edit: Edit) -> Plain:
-    old = graph.value(port)
+def _for_one(session: Session, port: Port, declaration: Value, edit: Edit) -> Plain:
+    old = session.value_now(port)
     if not edit.text or declaration.type not in ("float", "int") or not isinstance(old, int | float):
         return edit.value
     try:

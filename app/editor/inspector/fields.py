@@ -22,6 +22,8 @@ class Edit:
     value: Plain
     merge: str = ""
     text: str = ""
+    expression: str = ""
+    """What was typed after a `=`, with it: the value is the old one then."""
 
 
 @dataclass
@@ -49,6 +51,8 @@ class Typing:
         if self.number is None:
             return Edit(self.text, self.merge, self.text)
         assert isinstance(self.old, int | float)
+        if self.text.lstrip().startswith("="):
+            return Edit(self.old, self.merge, self.text, self.text)
         return Edit(typed(self.text, self.old, self.number), self.merge, self.text)
 
     @property

@@ -20,12 +20,15 @@ from .colors import decode, encode
 from .end_view import bound_to, draw_text
 from .fields import Fields
 from .heading import faults, heading
-from .number_field import row_of_numbers
+from .number_field import number_field, row_of_numbers
 from .rows import Rows
 from .text_field import text_field
 from .value_rows import ValueRows, go_to
 
 _SIDE = Value("size", "int", 1920, low=1.0, high=4096.0, minimum=1.0, maximum=16384.0, unit="px")
+_FRAME = Value("frame", "int", 1, low=1.0, high=200.0)
+_RATE = Value("rate", "float", 24.0, low=1.0, high=60.0, minimum=0.01, maximum=1000.0)
+_PREROLL = Value("preroll", "int", 12, low=0.0, high=100.0, minimum=0.0)
 _TEXT = Value("name", "text", "")
 _COLOR = Value("color", "color", (0.0,) * 4, 4, low=0.0, high=1.0)
 _KINDS = (
@@ -50,6 +53,7 @@ class GraphView:
         faults(rows, "")
         if not inside:
             self._size(rows)
+            self._time(rows)
         self._ends(rows, "inputs")
         self._ends(rows, "outputs")
         self._controls(rows)
@@ -110,6 +114,58 @@ class GraphView:
         if edit and isinstance(edit.value, tuple):
             wide, high = edit.value
             rows.act(lambda: session.set_size((int(wide), int(high)), merge=edit.merge))
+
+    def _time(self, rows: Rows) -> None:
+        """Range, rate and pre-roll."""
+        session = rows.editor.session
+        settings, (first, last) = session.settings, session.frames
+        rows.name("frames", "frames", doc="The first and the last frame", changed=settings.frames is not None)
+        stated = settings.frames is not None
+        width = rows.field() - (imgui.get_frame_height() if stated else 0.0)
+        imgui.begin_group()
+        edit = row_of_numbers(self._fields, "frames", (first, last), _FRAME, width, ("", ""), keep_type=True)
+        imgui.end_group()
+        rows.record("frames")
+        if not stated:
+            tip("As what the graph reads, or its keys, say; a number here states it")
+        else:
+            imgui.same_line(0.0, 0.0)
+            if rows.icon(icons.ICON_FA_XMARK, "automatic frames", "Automatic: as what it reads, or its keys, say"):
+                rows.act(lambda: session.set_frames(None))
+        if edit and isinstance(edit.value, tuple):
+            low, high = (int(part) for part in edit.value)
+            low, high = (low, max(low, high)) if low != first else (min(low, high), high)
+            rows.act(lambda: session.set_frames(low, high, merge=edit.merge))
+        rows.name("rate", "rate", doc="Frames per second", changed=settings.rate != 24.0)
+        rate = number_field(self._fields, "rate", settings.rate, _RATE, rows.field(), suffix="fps")
+        rows.record("rate")
+        if rate and isinstance(rate.value, int | float):
+            fps, token = float(rate.value), rate.merge
+            rows.act(lambda: session.set_rate(fps, merge=token))
+        self._preroll(rows)
+
+    def _preroll(self, rows: Rows) -> None:
+        session = rows.editor.session
+        preroll = session.settings.preroll
+        doc = "How many frames before the one that is wanted nodes with a memory look back. Without a number they begin "
+        doc += "at the first frame, so that a frame is the same wherever a rendering begins."
+        rows.name("preroll", "pre-roll", doc=doc, changed=preroll is not None)
+        width = rows.field()
+        if preroll is None:
+            if imgui.button("From the first frame##preroll", (width, 0.0)):
+                rows.act(lambda: session.set_preroll(12))
+            rows.record("preroll")
+            tip(doc)
+            return
+        width -= imgui.get_frame_height()
+        edit = number_field(self._fields, "preroll", preroll, _PREROLL, width, suffix="frames")
+        rows.record("preroll")
+        imgui.same_line(0.0, 0.0)
+        if rows.icon(icons.ICON_FA_XMARK, "automatic preroll", "From the first frame"):
+            rows.act(lambda: session.set_preroll(None))
+        if edit and isinstance(edit.value, int | float):
+            count, token = int(edit.value), edit.merge
+            rows.act(lambda: session.set_preroll(count, merge=token))
 
     def _ends(self, rows: Rows, side: str) -> None:
         session = rows.editor.session

@@ -52,10 +52,16 @@ class Rows:
         self.name_width = min(wanted, self.width * 0.48, 170.0 * scale)
         self.field_width = max(self.width - self.name_width - self.gap, 1.0)
 
-    def name(self, key: str, label: str, *, doc: str = "", changed: bool = False, color: RGB | None = None) -> None:
-        """The name of a row, as the last item; the field comes next, on the same line."""
-        rect = place(self.name_width)
-        imgui.invisible_button(f"##name {key}", (self.name_width, rect[3] - rect[1]))
+    def name(
+        self, key: str, label: str, *, doc: str = "", changed: bool = False, color: RGB | None = None,
+        spare: float = 0.0,
+    ) -> None:
+        """The name of a row, as the last item; the field comes next, on the same line.
+
+        `spare` pixels of the column are left for something between.
+        """
+        rect = place(self.name_width - spare)
+        imgui.invisible_button(f"##name {key}", (rect[2] - rect[0], rect[3] - rect[1]))
         self.editor.places[f"name {key}"] = rect
         hovered, palette, scale = imgui.is_item_hovered(), self.palette, ui_scale()
         if changed:

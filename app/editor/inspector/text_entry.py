@@ -97,7 +97,7 @@ def _enter_pressed() -> bool:
 
 def _note(fields: Fields, typing: Typing, rect: tuple[float, float, float, float]) -> None:
     """What is wrong with the number, or what the arithmetic comes to."""
-    if typing.number is None or typing.text == typing.before:
+    if typing.number is None or typing.text == typing.before or typing.text.lstrip().startswith("="):
         return
     if fault := typing.fault:
         imgui.get_window_draw_list().add_rect(

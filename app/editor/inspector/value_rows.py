@@ -12,11 +12,13 @@ from imgui_bundle import imgui
 from ....nodes import Node, Plain, Value
 from ...graph import INPUTS, Graph, Port, signature
 from ..theme.palette import RGB
+from ..theme.style import ui_scale
 from ..toolkit.places import item_rect
 from .applying import Ports, apply, as_text, default_of, from_text, reset
 from .choice_field import choose
 from .fields import Edit, Fields
 from .file_field import FileField
+from .keying import WIDTH, Keying, value_now
 from .light_rows import light_rows
 from .numbers import described, worded
 from .render_facts import convention_words, first_words, use_of
@@ -38,6 +40,9 @@ class ValueRows:
     _targets: dict[str, tuple[Ports, Value]] = field(default_factory=dict[str, "tuple[Ports, Value]"])
     _renaming: str = ""
 
+    def __post_init__(self) -> None:
+        self._keying = Keying(self.fields)
+
     def draw(
         self, rows: Rows, ports: Ports, declaration: Value, label: str = "", color: RGB | None = None
     ) -> None:
@@ -45,25 +50,39 @@ class ValueRows:
         editor, port = rows.editor, ports[0]
         session, key = editor.session, str(port)
         graph = session.graph
-        value, source = graph.value(port), session.linked(port)
-        changed = any(graph.value(one) != default_of(graph, one) for one in ports)
+        source = session.linked(port)
+        moves = source is None and session.can_animate(port)
+        value = value_now(session, port)[0] if moves else graph.value(port)
+        changed = any(one in graph.animation or graph.value(one) != default_of(graph, one) for one in ports)
         control = session.control_of(port) if len(ports) == 1 else None
-        rows.name(key, label or port.socket, doc=_tip(declaration, control), changed=changed, color=color)
+        rows.name(key, label or port.socket, doc=_tip(declaration, control), changed=changed, color=color,
+                  spare=WIDTH * ui_scale())
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left):
             rows.act(lambda: reset(session, ports))
         menu = imgui.is_item_hovered() and imgui.is_mouse_released(imgui.MouseButton_.right)
+        if moves:
+            self._keying.diamond(rows, ports)
+            menu |= imgui.is_item_hovered() and imgui.is_mouse_released(imgui.MouseButton_.right)
+        else:
+            imgui.same_line(0.0, 0.0)
+            imgui.dummy((WIDTH * ui_scale(), 1.0))
         width = rows.field()
         if source is not None:
             link_chip(rows, port, source, width)
+        elif moves and len(ports) == 1 and self._keying.field(rows, port, width):
+            menu |= imgui.is_item_hovered() and imgui.is_mouse_released(imgui.MouseButton_.right)
+            self._keying.note(rows, port, as_text(value))
         else:
             mark = imgui.get_frame_height() * ((control is not None) + declaration.handle)
-            mixed = any(graph.value(one) != value for one in ports[1:])
+            mixed = any(value_now(session, one)[0] != value for one in ports[1:])
             edit = self._field(rows, ports, declaration, value, width - mark, mixed)
             rows.record(key)
             released = imgui.is_item_hovered() and imgui.is_mouse_released(imgui.MouseButton_.right)
             menu |= released and declaration.type not in ("curve", "ramp", "lights")
+            if moves:
+                self._keying.tint(rows, port, item_rect())
             if edit:
-                rows.act(lambda: apply(session, ports, declaration, edit))
+                rows.act(lambda: self._take(rows, ports, declaration, edit))
             if declaration.handle:
                 _crosshair(rows, key)
             if control:
@@ -95,6 +114,16 @@ class ValueRows:
             self._targets.clear()
 
     # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _take(self, rows: Rows, ports: Ports, declaration: Value, edit: Edit) -> None:
+        """Put an edit where it belongs."""
+        session = rows.editor.session
+        if edit.expression:
+            self._keying.typed(session, ports[0], edit.expression)
+        elif edit.merge and imgui.is_key_pressed(imgui.Key.escape) and session.animation(ports[0]) is not None:
+            session.abandon(edit.merge)  # a key that the drag set goes with it
+        else:
+            apply(session, ports, declaration, edit)
 
     def _field(
         self, rows: Rows, ports: Ports, declaration: Value, value: Plain, width: float, mixed: bool
@@ -166,6 +195,8 @@ class ValueRows:
             entry(icons.ICON_FA_SLIDERS, "Expose as Control", len(ports) == 1, lambda: session.expose(port))
         else:
             entry(icons.ICON_FA_EYE_SLASH, "Hide Control", True, lambda: session.hide(control))
+        if source is None and session.can_animate(port):
+            self._keying.menu(rows, ports, as_text(value))
         if source is not None:
             imgui.separator()
             entry(icons.ICON_FA_ARROW_LEFT, "Go to Source", True, lambda: go_to(editor, source))

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import os
+import time
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Literal
 
 from ....nodes import Kind
+from ...errors import HalationError, UsageError
+from ...graph.frames import Pattern, check_numbered, format_frames, numbered, parse_frames
+from ...media.sequences import find_sequence
 from ..editor import Editor
 from ..services.exporting import Export, Options
 
 Sizing = Literal["as it is", "scale", "size"]
-
+Extent = Literal["this frame", "all frames", "what is played", "some frames"]
 Depth = Literal["", "half", "float"]
 
 DEPTHS: tuple[tuple[Depth, str], ...] = (
@@ -20,6 +26,20 @@ DEPTHS: tuple[tuple[Depth, str], ...] = (
 FORMATS = (".exr", ".png", ".jpg", ".tif", ".webp", ".hdr")
 VIEWED = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp"})
 """Formats that show a picture as a display does."""
+
+_FRESH = 1.0
+"""Seconds for which what was found on the disk counts."""
+
+
+@dataclass(frozen=True)
+class Aim:
+    """What a render would write: so many files, of which some `exist`, or why it cannot be."""
+
+    files: int = 0
+    first: str = ""
+    last: str = ""
+    exist: int = 0
+    fault: str = ""
 
 
 @dataclass
@@ -34,6 +54,53 @@ class Form:
     size: tuple[int, int] = (1920, 1080)
     precision: Depth = ""
     view: str = ""
+    extent: Extent | None = None
+    """None is all frames, where there are several."""
+    listed: str = ""
+    """The frames that were typed."""
+    jobs: int = 1
+    resume: bool = False
+    _seen: tuple[object, float, Aim] = (None, 0.0, Aim())
+
+    # --- frames ------------------------------------------------------------------------------------------------------
+
+    def extents(self, editor: Editor) -> dict[Extent, tuple[int, ...]]:
+        """The frames that can be chosen. Typed ones are none while they make no sense."""
+        session = editor.session
+        first, last = session.frames
+        found: dict[Extent, tuple[int, ...]] = {"this frame": (session.frame,)}
+        if first < last:
+            found["all frames"] = tuple(range(first, last + 1))
+            low, high = editor.timeline.span(session)
+            if (low, high) != (first, last):
+                found["what is played"] = tuple(range(low, high + 1))
+        found["some frames"] = _listed(self.listed)[0]
+        return found
+
+    def extent_of(self, editor: Editor) -> Extent:
+        """Which of them are to be rendered."""
+        offered = self.extents(editor)
+        usual: Extent = "all frames" if "all frames" in offered else "this frame"
+        return self.extent if self.extent in offered else usual
+
+    def frames(self, editor: Editor) -> tuple[int, ...]:
+        """The frames to render; none while those that are typed make no sense."""
+        return self.extents(editor)[self.extent_of(editor)]
+
+    def extend(self, editor: Editor, extent: Extent) -> None:
+        """Render other frames. Names that were typed get a place for the number, where they need one."""
+        if extent == "some frames" and not self.listed:
+            self.listed = format_frames(self.frames(editor))
+        self.extent = extent
+        if extent != "this frame":
+            self.files = {name: _numbered(path) if path else "" for name, path in self.files.items()}
+
+    @property
+    def list_fault(self) -> str:
+        """What is wrong with the frames that were typed."""
+        return _listed(self.listed)[1]
+
+    # --- files -------------------------------------------------------------------------------------------------------
 
     def suggested(self, editor: Editor, output: str) -> Path:
         """Where an output goes if nothing else is said."""
@@ -41,7 +108,8 @@ class Form:
         session = editor.session
         folder = Path(last) if last else session.path.absolute().parent if session.path else Path.home()
         name = session.name if len(session.root.outputs) == 1 else f"{session.name}_{output}"
-        return folder / f"{name}{self.format}"
+        plain = f"{name}{self.format}"
+        return folder / (plain if self.extent_of(editor) == "this frame" else _numbered(plain))
 
     def file(self, editor: Editor, output: str) -> Path:
         """Where an output goes."""
@@ -58,33 +126,82 @@ class Form:
         self.format = format
         self.files = {name: str(Path(path).with_suffix(format)) for name, path in self.files.items() if path}
 
-    def options(self) -> Options:
+    def number(self, editor: Editor) -> None:
+        """Give all files a place for the frame number."""
+        self.files = {name: _numbered(str(self.file(editor, name))) for name in self.wanted(editor)}
+
+    # --- all together ------------------------------------------------------------------------------------------------
+
+    def aim(self, editor: Editor) -> Aim:
+        """What would be written now."""
+        frames = self.frames(editor)
+        paths = tuple(dict.fromkeys(str(self.file(editor, name)) for name in self.wanted(editor)))
+        key, now = (paths, frames, self.list_fault if not frames else ""), time.monotonic()
+        if self._seen[0] != key or now - self._seen[1] > _FRESH:
+            self._seen = (key, now, _aim(paths, frames, key[2]))
+        return self._seen[2]
+
+    def options(self, editor: Editor) -> Options:
         """The choices as the exporter wants them."""
-        made = Options(precision=self.precision or None, view=self.view)
+        frames = self.frames(editor)
+        made = Options(
+            frames=frames, precision=self.precision or None, view=self.view, resume=self.resume,
+            jobs=self.jobs if len(frames) > 1 else 1,
+        )
         if self.sizing == "scale":
             return replace(made, scale=self.scale)
         return replace(made, size=self.size) if self.sizing == "size" else made
 
     def start(self, editor: Editor) -> Export:
-        """Begin. Raises UsageError, OutputError or GraphError."""
+        """Put it into the queue. Raises UsageError or GraphError."""
         files = [(name, self.file(editor, name)) for name in self.wanted(editor)]
-        made = editor.exports.start(editor.session.root, files, dict(editor.session.bindings), self.options())
+        if not self.frames(editor):
+            raise UsageError(self.list_fault)
+        made = editor.exports.start(editor.session.root, files, dict(editor.session.bindings), self.options(editor))
         if files:
             editor.store.used("export", files[0][1])
+        self._seen = (None, 0.0, Aim())
         return made
 
 
-def title(export: Export) -> str:
-    """What a render is called: its files."""
-    first = export.destinations[0][1].name
-    more = len(export.destinations) - 1
-    return f"{first} and {more} more" if more else first
+@lru_cache(maxsize=8)
+def _listed(text: str) -> tuple[tuple[int, ...], str]:
+    """The frames of a text, or what is wrong with it."""
+    try:
+        return parse_frames(text), ""
+    except UsageError as fault:
+        return (), str(fault)
 
 
-def state_text(export: Export) -> str:
-    """Where a render is."""
-    if export.state == "running":
-        if not export.total:
-            return "starting"
-        return f"{export.done} of {export.total} passes" if export.done < export.total else "writing"
-    return {"done": "done", "failed": "failed", "cancelled": "cancelled"}[export.state]
+def _numbered(path: str) -> str:
+    """The path with a place for the number, unless it has one."""
+    try:
+        return path if Pattern.parse(path) else numbered(path)
+    except UsageError:
+        return path
+
+
+def _aim(paths: tuple[str, ...], frames: tuple[int, ...], fault: str) -> Aim:
+    if fault or not paths:
+        return Aim(fault=fault or "Choose an output to render.")
+    try:
+        for path in paths:
+            check_numbered(path, frames)
+        names = [_at(path, frame) for path, frame in ((paths[0], frames[0]), (paths[-1], frames[-1]))]
+        exist = sum(_existing(path, frames) for path in paths)
+    except HalationError as error:
+        return Aim(fault=str(error))
+    return Aim(len(paths) * len(frames), names[0], names[1], exist)
+
+
+def _at(path: str, frame: int) -> str:
+    pattern = Pattern.parse(path)
+    return pattern.name(frame) if pattern else path
+
+
+def _existing(path: str, frames: tuple[int, ...]) -> int:
+    """How many of the files are there."""
+    if Pattern.parse(path) is None or len(frames) == 1:
+        return int(os.path.isfile(_at(path, frames[0])))  # noqa: PTH113 - False for a path that no system allows
+    found = find_sequence(path)
+    return len(found.names.keys() & set(frames)) if found else 0

@@ -53,7 +53,7 @@ class Export:
         self.job = job
         self.state: State = "waiting"
         self.done = self.kept = 0
-        self.total = len(job.frames)
+        self.total = max(len(job.frames), 1)
         self.frame: int | None = None
         self.passes = (0, 0)
         self.node = self.sentence = ""
@@ -154,7 +154,7 @@ class Export:
             elif "done" in told:
                 self.written = (*self.written, *map(Path, told["written"]))
                 self.kept += bool(told["kept"])
-                self.done, self.passes = int(told["done"]), (0, 0)
+                self.done, self.total, self.passes = int(told["done"]), int(told["frames"]), (0, 0)
             else:
                 passes = int(told["pass"]), int(told["passes"])
                 self.frame, self.node, self.passes = int(told["frame"]), str(told["nodes"][-1]), passes

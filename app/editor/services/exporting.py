@@ -94,8 +94,7 @@ class Exports:
                 raise UsageError(f"input '{name}' is filled from memory, which an export cannot see: save it to a file")
             words += ["-i", f"{name}={os.path.abspath(item)}"]  # noqa: PTH100 - a layer may follow the path
         words += options.words()
-        frames = options.frames or (0,)
-        return self._queue(Job(tuple(words), document.dumps(graph), graph, files, frames, options.jobs))
+        return self._queue(Job(tuple(words), document.dumps(graph), graph, files, options.frames, options.jobs))
 
     def again(self, export: Export) -> Export:
         """Go on with one that has ended, in its place: frames that are finished and would be the same are kept."""

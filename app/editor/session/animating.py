@@ -264,16 +264,13 @@ class Animating(State):
             where = "/".join(outer[0]) or "the graph outside"
             raise GraphError(f"{port} is animated as '{outer[1]}' in {where}: change it there")
 
-    def _keyed(self, port: Port, value: object, merge: str) -> bool:
-        """Set a value that has keys; False for one that has none. Raises GraphError for one with an expression."""
+    def _with_key(self, port: Port, value: object) -> Keys | None:
+        """The keys of a value with one at this frame; None if it has none. Raises GraphError for an expression."""
         self._check_inside(port)
         before = self.animation(port)
         if isinstance(before, Expression):
             raise GraphError(f"{port} follows an expression: edit it, or remove it first")
-        if before is None:
-            return False
-        self.animate(port, before.set(self.frame, _plain(value)), f"Key {port}", merge)
-        return True
+        return before and before.set(self.frame, _plain(value))
 
     def _restart(self, root: Graph, path: Path | None, saved: Graph | None) -> None:
         self._frame = None

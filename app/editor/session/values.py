@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 from ....nodes import Node, Plain
@@ -21,9 +22,18 @@ class Values(Animating):
 
     def set(self, port: Port, value: object, merge: str = "") -> None:
         """Set a value, or where it has keys a key at `frame`; equal `merge` tokens in a row make one step."""
-        if self._keyed(port, value, merge):
+        if keys := self._with_key(port, value):
+            self.animate(port, keys, f"Key {port}", merge)
             return
         self.edit(f"Set {port}", self.graph.set(port, clean(value) if isinstance(value, str) else value), merge=merge)
+
+    def set_all(self, values: Mapping[Port, object], label: str, merge: str = "") -> None:
+        """The same for several values, as one step."""
+        graph = self.graph
+        for port, value in values.items():
+            keys = self._with_key(port, value)
+            graph = graph.animate(port, keys) if keys else graph.set(port, value)
+        self.edit(label, graph, merge=merge)
 
     def reset(self, port: Port) -> None:
         """Set a value back to its default, for all frames."""

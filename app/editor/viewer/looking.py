@@ -64,7 +64,8 @@ def look_of(
         left, top, right, bottom = ordered(state.region)
         width, height = sight.picture
         region = (left * width, top * height, (right - left) * width, (bottom - top) * height)
-    compare = ("b" if state.toggled else "off") if state.compare == "toggle" else state.compare
+    compare = state.compare if state.compare in ("wipe", "difference") else "off"
+    compare = "b" if state.compare == "toggle" and state.toggled else compare
     gray = _GRAYS[state.background]
     return Look(
         zoom=sight.zoom, pan=sight.pan, channels=state.channels, meaning="image" if meaning == "auto" else meaning,

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from .pacing import Pace
 from .reading import Reader
 
+if TYPE_CHECKING:
+    from ..services.flipbook import Compare, Flipbook
+
 Channels = Literal["color", "red", "green", "blue", "alpha", "luminance", "false color"]
-Compare = Literal["off", "wipe", "difference", "toggle"]
 Background = Literal["checker", "black", "gray", "white"]
 Meaning = Literal["auto", "image", "field", "vector", "normal"]
 CHANNELS: tuple[Channels, ...] = ("color", "red", "green", "blue", "alpha", "luminance", "false color")
-COMPARES: tuple[Compare, ...] = ("off", "wipe", "difference", "toggle")
+COMPARES: tuple[Compare, ...] = ("off", "wipe", "beside", "difference", "toggle")
 BACKGROUNDS: tuple[Background, ...] = ("checker", "black", "gray", "white")
 MEANINGS: tuple[Meaning, ...] = ("auto", "image", "field", "vector", "normal")
 PROXIES = (1.0, 0.5, 0.25, 0.125)
@@ -87,6 +89,8 @@ class ViewerState:
     """The node whose camera that is; "" where there is none."""
     reader: Reader = field(default_factory=Reader)
     """The numbers that handles know."""
+    flipbook: Flipbook | None = None
+    """What is played in place of the document."""
     scopes: set[str] = field(default_factory=lambda: {"histogram", "waveform"})
     scopes_of_scene: bool = False
     """True measures scene-linear numbers, False what the display shows."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
@@ -11,8 +11,9 @@ from imgui_bundle import imgui
 from ....nodes import Kind, Plain
 from ...graph import OUTPUTS, Port
 from ...renderer.look import Look
-from ..theme.style import ui_scale
+from ..theme.style import u32, ui_scale
 from . import infobar
+from .banner import draw_banner
 from .finding import Finder
 from .focus import is_distance
 from .geometry import Sight
@@ -53,6 +54,10 @@ class _Now:
     view: str
     """The view that the picture asks for."""
 
+    def beside(self, editor: Editor) -> bool:
+        """True if B is seen at the right of A."""
+        return editor.viewer.compare == "beside" and self.a is not None and self.b is not None
+
 
 class Viewer:
     """Draws what `editor.viewer` says of what the session views."""
@@ -68,6 +73,8 @@ class Viewer:
         self._seconds = 0.0
         self._busy_since: float | None = None
         self._search = 0
+        self._right = False
+        """True if the mouse is over B, beside A."""
 
     def draw(self, editor: Editor) -> None:
         """Everything, into the current window."""
@@ -79,6 +86,7 @@ class Viewer:
         self._time(editor, now)
         inner, pad = imgui.internal.get_current_window().inner_rect, 4 * ui_scale()
         imgui.set_cursor_screen_pos((inner.min.x + pad, inner.min.y + pad))
+        draw_banner(editor)
         draw_toolbar(editor, now.view, now.a is not None and now.a.kind in (Kind.FIELD, Kind.VECTOR))
         imgui.push_style_var(imgui.StyleVar_.item_spacing, (0.0, 0.0))
         try:
@@ -101,20 +109,20 @@ class Viewer:
         table = row * TABLE_LINES if viewer.table else 0.0
         width, room = inner.max.x - start[0], inner.max.y - start[1]
         table = min(table, room * 0.4)
-        sight = self._catch(editor, now.a, (max(width, 32.0), max(room - below - table, 32.0)))
+        sight = self._catch(editor, now, (max(width, 32.0), max(room - below - table, 32.0)))
         look = self._draw_picture(editor, now, sight)
         self._draw_messages(editor, now, sight)
         self._read(editor, now, sight, look)
         if viewer.table:
             draw_table(editor, self._reader, table)
 
-    def _catch(self, editor: Editor, a: Shown | None, size: tuple[float, float]) -> Sight:
-        """The area of the picture, after mouse and wheel had their say."""
-        viewer = editor.viewer
+    def _catch(self, editor: Editor, now: _Now, size: tuple[float, float]) -> Sight:
+        """The area of the picture, of A where B is beside it, after mouse and wheel had their say."""
+        viewer, a, across = editor.viewer, now.a, 2 if now.beside(editor) else 1
         start = imgui.get_cursor_screen_pos()
         density = imgui.get_io().display_framebuffer_scale.x or 1.0
         origin = round(start.x), round(start.y)
-        viewer.panel = round(size[0] * density), round(size[1] * density)
+        viewer.panel = round(size[0] * density) // across, round(size[1] * density)
         viewer.picture = a.full_size if a is not None else (1, 1)
         imgui.set_next_item_allow_overlap()
         imgui.invisible_button("##picture", size, _CATCH)
@@ -123,12 +131,20 @@ class Viewer:
         def sight() -> Sight:
             return Sight.of(origin, viewer.panel, viewer.picture, viewer.zoom, viewer.pan, density)
 
+        if not imgui.is_item_active():
+            self._right = across == 2 and imgui.get_mouse_pos().x >= origin[0] + viewer.panel[0] / density
         if a is not None:
-            self._hand.follow(editor, sight())
+            self._hand.follow(editor, self._aimed(sight()))
             editor.places["viewer image"] = sight().rectangle((0.0, 0.0, 1.0, 1.0))
         else:
             viewer.hovered = imgui.is_item_hovered()
         return sight()
+
+    def _aimed(self, sight: Sight) -> Sight:
+        """Where the picture lies that the mouse is over."""
+        if not self._right:
+            return sight
+        return replace(sight, origin=(sight.origin[0] + sight.panel[0] / sight.density, sight.origin[1]))
 
     def _draw_picture(self, editor: Editor, now: _Now, sight: Sight) -> Look:
         viewer, palette = editor.viewer, editor.palette
@@ -150,6 +166,12 @@ class Viewer:
         lines, (x, y) = imgui.get_window_draw_list(), sight.origin
         corner = x + sight.panel[0] / sight.density, y + sight.panel[1] / sight.density
         lines.add_image(imgui.ImTextureRef(texture.glo), (x, y), corner)
+        if now.beside(editor):
+            other = editor.display.draw("viewer beside", sight.panel, now.b, None, look)
+            lines.add_image(imgui.ImTextureRef(other.glo), (corner[0], y), (2 * corner[0] - x, corner[1]))
+            lines.add_line((corner[0], y), corner, u32(palette.border), ui_scale())
+        else:
+            editor.display.drop("viewer beside")
         if now.a is not None:
             lines.push_clip_rect((x, y), corner, True)
             draw_overlays(editor, sight)
@@ -205,7 +227,8 @@ class Viewer:
         """What is under the pointer, written below the picture."""
         viewer = editor.viewer
         mouse = imgui.get_mouse_pos()
-        viewer.pixel = sight.under((mouse.x, mouse.y)) if viewer.hovered and now.a is not None else None
+        under = self._aimed(sight).under((mouse.x, mouse.y))
+        viewer.pixel = under if viewer.hovered and now.a is not None else None
         for name, shown in ((A, now.a), (B, now.b)):
             if name == B and shown is None:
                 continue

@@ -181,6 +181,7 @@ ACTS: dict[str, Act] = {
 OTHERS = {
     "edit", "go", "go_to", "new", "open", "open_copy", "open_text", "restore", "save", "save_as", "revert", "reload",
     "reload_groups", "migrate", "save_group", "add_group", "drop_files", "add_matte", "animate_all",
+    "set_all",
 }
 """What needs files or graphs, and what all the others call: tested by name elsewhere."""
 

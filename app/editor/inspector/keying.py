@@ -1,0 +1,273 @@
+"""Values that change over time: the diamond beside them, the field of an expression, and the menu of both."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Literal
+
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import imgui
+
+from ....nodes import Plain
+from ...document.animation import read_animation, written_animation
+from ...errors import GraphError, UsageError
+from ...graph import Animation, Expression, Keys, Port
+from ..theme.palette import RGB, Palette
+from ..theme.style import mix, u32, ui_scale
+from ..toolkit.fields import background
+from ..toolkit.places import Rect, item_rect, place
+from ..toolkit.words import SMALL, font, note_below, tip, wrapped
+from .fields import Fields
+from .text_entry import text_entry
+
+if TYPE_CHECKING:
+    from ..session import Session
+    from .applying import Ports
+    from .rows import Rows
+
+Look = Literal["still", "keys", "key", "expression"]
+
+WIDTH = 16.0
+"""Of a diamond with the room around it, at UI scale 1."""
+
+_DOCS: dict[Look, str] = {
+    "still": "Click: a key at this frame", "keys": "It has keys; click: one at this frame too",
+    "key": "A key at this frame; click: remove it", "expression": "It follows an expression",
+}
+
+
+def look_of(session: Session, port: Port) -> Look:
+    """How a value changes over time, as seen from the frame that is looked at."""
+    animation = session.animation(port)
+    if animation is None:
+        return "still"
+    if isinstance(animation, Expression):
+        return "expression"
+    return "keys" if session.key_at(port) is None else "key"
+
+
+def color_of(palette: Palette, look: Look) -> RGB:
+    """What says so."""
+    if look == "expression":
+        return next(color for kind, color in palette.kinds.items() if kind.value.casefold() == "vector")
+    return {"keys": palette.good, "key": palette.warning}.get(look, palette.dim)
+
+
+def value_now(session: Session, port: Port) -> tuple[Plain, str]:
+    """What a value is at the frame that is looked at; why an expression has none, with a caret below it."""
+    try:
+        return session.value_now(port), ""
+    except GraphError as error:
+        return session.value(port), str(error)
+
+
+def toggle(session: Session, ports: Ports) -> None:
+    """Set a key in all values, or remove those of all, as the first one asks for."""
+    if len(ports) == 1:
+        session.toggle_key(ports[0])
+        return
+    removes, made = session.key_at(ports[0]) is not None, dict[Port, Animation | None]()
+    for port in ports:
+        keys = session.animation(port)
+        if isinstance(keys, Expression):
+            continue
+        if removes:
+            made[port] = keys and keys.remove(session.frame)
+        else:
+            made[port] = (keys or Keys()).set(session.frame, session.value_now(port))
+    session.animate_all(made, f"{'Remove keys' if removes else 'Key'} {ports[0].socket} of {len(ports)} nodes")
+
+
+class Keying:
+    """One panel's diamonds and expressions."""
+
+    def __init__(self, fields: Fields) -> None:
+        self._fields = fields
+        self._drafts: dict[str, str] = {}
+        """Expressions that cannot be, or are still to be typed, by value."""
+
+    def diamond(self, rows: Rows, ports: Ports) -> None:
+        """The button at the end of a name: no keys, keys elsewhere, a key here."""
+        session, port, scale = rows.editor.session, ports[0], ui_scale()
+        look = look_of(session, port)
+        imgui.same_line(0.0, 0.0)
+        rect = place(WIDTH * scale)
+        imgui.push_item_flag(int(imgui.ItemFlags_.no_nav), True)
+        pressed = imgui.invisible_button(f"##diamond {port}", (rect[2] - rect[0], rect[3] - rect[1]))
+        imgui.pop_item_flag()
+        rows.editor.places[f"diamond {port}"] = rect
+        hovered = imgui.is_item_hovered()
+        _paint(rows.palette, rect, look, hovered)
+        tip(_DOCS[look])
+        if pressed and look == "expression":
+            self.begin(session, port)
+        elif pressed:
+            rows.act(lambda: toggle(session, ports))
+
+    def begin(self, session: Session, port: Port, text: str = "") -> None:
+        """Type an expression."""
+        key, animation = str(port), session.animation(port)
+        now = animation.text if isinstance(animation, Expression) else text
+        self._drafts[key] = now
+        self._fields.wanted = f"{key} expression"
+
+    def typed(self, session: Session, port: Port, text: str) -> None:
+        """An expression was typed where a number stood: one that cannot be stays to be mended."""
+        if session.expression_fault(port, text):
+            self._drafts[str(port)] = text.strip().removeprefix("=").strip()
+        else:
+            self._drafts.pop(str(port), None)
+            session.express(port, text)
+
+    def field(self, rows: Rows, port: Port, width: float) -> bool:
+        """The expression of a value in place of its field; False if it has none."""
+        editor, fields, key = rows.editor, self._fields, str(port)
+        session = editor.session
+        animation, id = session.animation(port), f"{key} expression"
+        known = animation.text if isinstance(animation, Expression) else ""
+        if not known and key not in self._drafts:
+            return False
+        text = self._drafts.get(key, known)
+        fields.order.append(id)
+        if fields.wanted == id:
+            fields.type_in(id, text, text)
+        if fields.typing and fields.typing.id == id:
+            self._typed(rows, port, id, text, width)
+            return True
+        rect = place(width)
+        if imgui.invisible_button(f"##{id}", (rect[2] - rect[0], rect[3] - rect[1])):
+            fields.type_in(id, text, text)
+        if imgui.is_item_hovered():
+            imgui.set_mouse_cursor(imgui.MouseCursor_.text_input)
+        fault = session.expression_fault(port, text) or value_now(session, port)[1]
+        background(rows.palette, rect, hovered=imgui.is_item_hovered(), fault=bool(fault))
+        rows.record(key)
+        with font(editor, "mono", SMALL):
+            _colored(rows.palette, rect, text)
+        tip(f"= {text}")
+        return True
+
+    def note(self, rows: Rows, port: Port, shown: str) -> None:
+        """Below the field: what the expression comes to, or what is wrong with it."""
+        session, key = rows.editor.session, str(port)
+        animation = session.animation(port)
+        text = self._drafts.get(key, animation.text if isinstance(animation, Expression) else "")
+        if self._fields.typing and self._fields.typing.id == f"{key} expression":
+            return
+        fault = session.expression_fault(port, text) if text else None
+        fault = fault or value_now(session, port)[1]
+        if fault:
+            with font(rows.editor, "mono", SMALL * 0.92):
+                wrapped(rows.palette.error, fault.removeprefix(f"{port}: "))
+        else:
+            rows.field_note(f"= {shown}")
+
+    def tint(self, rows: Rows, port: Port, rect: Rect) -> None:
+        """Color the field of a value that changes over time."""
+        look = look_of(rows.editor.session, port)
+        if look in ("keys", "key"):
+            color, lines = color_of(rows.palette, look), imgui.get_window_draw_list()
+            lines.add_rect_filled(rect[:2], rect[2:], u32(color, 0.13), imgui.get_style().frame_rounding)
+            lines.add_rect(rect[:2], rect[2:], u32(color, 0.6), imgui.get_style().frame_rounding)
+
+    def menu(self, rows: Rows, ports: Ports, shown: str) -> None:
+        """Entries of the menu that is open."""
+        editor, port = rows.editor, ports[0]
+        session, look = editor.session, look_of(editor.session, ports[0])
+        one, keyed = len(ports) == 1, look in ("keys", "key")
+
+        def entry(icon: str, label: str, enabled: bool, act: Callable[[], object]) -> None:
+            if imgui.menu_item(f"{icon}  {label}", "", False, enabled)[0]:
+                rows.act(act)
+            editor.places[f"menu {label}"] = item_rect()
+
+        def all_still() -> None:
+            session.animate_all(dict.fromkeys(ports), f"Still {ports[0].socket}")
+
+        def jump(frame: int | None) -> None:
+            if frame is not None:
+                editor.timeline.stop()
+                session.seek(frame)
+
+        imgui.separator()
+        entry(icons.ICON_FA_DIAMOND, "Set Key", look in ("still", "keys"), lambda: toggle(session, ports))
+        entry(icons.ICON_FA_MINUS, "Remove Key", look == "key", lambda: toggle(session, ports))
+        entry(icons.ICON_FA_ERASER, "Remove All Keys", keyed, all_still)
+        entry(icons.ICON_FA_CHEVRON_LEFT, "Previous Key", keyed and session.previous_key(port) is not None,
+              lambda: jump(session.previous_key(port)))
+        entry(icons.ICON_FA_CHEVRON_RIGHT, "Next Key", keyed and session.next_key(port) is not None,
+              lambda: jump(session.next_key(port)))
+        imgui.separator()
+        entry(icons.ICON_FA_SUPERSCRIPT, "Expression...", one, lambda: self.begin(session, port, shown))
+        entry(icons.ICON_FA_XMARK, "Remove Expression", look == "expression", all_still)
+        entry(icons.ICON_FA_BARS_STAGGERED, "Bake to Keys", one and look != "still", lambda: session.bake(port))
+        entry(icons.ICON_FA_COPY, "Copy Animation", look != "still",
+              lambda: editor.clipboard.put(as_text(session, port)))
+        entry(icons.ICON_FA_PASTE, "Paste Animation", True, lambda: paste(session, ports, editor.clipboard.get()))
+
+    def _typed(self, rows: Rows, port: Port, id: str, text: str, width: float) -> None:
+        """The field while it is typed in."""
+        fields, editor = self._fields, rows.editor
+        session = editor.session
+        edit = text_entry(fields, width)
+        rows.record(str(port))
+        typing = fields.typing
+        if typing and typing.id == id:
+            fault = session.expression_fault(port, typing.text) if typing.text.strip() else None
+            if fault and not typing.starting:
+                with font(editor, "mono", SMALL):
+                    note_below(rows.palette, item_rect(), fault.removeprefix(f"{port}: "), rows.palette.error)
+            return
+        self._drafts.pop(str(port), None)
+        if edit is not None and isinstance(edit.value, str):
+            said = edit.value
+            rows.act(lambda: self.typed(session, port, said) if said.strip() else session.express(port, ""))
+        elif text and session.expression_fault(port, text):
+            self._drafts[str(port)] = text
+
+
+def as_text(session: Session, port: Port) -> str:
+    """The animation of a value for the clipboard."""
+    animation = session.animation(port)
+    return json.dumps({"animation": None if animation is None else written_animation(animation)})
+
+
+def paste(session: Session, ports: Ports, text: str) -> None:
+    """Let values change over time as the clipboard says. Raises UsageError."""
+    try:
+        raw = json.loads(text)["animation"]
+    except (ValueError, TypeError, KeyError):
+        raise UsageError("the clipboard holds no animation: copy one first") from None
+    animation = read_animation(raw, "clipboard", "$.animation")
+    session.animate_all(dict.fromkeys(ports, animation), f"Paste animation of {ports[0].socket}")
+
+
+def _paint(palette: Palette, rect: Rect, look: Look, hovered: bool) -> None:
+    draw, scale = imgui.get_window_draw_list(), ui_scale()
+    center = rect[2] - WIDTH * 0.5 * scale + scale, (rect[1] + rect[3]) * 0.5
+    color = color_of(palette, look)
+    size = (5.2 if look != "still" or hovered else 4.2) * scale
+    if look in ("key", "expression"):
+        draw.add_ngon_filled(center, size, u32(color), 4)
+        return
+    strong = 1.0 if look == "keys" or hovered else 0.42
+    draw.add_ngon(center, size, u32(mix(color, palette.text, 0.3) if hovered else color, strong), 4, 1.3 * scale)
+
+
+def _colored(palette: Palette, rect: Rect, text: str) -> None:
+    """The words of an expression, each in the color of what it is."""
+    colors = {
+        "number": palette.good, "name": palette.text, "function": palette.accent, "constant": palette.good,
+        "variable": color_of(palette, "expression"), "word": palette.accent, "unknown": palette.error,
+    }
+    draw, pad = imgui.get_window_draw_list(), imgui.get_style().frame_padding.x
+    draw.push_clip_rect(rect[:2], rect[2:], True)
+    x, y = rect[0] + pad, round((rect[1] + rect[3] - imgui.get_font_size()) * 0.5)
+    each = imgui.calc_text_size("0").x
+    draw.add_text((x, y), u32(palette.dim), "=")
+    x += 2.0 * each
+    for token in Expression(text).tokens:
+        color = colors.get(token.kind, palette.dim)
+        draw.add_text((x + imgui.calc_text_size(text[: token.start]).x, y), u32(color), text[token.start : token.end])
+    draw.pop_clip_rect()

@@ -1,0 +1,54 @@
+"""The line above the tools while a flipbook is open: what is played, and back to the document."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import imgui
+
+from ..services.flipbook import SIDES
+from ..theme.style import mix, u32, ui_scale, vec4
+from ..toolkit.buttons import quiet, room_for
+from ..toolkit.words import dim, elided, font, tip
+
+if TYPE_CHECKING:
+    from ..editor import Editor
+
+_BACK = f"{icons.ICON_FA_XMARK}  Back to the graph"
+
+
+def draw_banner(editor: Editor) -> None:
+    """Draw it, if there is a flipbook."""
+    book = editor.viewer.flipbook
+    if book is None:
+        return
+    palette, scale = editor.palette, ui_scale()
+    inner, start = imgui.internal.get_current_window().inner_rect, imgui.get_cursor_screen_pos()
+    high = imgui.get_frame_height()
+    lines = imgui.get_window_draw_list()
+    bottom = start.y + high + 3 * scale
+    lines.add_rect_filled((inner.min.x, inner.min.y), (inner.max.x, bottom), u32(mix(palette.panel, palette.accent, 0.16)))
+    imgui.align_text_to_frame_padding()
+    imgui.text_colored(vec4(palette.accent), f"{icons.ICON_FA_FILM} ")
+    imgui.same_line(0.0, 2 * scale)
+    with font(editor, "bold"):
+        imgui.text_unformatted("Flipbook")
+    room = (inner.max.x - imgui.get_cursor_screen_pos().x - room_for(_BACK) - 130 * scale) / len(book.strips)
+    colors = {"A": palette.accent, "B": palette.good}
+    for side, strip in zip(SIDES, book.strips, strict=False):
+        imgui.same_line(0.0, 14 * scale)
+        if len(book.strips) > 1:
+            imgui.text_colored(vec4(colors[side]), side)
+            imgui.same_line(0.0, 5 * scale)
+        imgui.text_unformatted(elided(strip.name, room - 30 * scale))
+        tip(str(strip.path))
+        if strip.export is not None and strip.export.state in ("running", "waiting"):
+            imgui.same_line(0.0, 6 * scale)
+            dim(editor, f"{strip.export.done} of {strip.export.total}")
+    imgui.same_line(0.0, 0.0)
+    imgui.set_cursor_screen_pos((inner.max.x - room_for(_BACK) - 4 * scale, start.y))
+    doc = "The viewer and the timeline show the document again"
+    if quiet(editor, _BACK, "close flipbook", doc):
+        editor.actions.run("viewer.close_flipbook", editor)
+    imgui.set_cursor_screen_pos((start.x, bottom + 3 * scale))

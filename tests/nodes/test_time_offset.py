@@ -1,0 +1,29 @@
+"""Time offset: which frame is seen when; and neighbors in a row add up."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from halation.app.graph import Port
+from halation.app.renderer import Wanted
+from halation.nodes.time.time_offset import TimeOffset
+from sequences import node_at, noise_at, noise_graph
+
+
+@pytest.mark.parametrize("frames", [-7, 0, 3])
+def test_another_frame_is_seen(renderer, frames):
+    graph = noise_graph(TimeOffset(frames=frames))
+    assert np.array_equal(node_at(renderer, graph, 4), noise_at(renderer, graph, 4 + frames))
+
+
+def test_offsets_add_up(renderer):
+    graph = noise_graph(TimeOffset(frames=3)).add("back", TimeOffset(frames=-5)).disconnect(Port("outputs", "out"))
+    graph = graph.connect(Port("node", "out"), Port("back", "image")).connect(
+        Port("back", "out"), Port("outputs", "out")
+    )
+    assert np.array_equal(node_at(renderer, graph, 4), noise_at(renderer, graph, 2))
+
+
+def test_it_costs_no_pass(renderer):
+    graph = noise_graph(TimeOffset(frames=2)).remove_output("noise")
+    assert len(renderer.compile(graph, Wanted(frame=5)).passes) == 1
