@@ -73,7 +73,8 @@ vec4 depth_of_field_clean() {
 // Whether what has one radius lies before what has another, and is blurred.
 bool depth_of_field_hides(float other, float here) { return here - other >= 1.0 && abs(other) >= 1.0; }
 
-// The light that edges lose so goes to the nearer surface beside them: small lamps are hardly more than edges.
+// The light that edges lose so goes to the nearer surface beside them: small lamps are hardly more than edges. What
+// edges gain, as those of a lamp behind something dark do, is taken from nobody.
 vec4 depth_of_field_whole() {
     const ivec2 beside[4] = ivec2[4](ivec2(-1, 0), ivec2(1, 0), ivec2(0, -1), ivec2(0, 1));
     float here = radius_at(pixel);
@@ -83,7 +84,7 @@ vec4 depth_of_field_whole() {
         float there = radius_at(at), takers = 0.0;
         if (!depth_of_field_hides(here, there)) continue;
         for (int j = 0; j < 4; ++j) takers += float(depth_of_field_hides(radius_at(at + beside[j]), there));
-        sum += (finite(image_at(at)) - kept_at(at) - clean_at(at)) / takers;
+        sum += max(finite(image_at(at)) - kept_at(at) - clean_at(at), 0.0) / takers;
     }
     return sum;
 }

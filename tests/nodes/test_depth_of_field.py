@@ -243,3 +243,18 @@ def test_a_slope_has_no_seams(run):
     found = run(lens(SIZE, 30.0), {"image": light, "depth": depth})
     assert np.abs(found[..., 3] - 1.0).max() < 1e-5
     assert np.abs(np.diff(found[:, 64, 0])).max() < 4.0 / SIZE
+
+
+@pytest.mark.parametrize("quality", ["normal", "exact"])
+def test_something_dark_before_a_lamp_turns_no_darker(run, quality):
+    """The lamp's antialiased edge pixels hold less light than the lamp: nobody has to pay for the rest."""
+    image, depth = np.full((40, 60, 4), 50.0, np.float32), np.full((40, 60), 20.0, np.float32)
+    image[..., 3] = 1.0
+    for row in range(40):
+        edge = 25.3 + 0.21 * row  # a dark wall to the left of a slanted edge, in focus
+        cover = np.clip(edge - np.arange(60), 0.0, 1.0)
+        image[row, :, :3] += (0.2 - image[row, :, :3]) * cover[:, None]
+        depth[row, cover > 0.5] = 4.0
+    lens = DepthOfField(focus="distance", focus_distance=4.0, f_number=1.0, quality=quality)
+    found = run(lens, {"image": image, "depth": depth})
+    assert found[..., :3].min() > 0.19
