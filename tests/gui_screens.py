@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from gui_driver import Ui
+from gui_keys import animation
 from halation import presets
 from halation.app.document import save
 from halation.app.editor.dialogs import Browse, Question
 from halation.app.editor.editor import Editor
 from halation.app.editor.services.recovery import Recovery
-from halation.app.graph import Control, Expression, Graph, Input, Key, Keys, Output, Port, Settings
+from halation.app.graph import Control, Graph, Input, Output, Port, Settings
 from halation.nodes import Kind, Light, LightKind, catalogue, numbers_of
 from toy_nodes import Lamps, Tint
 
@@ -222,39 +223,6 @@ def panels(ui: Ui) -> Screens:
     show(ui, "Log")
     yield "log"
     ui.editor.log.entries.clear()
-    show(ui, "Graph")
-
-
-def animation(ui: Ui) -> Screens:
-    """Nothing that moves; keys; curves."""
-    before = ui.session.root
-    show(ui, "Animation")
-    yield "animation_none"
-    intensity, gain = Port("bloom", "intensity"), Port("grade", "gain")
-    ui.session.set_frames(1, 48)
-    ui.session.animate_all({
-        intensity: Keys((Key(1, 0.2), Key(12, 0.9), Key(24, 0.9), Key(40, 0.1, "constant"))),
-        Port("bloom", "knee"): Keys((Key(5, 0.2, "bezier"), Key(20, 1.0, "bezier"), Key(30, 0.4, "linear")), "loop"),
-        gain: Keys((Key(1, (1.0,) * 4), Key(10, (1.5, 0.7, 0.8, 1.0), "linear"), Key(30, (0.8, 1.2, 1.4, 1.0)))),
-        Port("vignette", "amount"): Expression("0.3 + 0.1 * sin(time * tau)"),
-    }, "Animate")
-    ui.session.seek(16)
-    state = ui.editor.curves
-    state.fit()
-    state.choose(frozenset({(intensity, 12.0, 0), (intensity, 24.0, 0), (Port("bloom", "knee"), 20.0, 0)}))
-    ui.wait(4)
-    yield "animation_keys"
-    state.mode = "curves"
-    state.choose(frozenset({(Port("bloom", "knee"), 20.0, 0)}))
-    state.fit()
-    ui.wait(4)
-    yield "animation_curves"
-    ui.click("button keys legend" if "button keys legend" in ui.editor.places else "button more keys")
-    yield "animation_legend"
-    ui.keys("Escape")
-    state.mode = "sheet"
-    while ui.session.root is not before:
-        ui.session.undo()
     show(ui, "Graph")
 
 

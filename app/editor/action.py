@@ -62,8 +62,9 @@ class Actions:
         return (action for action in self.all if name in action.contexts)
 
     def run(self, id: str, editor: Any) -> None:
-        """Do it, if it can be done now."""
+        """Do it, if it can be done now. What is seen and played may be a flipbook, not the document."""
         action = self[id]
+        editor = getattr(editor, "stage", editor) if id.startswith(("viewer.", "time.")) else editor
         if action.enabled(editor):
             editor.attempt(lambda: action.run(editor))
 

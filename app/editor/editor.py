@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import traceback
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
 from ..errors import HalationError
@@ -96,6 +96,12 @@ class Editor:
     def say(self, sentence: str) -> None:
         """Tell the person something."""
         self.log.add(sentence)
+
+    @property
+    def stage(self) -> Editor:
+        """The same editor for what shows pictures and time: with the flipbook as its document while one is open."""
+        book = self.viewer.flipbook
+        return self if book is None else replace(self, session=book.session)
 
     @property
     def palette(self) -> Palette:

@@ -17,9 +17,13 @@ vec4 temporal_aa_sample(vec4 image, bool weigh_light) {
     return vec4(dot(rgb, vec3(0.25, 0.5, 0.25)), 0.5 * (rgb.r - rgb.b), dot(rgb, vec3(-0.25, 0.5, -0.25)), safe.a);
 }
 
+vec3 temporal_aa_rgb(vec4 mixed) {
+    float rest = mixed.x - mixed.z;
+    return vec3(rest + mixed.y, mixed.x + mixed.z, rest - mixed.y);
+}
+
 vec4 temporal_aa(vec4 blended, bool weigh_light) {
-    float rest = blended.x - blended.z;
-    vec3 rgb = vec3(rest + blended.y, blended.x + blended.z, rest - blended.y);
+    vec3 rgb = temporal_aa_rgb(blended);
     if (weigh_light) rgb /= max(1.0 - luminance(rgb), 1.0 / (1.0 + temporal_aa_most));
     return finite(vec4(rgb, blended.a));
 }
@@ -75,9 +79,11 @@ vec4 temporal_aa_blend(float share, float gamma, float tolerance, bool deep, int
     if (deep && !temporal_aa_known(place, tolerance)) return now;
 
     vec4 sum = vec4(0.0), squares = vec4(0.0);
+    float brightest = 0.0;
     for (int i = 0; i < 9; ++i) {
         vec4 light = sample_at(pixel + ivec2(i % 3, i / 3) - 1);
         sum += light, squares += light * light;
+        brightest = max(brightest, luminance(temporal_aa_rgb(light)));
     }
     vec4 mean = sum / 9.0, reach = gamma * sqrt(max(squares / 9.0 - mean * mean, 0.0));
     reach = max(reach, temporal_aa_rounding * max(abs(mean.x), 1.0));
@@ -85,5 +91,9 @@ vec4 temporal_aa_blend(float share, float gamma, float tolerance, bool deep, int
     vec4 off = temporal_aa_past(place, kernel) - mean, over = abs(off) / reach;
     float farthest = max(max(over.x, over.y), max(over.z, over.w));
     share = mix(share, max(share, temporal_aa_moving), min(2.0 * length(motion), 1.0));
-    return mix(mean + off / max(farthest, 1.0), now, share);
+    vec4 mixed = mix(mean + off / max(farthest, 1.0), now, share);
+    // Near 1, weighed light becomes light without end: it gets no brighter than what is around.
+    float bright = luminance(temporal_aa_rgb(mixed));
+    if (bright > brightest) mixed.xyz *= brightest / bright;
+    return mixed;
 }

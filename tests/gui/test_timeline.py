@@ -251,7 +251,7 @@ def test_the_graphs_range_rate_and_preroll(gui, tmp_path) -> None:
         session = ui.session
         start(ui, graph_of(path, "exposure"))
         assert session.frames == (1001, 1008) and session.frame == 1001
-        ui.click("field frames#0")
+        ui.click("field frames", fraction=(0.25, 0.5))
         ui.type("1003")
         assert session.settings.frames == (1003, 1008)
         ui.click("field preroll")
@@ -274,8 +274,7 @@ def test_missing_frames_are_marked(gui, tmp_path) -> None:
 
     def body(ui) -> None:
         start(ui, graph_of(path, "exposure"))
-        ui.wait(3)
-        assert ui.window._timeline._ruler.missing.found == ((5, 6),)
+        ui.until(lambda: ui.window._timeline._ruler.missing.found == ((5, 6),))
         session = ui.session
         session.seek(5)
         ui.settled()

@@ -261,4 +261,4 @@ def test_a_dark_ear_before_a_lamp_turns_no_darker(run):
     )
     found = run(node, {"image": image, "depth": depth[..., 0]})[..., :3].max(2)
     ear = np.s_[108:126, 148:170]
-    assert found[ear].min() > 0.1 and image[ear][..., :3].max(2).min() > 0.1
+    assert found[ear].min() > 0.1

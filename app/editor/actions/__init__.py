@@ -6,6 +6,7 @@ from ..action import Action
 from .animation import ANIMATION
 from .documents import DOCUMENTS
 from .edits import EDITS
+from .flipbook import FLIPBOOK
 from .graph import GRAPH
 from .handles import HANDLES
 from .playback import PLAYBACK
@@ -19,4 +20,4 @@ MENUS = ("File", "Edit", "Graph", "Viewer", "Time", "View", "Help")
 
 def table() -> tuple[Action, ...]:
     """Every action, in the order of the menus."""
-    return (*DOCUMENTS, *EDITS, *GRAPH, *VIEWER, *HANDLES, *PLAYBACK, *ANIMATION, *VIEW)
+    return (*DOCUMENTS, *EDITS, *GRAPH, *VIEWER, *FLIPBOOK, *HANDLES, *PLAYBACK, *ANIMATION, *VIEW)

@@ -132,7 +132,20 @@ def _quit(editor: Editor) -> None:
     def close() -> None:
         editor.closing = True
 
-    _unless_unsaved(editor, close, "quit")
+    _unless_rendering(editor, lambda: _unless_unsaved(editor, close, "quit"))
+
+
+def _unless_rendering(editor: Editor, then: Callable[[], object]) -> None:
+    """Ask before renders to files are stopped."""
+    count = len(editor.exports.unfinished)
+    if not count:
+        then()
+        return
+    what = "A render is" if count == 1 else f"{count} renders are"
+    editor.dialogs.question = Question(
+        "Renders are not finished", f"{what} not finished. Frames that are done stay, and Resume can go on from there.",
+        (("Stop rendering and quit", then), ("Cancel", _nothing)),
+    )
 
 
 def ask_to_close(editor: Editor) -> bool:

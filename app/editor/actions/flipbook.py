@@ -17,8 +17,9 @@ def open_flipbook(editor: Editor, *strips: Strip) -> None:
     """Play these in the viewer; two are side by side unless they are compared otherwise already."""
     viewer, session, before = editor.viewer, editor.session, editor.viewer.flipbook
     watched = before.watched if before else session.viewed_in_root("A")
-    made = Flipbook(strips, session.settings.rate, session.frame, watched, before.compare if before else viewer.compare)
+    made = Flipbook(strips, session.settings.rate, session.frame, watched)
     editor.timeline.stop()
+    viewer.compare_after = viewer.compare_after if before else viewer.compare
     viewer.flipbook = made
     if len(strips) == 1:
         viewer.compare = "off"
@@ -30,10 +31,10 @@ def open_flipbook(editor: Editor, *strips: Strip) -> None:
 
 def close_flipbook(editor: Editor) -> None:
     """Show the document again."""
-    book = editor.viewer.flipbook
-    if book is not None:
+    viewer = editor.viewer
+    if viewer.flipbook is not None:
         editor.timeline.stop()
-        editor.viewer.compare, editor.viewer.flipbook = book.compare, None
+        viewer.compare, viewer.flipbook = viewer.compare_after, None
 
 
 def choose_flipbook(editor: Editor, first: Strip | None = None) -> None:
@@ -61,6 +62,8 @@ def follow_flipbook(editor: Editor) -> None:
 FLIPBOOK: tuple[Action, ...] = (
     Action("flipbook.open", "Play Pictures...", choose_flipbook, "Viewer", separated=True,
            doc="A sequence on the disk, in place of the document."),
+    Action("flipbook.compare", "Compare Pictures with...", lambda e: choose_flipbook(e, e.viewer.flipbook.strips[0]),
+           "Viewer", enabled=lambda e: e.viewer.flipbook is not None, doc="Play another sequence beside this one."),
     Action("flipbook.close", "Back to the Graph", close_flipbook, "Viewer",
            enabled=lambda e: e.viewer.flipbook is not None, doc="End the flipbook."),
 )

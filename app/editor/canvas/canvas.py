@@ -141,12 +141,14 @@ class Canvas:
         session, pictures = editor.session, self._pictures.of(editor)
         gesture = self._mouse.gesture
         opened = self._opened if isinstance(gesture, Link) else ""
-        staged = (session.revision, pictures, opened, frozenset(self._stage.expanded))
+        graph = session.graph_now
+        frame = None if graph is session.graph else session.frame
+        staged = (session.revision, frame, pictures, opened, frozenset(self._stage.expanded))
         if self._scene is None or staged != self._staged:
             positions, others = session.positions, session.selection - {session.active}
             top = [key for key in session.elements if key in others] if others else []
             self._scene = self._stage.build(
-                session.graph, positions.__getitem__, [*top, session.active], pictures, opened
+                graph, positions.__getitem__, [*top, session.active], pictures, opened
             )
             self._staged = staged
         return self._scene

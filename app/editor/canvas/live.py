@@ -16,6 +16,7 @@ from ..inspector.fields import Edit, Fields
 from ..inspector.file_field import browse
 from ..inspector.number_field import number_field, row_of_numbers
 from ..inspector.text_field import text_field
+from ..session import Session
 from .brush import TEXT, Brush, on_nodes
 from .geometry import Rect
 from .layout import FIELD_HEIGHT, Row
@@ -120,7 +121,7 @@ class Live:
             editor.viewer.picking = fields.eyedropper.removeprefix("canvas ")
         editor.dragging = editor.dragging or fields.dragging
         for port, edit in self._edits:
-            editor.attempt(lambda port=port, edit=edit: editor.session.set(port, edit.value, edit.merge))
+            editor.attempt(lambda port=port, edit=edit: _put(editor.session, port, edit))
         self._edits.clear()
         if self._dragged and not fields.dragging:
             editor.session.seal()
@@ -132,7 +133,7 @@ class Live:
         if port.node not in editor.session.graph.nodes:
             self.open = None
             return
-        plain = editor.session.value(port)
+        plain = editor.session.graph_now.value(port)
         if opening == "path":
             self.open = None
             editor.dialogs.browse = browse(
@@ -165,3 +166,10 @@ class Live:
                 imgui.set_item_default_focus()
         if imgui.is_key_pressed(imgui.Key.escape):
             imgui.close_current_popup()
+
+
+def _put(session: Session, port: Port, edit: Edit) -> None:
+    if edit.expression:
+        session.express(port, edit.expression)
+    else:
+        session.set(port, edit.value, edit.merge)

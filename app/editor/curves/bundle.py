@@ -55,6 +55,8 @@ class Bundle:
     key_of: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64))
     spots: tuple[frozenset[Spot], ...] = ()
     looks: tuple[Interpolation, ...] = ()
+    edges: Floats = field(default_factory=lambda: np.empty((0, 5)))
+    """Frame and value of the first and the last key of every channel, and 1 where they hold beyond."""
 
     def seen(self, plane: Plane) -> Seen:
         """What of it is on the screen."""
@@ -71,23 +73,23 @@ class Bundle:
     def ends(self, plane: Plane) -> tuple[list[int], Pieces, NDArray[np.bool_], list[int]]:
         """What lies beyond the keys, on the screen: channels of ways, their pieces, which are bent, where ways end."""
         view = plane.view
-        of: list[int] = []
-        found: list[Pieces] = []
-        for place, one in enumerate(self.shapes):
-            if one.keys.outside == "hold" or len(one.keys.keys) == 1:
-                first, last, low, high = one.keys.frames[0], one.keys.frames[-1], one.values[0], one.values[-1]
-                ways = [_LEVEL * (first - view.first, 0.0) + (view.first, low)] if first > view.first else []
-                ways += [_LEVEL * (view.last - last, 0.0) + (last, high)] if last < view.last else []
-            else:
-                both = outside(one.keys, self.lanes[place][1], one.pieces, view.first, view.last)
-                ways = [way for way in both if len(way)]
+        first, low, last, high, holds = self.edges.T
+        before = np.nonzero((holds > 0.0) & (first > view.first))[0]
+        after = np.nonzero((holds > 0.0) & (last < view.last))[0]
+        level = np.empty((len(before) + len(after), 4, 2))
+        level[:, :2, 0] = np.concatenate([np.full(len(before), view.first), last[after]])[:, None]
+        level[:, 2:, 0] = np.concatenate([first[before], np.full(len(after), view.last)])[:, None]
+        level[..., 1] = np.concatenate([low[before], high[after]])[:, None]
+        of: list[int] = [*before.tolist(), *after.tolist()]
+        found: list[Pieces] = [level[place : place + 1] for place in range(len(level))]
+        for place in np.nonzero(holds == 0.0)[0].tolist():
+            one = self.shapes[place]
+            both = outside(one.keys, self.lanes[place][1], one.pieces, view.first, view.last)
+            ways = [way for way in both if len(way)]
             found += ways
             of += [place] * len(ways)
         screen, bent = on_screen(np.concatenate([np.empty((0, 4, 2)), *found]), plane)
         return of, screen, bent, np.cumsum([0, *map(len, found)]).tolist()
-
-
-_LEVEL = np.array([[(0.0, 0.0), (0.0, 0.0), (1.0, 0.0), (1.0, 0.0)]])
 
 
 @dataclass(frozen=True)
@@ -159,6 +161,7 @@ class Bundles:
             np.concatenate([one.frames for one in shapes]), np.concatenate([one.values for one in shapes]),
             np.repeat(order, [len(one.frames) for one in shapes]),
             tuple(spot for one in shapes for spot in one.spots), tuple(look for one in shapes for look in one.looks),
+            np.array([_edges(one) for one in shapes]),
         )
 
     def _shape(self, lane: Lane, keys: Keys) -> Shape:
@@ -166,3 +169,8 @@ class Bundles:
         if known is None or known.keys is not keys:
             known = self._known[lane] = shape(lane, keys)
         return known
+
+
+def _edges(one: Shape) -> tuple[float, ...]:
+    holds = one.keys.outside == "hold" or len(one.frames) == 1
+    return one.frames[0], one.values[0], one.frames[-1], one.values[-1], float(holds)

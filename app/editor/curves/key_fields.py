@@ -22,7 +22,7 @@ from .frame import Frame
 from .hits import SIDES
 from .rows import spots_of
 
-_LABEL, _INF = 46.0, float("inf")
+_LABEL, _SHARE, _INF = 46.0, 0.6, float("inf")
 
 
 class KeyFields:
@@ -33,9 +33,8 @@ class KeyFields:
 
     def height(self, frame: Frame) -> float:
         """How high they are."""
-        rows = len(self._rows(frame))
-        line = imgui.get_frame_height() + 3.0 * frame.scale
-        return rows * line + 10.0 * frame.scale if rows else 0.0
+        rows = len(self._shown(frame))
+        return rows * self._line(frame) + 10.0 * frame.scale if rows else 0.0
 
     def draw(self, frame: Frame, top: float) -> None:
         """Draw them; what was changed goes into the graph."""
@@ -46,7 +45,7 @@ class KeyFields:
         scale = ui_scale()
         left, _, right, _ = frame.list
         y = top + 6.0 * scale
-        for name, label, numbers, declaration in self._rows(frame):
+        for name, label, numbers, declaration in self._shown(frame):
             imgui.set_cursor_screen_pos((left + 8.0 * scale, y))
             rect = place(_LABEL * scale)
             write(rect, label, editor.palette.dim)
@@ -57,7 +56,7 @@ class KeyFields:
             edit = row_of_numbers(fields, id, numbers, declaration, width, ("",) * len(numbers), keep_type=True)
             if edit:
                 editor.attempt(lambda name=name, edit=edit: self._apply(frame, name, edit))
-            y += imgui.get_frame_height() + 3.0 * scale
+            y += self._line(frame)
         if dragged and not fields.dragging:
             editor.session.seal()
         left_over = fields.end()
@@ -65,6 +64,14 @@ class KeyFields:
             id, edit = left_over
             editor.attempt(lambda: self._apply(frame, id.removeprefix("keys ").partition("#")[0], edit))
         editor.dragging |= fields.dragging
+
+    def _line(self, frame: Frame) -> float:
+        return imgui.get_frame_height() + 3.0 * frame.scale
+
+    def _shown(self, frame: Frame) -> list[tuple[str, str, tuple[float, ...], Value]]:
+        """As many lines as leave room for the names."""
+        room = (frame.list[3] - frame.list[1]) * _SHARE - 10.0 * frame.scale
+        return self._rows(frame)[: max(int(room / self._line(frame)), 0)]
 
     def _rows(self, frame: Frame) -> list[tuple[str, str, tuple[float, ...], Value]]:
         """Name, label, numbers and declaration of every line."""
@@ -118,6 +125,8 @@ def _found(frame: Frame) -> tuple[Port, Keys, float] | None:
     single = frame.state.single
     keys = frame.graph.animation.get(single[0]) if single else None
     if single is None or not isinstance(keys, Keys) or keys.key(single[1]) is None:
+        return None
+    if not frame.editor.session.can_animate(single[0]):
         return None
     return single[0], keys, single[1]
 

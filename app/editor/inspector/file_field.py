@@ -83,15 +83,16 @@ class FileField:
         if fault:
             rows.field_note(fault.removeprefix(f"{self._full(rows, value)}: "), rows.palette.error)
         elif declaration.holds == "picture":
-            header = self.known.header(self._full(rows, value))
-            rows.field_note(described(header, layer) if isinstance(header, ImageInfo) else "reading…")
+            header = self.known.header(self._file(rows, value))
+            frames = _frames(self._full(rows, value))
+            rows.field_note(frames + described(header, layer) if isinstance(header, ImageInfo) else "reading…")
 
     def layer(
         self, rows: Rows, key: str, file: str, value: str, width: float, first: str = FIRST, fault: bool = False
     ) -> Edit | None:
         """The layer: a list of those in the file, or plain text while it cannot be read; `first` is what "" stands for.
         """
-        path = self._full(rows, file)
+        path = self._file(rows, file)
         header = self.known.header(path) if file else "no file"
         if not isinstance(header, ImageInfo):
             return text_field(self.fields, key, value, _TEXT, width, hint=first, fault=fault)
@@ -138,11 +139,26 @@ class FileField:
 
     def _fault(self, rows: Rows, value: str, declaration: Value) -> str:
         """Why the file cannot be read, as far as is known."""
-        path = self._full(rows, value)
+        path = self._file(rows, value)
         if not declaration.pixels:
             return self.known.fault(path)
         header = self.known.header(path)
         return header if isinstance(header, str) else ""
 
+    def _file(self, rows: Rows, value: str) -> Path:
+        """The file; of a sequence one that is there."""
+        return standing(self._full(rows, value), rows.editor.session.frames[0])
+
     def _full(self, rows: Rows, value: str) -> Path:
         return Path(rows.editor.session.graph.folder, value)
+
+
+def _frames(path: Path) -> str:
+    """Which frames a sequence has; nothing for a single picture."""
+    try:
+        found = find_sequence(str(path))
+    except HalationError:
+        return ""
+    if found is None or not found.frames:
+        return ""
+    return f"frames {found.said}{f', {found.missing} missing' if found.missing else ''} · "

@@ -21,13 +21,12 @@ from .end_view import bound_to, draw_text
 from .fields import Fields
 from .heading import faults, heading
 from .number_field import number_field, row_of_numbers
+from .numbers import RATE, near
 from .rows import Rows
 from .text_field import text_field
 from .value_rows import ValueRows, go_to
 
 _SIDE = Value("size", "int", 1920, low=1.0, high=4096.0, minimum=1.0, maximum=16384.0, unit="px")
-_FRAME = Value("frame", "int", 1, low=1.0, high=200.0)
-_RATE = Value("rate", "float", 24.0, low=1.0, high=60.0, minimum=0.01, maximum=1000.0)
 _PREROLL = Value("preroll", "int", 12, low=0.0, high=100.0, minimum=0.0)
 _TEXT = Value("name", "text", "")
 _COLOR = Value("color", "color", (0.0,) * 4, 4, low=0.0, high=1.0)
@@ -123,7 +122,9 @@ class GraphView:
         stated = settings.frames is not None
         width = rows.field() - (imgui.get_frame_height() if stated else 0.0)
         imgui.begin_group()
-        edit = row_of_numbers(self._fields, "frames", (first, last), _FRAME, width, ("", ""), keep_type=True)
+        edit = row_of_numbers(
+            self._fields, "frames", (first, last), near(first), width, ("", ""), keep_type=True, plain=True
+        )
         imgui.end_group()
         rows.record("frames")
         if not stated:
@@ -137,7 +138,7 @@ class GraphView:
             low, high = (low, max(low, high)) if low != first else (min(low, high), high)
             rows.act(lambda: session.set_frames(low, high, merge=edit.merge))
         rows.name("rate", "rate", doc="Frames per second", changed=settings.rate != 24.0)
-        rate = number_field(self._fields, "rate", settings.rate, _RATE, rows.field(), suffix="fps")
+        rate = number_field(self._fields, "rate", settings.rate, RATE, rows.field(), suffix="fps", plain=True)
         rows.record("rate")
         if rate and isinstance(rate.value, int | float):
             fps, token = float(rate.value), rate.merge
@@ -147,7 +148,7 @@ class GraphView:
     def _preroll(self, rows: Rows) -> None:
         session = rows.editor.session
         preroll = session.settings.preroll
-        doc = "How many frames before the one that is wanted nodes with a memory look back. Without a number they begin "
+        doc = "How many frames before the one that is wanted nodes with a memory look back. Without one they begin "
         doc += "at the first frame, so that a frame is the same wherever a rendering begins."
         rows.name("preroll", "pre-roll", doc=doc, changed=preroll is not None)
         width = rows.field()
@@ -158,7 +159,7 @@ class GraphView:
             tip(doc)
             return
         width -= imgui.get_frame_height()
-        edit = number_field(self._fields, "preroll", preroll, _PREROLL, width, suffix="frames")
+        edit = number_field(self._fields, "preroll", preroll, _PREROLL, width, suffix="frames", plain=True)
         rows.record("preroll")
         imgui.same_line(0.0, 0.0)
         if rows.icon(icons.ICON_FA_XMARK, "automatic preroll", "From the first frame"):

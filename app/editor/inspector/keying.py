@@ -144,8 +144,8 @@ class Keying:
         background(rows.palette, rect, hovered=imgui.is_item_hovered(), fault=bool(fault))
         rows.record(key)
         with font(editor, "mono", SMALL):
-            _colored(rows.palette, rect, text)
-        tip(f"= {text}")
+            cut = _colored(rows.palette, rect, text)
+        tip(f"= {text}" if cut else "")
         return True
 
     def note(self, rows: Rows, port: Port, shown: str) -> None:
@@ -255,8 +255,8 @@ def _paint(palette: Palette, rect: Rect, look: Look, hovered: bool) -> None:
     draw.add_ngon(center, size, u32(mix(color, palette.text, 0.3) if hovered else color, strong), 4, 1.3 * scale)
 
 
-def _colored(palette: Palette, rect: Rect, text: str) -> None:
-    """The words of an expression, each in the color of what it is."""
+def _colored(palette: Palette, rect: Rect, text: str) -> bool:
+    """The words of an expression, each in the color of what it is; True if there is no room for all of them."""
     colors = {
         "number": palette.good, "name": palette.text, "function": palette.accent, "constant": palette.good,
         "variable": color_of(palette, "expression"), "word": palette.accent, "unknown": palette.error,
@@ -271,3 +271,4 @@ def _colored(palette: Palette, rect: Rect, text: str) -> None:
         color = colors.get(token.kind, palette.dim)
         draw.add_text((x + imgui.calc_text_size(text[: token.start]).x, y), u32(color), text[token.start : token.end])
     draw.pop_clip_rect()
+    return x + imgui.calc_text_size(text).x > rect[2]

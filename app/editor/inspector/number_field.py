@@ -24,11 +24,11 @@ NO_VALUE = "—"
 
 def number_field(
     fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False,
-    suffix: str | None = None,
+    suffix: str | None = None, plain: bool = False,
 ) -> Edit | None:
     """One number. Shift drags finely, Ctrl in round steps; Escape brings back what was there before.
 
-    `suffix` stands behind it instead of the declared unit.
+    `suffix` stands behind it instead of the declared unit. A `plain` one is not filled up to its value.
     """
     assert isinstance(value, int | float)
     fields.order.append(id)
@@ -51,7 +51,7 @@ def number_field(
     now = edit.value if edit else value
     assert isinstance(now, int | float)
     unit = SUFFIX[declaration.unit] if suffix is None else suffix
-    _draw(fields, rect, now, declaration, unit, label, mixed and edit is None, hovered, active)
+    _draw(fields, rect, now, declaration, unit, label, mixed and edit is None, hovered, active, plain)
     return edit
 
 
@@ -89,12 +89,12 @@ def _wheeled(fields: Fields, id: str, value: float, declaration: Value) -> Edit 
 
 def _draw(
     fields: Fields, rect: Rect, value: float, declaration: Value, unit: str, label: str, mixed: bool, hovered: bool,
-    active: bool,
+    active: bool, plain: bool,
 ) -> None:
     palette, pad = fields.palette, imgui.get_style().frame_padding.x * 0.75
     background(palette, rect, hovered=hovered, active=active)
     lines, rounding = imgui.get_window_draw_list(), imgui.get_style().frame_rounding
-    filled = None if mixed else bar(value, declaration)
+    filled = None if mixed or plain else bar(value, declaration)
     if filled and filled[1] > filled[0]:
         left, right = (rect[0] + (rect[2] - rect[0]) * part for part in filled)
         color = mix(palette.fill, palette.accent, 0.5 if active else 0.25 if hovered else 0.0)
@@ -131,7 +131,7 @@ def vector_field(
 
 def row_of_numbers(
     fields: Fields, id: str, value: tuple[float, ...], declaration: Value, width: float, names: tuple[str, ...],
-    mixed: bool = False, first: int = 0, keep_type: bool = False,
+    mixed: bool = False, first: int = 0, keep_type: bool = False, plain: bool = False,
 ) -> Edit | None:
     """Numbers side by side; a name stands in each where there is room for it. Floats unless `keep_type`."""
     gap = imgui.get_style().item_inner_spacing.x * 0.5
@@ -148,7 +148,7 @@ def row_of_numbers(
             return replace(edit, value=(*value[:at], edit.value, *value[at + 1 :]))
 
         fields.part(f"{id}#{index}", id, whole)
-        edit = number_field(fields, f"{id}#{index}", value[index], part, each, label=named, mixed=mixed)
+        edit = number_field(fields, f"{id}#{index}", value[index], part, each, label=named, mixed=mixed, plain=plain)
         found = whole(edit) if edit else found
     return found
 

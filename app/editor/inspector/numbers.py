@@ -24,6 +24,9 @@ MEANING: Mapping[Unit | None, str] = MappingProxyType({
     "scene": "scene units",
 })
 
+RATE = Value("rate", "float", 24.0, low=1.0, high=60.0, minimum=0.01, maximum=1000.0)
+"""Frames per second."""
+
 FINE, UNBOUNDED_SPAN = 0.1, 2.0
 _PLAIN = re.compile(r"\s*[-+]?\d*\.?\d*\s*")
 
@@ -32,6 +35,11 @@ def span(declaration: Value) -> float:
     """The width of the soft range; that of a number without one is guessed."""
     width = declaration.high - declaration.low
     return width if math.isfinite(width) and width > 0.0 else UNBOUNDED_SPAN
+
+
+def near(frame: int, reach: int = 10) -> Value:
+    """A frame, or a count of them, that is dragged in steps of about one: there is no range that it lies in."""
+    return Value("frame", "int", 1, low=float(frame - reach), high=float(frame + reach))
 
 
 def decimals(declaration: Value) -> int:

@@ -17,7 +17,7 @@ from ..theme.style import ui_scale, vec4
 from ..toolkit.buttons import main_button, quiet, room_for
 from ..toolkit.fields import combo, label
 from ..toolkit.places import record
-from ..toolkit.words import dim, elided, fitted, tip, wrapped
+from ..toolkit.words import SMALL, dim, elided, fitted, font, tip, wrapped
 from .export_form import DEPTHS, FORMATS, VIEWED, Aim, Extent, Form, Sizing
 from .export_words import aim_text, exist_text
 
@@ -77,12 +77,12 @@ def _chosen(editor: Editor, form: Form, output: str, path: Path) -> None:
 
 def _frames(editor: Editor, form: Form) -> None:
     offered, now = form.extents(editor), form.extent_of(editor)
-    labels = {extent: _extent_text(extent, frames) for extent, frames in offered.items()}
-    if chosen := choice(editor, "Frames", labels[now], tuple(labels.values())):
-        form.extend(editor, next(extent for extent, text in labels.items() if text == chosen))
+    labels: dict[str, Extent] = {_extent_text(extent, frames): extent for extent, frames in offered.items()}
+    if chosen := choice(editor, "Frames", _extent_text(now, offered[now]), tuple(labels)):
+        form.extend(editor, labels[chosen])
     if now == "some frames":
         _list(editor, form)
-    if len(offered[now]) > 1:
+    if now != "this frame":
         label("Processes", _LABELS)
         imgui.set_next_item_width(-1)
         most = max(os.cpu_count() or 1, 1)
@@ -118,6 +118,12 @@ def _list(editor: Editor, form: Form) -> None:
         imgui.pop_style_color()
     record(editor, "render frames")
     tip("1-24, 1-24x2 for every second one, 10-1 backwards; several of them with commas between.")
+    if wrong:
+        imgui.indent(_LABELS * ui_scale())
+        with font(editor, "text", SMALL):
+            wrapped(editor.palette.error, form.list_fault)
+        record(editor, "render list fault")
+        imgui.unindent(_LABELS * ui_scale())
 
 
 def _options(editor: Editor, form: Form) -> None:
@@ -154,8 +160,9 @@ def _consequences(editor: Editor, form: Form, aim: Aim) -> None:
     """What would be written, and what is in the way."""
     palette = editor.palette
     if aim.fault:
-        wrapped(palette.error, aim.fault)
-        record(editor, "render fault")
+        if aim.fault != form.list_fault:
+            wrapped(palette.error, aim.fault)
+            record(editor, "render fault")
         if len(form.frames(editor)) > 1 and quiet(
             editor, f"{icons.ICON_FA_HASHTAG}  Add a place for the frame number", "render number", "shot.####.exr"
         ):

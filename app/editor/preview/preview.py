@@ -116,7 +116,7 @@ class Preview:
             worked = True
             if time.perf_counter() >= deadline:
                 return self._has_more
-        while self._has_more and not self.busy and not (worked and time.perf_counter() >= deadline):
+        while self._draws and not self.busy and not (worked and time.perf_counter() >= deadline):
             self._thumbnails.draw_next()
             worked = True
         return self._has_more
@@ -212,7 +212,7 @@ class Preview:
         job = self._job
         if job is None or job.ahead:
             return None
-        if job.run is None and job.planned[1] > 1:
+        if job.run is None and job.planned[0] < job.planned[1]:
             return "plan", job.planned[0], job.planned[1]
         done, total = job.lead
         return ("pre-roll", done, total) if total and done < total else None
@@ -232,8 +232,12 @@ class Preview:
     @property
     def _has_more(self) -> bool:
         skimmed = self._round is not None and self._round.skimmed and not self.skims
-        draws = skimmed or (self.thumbnailing and self._thumbnails.waiting and not self.skims)
-        return self.busy or draws or self._job is not None or self._looks_ahead
+        return self.busy or self._draws or skimmed or self._job is not None or self._looks_ahead
+
+    @property
+    def _draws(self) -> bool:
+        """True while there are thumbnails to be drawn, and time for it."""
+        return self.thumbnailing and self._thumbnails.waiting and not self.skims
 
     def _is_behind(self) -> bool:
         return self._wish is not None and (self._round is None or self._round.wish is not self._wish)

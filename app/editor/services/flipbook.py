@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from ....nodes import catalogue
 from ... import document
@@ -20,7 +20,6 @@ from ...media.sequences import find_sequence, suggest_pattern
 from ..session import Session
 from .exporting import Export
 
-Compare = Literal["off", "wipe", "beside", "difference", "toggle"]
 SIDES: tuple[Literal["A", "B"], ...] = ("A", "B")
 _ENCODED = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", ".gif", ".bmp"})
 """Formats whose pictures have been through a view already."""
@@ -67,12 +66,10 @@ class Strip:
 class Flipbook:
     """A flipbook that is open: `session` is what the viewer shows meanwhile."""
 
-    def __init__(
-        self, strips: Sequence[Strip], rate: float, frame: int, watched: Port | None = None, compare: Compare = "off",
-    ) -> None:
+    def __init__(self, strips: Sequence[Strip], rate: float, frame: int, watched: Port | None = None) -> None:
         self.strips = tuple(strips[: len(SIDES)])
-        self.watched, self.compare = watched, compare
-        """What the document showed, and how it was compared: where the first changes, the flipbook has had its time."""
+        self.watched = watched
+        """What the document showed: where that changes, the flipbook has had its time."""
         self.session = _session(self.strips, rate, frame)
         self._seen = self._state
 
@@ -110,7 +107,8 @@ def _session(strips: Sequence[Strip], rate: float, frame: int) -> Session:
         name = fresh_name("pictures" if name_fault(stem, "node") else stem, names)
         names.append(name)
         view = "none" if strip.path.suffix.lower() in _ENCODED else strip.view
-        graph = graph.add(name, catalogue()["read_image"](path=str(strip.path), missing="hold"))
+        reader: Any = catalogue()["read_image"]
+        graph = graph.add(name, reader(path=str(strip.path), missing="hold"))
         graph = graph.add_output(name, Output(view=view)).connect(Port(name, "out"), Port(OUTPUTS, name))
     first, last = min(strip.frames[0] for strip in strips), max(strip.frames[1] for strip in strips)
     graph = replace(graph, settings=replace(graph.settings, frames=(first, last), rate=rate))

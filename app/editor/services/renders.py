@@ -14,6 +14,7 @@ from ...media.naming import Role
 from ...media.overview import Overview, overview
 from ...media.renders import find_render
 from .background import Background
+from .sequences import standing
 from .versions import Versions
 
 ROLES = (
@@ -49,6 +50,7 @@ class Renders:
 
     def overview(self, path: Path, named: Named = MappingProxyType({})) -> Overview | str | None:
         """What a render holds, a sentence if it cannot be read, None while it is being looked at."""
+        path = standing(path)
         version, fault = self._versions.of(path)
         if fault:
             return fault
@@ -67,6 +69,7 @@ class Renders:
 
     def ids(self, path: Path, matte: Matte) -> IdMap | str | None:
         """What is where in the picture, a sentence if nobody knows, None while it is being read."""
+        path = standing(path)
         version, fault = self._versions.of(path)
         return fault or self._ids.get((str(path), version, matte.layers[0]))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -128,6 +129,14 @@ class Animating(State):
             return value_at(self._timed(outer[0]), outer[1], frame)
         return value_at(self._timed(self.place), port, frame)
 
+    @property
+    def graph_now(self) -> Graph:
+        """`graph` with every value as it is at the frame that is looked at; what has no value then stays as it is."""
+        shown = [control.target for control in self.graph.controls.values()] if self.place else []
+        if not self.graph.animation and not any(map(self.animated_outside, shown)):
+            return self.graph
+        return self._kept("graph now", (self.root, self.graph, self.frame), lambda: self._at_now(shown))
+
     def animated_outside(self, port: Port) -> tuple[Route, Port] | None:
         """Where a value of a group's body is animated as a control of the group: the place outside, and its port."""
         found, place = None, self.place
@@ -190,6 +199,8 @@ class Animating(State):
         """Let a value follow an expression; a `=` in front does not count. Without text it stays as it is now."""
         self._check_inside(port)
         text = clean(text).strip().removeprefix("=").strip()
+        if text and (fault := self.expression_fault(port, text)):
+            raise GraphError(fault)
         self.animate(port, Expression(text) if text else None, f"Expression of {port}", merge)
 
     def expression_fault(self, port: Port, text: str) -> str | None:
@@ -238,6 +249,14 @@ class Animating(State):
         return self._kept(f"timed {len(place)}", (self.root, self.graph), lambda: replace(
             self.graph if place == self.place else inside(self.root, place), settings=self.settings
         ))
+
+    def _at_now(self, shown: Iterable[Port]) -> Graph:
+        graph = self.graph
+        for port in dict.fromkeys((*graph.animation, *shown)):
+            with suppress(GraphError):
+                if (plain := self.value_now(port)) != graph.value(port):
+                    graph = graph.put(port, plain)
+        return graph
 
     def _measured(self) -> tuple[int, int]:
         if self.measure is not None:

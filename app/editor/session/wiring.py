@@ -14,6 +14,7 @@ from ...media.renders import is_render
 from ..edits import deleting, elements, naming, paths, room, routes, wiring
 from ..edits.elements import Place, Sizes
 from ..edits.ends import without_samples
+from ..services.sequences import standing
 from .state import State
 
 DROP_STEP = 100.0
@@ -208,7 +209,7 @@ class Wiring(State):
     def _dropped(self, path: str | Path) -> Item:
         if Path(path).suffix.lower() == ".json":
             return self._group(path)
-        type_id = "read_render" if "read_render" in self.types and is_render(path) else "read_image"
+        type_id = "read_render" if "read_render" in self.types and is_render(standing(Path(path))) else "read_image"
         return self._new(type_id).changed(path=self.relative(path))
 
     def _middle(self, target: Port) -> Place:

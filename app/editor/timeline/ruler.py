@@ -109,7 +109,7 @@ class Ruler:
         draw.add_rect_filled((whole[0], top), (whole[1], bottom), u32(palette.field), rounding)
         if (low, high) != (first, last):
             inside = plane.x(low - 0.5), plane.x(high + 0.5)
-            shade = u32(palette.window, 0.62)
+            shade = u32(palette.window, 0.72)
             draw.add_rect_filled((whole[0], top), (inside[0], bottom), shade)
             draw.add_rect_filled((inside[1], top), (whole[1], bottom), shade)
             draw.add_rect_filled((inside[0], top), (inside[1], top + 2.0 * scale), u32(palette.accent, 0.9))

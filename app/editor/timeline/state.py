@@ -62,9 +62,8 @@ class TimelineState:
             session.seek(self.playback.frame)
 
     def stop(self) -> None:
-        """Stay where it is."""
-        if self.playback.playing:
-            self.report = self.playback.words
+        """Stay where it is; how it went is told until something else is done."""
+        self.report = self.playback.words
         self.playback.stop()
 
     def next_loop(self) -> None:

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ....nodes import Value
 from ..inspector.fields import Edit, Fields
 from ..inspector.number_field import number_field
+from ..inspector.numbers import RATE, near
 from ..theme.palette import DARK
 from ..theme.style import ui_scale
 from ..toolkit.buttons import entry, quiet, tip_of, tool
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 HEIGHT = 40.0
 """Of the bar, at UI scale 1."""
 
-_FRAME = Value("frame", "int", 1, low=1.0, high=200.0)
-_RATE = Value("rate", "float", 24.0, low=1.0, high=60.0, minimum=0.01, maximum=1000.0)
 _LOOPS: dict[Loop, str] = {
     "loop": icons.ICON_FA_REPEAT, "once": icons.ICON_FA_ARROW_RIGHT_TO_BRACKET,
     "ping-pong": icons.ICON_FA_RIGHT_LEFT,
@@ -121,7 +119,7 @@ class Timeline:
                 low, high = (at, max(last, at)) if name == "first" else (min(first, at), at)
                 editor.attempt(lambda low=low, high=high, merge=merge: session.set_frames(low, high, merge=merge))
         rate = number_field(
-            self._fields, "timeline rate", session.settings.rate, _RATE, 76.0 * scale, suffix="fps"
+            self._fields, "timeline rate", session.settings.rate, RATE, 76.0 * scale, suffix="fps", plain=True
         )
         editor.places["field timeline rate"] = item_rect()
         tip("Frames per second of the graph")
@@ -130,7 +128,7 @@ class Timeline:
             editor.attempt(lambda: session.set_rate(value, merge=merge))
 
     def _number(self, editor: Editor, id: str, value: int, width: float, doc: str) -> Edit | None:
-        edit = number_field(self._fields, id, value, _FRAME, width)
+        edit = number_field(self._fields, id, value, near(value), width, plain=True)
         editor.places[f"field {id}"] = item_rect()
         tip(doc)
         return edit

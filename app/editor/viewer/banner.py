@@ -15,6 +15,7 @@ from ..toolkit.words import dim, elided, font, tip
 if TYPE_CHECKING:
     from ..editor import Editor
 
+_WITH = f"{icons.ICON_FA_CODE_COMPARE}  Compare with..."
 _BACK = f"{icons.ICON_FA_XMARK}  Back to the graph"
 
 
@@ -26,15 +27,15 @@ def draw_banner(editor: Editor) -> None:
     palette, scale = editor.palette, ui_scale()
     inner, start = imgui.internal.get_current_window().inner_rect, imgui.get_cursor_screen_pos()
     high = imgui.get_frame_height()
-    lines = imgui.get_window_draw_list()
-    bottom = start.y + high + 3 * scale
-    lines.add_rect_filled((inner.min.x, inner.min.y), (inner.max.x, bottom), u32(mix(palette.panel, palette.accent, 0.16)))
+    bottom, color = start.y + high + 3 * scale, u32(mix(palette.panel, palette.accent, 0.16))
+    imgui.get_window_draw_list().add_rect_filled((inner.min.x, inner.min.y), (inner.max.x, bottom), color)
     imgui.align_text_to_frame_padding()
     imgui.text_colored(vec4(palette.accent), f"{icons.ICON_FA_FILM} ")
     imgui.same_line(0.0, 2 * scale)
     with font(editor, "bold"):
         imgui.text_unformatted("Flipbook")
-    room = (inner.max.x - imgui.get_cursor_screen_pos().x - room_for(_BACK) - 130 * scale) / len(book.strips)
+    buttons = (_BACK,) if len(book.strips) > 1 else (_WITH, _BACK)
+    room = (inner.max.x - imgui.get_cursor_screen_pos().x - room_for(*buttons) - 130 * scale) / len(book.strips)
     colors = {"A": palette.accent, "B": palette.good}
     for side, strip in zip(SIDES, book.strips, strict=False):
         imgui.same_line(0.0, 14 * scale)
@@ -47,8 +48,12 @@ def draw_banner(editor: Editor) -> None:
             imgui.same_line(0.0, 6 * scale)
             dim(editor, f"{strip.export.done} of {strip.export.total}")
     imgui.same_line(0.0, 0.0)
-    imgui.set_cursor_screen_pos((inner.max.x - room_for(_BACK) - 4 * scale, start.y))
+    imgui.set_cursor_screen_pos((inner.max.x - room_for(*buttons) - 4 * scale, start.y))
+    if len(book.strips) == 1:
+        if quiet(editor, _WITH, "compare flipbook", "Play other pictures beside these"):
+            editor.actions.run("flipbook.compare", editor)
+        imgui.same_line()
     doc = "The viewer and the timeline show the document again"
     if quiet(editor, _BACK, "close flipbook", doc):
-        editor.actions.run("viewer.close_flipbook", editor)
+        editor.actions.run("flipbook.close", editor)
     imgui.set_cursor_screen_pos((start.x, bottom + 3 * scale))

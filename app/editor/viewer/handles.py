@@ -31,7 +31,7 @@ def handles(session: Session) -> tuple[Handle, ...]:
     for name, value in signature(item).values.items():
         port = Port(session.active, name)
         if value.handle and session.linked(port) is None and not is_idle(session, port):
-            x, y = cast("Point", session.value(port))
+            x, y = cast("Point", session.graph_now.value(port))
             found.append(Handle(port, (x, y)))
     return tuple(found)
 

@@ -9,9 +9,10 @@ from .pacing import Pace
 from .reading import Reader
 
 if TYPE_CHECKING:
-    from ..services.flipbook import Compare, Flipbook
+    from ..services.flipbook import Flipbook
 
 Channels = Literal["color", "red", "green", "blue", "alpha", "luminance", "false color"]
+Compare = Literal["off", "wipe", "beside", "difference", "toggle"]
 Background = Literal["checker", "black", "gray", "white"]
 Meaning = Literal["auto", "image", "field", "vector", "normal"]
 CHANNELS: tuple[Channels, ...] = ("color", "red", "green", "blue", "alpha", "luminance", "false color")
@@ -91,6 +92,8 @@ class ViewerState:
     """The numbers that handles know."""
     flipbook: Flipbook | None = None
     """What is played in place of the document."""
+    compare_after: Compare = "off"
+    """How to compare when the flipbook is closed."""
     scopes: set[str] = field(default_factory=lambda: {"histogram", "waveform"})
     scopes_of_scene: bool = False
     """True measures scene-linear numbers, False what the display shows."""

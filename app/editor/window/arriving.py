@@ -5,15 +5,39 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from ...media.sequences import find_sequence
 from ..actions.documents import open_graph
+from ..dialogs import Question
 from ..editor import Editor
+from ..services.sequences import patterns
 
 
 def arrived(editor: Editor, paths: Sequence[Path]) -> None:
-    """Pictures become nodes; a graph is opened, or becomes a group if it falls on the canvas."""
+    """Pictures become nodes; a graph is opened, or becomes a group if it falls on the canvas.
+
+    Several frames of a sequence are one node; for a single one the person says whether it stands for all.
+    """
     graphs = [path for path in paths if path.suffix.casefold() == ".json"]
     if len(paths) == len(graphs) == 1 and editor.scope != "graph":
         open_graph(editor, graphs[0])
         return
-    editor.session.drop_files(list(paths), editor.canvas.pointer)
+    files, frames = patterns(paths)
+    at = editor.canvas.pointer
     editor.dialogs.open.discard("start")
+
+    def drop(some: Sequence[Path]) -> None:
+        editor.session.drop_files(list(some), at)
+
+    if not frames:
+        drop(files)
+        return
+    first, pattern = next(iter(frames.items()))
+    found = find_sequence(str(pattern))
+    count = len(found.frames) if found else 0
+    editor.dialogs.question = Question(
+        "One of a sequence", f"{first.name} is one of {count} frames of {pattern.name}.",
+        (
+            ("Read the sequence", lambda: editor.attempt(lambda: drop([frames.get(path, path) for path in files]))),
+            ("Only this frame", lambda: editor.attempt(lambda: drop(files))),
+        ),
+    )

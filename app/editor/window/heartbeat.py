@@ -8,9 +8,11 @@ from pathlib import Path
 
 from ...compiler import installed
 from ...graph import Port
+from ..actions.flipbook import follow_flipbook
 from ..dialogs import Question
 from ..editor import Editor
 from ..services.reloading import NodeFiles, migrated, shader_folder
+from ..services.sequences import all_files
 from ..services.watching import Change, groups_of, pictures_of
 from ..viewer.wanted import wanted
 
@@ -40,7 +42,8 @@ class Heartbeat:
             self._flushed = time.monotonic()
             editor.store.flush()
             self._tell(editor)
-        self._compute(editor)
+        follow_flipbook(editor)
+        self._compute(editor.stage)
 
     def _tell(self, editor: Editor) -> None:
         """What services cannot do is said once; Problems shows it for as long as it lasts."""
@@ -85,8 +88,8 @@ class Heartbeat:
             return
         self._watched = now
         editor.watcher.watch(
-            session.path, groups_of(session.root), pictures_of(session.root, session.bindings), [shader_folder()],
-            [self.nodes.folder],
+            session.path, groups_of(session.root), all_files(pictures_of(session.root, session.bindings)),
+            [shader_folder()], [self.nodes.folder],
         )
 
     def _changed(self, editor: Editor, change: Change) -> None:

@@ -24,7 +24,7 @@ from .assembly import assemble, open_first, take_apart
 from .guard import failed, forgive, guarded
 from .heartbeat import Heartbeat
 from .menus import draw_menus
-from .panels import DOCKED, OVERLAYS, Docked, Panel
+from .panels import DOCKED, OVERLAYS, STAGED, Docked, Panel
 from .screenshot import save_screenshot
 from .shortcuts import note_scope, run_shortcuts
 from .status import draw_status
@@ -201,7 +201,7 @@ class Window:
             failed(self.editor, title)
         else:
             panel = self._timeline if title == "Timeline" else self._panels[title]
-            guarded(self.editor, title, lambda: panel.draw(self.editor))
+            guarded(self.editor, title, lambda: panel.draw(self.editor.stage if title in STAGED else self.editor))
 
     def _draw_overlays(self) -> None:
         for name, overlay in self._overlays.items():

@@ -54,7 +54,7 @@ def test_keys_and_handles_of_curves() -> None:
     middle = found.animation[GAIN].at(30)
     assert seen.lane_at(PLANE.x(30.0), PLANE.y(middle) + 3.0, 5.0) == (GAIN, 0)
     of, _, bent, cuts = bundle.ends(PLANE)
-    assert of == [0, 1, 1, 2, 2, 3, 3] and cuts == list(range(8)) and not bent.any()
+    assert of == [0, 1, 2, 3, 1, 2, 3] and cuts == list(range(8)) and not bent.any()
     assert Bundles().make((), ()).seen(PLANE).marks() == []
     ends = tips(found.animation, [(GAIN, 40.0, 0), (TINT, 10.0, 0), (GAIN, 77.0, 0)], (), PLANE)
     assert [tip.side for tip in ends] == ["left", "right"]

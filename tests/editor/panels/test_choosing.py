@@ -9,11 +9,13 @@ from typing import Any
 import pytest
 from halation.app.editor.dialogs import Browse
 from halation.app.editor.panels.browsing import Browsing, begun, size_text
-from halation.app.editor.panels.export_form import Form, title
+from halation.app.editor.panels.export_form import Form
+from halation.app.editor.panels.export_words import title
 from halation.app.editor.panels.opening_folders import command, show_folder
 from halation.app.editor.services.exporting import Exports, Options
 from halation.app.editor.services.preferences import Store
 from halation.app.editor.session import Session
+from halation.app.editor.timeline.state import TimelineState
 from halation.app.errors import UsageError
 from halation.presets import paths
 
@@ -27,6 +29,7 @@ class Desk:
     store: Store
     session: Session = field(default_factory=Session)
     exports: Exports = field(default_factory=Exports)
+    timeline: TimelineState = field(default_factory=TimelineState)
 
 
 @pytest.fixture
@@ -107,11 +110,11 @@ def test_the_form_suggests_files_and_gives_options(desk: Desk, tmp_path: Path) -
     form.files["image"] = str(tmp_path / "mine.exr")
     form.reform(".png")
     assert form.file(desk, "image") == tmp_path / "mine.png"
-    assert form.options() == Options()
+    assert form.options(desk) == Options(frames=(1,))
     form.sizing, form.scale, form.precision, form.view = "scale", 0.25, "float", "none"
-    assert form.options() == Options(scale=0.25, precision="float", view="none")
+    assert form.options(desk) == Options(scale=0.25, frames=(1,), precision="float", view="none")
     form.sizing, form.size = "size", (64, 32)
-    assert form.options() == Options(size=(64, 32), precision="float", view="none")
+    assert form.options(desk) == Options(size=(64, 32), frames=(1,), precision="float", view="none")
 
 
 def test_nothing_chosen_is_refused_with_a_sentence(desk: Desk) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ import pytest
 from exr_files import write_exr
 from halation.app.editor.services.exporting import Exports, Options
 from halation.app.errors import UsageError
-from halation.app.graph import Graph, Group, Input, Output, Port
+from halation.app.graph import Expression, Graph, Group, Input, Output, Port, Settings
 from halation.app.media import read
 from halation.nodes import Kind, catalogue
 
@@ -51,7 +52,8 @@ def test_an_unsaved_graph_is_written_with_progress(exports, folder, tmp_path):
     one = exports.start(brighter(folder, 3, sigma=1.0), [("image", out), ("", tmp_path / "out.png")])
     assert one.state == "running" and exports.running == (one,)
     assert one.wait(60) and (one.state, one.sentence) == ("done", ""), one.sentence
-    assert one.written == (out, tmp_path / "out.png") and one.done == one.total > 1 and one.node == "n2"
+    assert one.written == (out, tmp_path / "out.png") and (one.done, one.total, one.node) == (1, 1, "n2")
+    assert one.fraction == 1.0 and one.seconds > 0.0 and one.seconds_left is None
     assert any("OpenGL" in note for note in one.notes)
     np.testing.assert_allclose(read(str(out), "", Kind.IMAGE, 4).array, LEVEL, rtol=1e-3)
     exports.clear()
@@ -106,7 +108,7 @@ def test_cancelling_leaves_nothing(exports, folder, tmp_path, passes):
     out = tmp_path / "out.exr"
     out.write_bytes(b"precious")
     one = exports.start(brighter(folder, 200, sigma=30.0), [("", out)], options=Options(size=(1600, 1200)))
-    while one.done < passes:
+    while one.passes[0] < passes:
         assert one.state == "running", one.sentence
         time.sleep(0.01)
     one.cancel()
@@ -162,3 +164,85 @@ def test_modules_beside_a_graph_are_not_run(exports, folder, tmp_path):
     one = exports.start(brighter(folder), [("", tmp_path / "out.exr")])
     one.wait()
     assert one.state == "done", one.sentence
+
+
+def shot(folder, count=3, sigma=0.0):
+    """A graph whose frames differ."""
+    graph = brighter(folder, 1, sigma)
+    port = Port("n0", "sigma" if sigma else "stops")
+    graph = graph.animate(port, Expression(f"frame * {0.5 if not sigma else 3.0}"))
+    return replace(graph, settings=Settings(frames=(1, count)))
+
+
+def names(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_many_frames_are_counted_and_shared(exports, folder, tmp_path, jobs):
+    out = tmp_path / "out"
+    out.mkdir()
+    one = exports.start(shot(folder), [("", out / "s.####.exr")], options=Options(frames=(1, 2, 5), jobs=jobs))
+    assert (one.done, one.total) == (0, 3)
+    assert one.wait(90) and one.state == "done", one.sentence
+    assert names(out) == ["s.0001.exr", "s.0002.exr", "s.0005.exr"]
+    assert [path.name for path in one.written] == names(out) and (one.done, one.kept) == (3, 0)
+    np.testing.assert_allclose(read(str(out / "s.0002.exr"), "", Kind.IMAGE, 4).array[..., 0], 1.0)
+
+
+def test_renders_wait_for_each_other_in_an_order_that_can_change(exports, folder, tmp_path):
+    long = exports.start(
+        brighter(folder, 200, sigma=30.0), [("", tmp_path / "0.exr")], options=Options(size=(1600, 1200))
+    )
+    rest = [exports.start(brighter(folder), [("", tmp_path / f"{number}.exr")]) for number in (1, 2, 3)]
+    assert [one.state for one in exports.all] == ["running", "waiting", "waiting", "waiting"]
+    exports.move(rest[2], -5)
+    exports.move(long, 1)
+    assert exports.waiting == (rest[2], rest[0], rest[1]) and exports.all[0] is long
+    rest[1].cancel()
+    assert rest[1].wait(1) and rest[1].state == "cancelled"
+    long.cancel()
+    assert rest[0].wait(60) and rest[2].wait(1)
+    assert rest[2].ended <= rest[0].began and exports.unfinished == ()
+    assert names(tmp_path)[:2] == ["1.exr", "3.exr"]
+    exports.clear()
+    assert exports.all == ()
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_what_was_stopped_goes_on_where_it_was(exports, folder, tmp_path, jobs):
+    out = tmp_path / "out"
+    out.mkdir()
+    options = Options(frames=tuple(range(1, 13)), jobs=jobs, size=(1200, 900))
+    one = exports.start(shot(folder, 12, sigma=20.0), [("", out / "s.####.exr")], options=options)
+    while one.done < 2:
+        assert one.state == "running", one.sentence
+        time.sleep(0.01)
+    assert one.seconds_left is not None and 0.0 < one.fraction < 1.0
+    told = time.monotonic()
+    one.cancel()
+    assert one.wait(5) and time.monotonic() - told < 1.0 + 0.5
+    assert one.state == "cancelled" and 2 <= len(names(out)) < 12
+    assert not [name for name in names(out) if name.startswith(".")]
+    kept = set(names(out))
+    again = exports.again(one)
+    assert exports.all == (again,) and exports.again(again) is again
+    assert again.wait(120) and again.state == "done", again.sentence
+    assert len(names(out)) == 12 and again.kept == len(kept) and again.done == again.total == 12
+
+
+def test_one_that_cannot_be_started_says_so_and_the_next_one_has_its_turn(exports, folder, tmp_path):
+    lost = exports.start(Graph(folder=str(tmp_path / "gone")), [("", tmp_path / "x.exr")])
+    assert lost.wait(5) and lost.state == "failed" and "cannot be started" in lost.sentence
+    one = exports.start(brighter(folder), [("", tmp_path / "y.exr")])
+    assert one.wait(60) and one.state == "done"
+
+
+def test_closing_forgets_what_waits(folder, tmp_path):
+    exports = Exports()
+    long = exports.start(
+        brighter(folder, 200, sigma=30.0), [("", tmp_path / "0.exr")], options=Options(size=(900, 900))
+    )
+    other = exports.start(brighter(folder), [("", tmp_path / "1.exr")])
+    exports.close()
+    assert (long.state, other.state) == ("cancelled", "cancelled") and list(tmp_path.glob("*.exr")) == []

@@ -70,6 +70,7 @@ def test_a_value_with_keys_gets_keys_and_undo_is_one_step(session):
     assert [(key.frame, key.value) for key in session.animation(GAIN).keys] == [(1, 1.0), (11, 3.0)]
     session.seek(6)
     assert session.value_now(GAIN) == pytest.approx(2.0) and session.value(GAIN) == 1.0
+    assert session.graph_now.value(GAIN) == session.value_now(GAIN) and session.graph_now is session.graph_now
     assert session.key_at(GAIN) is None and not session.is_default(GAIN)
     session.undo()
     assert session.animation(GAIN).frames == (1.0,)
@@ -151,7 +152,8 @@ def test_inside_a_group_an_animated_control_is_what_it_is_outside(session):
     session.seek(5)
     session.set(outer, 3.0)
     session.enter(group)
-    assert session.value_now(GAIN) == 3.0 and session.animated_outside(GAIN) == ((), outer)
+    assert session.value_now(GAIN) == 3.0 == session.graph_now.value(GAIN)
+    assert session.animated_outside(GAIN) == ((), outer)
     with pytest.raises(GraphError, match="change it there"):
         session.set(GAIN, 1.0)
 

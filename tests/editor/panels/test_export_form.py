@@ -1,0 +1,121 @@
+"""What the form for renders makes of what is chosen: frames, names, and what would be written."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+from halation.app.editor.panels.export_form import Form
+from halation.app.editor.panels.export_words import aim_text, exist_text, time_text
+from halation.app.editor.services.exporting import Exports
+from halation.app.editor.services.preferences import Store
+from halation.app.editor.session import Session
+from halation.app.editor.timeline.state import TimelineState
+from halation.app.errors import UsageError
+from halation.presets import paths
+
+PRESET = next(path for path in paths() if path.stem == "soft_bloom")
+
+
+@dataclass
+class Desk:
+    """As much of an editor as the form needs."""
+
+    store: Store
+    session: Session = field(default_factory=Session)
+    exports: Exports = field(default_factory=Exports)
+    timeline: TimelineState = field(default_factory=TimelineState)
+
+
+@pytest.fixture
+def desk(tmp_path: Path) -> Desk:
+    """A preset of 24 frames, whose renders go to a folder of their own."""
+    made = Desk(Store(tmp_path / "state"))
+    made.session.open(PRESET)
+    made.session.set_frames(1, 24)
+    (tmp_path / "out").mkdir()
+    made.store.used("export", tmp_path / "out" / "x.exr")
+    return made
+
+
+def test_all_frames_are_offered_where_there_are_several(desk: Desk, tmp_path: Path) -> None:
+    form = Form()
+    assert list(form.extents(desk)) == ["this frame", "all frames", "some frames"]
+    assert (form.extent_of(desk), form.frames(desk)) == ("all frames", tuple(range(1, 25)))
+    assert form.file(desk, "image") == tmp_path / "out" / "soft_bloom.####.exr"
+    aim = form.aim(desk)
+    assert (aim.files, aim.exist, aim.fault) == (24, 0, "")
+    assert aim_text(aim) == "Writes 24 files: soft_bloom.0001.exr \u2026 soft_bloom.0024.exr"
+    desk.session.seek(7)
+    form.extend(desk, "this frame")
+    assert form.frames(desk) == (7,)
+    assert aim_text(form.aim(desk)) == "Writes soft_bloom.exr"
+    desk.session.set_frames(None)
+    assert list(Form().extents(desk)) == ["this frame", "some frames"]
+    assert Form().extent_of(desk) == "this frame"
+
+
+def test_the_part_that_is_played_is_one_more_choice(desk: Desk) -> None:
+    form = Form()
+    desk.timeline.set_part(desk.session, 5, 9)
+    form.extend(desk, "what is played")
+    assert form.frames(desk) == (5, 6, 7, 8, 9)
+    desk.timeline.part = None
+    assert form.extent_of(desk) == "all frames"
+
+
+def test_typed_frames_are_checked(desk: Desk) -> None:
+    form = Form()
+    form.extend(desk, "some frames")
+    assert (form.listed, form.list_fault) == ("1-24", "")
+    form.listed = "1-24x2,40"
+    assert form.frames(desk) == (*range(1, 25, 2), 40)
+    assert form.aim(desk).last.endswith("soft_bloom.0040.exr")
+    form.listed = "1-x"
+    assert form.frames(desk) == ()
+    assert "neither a frame nor a range" in form.aim(desk).fault
+    with pytest.raises(UsageError, match="neither a frame nor a range"):
+        form.start(desk)
+    assert desk.exports.all == ()
+
+
+def test_names_get_a_place_for_the_number(desk: Desk, tmp_path: Path) -> None:
+    form = Form(files={"image": str(tmp_path / "out" / "mine.png")}, extent="this frame")
+    form.extend(desk, "all frames")
+    assert form.file(desk, "image").name == "mine.####.png"
+    form.files["image"] = str(tmp_path / "out" / "mine.png")
+    assert "cannot go into one file" in form.aim(desk).fault
+    form.number(desk)
+    assert form.aim(desk).fault == ""
+    form.files["image"] = str(tmp_path / "out" / "mine.%03d.png")
+    form.extend(desk, "some frames")
+    assert form.aim(desk).first.endswith("mine.001.png")
+
+
+def test_files_that_are_there_are_counted(desk: Desk, tmp_path: Path) -> None:
+    form = Form()
+    for frame in (1, 2, 3, 40):
+        (tmp_path / "out" / f"soft_bloom.{frame:04d}.exr").touch()
+    aim = form.aim(desk)
+    assert aim.exist == 3
+    assert exist_text(aim, False) == "3 of them are there, and will be replaced."
+    assert exist_text(aim, True).startswith("3 of them are there. They are kept")
+    form.chosen["image"] = False
+    assert "Choose an output" in form.aim(desk).fault
+
+
+def test_options_hold_frames_processes_and_resume(desk: Desk) -> None:
+    form = Form(jobs=4, resume=True, extent="some frames", listed="3,5-6")
+    options = form.options(desk)
+    assert (options.frames, options.jobs, options.resume) == ((3, 5, 6), 4, True)
+    assert {"--frames=3,5-6", "--jobs=4", "--resume"} <= set(options.words())
+    form.listed = "3"
+    assert form.options(desk).jobs == 1
+
+
+@pytest.mark.parametrize(
+    ("seconds", "said"), [(0.04, "0.0 s"), (9.9, "9.9 s"), (12.4, "12 s"), (185.0, "3:05"), (3750.0, "1:02:30")]
+)
+def test_lengths_of_time(seconds: float, said: str) -> None:
+    assert time_text(seconds) == said

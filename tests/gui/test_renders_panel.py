@@ -1,0 +1,268 @@
+"""Renders of many frames, their queue, and flipbooks of what they wrote, in the real window."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from exr_files import write_exr
+from halation import presets
+from halation.app.document import load, save
+from halation.app.graph import OUTPUTS, Expression, Port, Settings
+from halation.app.media import read
+from halation.nodes import Kind
+
+PRESET = next(path for path in presets.paths() if path.stem == "soft_bloom")
+
+
+@pytest.fixture
+def shot(tmp_path: Path) -> Path:
+    """A preset of eight frames in a folder of its own: each glows otherwise."""
+    return made(tmp_path, 8)
+
+
+@pytest.fixture
+def long_shot(tmp_path: Path) -> Path:
+    """The same, for seconds."""
+    return made(tmp_path, 60)
+
+
+def made(tmp_path: Path, count: int) -> Path:
+    """A document with so many frames."""
+    shutil.copytree(PRESET.parent / "samples", tmp_path / "samples")
+    graph = load(PRESET).animate(Port("bloom", "intensity"), Expression("frame * 0.1"))
+    save(replace(graph, settings=Settings(frames=(1, count))), tmp_path / "comp.json")
+    return tmp_path / "comp.json"
+
+
+def sequence(folder: Path, name: str, count: int, level: float) -> Path:
+    """Numbered gray pictures that get lighter, with a bar that moves."""
+    folder.mkdir(exist_ok=True)
+    for frame in range(1, count + 1):
+        pixels = np.full((90, 160, 4), level * frame / count, np.float32)
+        pixels[20:70, 12 * frame : 12 * frame + 24, :3] = (0.9, 0.35 * level, 0.1)
+        pixels[..., 3] = 1.0
+        write_exr(folder / f"{name}.{frame:04d}.exr", {"Combined": pixels}, {"Combined": "half"})
+    return folder / f"{name}.####.exr"
+
+
+def to_renders(ui) -> None:
+    ui.ctx.window_focus("//Renders")
+    ui.wait(4)
+
+
+def ended(ui, count: int = 1) -> None:
+    """Wait for so many renders."""
+    ui.until(lambda: len(ui.editor.exports.all) >= count and not ui.editor.exports.unfinished, 120)
+    ui.wait(4)
+
+
+@pytest.mark.parametrize(("theme", "scale"), [("dark", 1.0), ("light", 1.0), ("dark", 1.6)])
+def test_the_form_in_every_theme(gui, shot: Path, theme: str, scale: float) -> None:
+    def body(ui) -> None:
+        to_renders(ui)
+        assert {"render aim", "render jobs", "render resume"} <= ui.editor.places.keys()
+        ui.shot(f"form_{theme}_{scale:g}.png")
+        ui.click("Frames")
+        ui.shot(f"form_frames_{theme}_{scale:g}.png")
+        ui.click("Frames some frames")
+        ui.click("render frames")
+        ui.type("1-8x2,x", enter=False)
+        assert "render list fault" in ui.editor.places
+        ui.shot(f"form_fault_{theme}_{scale:g}.png")
+
+    gui(body, shot, likes={"theme": theme, "ui_scale": scale})
+
+
+def test_a_range_is_rendered_and_played(gui, shot: Path) -> None:
+    def body(ui) -> None:
+        to_renders(ui)
+        ui.click("render")
+        (export,) = ui.editor.exports.all
+        ui.until(lambda: export.done >= 2 or export.state != "running", 60)
+        ui.wait(3)
+        ui.shot("queue_running.png")
+        ended(ui)
+        assert (export.state, export.sentence, export.done) == ("done", "", 8)
+        assert len(list(shot.parent.glob("comp.*.exr"))) == 8
+        ui.until(lambda: "render exists" in ui.editor.places)
+        ui.click("render resume instead")
+        ui.click("render")
+        ended(ui, 2)
+        assert ui.editor.exports.all[1].kept == 8
+        ui.click("notes 0")
+        assert "export notes 0" in ui.editor.places
+        ui.shot("queue_ended.png")
+        ui.click("play 0")
+        ui.settled()
+        book = ui.editor.viewer.flipbook
+        assert book is not None and book.session.frames == (1, 8)
+        ui.keys("Shift+RightArrow")
+        assert book.session.frame == 8 and ui.session.frame == 1
+        ui.settled()
+        assert ui.editor.preview.shown("A").frame == 8
+        ui.shot("flipbook_alone.png")
+        ui.click("close flipbook")
+        ui.settled()
+        assert ui.editor.viewer.flipbook is None and ui.editor.preview.shown("A").frame == 1
+
+    gui(body, shot)
+
+
+def test_renders_wait_and_are_stopped(gui, long_shot: Path) -> None:
+    def body(ui) -> None:
+        to_renders(ui)
+        for name in ("a", "b", "c"):
+            ui.click("render file image")
+            ui.type(str(long_shot.parent / f"{name}.####.png"))
+            ui.click("render")
+        exports = ui.editor.exports
+        first, second, third = exports.all
+        assert exports.waiting == (second, third)
+        ui.until(lambda: first.done >= 1)
+        ui.wait(3)
+        ui.shot("queue_waiting.png")
+        ui.click("earlier 2")
+        assert exports.waiting == (third, second)
+        ui.click("cancel 2")
+        assert second.state == "cancelled"
+        ui.click("cancel 0")
+        ui.until(lambda: first.state == "cancelled", 5)
+        ended(ui, 3)
+        assert third.state == "done" and 1 <= len(list(long_shot.parent.glob("a.*.png"))) < 60
+        ui.wait(4)
+        ui.shot("queue_cancelled.png")
+        at = sorted(exports.all, key=lambda one: -one.ended).index(first)
+        ui.click(f"again {at}")
+        ended(ui, 3)
+        assert exports.all[0].state == "done" and exports.all[0].kept >= 1
+        assert len(list(long_shot.parent.glob("a.*.png"))) == 60
+
+    gui(body, long_shot)
+
+
+def test_a_failed_render_says_why_and_is_tried_again(gui, shot: Path) -> None:
+    def body(ui) -> None:
+        to_renders(ui)
+        ui.click("render file image")
+        ui.type(str(shot.parent / "later" / "s.####.png"))
+        ui.click("render")
+        ended(ui)
+        assert "export fault 0" in ui.editor.places and "no such folder" in ui.editor.exports.all[0].sentence
+        ui.shot("queue_failed.png")
+        (shot.parent / "later").mkdir()
+        ui.click("again 0")
+        ended(ui)
+        assert ui.editor.exports.all[0].state == "done"
+
+    gui(body, shot)
+
+
+def test_quitting_asks_while_something_renders(gui, long_shot: Path) -> None:
+    def body(ui) -> None:
+        to_renders(ui)
+        ui.click("render")
+        ui.keys("Ctrl+Q")
+        assert ui.editor.dialogs.question is not None and not ui.editor.closing
+        ui.long_shot("queue_quit.png")
+        ui.click("answer 1")
+        assert not ui.editor.closing and ui.editor.exports.unfinished
+
+    window = gui(body, long_shot)
+    assert not window.editor.exports.unfinished
+
+
+@pytest.mark.parametrize("theme", ["dark", "light"])
+def test_two_sequences_are_compared(gui, shot: Path, tmp_path: Path, theme: str) -> None:
+    one, other = sequence(tmp_path / "v1", "shot_v1", 6, 0.5), sequence(tmp_path / "v2", "shot_v2", 4, 1.0)
+
+    def body(ui) -> None:
+        ui.editor.actions.run("flipbook.open", ui.editor)
+        ui.wait(3)
+        ui.editor.dialogs.browse.then(Path(str(one).replace("####", "0002")))
+        ui.editor.dialogs.browse = None
+        ui.settled()
+        ui.click("compare flipbook")
+        ui.editor.dialogs.browse.then(Path(str(other).replace("####", "0001")))
+        ui.editor.dialogs.browse = None
+        ui.settled()
+        book, viewer = ui.editor.viewer.flipbook, ui.editor.viewer
+        assert [strip.path for strip in book.strips] == [one, other] and book.session.frames == (1, 6)
+        assert viewer.compare == "beside"
+        ui.keys("RightArrow")
+        ui.settled()
+        assert book.session.frame == 2
+        ui.shot(f"flipbook_beside_{theme}.png")
+        panel = ui.editor.places["viewer panel"]
+        middle, down = (panel[0] + panel[2]) / 2, (panel[1] + panel[3]) / 2
+        pixels = ui.pixels("flipbook_beside.png")
+        quarter = (panel[2] - panel[0]) / 4
+        left, right = (pixels[int(down) + 60, int(middle + by)].mean() for by in (quarter * 0.8 - 2 * quarter, quarter * 0.8))
+        assert right > left + 20
+        ui.move((middle + quarter, down))
+        ui.wait(3)
+        over = viewer.pixel
+        ui.move((middle - quarter, down))
+        ui.wait(3)
+        assert over is not None and viewer.pixel is not None and abs(over[0] - viewer.pixel[0]) <= 1
+        for key, name in (("W", "wipe"), ("D", "difference")):
+            ui.move((middle, down))
+            ui.keys(key)
+            ui.settled()
+            assert viewer.compare == name
+            ui.shot(f"flipbook_{name}_{theme}.png")
+        ui.keys("Space")
+        ui.until(lambda: book.session.frame >= 4, 30)
+        ui.keys("Space")
+        assert not ui.editor.timeline.playback.playing
+        ui.session.view(Port(OUTPUTS, "image"), "B")
+        ui.session.view(Port("bloom", "out"))
+        ui.settled()
+        assert viewer.flipbook is None and viewer.compare == "off"
+        assert ui.editor.preview.shown("A").port == Port("bloom", "out")
+
+    gui(body, shot, likes={"theme": theme})
+
+
+def test_a_flipbook_follows_what_is_being_written(gui, shot: Path) -> None:
+    def body(ui) -> None:
+        to_renders(ui)
+        ui.click("render")
+        (export,) = ui.editor.exports.all
+        ui.until(lambda: "play 0" in ui.editor.places, 60)
+        ui.click("play 0")
+        book = ui.editor.viewer.flipbook
+        assert book is not None
+        book.session.seek(8)
+        ended(ui)
+        for frame in (8, 1):
+            book.session.seek(frame)
+            ui.settled()
+            seen = ui.ask(lambda: ui.editor.probe.small(ui.editor.preview.shown("A").texture, 480))
+            there = read(str(shot.parent / f"comp.{frame:04d}.exr"), "", Kind.IMAGE, 4).array
+            assert seen[..., :3].mean() == pytest.approx(there[..., :3].mean(), rel=0.01)
+
+    gui(body, shot)
+
+
+def test_pictures_that_are_gone_take_nothing_down(gui, shot: Path, tmp_path: Path) -> None:
+    path = sequence(tmp_path / "v1", "gone", 2, 0.5)
+
+    def body(ui) -> None:
+        ui.editor.actions.run("flipbook.open", ui.editor)
+        ui.editor.dialogs.browse.then(Path(str(path).replace("####", "0001")))
+        ui.editor.dialogs.browse = None
+        ui.settled()
+        shutil.rmtree(tmp_path / "v1")
+        ui.editor.preview.refresh()
+        ui.keys("RightArrow")
+        ui.settled()
+        assert ui.editor.faults == {} and ui.editor.preview.fault("A")
+        ui.click("close flipbook")
+        ui.settled()
+        assert ui.editor.preview.fault("A") is None
+
+    gui(body, shot)
