@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from gui_driver import Ui
@@ -13,6 +12,7 @@ from halation import presets
 from halation.app.document import save
 from halation.app.editor.dialogs import Browse, Question
 from halation.app.editor.editor import Editor
+from halation.app.editor.services.export import Export, Job, State
 from halation.app.editor.services.recovery import Recovery
 from halation.app.graph import Control, Graph, Input, Output, Port, Settings
 from halation.nodes import Kind, Light, LightKind, catalogue, numbers_of
@@ -226,20 +226,15 @@ def panels(ui: Ui) -> Screens:
     show(ui, "Graph")
 
 
-@dataclass
-class Ended:
-    """What the panel reads of a render to files."""
-
-    destinations: tuple[tuple[str, Path], ...]
-    state: str
-    done: int = 0
-    total: int = 0
-    sentence: str = ""
-    notes: tuple[str, ...] = ()
-
-    def wait(self) -> bool:
-        """It has ended."""
-        return True
+def render(place: Path, state: State, done: int = 0, total: int = 24, **facts: object) -> Export:
+    """A render to files as the panel sees it, without a process."""
+    made = Export(Job((), "", Graph(), (("image", place),), tuple(range(1, total + 1))))
+    made.state, made.done = state, done
+    made.began, made.ended = 1.0, 0.0 if state in ("running", "waiting") else 43.0
+    made.written = tuple(place.with_name(f"{place.stem}.{frame:04d}.exr") for frame in range(1, done + 1))
+    for name, fact in facts.items():
+        setattr(made, name, fact)
+    return made
 
 
 def renders(ui: Ui) -> Screens:
@@ -247,11 +242,12 @@ def renders(ui: Ui) -> Screens:
     show(ui, "Renders")
     yield "renders_form"
     folder = Path("/pictures/shots/0120")
-    ui.editor.exports.all = (  # type: ignore[assignment]
-        Ended((("image", folder / "comp_v012.exr"),), "done", 9, 9, notes=("image: clipped to 16 bit",)),
-        Ended((("image", folder / "comp_v013.png"),), "failed", 3, 9, "/pictures/shots/0120: no such folder"),
-        Ended((("image", folder / "a_very_long_name_of_a_picture_v014.exr"),), "cancelled"),
-        Ended((("image", folder / "comp_v015.exr"), ("lights", folder / "lights_v015.exr")), "running", 4, 9),
+    ui.editor.exports.all = (
+        render(folder / "comp_v012.####.exr", "done", 24, notes=("image: clipped to 16 bit",)),
+        render(folder / "comp_v013.png", "failed", total=1, sentence="/pictures/shots/0120: no such folder"),
+        render(folder / "a_very_long_name_of_a_picture_that_does_not_end_v014.####.exr", "cancelled", 5),
+        render(folder / "comp_v015.####.exr", "running", 9, frame=10, node="bloom", passes=(3, 8)),
+        render(folder / "comp_v016.####.exr", "waiting"), render(folder / "comp_v017.####.exr", "waiting"),
     )
     ui.wait(3)
     yield "renders"

@@ -13,6 +13,7 @@ from .outcome import note
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
 
+    from ..graph import Graph
     from ..renderer import Renderer
 
 
@@ -36,6 +37,11 @@ class Batch:
     def say(self, line: str) -> None:
         """A line above the bar."""
         self._progress.console.print(line, soft_wrap=True, markup=False, highlight=False)
+
+
+def middle(renderer: Renderer, graph: Graph) -> int:
+    """The frame that stands for all of a graph: by then something has happened."""
+    return sum(renderer.frames(graph)) // 2
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from .batch import batch
+from .batch import batch, middle
 from .options import AsJson
 from .outcome import print_json
 
@@ -17,7 +17,7 @@ def demo(
     output: Annotated[Path, typer.Option("-o", "--output", help="The folder to write to.")] = Path("out"),
     as_json: AsJson = False,
 ) -> int:
-    """Render every preset on the sample frame, as PNG and EXR."""
+    """Render every preset on the sample frame, as PNG and EXR: of those that move, the frame in the middle."""
     from ...presets import paths
     from .. import document
     from ..renderer import Wanted
@@ -31,7 +31,7 @@ def demo(
             graph = document.load(path)
             first = next(iter(graph.outputs))
             pictures = (("", output / f"{path.stem}.exr"), (first, output / f"{path.stem}.png"))
-            report = run_job(work.renderer, graph, Wanted(), Writing(pictures))
+            report = run_job(work.renderer, graph, Wanted(), Writing(pictures), (middle(work.renderer, graph),))
             spent = time.perf_counter() - started
             word = "pass  " if report.passes == 1 else "passes"
             work.say(f"{path.stem:<24} {report.passes:>3} {word}  {spent:5.2f} s  {pictures[1][1]}")

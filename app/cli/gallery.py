@@ -1,21 +1,22 @@
-"""`halation gallery`: contact sheets of all presets and of all nodes."""
+"""`halation gallery`: contact sheets of all presets, of those that move, and of all nodes."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .batch import batch
+from .batch import batch, middle
 from .options import AsJson
 from .outcome import print_json
 
 if TYPE_CHECKING:
     from ...nodes import Kind, Node
+    from ..graph import Graph
     from ..media.color import Array
     from ..renderer import Renderer
 
@@ -25,6 +26,8 @@ Step = Callable[[str], None]
 _COLUMNS = 6
 _WIDTH = 256
 _LETTERS = 18
+_MOMENTS = 6
+"""How many frames of a preset are shown, from the first to the last."""
 
 
 @dataclass(frozen=True)
@@ -39,15 +42,18 @@ def gallery(
     output: Annotated[Path, typer.Option("-o", "--output", help="The folder to write to.")] = Path("out"),
     as_json: AsJson = False,
 ) -> int:
-    """Make contact sheets of all presets and of all nodes at their defaults, over the sample frame."""
+    """Make contact sheets of all presets, of those that move, and of all nodes at their defaults, over the sample."""
     from ...nodes import catalogue
     from ...presets import paths
     from ..media.sheet import write_sheet
     from .specimen import drawn
 
     done: list[dict[str, object]] = []
-    with batch(output, len(paths()) + sum(bool(drawn(node)) for node in catalogue().values())) as work:
-        for name, made in (("presets", preset_sheet), ("nodes", node_sheet)):
+    pictures = len(paths()) + len(moving()) + sum(bool(drawn(node)) for node in catalogue().values())
+    with batch(output, pictures) as work:
+        for name, made in (("presets", preset_sheet), ("time", time_sheet), ("nodes", node_sheet)):
+            if made is time_sheet and not moving():
+                continue
             started, file = time.perf_counter(), output / f"{name}.jpg"
             sheet = made(work.renderer, work.step)
             write_sheet(file, sheet.light, ", ".join(sheet.names))
@@ -60,18 +66,51 @@ def gallery(
 
 
 def preset_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet:
-    """Every preset on its own sample."""
+    """Every preset on its own sample; of those that move, the frame in the middle."""
     from ...presets import paths
     from .. import document
-    from ..media.sheet import grouped_sheet, shown
+    from ..media.sheet import grouped_sheet
 
     pictures: dict[str, Array] = {}
     for path in paths():
         step(path.stem)
         graph = document.load(path)
-        name, output = next(iter(graph.outputs.items()))
-        pictures[path.stem] = shown(renderer.render(graph)[name], output.view)
+        (pictures[path.stem],) = frames_of(graph, renderer, (middle(renderer, graph),)).values()
     return Sheet(grouped_sheet({"": pictures}, 4, 320, letters=_LETTERS), tuple(pictures))
+
+
+def time_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet:
+    """A row for every preset that moves: some of its frames, from the first to the last."""
+    from ..media.sheet import grouped_sheet
+
+    rows: dict[str, dict[str, Array]] = {}
+    for name, graph in moving().items():
+        step(name)
+        first, last = renderer.frames(graph)
+        frames = [first + round((last - first) * part / (_MOMENTS - 1)) for part in range(_MOMENTS)]
+        rows[name] = {str(frame): picture for frame, picture in frames_of(graph, renderer, frames).items()}
+    return Sheet(grouped_sheet(rows, _MOMENTS, _WIDTH, letters=_LETTERS), tuple(rows))
+
+
+def moving() -> dict[str, Graph]:
+    """The presets that have frames, by name."""
+    from ...presets import paths
+    from .. import document
+
+    return {path.stem: graph for path in paths() if (graph := document.load(path)).settings.frames}
+
+
+def frames_of(graph: Graph, renderer: Renderer, frames: Iterable[int]) -> dict[int, Array]:
+    """What the first output of a graph is at frames, as light of the display."""
+    from ..media.sheet import shown
+    from ..renderer import Reel, Wanted
+
+    name, output = next(iter(graph.outputs.items()))
+    reel = Reel(renderer, graph, Wanted())
+    try:
+        return {frame: shown(reel.render(frame)[name], output.view) for frame in frames}
+    finally:
+        reel.close()
 
 
 def node_sheet(renderer: Renderer, step: Step = lambda name: None, ids: tuple[str, ...] = ()) -> Sheet:

@@ -54,8 +54,8 @@ float temporal_aa_weight(float away, int kernel) {
     return kernel == KERNEL_LANCZOS ? lanczos_weight(away, 3.0) : cubic_weight(away, 0.0, 0.5);
 }
 
-// The past between pixels; as it is where nothing moves.
-vec4 temporal_aa_past(vec2 place, int kernel) {
+// The past between pixels; as it is where nothing moves. `brightest` is raised to what is read.
+vec4 temporal_aa_past(vec2 place, int kernel, inout float brightest) {
     int reach = kernel == KERNEL_LANCZOS ? 3 : 2;
     ivec2 corner = ivec2(floor(place - 0.5));
     vec4 sum = vec4(0.0);
@@ -64,8 +64,10 @@ vec4 temporal_aa_past(vec2 place, int kernel) {
         float row = temporal_aa_weight(float(corner.y + y) + 0.5 - place.y, kernel);
         for (int x = 1 - reach; x <= reach; ++x) {
             float weight = row * temporal_aa_weight(float(corner.x + x) + 0.5 - place.x, kernel);
-            sum += weight * history_at(corner + ivec2(x, y));
+            vec4 light = history_at(corner + ivec2(x, y));
+            sum += weight * light;
             total += weight;
+            if (weight > 0.0) brightest = max(brightest, luminance(temporal_aa_rgb(light)));
         }
     }
     return sum / total;
@@ -88,11 +90,11 @@ vec4 temporal_aa_blend(float share, float gamma, float tolerance, bool deep, int
     vec4 mean = sum / 9.0, reach = gamma * sqrt(max(squares / 9.0 - mean * mean, 0.0));
     reach = max(reach, temporal_aa_rounding * max(abs(mean.x), 1.0));
     // Towards the mean until all channels are within reach, so that no color appears that was in neither.
-    vec4 off = temporal_aa_past(place, kernel) - mean, over = abs(off) / reach;
+    vec4 off = temporal_aa_past(place, kernel, brightest) - mean, over = abs(off) / reach;
     float farthest = max(max(over.x, over.y), max(over.z, over.w));
     share = mix(share, max(share, temporal_aa_moving), min(2.0 * length(motion), 1.0));
     vec4 mixed = mix(mean + off / max(farthest, 1.0), now, share);
-    // Near 1, weighed light becomes light without end: it gets no brighter than what is around.
+    // Near 1, weighed light becomes light without end: it gets no brighter than all that it is made of.
     float bright = luminance(temporal_aa_rgb(mixed));
     if (bright > brightest) mixed.xyz *= brightest / bright;
     return mixed;

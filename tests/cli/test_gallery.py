@@ -32,7 +32,7 @@ def described(file: Path) -> list[str]:
     return oiio.ImageBuf(str(file)).spec()["ImageDescription"].split(", ")
 
 
-def test_it_writes_two_sheets(cli, graphs, tmp_path, monkeypatch):
+def test_it_writes_three_sheets(cli, graphs, tmp_path, monkeypatch):
     few = MappingProxyType({id: catalogue()[id] for id in ("exposure", "luminance_statistics", "noise")})
     monkeypatch.setattr(presets, "paths", lambda: (graphs("one.json"), graphs("two.json")))
     monkeypatch.setattr(nodes, "catalogue", lambda: few)

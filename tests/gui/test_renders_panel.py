@@ -27,7 +27,7 @@ def shot(tmp_path: Path) -> Path:
 @pytest.fixture
 def long_shot(tmp_path: Path) -> Path:
     """The same, for seconds."""
-    return made(tmp_path, 60)
+    return made(tmp_path, 30)
 
 
 def made(tmp_path: Path, count: int) -> Path:
@@ -105,9 +105,17 @@ def test_a_range_is_rendered_and_played(gui, shot: Path) -> None:
         ui.settled()
         assert ui.editor.preview.shown("A").frame == 8
         ui.shot("flipbook_alone.png")
+        ui.click("compare 0")
+        ui.shot("queue_compare.png")
+        ui.click("compare with 0")
+        ui.settled()
+        book = ui.editor.viewer.flipbook
+        assert book is not None and len(book.strips) == 2 and ui.editor.preview.shown("B") is not None
+        ui.shot("flipbook_of_two_renders.png")
         ui.click("close flipbook")
         ui.settled()
         assert ui.editor.viewer.flipbook is None and ui.editor.preview.shown("A").frame == 1
+        assert ui.editor.viewer.compare == "off"
 
     gui(body, shot)
 
@@ -132,14 +140,14 @@ def test_renders_wait_and_are_stopped(gui, long_shot: Path) -> None:
         ui.click("cancel 0")
         ui.until(lambda: first.state == "cancelled", 5)
         ended(ui, 3)
-        assert third.state == "done" and 1 <= len(list(long_shot.parent.glob("a.*.png"))) < 60
+        assert third.state == "done" and 1 <= len(list(long_shot.parent.glob("a.*.png"))) < 30
         ui.wait(4)
         ui.shot("queue_cancelled.png")
         at = sorted(exports.all, key=lambda one: -one.ended).index(first)
         ui.click(f"again {at}")
         ended(ui, 3)
         assert exports.all[0].state == "done" and exports.all[0].kept >= 1
-        assert len(list(long_shot.parent.glob("a.*.png"))) == 60
+        assert len(list(long_shot.parent.glob("a.*.png"))) == 30
 
     gui(body, long_shot)
 
@@ -167,7 +175,7 @@ def test_quitting_asks_while_something_renders(gui, long_shot: Path) -> None:
         ui.click("render")
         ui.keys("Ctrl+Q")
         assert ui.editor.dialogs.question is not None and not ui.editor.closing
-        ui.long_shot("queue_quit.png")
+        ui.shot("queue_quit.png")
         ui.click("answer 1")
         assert not ui.editor.closing and ui.editor.exports.unfinished
 
@@ -200,7 +208,8 @@ def test_two_sequences_are_compared(gui, shot: Path, tmp_path: Path, theme: str)
         middle, down = (panel[0] + panel[2]) / 2, (panel[1] + panel[3]) / 2
         pixels = ui.pixels("flipbook_beside.png")
         quarter = (panel[2] - panel[0]) / 4
-        left, right = (pixels[int(down) + 60, int(middle + by)].mean() for by in (quarter * 0.8 - 2 * quarter, quarter * 0.8))
+        row = pixels[int(down) + 60]
+        left, right = row[int(middle - 1.2 * quarter)].mean(), row[int(middle + 0.8 * quarter)].mean()
         assert right > left + 20
         ui.move((middle + quarter, down))
         ui.wait(3)
@@ -231,7 +240,6 @@ def test_a_flipbook_follows_what_is_being_written(gui, shot: Path) -> None:
     def body(ui) -> None:
         to_renders(ui)
         ui.click("render")
-        (export,) = ui.editor.exports.all
         ui.until(lambda: "play 0" in ui.editor.places, 60)
         ui.click("play 0")
         book = ui.editor.viewer.flipbook

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
+from halation.app.editor.window.arriving import arrived
 from halation.app.graph import Expression, Graph, Output, Port, Settings
 from halation.app.renderer import Reel, Wanted
 from halation.nodes import catalogue
@@ -320,5 +321,31 @@ def test_a_far_frame_of_a_graph_with_a_memory_is_what_a_reel_renders(gui, tmp_pa
         ui.until(lambda: len(ui.editor.preview.frames) == 12, 60.0)
         assert ui.editor.timeline.playback.dropped == 0, "a history leaves no frame out"
         ui.keys("Space")
+
+    gui(body)
+
+
+def test_a_dropped_frame_stands_for_its_sequence_if_wanted(gui, tmp_path) -> None:
+    path = shot(tmp_path)
+
+    def body(ui) -> None:
+        start(ui, Graph(outputs={"image": Output()}))
+        ui.ask(lambda: arrived(ui.editor, [tmp_path / "bar.0003.exr"]))
+        ui.wait(3)
+        assert "one of 12 frames" in ui.editor.dialogs.question.sentence
+        ui.shot("dropped.png")
+        dict(ui.editor.dialogs.question.answers)["Read the sequence"]()
+        ui.editor.dialogs.question = None
+        ui.wait(3)
+        node = ui.session.active
+        assert ui.session.value(Port(node, "path")) == path and ui.session.frames == (1, 12)
+        ui.settled()
+        ui.until(lambda: not ui.editor.renders.busy)
+        ui.wait(5)
+        ui.shot("sequence.png")
+        ui.session.undo()
+        ui.ask(lambda: arrived(ui.editor, [tmp_path / "bar.0003.exr", tmp_path / "bar.0004.exr"]))
+        assert ui.editor.dialogs.question is None, "several of one sequence are that"
+        assert ui.session.value(Port(ui.session.active, "path")) == path
 
     gui(body)

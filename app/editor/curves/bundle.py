@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ...graph import Interpolation, Keys
+from ...graph import Interpolation, Keys, Port
 from .hits import Mark, line_at
 from .plane import Plane
 from .rows import Lane, Row, Spot
-from .shapes import Pieces, is_straight, level, on_screen, outside, pieces, points
+from .shapes import Pieces, all_pieces, is_straight, level, on_screen, outside, points
 
 Floats = NDArray[np.float64]
 _BEYOND = 12.0
@@ -31,11 +31,11 @@ class Shape:
     looks: tuple[Interpolation, ...]
 
 
-def shape(lane: Lane, keys: Keys) -> Shape:
-    """What a channel looks like."""
+def shape(lane: Lane, keys: Keys, inner: Pieces) -> Shape:
+    """What a channel looks like, its pieces given."""
     port, channel = lane
     return Shape(
-        keys, pieces(keys, channel), np.array(keys.frames), np.array([level(key, channel) for key in keys.keys]),
+        keys, inner, np.array(keys.frames), np.array([level(key, channel) for key in keys.keys]),
         tuple(frozenset(((port, frame, channel),)) for frame in keys.frames),
         tuple(key.interpolation for key in keys.keys),
     )
@@ -139,6 +139,7 @@ class Bundles:
 
     def __init__(self) -> None:
         self._known: dict[Lane, Shape] = {}
+        self._made: dict[Port, tuple[Keys, list[Pieces]]] = {}
 
     def make(self, rows: Iterable[Row], hidden: Collection[Lane]) -> Bundle:
         """All channels of rows with keys but hidden ones."""
@@ -167,7 +168,10 @@ class Bundles:
     def _shape(self, lane: Lane, keys: Keys) -> Shape:
         known = self._known.get(lane)
         if known is None or known.keys is not keys:
-            known = self._known[lane] = shape(lane, keys)
+            before = self._made.get(lane[0])
+            if before is None or before[0] is not keys:
+                before = self._made[lane[0]] = keys, all_pieces(keys)
+            known = self._known[lane] = shape(lane, keys, before[1][lane[1]])
         return known
 
 

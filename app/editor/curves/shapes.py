@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,24 +42,40 @@ def runs(keys: Keys, place: int) -> bool:
 
 def pieces(keys: Keys, channel: int) -> Pieces:
     """A channel between the first and the last key."""
-    found: list[tuple[tuple[float, float], ...]] = []
-    for place, (start, end) in enumerate(zip(keys.keys, keys.keys[1:], strict=False)):
-        a, b = (start.frame, level(start, channel)), (end.frame, level(end, channel))
-        if not runs(keys, place):
-            corner = b[0], a[1]
+    return all_pieces(keys)[channel]
+
+
+def all_pieces(keys: Keys) -> list[Pieces]:
+    """Every channel between the first and the last key."""
+    count = max((len(key.parts) for key in keys.keys), default=0) or 1
+    found: list[tuple[tuple[float, ...], ...]] = []
+    all = [(key.frame, *(level(key, channel) for channel in range(count))) for key in keys.keys]
+    going = [runs(keys, place) for place in range(len(all))]
+    bezier = [on and keys.keys[place].interpolation == "bezier" for place, on in enumerate(going)]
+    smooth = [on and keys.keys[place].interpolation == "smooth" for place, on in enumerate(going)]
+    hands = [
+        keys.handles(frame) if bezier[place] or (place and bezier[place - 1]) else ((), ())
+        for place, frame in enumerate(keys.frames)
+    ]
+    slopes = [
+        keys.slopes(frame) if smooth[place] or (place and smooth[place - 1]) else ()
+        for place, frame in enumerate(keys.frames)
+    ]
+    for place, (a, b) in enumerate(pairwise(all)):
+        if not going[place]:
+            corner = b[0], *a[1:]
             found += [(a, a, corner, corner), (corner, corner, b, b)]
-        elif start.interpolation == "linear":
-            found.append((a, a, b, b))
+        elif bezier[place]:
+            found.append((a, _plus(a, hands[place][1]), _plus(b, hands[place + 1][0]), b))
+        elif smooth[place]:
+            third = (b[0] - a[0]) / 3.0
+            out = third, *(third * slope for slope in slopes[place])
+            back = -third, *(-third * slope for slope in slopes[place + 1])
+            found.append((a, _plus(a, out), _plus(b, back), b))
         else:
-            if start.interpolation == "bezier":
-                out, back = keys.handles(start.frame)[1], keys.handles(end.frame)[0]
-                one, two = (out[0], out[1 + channel]), (back[0], back[1 + channel])
-            else:
-                third = (b[0] - a[0]) / 3.0
-                one = third, third * keys.slopes(start.frame)[channel]
-                two = -third, -third * keys.slopes(end.frame)[channel]
-            found.append((a, (a[0] + one[0], a[1] + one[1]), (b[0] + two[0], b[1] + two[1]), b))
-    return np.array(found, np.float64).reshape(-1, 4, 2)
+            found.append((a, a, b, b))
+    whole = np.array(found, np.float64).reshape(-1, 4, 1 + count)
+    return [np.ascontiguousarray(whole[..., (0, 1 + channel)]) for channel in range(count)]
 
 
 def outside(keys: Keys, channel: int, inner: Pieces, first: float, last: float) -> tuple[Pieces, Pieces]:
@@ -216,3 +233,7 @@ def _repeated(keys: Keys, inner: Pieces, first: float, last: float) -> tuple[Pie
         behind.append(jump)
     none = np.empty((0, 4, 2))
     return np.concatenate([none, *behind]), np.concatenate([none, *ahead])
+
+
+def _plus(point: tuple[float, ...], offset: tuple[float, ...]) -> tuple[float, ...]:
+    return tuple(a + b for a, b in zip(point, offset, strict=True))

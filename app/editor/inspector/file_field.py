@@ -10,8 +10,11 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ....nodes import Value
+from ...errors import HalationError
 from ...media import ImageInfo
+from ...media.sequences import find_sequence
 from ..dialogs import Browse
+from ..services.sequences import standing
 from ..toolkit.fields import draw_arrow
 from ..toolkit.places import item_rect, place, union
 from ..toolkit.textures import Textures

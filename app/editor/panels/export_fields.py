@@ -172,6 +172,8 @@ def _consequences(editor: Editor, form: Form, aim: Aim) -> None:
     record(editor, "render aim")
     tip(aim.first if aim.files == 1 else f"{aim.first}\n{aim.last}")
     if aim.exist:
+        if not form.resume:
+            imgui.align_text_to_frame_padding()
         wrapped(palette.dim if form.resume else palette.warning, exist_text(aim, form.resume))
         record(editor, "render exists")
         if not form.resume:

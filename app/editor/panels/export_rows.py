@@ -145,7 +145,7 @@ class Queue:
             doc = "Compare it with another version, in the viewer"
             found.append(_Button(icons.ICON_FA_PLAY, "play", "Play it in the viewer", partial(_play, editor, export)))
             found.append(
-                _Button(icons.ICON_FA_CODE_COMPARE, "compare", doc, partial(imgui.open_popup, f"compare {index}"))
+                _Button(icons.ICON_FA_TABLE_COLUMNS, "compare", doc, partial(imgui.open_popup, f"compare {index}"))
             )
         if export.state == "waiting" and turn > len(editor.exports.running):
             sooner = partial(editor.exports.move, export, -1)
@@ -188,12 +188,12 @@ class Queue:
 
     def _details(self, editor: Editor, export: Export) -> None:
         """What is computed, and the file that was written last."""
-        parts = [under_way(export)] if export.state == "running" else []
-        if export.written:
-            parts.append(f"last: {export.written[-1].name}" if export.state == "running" else export.written[-1].name)
-        if parts:
-            dim(editor, elided("   ".join(parts), imgui.get_content_region_avail().x))
-            tip(str(export.written[-1]) if export.written else "")
+        last = export.written[-1] if export.written else None
+        parts = [under_way(export)] if export.state == "running" else [str(export.destinations[0][1].parent)]
+        if last is not None and export.state == "running":
+            parts.append(f"last: {last.name}")
+        dim(editor, elided("   ".join(parts), imgui.get_content_region_avail().x))
+        tip(f"{last}" if last is not None else "")
 
     # --- small pictures ----------------------------------------------------------------------------------------------
 

@@ -45,9 +45,11 @@ def state_text(export: Export, turn: int = 0) -> str:
     many = export.total > 1
     count = f"{export.done} of {export.total} frames" if export.done < export.total else f"{export.total} frames"
     if export.state == "done":
-        kept = f", {export.kept} kept as they were" if export.kept and many else ""
-        same = "kept as it was" if export.kept else "done"
-        return f"{count}{kept} in {time_text(export.seconds)}" if many else f"{same} in {time_text(export.seconds)}"
+        took = time_text(export.seconds)
+        if not many:
+            return f"{'kept as it was' if export.kept else 'done'} in {took}"
+        number = "all" if export.kept == export.total else f"{export.kept}"
+        return f"{count} in {took}, {number} kept as they were" if export.kept else f"{count} in {took}"
     return f"{export.state} after {count}" if many and export.done else export.state
 
 

@@ -43,7 +43,7 @@ class Job:
             if self._reel is None:
                 plan = renderer.compile(wish.graph, wish.wanted(ports, frame))
                 if plan.memories:
-                    self._reel = wish.take.begin(renderer, wish, ports)
+                    self._reel = wish.take.begin(ports, Reel(renderer, wish.graph, wish.wanted(ports, frame)))
                 else:
                     self.plan, self.run = plan, renderer.runner.steps(plan, self.kept, timings=self.timings)
         except BaseException:

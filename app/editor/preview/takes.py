@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from ....nodes import Size
 from ...compiler import Surface
 from ...graph import Port
 from ...renderer import Lease, Reel, Renderer
-
-if TYPE_CHECKING:
-    from .wishes import Wish
 
 SHARE = 0.5
 """The part of the memory budget that frames may take which were shown."""
@@ -91,9 +87,8 @@ class Take:
         """True if frames are known to need the ones before."""
         return bool(self._reels)
 
-    def begin(self, renderer: Renderer, wish: Wish, ports: Mapping[str, Port]) -> Reel:
-        """Begin one."""
-        reel = Reel(renderer, wish.graph, wish.wanted(ports, wish.frame))
+    def begin(self, ports: Mapping[str, Port], reel: Reel) -> Reel:
+        """They have one."""
         self._reels[tuple(ports.items())] = reel
         return reel
 

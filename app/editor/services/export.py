@@ -131,6 +131,15 @@ class Export:
     # --- on the thread of its own ------------------------------------------------------------------------------------
 
     def _follow(self, running: subprocess.Popen[str]) -> None:
+        try:
+            self._listen(running)
+        finally:
+            if not self._over.is_set():
+                self.sentence = "what the export says cannot be understood"
+                self._finish("failed")
+            self._tell()
+
+    def _listen(self, running: subprocess.Popen[str]) -> None:
         with running as process:
             assert process.stdin and process.stdout and process.stderr
             with contextlib.suppress(OSError):  # it may end before it has read everything
@@ -142,7 +151,6 @@ class Export:
             said = process.stdout.read()
         self._tidy(running.pid)
         self._end(running.returncode, said)
-        self._tell()
 
     def _hear(self, line: str) -> None:
         """One line of what the process tells."""

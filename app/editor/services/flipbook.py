@@ -48,10 +48,8 @@ class Strip:
         output, path = export.destinations[0]
         outputs = export.job.graph.outputs
         found = outputs.get(output or next(iter(outputs), ""))
-        chosen = next((word.partition("=")[2] for word in export.job.words if word.startswith("--view=")), "")
-        view = chosen or (found.view if found else "")
-        frames = export.job.frames or _found(path)
-        return Strip(path, (min(frames), max(frames)), view, export)
+        frames = export.job.frames or _found(path) or (1,)
+        return Strip(path, (min(frames), max(frames)), found.view if found else "", export)
 
     @staticmethod
     def chosen(path: Path) -> Strip:
@@ -108,8 +106,9 @@ def _session(strips: Sequence[Strip], rate: float, frame: int) -> Session:
         names.append(name)
         view = "none" if strip.path.suffix.lower() in _ENCODED else strip.view
         reader: Any = catalogue()["read_image"]
-        graph = graph.add(name, reader(path=str(strip.path), missing="hold"))
-        graph = graph.add_output(name, Output(view=view)).connect(Port(name, "out"), Port(OUTPUTS, name))
+        node = f"flipbook: {name}"  # what is known of a node of the document must not be said of this one
+        graph = graph.add(node, reader(path=str(strip.path), missing="hold"))
+        graph = graph.add_output(name, Output(view=view)).connect(Port(node, "out"), Port(OUTPUTS, name))
     first, last = min(strip.frames[0] for strip in strips), max(strip.frames[1] for strip in strips)
     graph = replace(graph, settings=replace(graph.settings, frames=(first, last), rate=rate))
     made = Session()

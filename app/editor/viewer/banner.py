@@ -15,7 +15,7 @@ from ..toolkit.words import dim, elided, font, tip
 if TYPE_CHECKING:
     from ..editor import Editor
 
-_WITH = f"{icons.ICON_FA_CODE_COMPARE}  Compare with..."
+_WITH = f"{icons.ICON_FA_TABLE_COLUMNS}  Compare with..."
 _BACK = f"{icons.ICON_FA_XMARK}  Back to the graph"
 
 
@@ -29,6 +29,7 @@ def draw_banner(editor: Editor) -> None:
     high = imgui.get_frame_height()
     bottom, color = start.y + high + 3 * scale, u32(mix(palette.panel, palette.accent, 0.16))
     imgui.get_window_draw_list().add_rect_filled((inner.min.x, inner.min.y), (inner.max.x, bottom), color)
+    imgui.set_cursor_screen_pos((start.x + 4 * scale, start.y))
     imgui.align_text_to_frame_padding()
     imgui.text_colored(vec4(palette.accent), f"{icons.ICON_FA_FILM} ")
     imgui.same_line(0.0, 2 * scale)
@@ -37,12 +38,14 @@ def draw_banner(editor: Editor) -> None:
     buttons = (_BACK,) if len(book.strips) > 1 else (_WITH, _BACK)
     room = (inner.max.x - imgui.get_cursor_screen_pos().x - room_for(*buttons) - 130 * scale) / len(book.strips)
     colors = {"A": palette.accent, "B": palette.good}
+    same = len({strip.name for strip in book.strips}) < len(book.strips)
     for side, strip in zip(SIDES, book.strips, strict=False):
+        name = f"{strip.path.parent.name}/{strip.name}" if same else strip.name
         imgui.same_line(0.0, 14 * scale)
         if len(book.strips) > 1:
             imgui.text_colored(vec4(colors[side]), side)
             imgui.same_line(0.0, 5 * scale)
-        imgui.text_unformatted(elided(strip.name, room - 30 * scale))
+        imgui.text_unformatted(elided(name, room - 30 * scale))
         tip(str(strip.path))
         if strip.export is not None and strip.export.state in ("running", "waiting"):
             imgui.same_line(0.0, 6 * scale)

@@ -28,6 +28,7 @@ from .overlays import draw_badge, draw_message, draw_overlays, draw_progress
 from .pacing import Stopwatch
 from .reading import Reader, Scan
 from .saving import ask_to_save
+from .strokes import label
 from .table import draw_table
 from .toolbar import context_menu, draw_toolbar
 from .wanted import A, B
@@ -170,6 +171,8 @@ class Viewer:
             other = editor.display.draw("viewer beside", sight.panel, now.b, None, look)
             lines.add_image(imgui.ImTextureRef(other.glo), (corner[0], y), (2 * corner[0] - x, corner[1]))
             lines.add_line((corner[0], y), corner, u32(palette.border), ui_scale())
+            for name, left in ((A, x), (B, corner[0])):
+                label(lines, (left + 18 * ui_scale(), y + 18 * ui_scale()), name)
         else:
             editor.display.drop("viewer beside")
         if now.a is not None:

@@ -28,10 +28,11 @@ def arrived(editor: Editor, paths: Sequence[Path]) -> None:
     def drop(some: Sequence[Path]) -> None:
         editor.session.drop_files(list(some), at)
 
-    if not frames:
+    single = [path for path in files if path in frames]
+    if not single:
         drop(files)
         return
-    first, pattern = next(iter(frames.items()))
+    first, pattern = single[0], frames[single[0]]
     found = find_sequence(str(pattern))
     count = len(found.frames) if found else 0
     editor.dialogs.question = Question(

@@ -54,6 +54,10 @@ _HINTS: dict[str, tuple[Hint, ...]] = {
         ("Drag", "change (Shift: finely)"), ("Click", "type, also +1 or *2"), ("Double click a name", "reset"),
         ("Right click", "more"),
     ),
+    "Timeline": (
+        ("Drag", "go to a frame"), ("time.play", "play"), ("Wheel", "zoom"), ("Middle drag", "move along"),
+        ("Drag a corner", "play only a part"), ("Right click", "more"),
+    ),
     "Scopes": (("viewer.region", "measure a part of the picture"),),
     "History": (("Click", "go back or forth to a step"),),
     "Problems": (("Click", "show the node"), ("Right click", "copy")),

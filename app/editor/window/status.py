@@ -57,10 +57,10 @@ def _panel_below(editor: Editor) -> str:
     if editor.dialogs.any:
         return ""
     mouse = imgui.get_mouse_pos()
-    for docked in DOCKED:
-        left, top, right, bottom = editor.places.get(docked.title, (0.0, 0.0, 0.0, 0.0))
+    for title in ("Timeline", *(docked.title for docked in DOCKED)):
+        left, top, right, bottom = editor.places.get(title, (0.0, 0.0, 0.0, 0.0))
         if left <= mouse.x < right and top <= mouse.y < bottom:
-            return docked.title
+            return title
     return ""
 
 

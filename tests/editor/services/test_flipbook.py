@@ -1,0 +1,79 @@
+"""Flipbooks: which pictures they play, and when these must be read anew."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from halation.app.editor.services.export import Export, Job
+from halation.app.editor.services.flipbook import Flipbook, Strip
+from halation.app.errors import InputError
+from halation.app.graph import OUTPUTS, Graph, Output, Port
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    for frame in range(3, 9):
+        (tmp_path / f"shot_v1.{frame:04d}.exr").touch()
+    (tmp_path / "alone.png").touch()
+    return tmp_path
+
+
+def render(path: Path, frames: tuple[int, ...], view: str = "") -> Export:
+    """A render that somebody else moves on."""
+    graph = Graph().add_output("image", Output(view=view))
+    return Export(Job((), "", graph, (("", path),), frames))
+
+
+def write(export: Export, *frames: int) -> None:
+    path = str(export.destinations[0][1])
+    export.written = (*export.written, *(Path(path.replace("####", f"{frame:04d}")) for frame in frames))
+
+
+def test_a_file_stands_for_its_sequence(folder: Path) -> None:
+    strip = Strip.chosen(folder / "shot_v1.0005.exr")
+    assert (strip.path, strip.frames, strip.name) == (folder / "shot_v1.####.exr", (3, 8), "shot_v1.####.exr")
+    assert Strip.chosen(folder / "alone.png") == Strip(folder / "alone.png", (1, 1))
+    with pytest.raises(InputError, match="no such picture"):
+        Strip.chosen(folder / "gone.exr")
+
+
+def test_it_is_a_document_of_its_own(folder: Path) -> None:
+    one, other = Strip.chosen(folder / "shot_v1.0005.exr"), Strip(folder / "shot_v1.####.png", (1, 4), "AgX")
+    session = Flipbook((one, other), 12.0, 40).session
+    assert (session.frames, session.settings.rate, session.frame) == ((1, 8), 12.0, 8)
+    assert session.viewed("A") == Port(OUTPUTS, "shot_v1")
+    assert session.viewed("B") == Port(OUTPUTS, "shot_v12")
+    assert session.value(Port("flipbook: shot_v1", "path")) == str(one.path)
+    assert {session.value(Port(name, "missing")) for name in session.graph.nodes} == {"hold"}
+    assert [output.view for output in session.root.outputs.values()] == ["", "none"]
+    assert session.problems == {}
+
+
+@pytest.mark.parametrize("name", ["inputs.####.exr", "____.exr", ".exr", "a/b.exr"])
+def test_any_name_will_do(tmp_path: Path, name: str) -> None:
+    session = Flipbook((Strip(tmp_path / name, (1, 2)),), 24.0, 1).session
+    assert session.viewed("A") is not None and session.viewed("B") is None
+
+
+def test_a_render_is_shown_as_its_output_asks(tmp_path: Path) -> None:
+    strip = Strip.rendered(render(tmp_path / "s.####.exr", (4, 2, 9), "none"))
+    assert (strip.frames, strip.view) == ((2, 9), "none")
+
+
+def test_only_what_was_seen_too_early_is_read_anew(tmp_path: Path) -> None:
+    export = render(tmp_path / "s.####.exr", tuple(range(1, 9)))
+    write(export, 1)
+    book = Flipbook((Strip.rendered(export),), 24.0, 1)
+    assert not book.follow(())
+    write(export, 2)
+    assert not book.follow((1,))
+    write(export, 3)
+    assert book.follow((1, 3))
+    assert not book.follow((1, 3))
+    book.session.seek(5)
+    write(export, 4, 5)
+    assert book.follow(())
+    export.ended = 1.0
+    assert book.follow(())
+    assert not book.follow(())
