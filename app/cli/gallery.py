@@ -76,7 +76,7 @@ def preset_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet:
         step(path.stem)
         graph = document.load(path)
         (pictures[path.stem],) = frames_of(graph, renderer, (middle(renderer, graph),)).values()
-    return Sheet(grouped_sheet({"": pictures}, 4, 320, letters=_LETTERS), tuple(pictures))
+    return Sheet(grouped_sheet({"": pictures}, 5, _WIDTH, letters=_LETTERS), tuple(pictures))
 
 
 def time_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet:

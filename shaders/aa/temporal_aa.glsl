@@ -97,5 +97,6 @@ vec4 temporal_aa_blend(float share, float gamma, float tolerance, bool deep, int
     // Near 1, weighed light becomes light without end: it gets no brighter than all that it is made of.
     float bright = luminance(temporal_aa_rgb(mixed));
     if (bright > brightest) mixed.xyz *= brightest / bright;
+    if (squares.w == 0.0) mixed.w = 0.0;  // what is left of the past where all around is empty
     return mixed;
 }

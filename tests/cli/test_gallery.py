@@ -16,7 +16,7 @@ import OpenImageIO as oiio
 import pytest
 from halation import nodes, presets
 from halation.app.cli import gallery, specimen
-from halation.app.graph import problems
+from halation.app.graph import Graph, problems
 from halation.app.media.sheet import write_sheet
 from halation.app.renderer import Renderer
 from halation.nodes import Kind, Node, Source, catalogue
@@ -34,18 +34,20 @@ def described(file: Path) -> list[str]:
 
 def test_it_writes_three_sheets(cli, graphs, tmp_path, monkeypatch):
     few = MappingProxyType({id: catalogue()[id] for id in ("exposure", "luminance_statistics", "noise")})
-    monkeypatch.setattr(presets, "paths", lambda: (graphs("one.json"), graphs("two.json")))
+    moving = graphs("two.json", settings={"frames": [1, 8]})
+    monkeypatch.setattr(presets, "paths", lambda: (graphs("one.json"), moving))
     monkeypatch.setattr(nodes, "catalogue", lambda: few)
     folder = tmp_path / "a" / "b"
     result = cli("gallery", "-o", folder)
     assert (result.code, result.out) == (0, "")
-    assert {item.name for item in folder.iterdir()} == {"nodes.jpg", "presets.jpg"}
+    assert {item.name for item in folder.iterdir()} == {"nodes.jpg", "presets.jpg", "time.jpg"}
     assert described(folder / "nodes.jpg") == [*few] and described(folder / "presets.jpg") == ["one", "two"]
+    assert described(folder / "time.jpg") == ["two"]
     lines = result.err.splitlines()
-    assert len(lines) == 3 and lines[1].startswith("presets ") and lines[2].endswith(str(folder / "nodes.jpg"))
+    assert len(lines) == 4 and lines[1].startswith("presets ") and lines[3].endswith(str(folder / "nodes.jpg"))
     found = cli("gallery", "--output", folder, "--json").json["sheets"]
     assert [(item["sheet"], item["pictures"]) for item in found] == [
-        (str(folder / "presets.jpg"), ["one", "two"]), (str(folder / "nodes.jpg"), [*few]),
+        (str(folder / "presets.jpg"), ["one", "two"]), (str(folder / "time.jpg"), ["two"]), (str(folder / "nodes.jpg"), [*few]),
     ]
 
 
@@ -93,7 +95,8 @@ def compare(name: str, made: np.ndarray, where: np.ndarray) -> None:
 
 @pytest.fixture(scope="module", autouse=RENEW)
 def renewed(renderer: Renderer) -> None:
-    for name, make in (("nodes", gallery.node_sheet), ("presets", gallery.preset_sheet)):
+    makers = {"nodes": gallery.node_sheet, "presets": gallery.preset_sheet, "time": gallery.time_sheet}
+    for name, make in makers.items():
         sheet = make(renderer)
         write_sheet(IMAGES / f"{name}.jpg", sheet.light, ", ".join(sheet.names))
 
@@ -103,6 +106,27 @@ def test_the_sheet_of_presets_is_current(renderer: Renderer, tmp_path: Path) -> 
     assert described(IMAGES / "presets.jpg") == [*sheet.names]
     compare("presets", written(sheet, tmp_path), np.ones(sheet.light.shape[:2]))
     assert (IMAGES / "presets.jpg").stat().st_size < 900_000
+
+
+def test_the_sheet_of_time_is_current(
+    renderer: Renderer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every third row is made again and compared; the others stay black."""
+    names, frames_of = described(IMAGES / "time.jpg"), gallery.frames_of
+    assert names == [*gallery.moving()] and (IMAGES / "time.jpg").stat().st_size < 900_000
+    chosen = [graph for name, graph in gallery.moving().items() if name in names[1::3]]
+
+    def blank(graph: Graph, engine: Renderer, frames: list[int]) -> dict[int, np.ndarray]:
+        return dict.fromkeys(frames, np.zeros((144, 256, 3), np.float32))
+
+    def some(graph: Graph, engine: Renderer, frames: list[int]) -> dict[int, np.ndarray]:
+        return (frames_of if graph in chosen else blank)(graph, engine, frames)
+
+    sheets: list[gallery.Sheet] = []
+    for maker in (blank, some):
+        monkeypatch.setattr(gallery, "frames_of", maker)
+        sheets.append(gallery.time_sheet(renderer))
+    compare("time", written(sheets[1], tmp_path), (sheets[0].light != sheets[1].light).any(2))
 
 
 def test_the_sheet_of_nodes_is_current(

@@ -134,7 +134,7 @@ def test_reset_switch_and_choice(gui, file) -> None:
             ui.wheel(1)
         assert value(ui, "tone_map.operator") == "khronos neutral"
 
-    gui(body, file)
+    gui(body, file, size=(1400, 1000))
 
 
 def test_links(gui, file) -> None:

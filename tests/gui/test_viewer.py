@@ -96,10 +96,10 @@ def test_the_wipe_shows_both_and_is_dragged(gui) -> None:
         ui.settled()
         assert ui.editor.preview.shown("B").port == Port("inputs", "beauty")
         b = seen(ui, 0.8, 0.85)
-        assert (a != b).any()
+        assert not np.allclose(a, b, atol=12)  # a line of numbers more below moves the picture by parts of a pixel
         ui.drag("viewer wipe", inside(ui, 0.95, 0.5))
         assert ui.editor.viewer.wipe == pytest.approx((0.95, 0.5), abs=0.01)
-        assert (seen(ui, 0.8, 0.85) == a).all()
+        assert np.allclose(seen(ui, 0.8, 0.85), a, atol=6)
         left, top = ui.at("viewer wipe")
         ui.drag("viewer wipe angle", (left - 80.0, top))
         assert ui.editor.viewer.wipe_angle == pytest.approx(90.0)

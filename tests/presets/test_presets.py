@@ -17,7 +17,7 @@ import pytest
 from halation.app import document, media
 from halation.app.graph import Control, Graph, Group, problems, signature
 from halation.app.media.sheet import sheet, shown
-from halation.app.renderer import Renderer, Wanted
+from halation.app.renderer import Reel, Renderer, Wanted
 from halation.app.renderer.job import Writing, run_job
 from halation.nodes import Kind
 from halation.presets import paths
@@ -30,6 +30,11 @@ IMAGES = Path(__file__).parents[2] / "docs" / "images"
 PRESETS = {path.stem: path for path in paths()}
 ASKED = {"soft_bloom", "cinematic_grade", "night_street", "emboss_and_edges", "dreamy_glow", "underwater"}
 GEOMETRY = {"geometry", "lens", "light"}
+TIME = {
+    "dolly_zoom", "feedback_tunnel", "heartbeat", "ink_boil", "light_painting", "long_exposure", "out_of_the_tunnel",
+    "rack_focus", "turntable",
+}
+"""Presets that move."""
 FINE = {
     "canny", "convolve3x3", "crosshatch", "crt", "difference_of_gaussians", "edge_detect", "film_grain",
     "geometry_edges", "halftone",
@@ -54,9 +59,24 @@ def used(name: str, what: str) -> set[str]:
     return {getattr(node, what, "") for node in loaded(name).nodes.values()}
 
 
-def picture(renderer: Renderer, graph: Graph, scale: float = 1.0) -> Array:
+def moment(graph: Graph, part: float = 0.5) -> int:
+    """A frame on the way from the first to the last: the middle stands for all."""
+    first, last = graph.settings.frames or (1, 1)
+    return first + int((last - first) * part)
+
+
+def rendered(renderer: Renderer, graph: Graph, wanted: Wanted = Wanted(), part: float = 0.5) -> Array:
+    """The output at such a frame, with the history that it has by then."""
+    reel = Reel(renderer, graph, wanted)
+    try:
+        return reel.render(moment(graph, part))["image"]
+    finally:
+        reel.close()
+
+
+def picture(renderer: Renderer, graph: Graph, scale: float = 1.0, part: float = 0.5) -> Array:
     """The output as light of the display, [h, w, 3] within 0..1."""
-    return shown(renderer.render(graph, Wanted(scale=scale))["image"], graph.outputs["image"].view)
+    return shown(rendered(renderer, graph, Wanted(scale=scale), part), graph.outputs["image"].view)
 
 
 def encoded(light: Array) -> Array:
@@ -74,9 +94,15 @@ def shrunk(light: Array, width: int, height: int) -> Array:
 
 
 @pytest.fixture(scope="module")
-def full(renderer: Renderer) -> dict[str, Array]:
-    """All pictures at full size."""
-    return {name: picture(renderer, loaded(name)) for name in PRESETS}
+def raw(renderer: Renderer) -> dict[str, Array]:
+    """What all presets make at full size, scene-linear."""
+    return {name: rendered(renderer, loaded(name)) for name in PRESETS}
+
+
+@pytest.fixture(scope="module")
+def full(raw: dict[str, Array]) -> dict[str, Array]:
+    """The same as light of the display."""
+    return {name: shown(made, loaded(name).outputs["image"].view) for name, made in raw.items()}
 
 
 @pytest.fixture(scope="module")
@@ -91,6 +117,7 @@ def test_the_collection_is_complete() -> None:
     assert PRESETS.keys() >= ASKED
     assert len(PRESETS) >= 20
     assert sum(bool(GEOMETRY & used(name, "category")) for name in PRESETS) >= 10
+    assert {name for name in PRESETS if loaded(name).settings.frames} == TIME
 
 
 @each
@@ -134,24 +161,38 @@ def ends(graph: Graph, item: Control) -> tuple[object, ...]:
 
 @each
 def test_every_control_changes_the_picture(name: str, renderer: Renderer) -> None:
-    """To either end. What has a size of its own is shown at half of it."""
+    """To either end. What moves or has a size of its own is shown at half size; if need be, at two frames."""
     graph = loaded(name)
     assert 2 <= len(graph.controls) <= 5
-    scale = 0.5 if graph.settings.size else 1.0
-    before = encoded(picture(renderer, graph, scale))
+    scale = 0.5 if graph.settings.size or name in TIME else 1.0
+    parts = (0.2, 0.5) if name in TIME else (0.5,)
+    before = {part: encoded(picture(renderer, graph, scale, part)) for part in parts}
     for control, item in graph.controls.items():
         assert item.label and item.doc
-        changes: list[float] = []
-        for end in ends(graph, item):
-            changed = encoded(picture(renderer, graph.set_control(control, end), scale))
-            assert np.isfinite(changed).all(), (control, end)
-            changes.append(np.abs(changed - before).mean())
-        assert max(changes) > 0.3, control
+        most = 0.0
+        for part in parts:
+            for end in ends(graph, item) if most <= 0.3 else ():
+                changed = encoded(picture(renderer, graph.set_control(control, end), scale, part))
+                assert np.isfinite(changed).all(), (control, end)
+                most = max(most, np.abs(changed - before[part]).mean())
+        assert most > 0.3, control
+
+
+@pytest.mark.parametrize("name", sorted(TIME))
+def test_it_moves(name: str, renderer: Renderer) -> None:
+    """For one to three seconds. Of a shot with other frames, the nearest are shown."""
+    graph = loaded(name)
+    first, last = graph.settings.frames or (0, 0)
+    assert first == 1 and 24 <= last <= 72 and graph.settings.rate == 24.0
+    assert all(end.missing == "nearest" for key, end in graph.inputs.items() if key in LAYERS)
+    frames = [encoded(picture(renderer, graph, 0.5, part)) for part in (0.0, 0.25, 0.5)]
+    for before, after in zip(frames, frames[1:], strict=False):
+        assert np.abs(after - before).mean() > 0.5
 
 
 @each
-def test_nothing_is_crushed_or_clipped(name: str, renderer: Renderer, full: dict[str, Array]) -> None:
-    assert np.isfinite(renderer.render(loaded(name))["image"]).all()
+def test_nothing_is_crushed_or_clipped(name: str, raw: dict[str, Array], full: dict[str, Array]) -> None:
+    assert np.isfinite(raw[name]).all()
     assert full[name].shape == (*size_of(loaded(name))[::-1], 3)
     assert (full[name].max(2) < 0.001).mean() < 0.04
     assert (full[name].min(2) > 0.999).mean() < 0.01
@@ -173,9 +214,10 @@ def test_half_size_looks_the_same(name: str, renderer: Renderer, full: dict[str,
 
 @each
 def test_rendering_twice_gives_the_same_bytes(name: str, forgetful: Renderer) -> None:
-    first = forgetful.render(loaded(name))["image"].tobytes()
+    wanted, part = (Wanted(scale=0.5), 0.1) if name in TIME else (Wanted(), 0.5)
+    first = rendered(forgetful, loaded(name), wanted, part).tobytes()
     passes = forgetful.runner.counters.passes
-    assert forgetful.render(loaded(name))["image"].tobytes() == first
+    assert rendered(forgetful, loaded(name), wanted, part).tobytes() == first
     assert forgetful.runner.counters.passes > passes
 
 
@@ -186,7 +228,7 @@ def test_another_picture_of_another_size(name: str, renderer: Renderer) -> None:
     light = np.exp2(np.random.default_rng(3).uniform(-20.0, 14.0, (37, 61, 4))).astype(np.float32)
     light[..., 3] = 1.0
     arrays = {key: light[..., : item.socket().channels] for key, item in graph.inputs.items()}
-    made = renderer.render(graph, Wanted(arrays, size=(61, 37) if graph.settings.size else None))["image"]
+    made = rendered(renderer, graph, Wanted(arrays, size=(61, 37) if graph.settings.size else None), 0.1)
     assert made.shape == (37, 61, 4)
     assert np.isfinite(made).all()
 
@@ -207,14 +249,14 @@ def test_no_thumbnail_is_left_over() -> None:
     assert {file.stem for file in thumbnail(paths()[0]).parent.iterdir()} == PRESETS.keys()
 
 
-def test_a_display_view_goes_with_tone_mapping(renderer: Renderer, tmp_path: Path) -> None:
+def test_a_display_view_goes_with_tone_mapping(renderer: Renderer, raw: dict[str, Array], tmp_path: Path) -> None:
     """What a tone map finished is not tone mapped again by the view, unless someone asks for one.
 
     What ends at 1 is finished, but for what is lit anew: that may just be dim.
     """
     for name in PRESETS:
         lit = "deferred_lighting" in used(name, "id")
-        ends = renderer.render(loaded(name))["image"][..., :3].max() < 1.5
+        ends = raw[name][..., :3].max() < 1.5
         assert loaded(name).outputs["image"].view == ("none" if ends and not lit else ""), name
     graph = loaded("night_street")
     for view, expected in (("", "none"), ("ACES", "ACES")):

@@ -17,7 +17,8 @@ def open_flipbook(editor: Editor, *strips: Strip) -> None:
     """Play these in the viewer; two are side by side unless they are compared otherwise already."""
     viewer, session, before = editor.viewer, editor.session, editor.viewer.flipbook
     watched = before.watched if before else session.viewed_in_root("A")
-    made = Flipbook(strips, session.settings.rate, session.frame, watched)
+    frame = before.session.frame if before else session.frame
+    made = Flipbook(strips, session.settings.rate, frame, watched)
     editor.timeline.stop()
     viewer.compare_after = viewer.compare_after if before else viewer.compare
     viewer.flipbook = made

@@ -62,6 +62,13 @@ def value_now(session: Session, port: Port) -> tuple[Plain, str]:
         return session.value(port), str(error)
 
 
+def spoken(value: Plain) -> str:
+    """A value as people read it."""
+    if isinstance(value, bool | str):
+        return value if isinstance(value, str) else "on" if value else "off"
+    return "  ".join(f"{part:.5g}" for part in (value if isinstance(value, tuple) else (value,)))
+
+
 def toggle(session: Session, ports: Ports) -> None:
     """Set a key in all values, or remove those of all, as the first one asks for."""
     if len(ports) == 1:

@@ -18,7 +18,7 @@ from .applying import Ports, apply, as_text, default_of, from_text, reset
 from .choice_field import choose
 from .fields import Edit, Fields
 from .file_field import FileField
-from .keying import WIDTH, Keying, value_now
+from .keying import WIDTH, Keying, spoken, value_now
 from .light_rows import light_rows
 from .numbers import described, worded
 from .render_facts import convention_words, first_words, use_of
@@ -71,7 +71,7 @@ class ValueRows:
             link_chip(rows, port, source, width)
         elif moves and len(ports) == 1 and self._keying.field(rows, port, width):
             menu |= imgui.is_item_hovered() and imgui.is_mouse_released(imgui.MouseButton_.right)
-            self._keying.note(rows, port, as_text(value))
+            self._keying.note(rows, port, spoken(value))
         else:
             mark = imgui.get_frame_height() * ((control is not None) + declaration.handle)
             mixed = any(value_now(session, one)[0] != value for one in ports[1:])

@@ -172,13 +172,15 @@ class Queue:
             return
         others = [one for one in editor.exports.all if one is not export and one.written]
         for place, other in enumerate(others):
-            name = title(other)
-            same = name == title(export)
-            where = other.destinations[0][1].parent
-            if imgui.menu_item(f"{name}##{place}", where.name if same else "", False)[0]:
+            path = other.destinations[0][1]
+            name = f"{path.parent.name}/{title(other)}" if title(other) == title(export) else title(other)
+            left, wide = imgui.get_cursor_pos_x(), imgui.calc_text_size(name).x
+            if imgui.selectable(f"##{place}", False, 0, ImVec2(wide, 0))[0]:
                 editor.attempt(partial(_compare, editor, export, other))
             record(editor, f"compare with {place}")
-            tip(str(other.destinations[0][1]))
+            tip(str(path))
+            imgui.same_line(left)
+            imgui.text_unformatted(name)
         if others:
             imgui.separator()
         if imgui.menu_item("Other pictures...", "", False)[0]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -12,6 +13,9 @@ from ...renderer import Lease, Reel, Renderer
 
 SHARE = 0.5
 """The part of the memory budget that frames may take which were shown."""
+
+LOOK_AGAIN = 0.2
+"""Seconds after which it is looked up anew which frames are there."""
 
 MOST_FRAMES = 5000
 """Frames that are remembered at all."""
@@ -39,6 +43,8 @@ class Take:
     def __init__(self) -> None:
         self._faces: dict[int, Faces] = {}
         self._leases: dict[int, Lease] = {}
+        self._seen: tuple[tuple[str, ...], float, tuple[int, ...]] = ((), 0.0, ())
+        """For whom it was looked up which frames are there, when, and which."""
         self._reels: dict[tuple[tuple[str, Port], ...], Reel] = {}
         self.closed = False
         self.hopeless: set[int] = set()
@@ -50,6 +56,7 @@ class Take:
         """A frame has been made; `now` is the one that is looked at."""
         if self.closed:
             return
+        self._seen = (), 0.0, ()
         faces = {**self._faces.get(frame, {}), **faces}
         self._drop(frame)
         self._faces[frame] = faces
@@ -68,8 +75,13 @@ class Take:
         return faces if faces is not None and _is_there(faces, names, renderer) else None
 
     def frames(self, names: Mapping[str, Port], renderer: Renderer) -> tuple[int, ...]:
-        """The frames that are on the device, in order."""
-        return tuple(sorted(frame for frame, faces in self._faces.items() if _is_there(faces, names, renderer)))
+        """The frames that are on the device, in order; what had to make room is noticed a moment later."""
+        now = time.monotonic()
+        asked, at, found = self._seen
+        if asked != tuple(names) or now - at > LOOK_AGAIN:
+            found = tuple(sorted(frame for frame, faces in self._faces.items() if _is_there(faces, names, renderer)))
+            self._seen = tuple(names), now, found
+        return found
 
     @property
     def nbytes(self) -> int:

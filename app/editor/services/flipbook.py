@@ -101,8 +101,9 @@ def _session(strips: Sequence[Strip], rate: float, frame: int) -> Session:
     graph = Graph()
     names: list[str] = []
     for strip in strips:
-        stem = strip.name.partition(".")[0].strip("_- ") or "pictures"
-        name = fresh_name("pictures" if name_fault(stem, "node") else stem, names)
+        pattern = Pattern.parse(strip.name)
+        stem = (pattern.pieces[0] if pattern else strip.path.stem).strip("._- ").replace(".", "_")
+        name = fresh_name("pictures" if name_fault(stem, "output") else stem, names)
         names.append(name)
         view = "none" if strip.path.suffix.lower() in _ENCODED else strip.view
         reader: Any = catalogue()["read_image"]

@@ -6,6 +6,7 @@ import time
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from ...compiler import named_files
 from ...errors import HalationError
@@ -41,9 +42,9 @@ class Missing:
         return self.found
 
 
-def gaps_of(graph: Graph, bindings: Mapping[str, str]) -> Gaps:
+def gaps_of(graph: Graph, bindings: Mapping[str, object]) -> Gaps:
     """The gaps of every sequence that a graph reads; what cannot be looked at has none."""
-    paths = [split_layer(file)[0] for file in bindings.values()]
+    paths = [split_layer(str(file))[0] for file in bindings.values() if isinstance(file, str | Path)]
     with suppress(HalationError):
         paths += [path for path, owner, _ in named_files(graph, {}) if owner.removeprefix("inputs.") not in bindings]
     found: set[tuple[int, int]] = set()

@@ -202,7 +202,7 @@ def _now(editor: Editor, plane: Plane, held: bool) -> None:
     frame = editor.session.frame
     wide = plane.across
     x = plane.x(frame)
-    if wide > 6.0 * scale:
+    if 6.0 * scale < wide < 90.0 * scale:
         draw.add_rect_filled((x - wide * 0.5, top), (x + wide * 0.5, bottom), u32(palette.accent, 0.16))
     draw.add_line((round(x) + 0.5, top), (round(x) + 0.5, bottom), u32(palette.accent), (2.0 if held else 1.5) * scale)
     with font(editor, "bold", SMALL * 0.92):

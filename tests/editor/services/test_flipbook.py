@@ -50,10 +50,13 @@ def test_it_is_a_document_of_its_own(folder: Path) -> None:
     assert session.problems == {}
 
 
-@pytest.mark.parametrize("name", ["inputs.####.exr", "____.exr", ".exr", "a/b.exr"])
-def test_any_name_will_do(tmp_path: Path, name: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "called"),
+    [("inputs.####.exr", "inputs"), ("____.exr", "pictures"), ("####.exr", "pictures"), ("a.v2_%04d.png", "a_v2")],
+)
+def test_any_name_will_do(tmp_path: Path, name: str, called: str) -> None:
     session = Flipbook((Strip(tmp_path / name, (1, 2)),), 24.0, 1).session
-    assert session.viewed("A") is not None and session.viewed("B") is None
+    assert session.viewed("A") == Port(OUTPUTS, called) and session.viewed("B") is None
 
 
 def test_a_render_is_shown_as_its_output_asks(tmp_path: Path) -> None:
