@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ....nodes import Kind, Plain, Value
+from ....nodes import Kind, Missing, Plain, Value
 from ...graph import INPUTS, Input, Output, Port
+from ...graph.frames import Pattern
 from ...media import views
 from ..toolkit.words import tip
 from .choice_field import choose
@@ -31,6 +32,7 @@ _TEXT = Value("text", "text", "")
 _NUMBER = Value("default", "float", 0.0, low=0.0, high=1.0)
 _AXES = ("x", "y", "z", "w")
 DEFAULT_VIEW = "viewer's choice"
+MISSING: tuple[Missing, ...] = get_args(Missing)
 
 
 def bound_to(session: Session, name: str) -> str:
@@ -85,6 +87,12 @@ class EndView:
         layer = self._files.layer(rows, f"{key} layer", end.file, end.layer, rows.field())
         if layer:
             rows.act(lambda: session.set_input(name, layer=str(layer.value)))
+        if Pattern.parse(end.file):
+            rows.name(f"{key} missing", "missing", doc="What a frame shows that has no file")
+            index = choose(self._fields, f"{key} missing", end.missing, MISSING, rows.field())
+            rows.record(f"{key} missing")
+            if index is not None:
+                rows.act(lambda: session.set_input(name, missing=MISSING[index]))
         rows.name(f"{key} default", "default", doc="What comes in where nothing else does")
         found = self._default(rows, f"{key} default", end, rows.field())
         if found:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from ....nodes import Kind, Plain, Size
+from ....nodes import Kind, Missing, Plain, Size
 from ...errors import GraphError
 from ...graph import INPUTS, Graph, Input, Output, Port, problems
 from ..edits.elements import Place, clean, end_port, with_places
@@ -49,12 +49,12 @@ class Ends(State):
 
     def set_input(
         self, name: str, *, file: str | None = None, layer: str | None = None, default: Plain | Keep | None = KEEP,
-        doc: str | None = None, merge: str = "",
+        doc: str | None = None, missing: Missing | None = None, merge: str = "",
     ) -> None:
         """Change an input; what is not given stays. A default of None means that there is none."""
         if name not in self.graph.inputs:
             raise GraphError(f"the graph has no input '{name}'")
-        facts = _given(file=file, layer=layer, doc=doc)
+        facts = _given(file=file, layer=layer, doc=doc, missing=missing)
         if not isinstance(default, Keep):
             facts["default"] = default
         changed = replace(self.graph.inputs[name], **facts)
