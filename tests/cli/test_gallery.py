@@ -47,7 +47,8 @@ def test_it_writes_three_sheets(cli, graphs, tmp_path, monkeypatch):
     assert len(lines) == 4 and lines[1].startswith("presets ") and lines[3].endswith(str(folder / "nodes.jpg"))
     found = cli("gallery", "--output", folder, "--json").json["sheets"]
     assert [(item["sheet"], item["pictures"]) for item in found] == [
-        (str(folder / "presets.jpg"), ["one", "two"]), (str(folder / "time.jpg"), ["two"]), (str(folder / "nodes.jpg"), [*few]),
+        (str(folder / "presets.jpg"), ["one", "two"]), (str(folder / "time.jpg"), ["two"]),
+        (str(folder / "nodes.jpg"), [*few]),
     ]
 
 

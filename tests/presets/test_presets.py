@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 
 import cv2
@@ -25,6 +26,7 @@ from halation.presets import picture as thumbnail
 
 Array = np.ndarray
 
+PLAIN = Wanted()
 RENEW = bool(os.environ.get("HALATION_RENEW"))
 IMAGES = Path(__file__).parents[2] / "docs" / "images"
 PRESETS = {path.stem: path for path in paths()}
@@ -65,7 +67,7 @@ def moment(graph: Graph, part: float = 0.5) -> int:
     return first + int((last - first) * part)
 
 
-def rendered(renderer: Renderer, graph: Graph, wanted: Wanted = Wanted(), part: float = 0.5) -> Array:
+def rendered(renderer: Renderer, graph: Graph, wanted: Wanted = PLAIN, part: float = 0.5) -> Array:
     """The output at such a frame, with the history that it has by then."""
     reel = Reel(renderer, graph, wanted)
     try:
@@ -186,7 +188,7 @@ def test_it_moves(name: str, renderer: Renderer) -> None:
     assert first == 1 and 24 <= last <= 72 and graph.settings.rate == 24.0
     assert all(end.missing == "nearest" for key, end in graph.inputs.items() if key in LAYERS)
     frames = [encoded(picture(renderer, graph, 0.5, part)) for part in (0.0, 0.25, 0.5)]
-    for before, after in zip(frames, frames[1:], strict=False):
+    for before, after in pairwise(frames):
         assert np.abs(after - before).mean() > 0.5
 
 

@@ -208,12 +208,10 @@ def test_ends(session):
     assert session.graph.inputs["depth"] == Input(Kind.FIELD) and session.position("inputs.depth") == (1.0, 2.0)
     assert session.add_output("flow", Kind.VECTOR, 2) == "outputs.flow"
     session.set_input("depth", file="a.exr", layer="Z", doc="Far.")
-    session.set_input("depth", missing="hold")
-    assert session.graph.inputs["depth"].missing == "hold" and session.graph.inputs["depth"].layer == "Z"
     session.set_input("depth", default=1.0)
     assert session.graph.inputs["depth"] == Input(Kind.FIELD, 1, "a.exr", "Z", 1.0, "Far.")
-    session.set_input("depth", default=None)
-    assert session.graph.inputs["depth"].default is None
+    session.set_input("depth", default=None, missing="hold")
+    assert session.graph.inputs["depth"] == Input(Kind.FIELD, 1, "a.exr", "Z", None, "Far.", "hold")
     for default in ((1.0, 2.0), "far", True, float("inf")):
         with pytest.raises(GraphError, match="default"):
             session.set_input("depth", default=default)
