@@ -29,7 +29,7 @@ def test_a_render_is_told_in_full(cli):
                     "  made by Blender: Software is 'Blender 5.0.1'"]
     assert re.findall(r"^(\w[\w ]+)$", result.out, re.M) == ["parts", "layers", "conventions", "camera", "metadata"]
     assert len(section(result.out, "parts")) == len(section(result.out, "layers")) == 12
-    assert section(result.out, "parts")[4].split() == ["4", "ViewLayer.Vector", *"XYZW", "float", "zip", "scan",
+    assert section(result.out, "parts")[4].split() == ["4", "ViewLayer.Vector", *"XYZW", "float", "piz", "scan",
                                                        "lines", "data"]
     rows = section(result.out, "layers")
     assert "  Diffuse Color   RGB   half   albedo              Blender's name for albedo" in rows

@@ -32,7 +32,7 @@ def waited(ask):
 
 
 def test_an_overview_comes_later(renders):
-    assert renders.overview(NEON) is None and renders.busy
+    assert renders.overview(NEON) is None
     seen = waited(lambda: renders.overview(NEON, {"depth": ""}))
     assert isinstance(seen, Overview) and seen.uses[Role.DEPTH].layer == "Depth"
 
