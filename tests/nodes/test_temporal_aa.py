@@ -199,3 +199,30 @@ def test_velocity_counts_pixels_of_the_full_size(renderer):
     found = played(renderer, shot_graph(node, shot, (1, 8)), shot, [8], scale=0.5)[0]
     alone = played(renderer, shot_graph(node, shot, (8, 8)), shot, [8], scale=0.5)[0]
     np.testing.assert_allclose(found[:, 9:-1], alone[:, 9:-1], atol=2e-5)  # all that was inside all along
+
+
+def lamp(frame: int) -> np.ndarray:
+    """A small lamp over empty ground that goes right by 0.3 pixels, antialiased."""
+    picture = np.zeros((9, 32, 4), np.float32)
+    left = 3.0 + 0.3 * frame
+    cover = np.clip(np.minimum(np.arange(32) + 1, left + 4) - np.maximum(np.arange(32), left), 0.0, 1.0)
+    picture[3:6] = cover[:, None] * (5e3, 4e3, 2e3, 1.0)
+    return picture
+
+
+@pytest.mark.parametrize("gamma", [1.0, 100.0])
+def test_nothing_flashes_beside_lamps(renderer, gamma):
+    """Sharp kernels overshoot; of light that was weighed that would be blown up without end."""
+    pixels = np.zeros((9, 32, 4), np.float32)
+    pixels[..., 0] = 0.3
+    shot = {"image": lamp, "velocity": lambda _: pixels}
+    found = played(renderer, shot_graph(TemporalAa(gamma=gamma), shot, (1, 24)), shot, range(1, 25))
+    assert max(made.max() for made in found) < 5e3 * 1.005
+    assert min(made.min() for made in found) >= -1e-3
+
+
+def test_empty_ground_stays_empty(renderer):
+    """What passed leaves no trace of coverage where all around is empty."""
+    shot = {"image": lamp, "velocity": lambda _: np.zeros((9, 32, 4), np.float32)}
+    found = played(renderer, shot_graph(TemporalAa(), shot, (1, 40)), shot, [40])[0]
+    assert (found[:, :12, 3] == 0.0).all() and found[4, 15:19, 3].max() > 0.5
