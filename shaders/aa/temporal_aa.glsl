@@ -9,12 +9,17 @@ const float temporal_aa_rounding = 1e-3;  // where a channel is flat, rounding m
 
 const float temporal_aa_moving = 0.25;  // where pixels move, what is read between them softens: a shorter past is sharper
 
-// A sample as it is mixed: luma, orange and green (YCoCg, Malvar and Sullivan 2003), and alpha.
+// Luma, orange and green (YCoCg, Malvar and Sullivan 2003).
+vec3 temporal_aa_mixed(vec3 rgb) {
+    return vec3(dot(rgb, vec3(0.25, 0.5, 0.25)), 0.5 * (rgb.r - rgb.b), dot(rgb, vec3(-0.25, 0.5, -0.25)));
+}
+
+// A sample as it is mixed, and alpha.
 vec4 temporal_aa_sample(vec4 image, bool weigh_light) {
     vec4 safe = clamp(finite(image), -temporal_aa_most, temporal_aa_most);
     vec3 rgb = safe.rgb;
     if (weigh_light) rgb /= 1.0 + max(luminance(rgb), 0.0);
-    return vec4(dot(rgb, vec3(0.25, 0.5, 0.25)), 0.5 * (rgb.r - rgb.b), dot(rgb, vec3(-0.25, 0.5, -0.25)), safe.a);
+    return vec4(temporal_aa_mixed(rgb), safe.a);
 }
 
 vec3 temporal_aa_rgb(vec4 mixed) {
@@ -82,10 +87,12 @@ vec4 temporal_aa_blend(float share, float gamma, float tolerance, bool deep, int
 
     vec4 sum = vec4(0.0), squares = vec4(0.0);
     float brightest = 0.0;
+    vec3 darkest = vec3(0.0);
     for (int i = 0; i < 9; ++i) {
         vec4 light = sample_at(pixel + ivec2(i % 3, i / 3) - 1);
         sum += light, squares += light * light;
         brightest = max(brightest, luminance(temporal_aa_rgb(light)));
+        darkest = min(darkest, temporal_aa_rgb(light));
     }
     vec4 mean = sum / 9.0, reach = gamma * sqrt(max(squares / 9.0 - mean * mean, 0.0));
     reach = max(reach, temporal_aa_rounding * max(abs(mean.x), 1.0));
@@ -94,9 +101,10 @@ vec4 temporal_aa_blend(float share, float gamma, float tolerance, bool deep, int
     float farthest = max(max(over.x, over.y), max(over.z, over.w));
     share = mix(share, max(share, temporal_aa_moving), min(2.0 * length(motion), 1.0));
     vec4 mixed = mix(mean + off / max(farthest, 1.0), now, share);
-    // Near 1, weighed light becomes light without end: it gets no brighter than all that it is made of.
-    float bright = luminance(temporal_aa_rgb(mixed));
-    if (bright > brightest) mixed.xyz *= brightest / bright;
-    if (squares.w == 0.0) mixed.w = 0.0;  // what is left of the past where all around is empty
+    // Near 1, weighed light becomes light without end: it gets no brighter than all that it is made of, and not negative.
+    vec3 rgb = max(temporal_aa_rgb(mixed), darkest);
+    mixed.xyz = temporal_aa_mixed(rgb * min(1.0, brightest / max(luminance(rgb), 1e-6)));
+    // What is left of the past where all around is empty is no coverage.
+    mixed.w = squares.w == 0.0 ? 0.0 : clamp(mixed.w, 0.0, 1.0);
     return mixed;
 }
