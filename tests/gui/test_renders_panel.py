@@ -138,7 +138,7 @@ def test_renders_wait_and_are_stopped(gui, long_shot: Path) -> None:
         ui.click("cancel 2")
         assert second.state == "cancelled"
         ui.click("cancel 0")
-        ui.until(lambda: first.state == "cancelled", 5)
+        ui.until(lambda: first.state == "cancelled")
         ended(ui, 3)
         assert third.state == "done" and 1 <= len(list(long_shot.parent.glob("a.*.png"))) < 30
         ui.wait(4)
