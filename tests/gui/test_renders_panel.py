@@ -169,7 +169,7 @@ def test_a_failed_render_says_why_and_is_tried_again(gui, shot: Path) -> None:
     gui(body, shot)
 
 
-def test_quitting_asks_while_something_renders(gui, long_shot: Path) -> None:
+def test_quitting_asks_while_something_renders(gui, tmp_path: Path) -> None:
     def body(ui) -> None:
         to_renders(ui)
         ui.click("render")
@@ -179,7 +179,7 @@ def test_quitting_asks_while_something_renders(gui, long_shot: Path) -> None:
         ui.click("answer 1")
         assert not ui.editor.closing and ui.editor.exports.unfinished
 
-    window = gui(body, long_shot)
+    window = gui(body, made(tmp_path, 2000))
     assert not window.editor.exports.unfinished
 
 
