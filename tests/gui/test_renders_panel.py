@@ -27,7 +27,7 @@ def shot(tmp_path: Path) -> Path:
 @pytest.fixture
 def long_shot(tmp_path: Path) -> Path:
     """The same, for seconds."""
-    return made(tmp_path, 30)
+    return made(tmp_path, 60)
 
 
 def made(tmp_path: Path, count: int) -> Path:
@@ -140,14 +140,14 @@ def test_renders_wait_and_are_stopped(gui, long_shot: Path) -> None:
         ui.click("cancel 0")
         ui.until(lambda: first.state == "cancelled")
         ended(ui, 3)
-        assert third.state == "done" and 1 <= len(list(long_shot.parent.glob("a.*.png"))) < 30
+        assert third.state == "done" and 1 <= len(list(long_shot.parent.glob("a.*.png"))) < 60
         ui.wait(4)
         ui.shot("queue_cancelled.png")
         at = sorted(exports.all, key=lambda one: -one.ended).index(first)
         ui.click(f"again {at}")
         ended(ui, 3)
         assert exports.all[0].state == "done" and exports.all[0].kept >= 1
-        assert len(list(long_shot.parent.glob("a.*.png"))) == 30
+        assert len(list(long_shot.parent.glob("a.*.png"))) == 60
 
     gui(body, long_shot)
 
