@@ -51,8 +51,7 @@ class Reel:
         None where that is on the device, or the frame itself is.
         """
         begin, textures = self.begin(frame), self.renderer.runner.textures
-        plan = self._plan(begin, frame)
-        if all(plan.surfaces[number].key in textures for number in plan.outputs.values()):
+        if self._is_there(self._plan(begin, frame)):
             return range(frame, frame)
         start = frame
         while start > begin and any(item.key not in textures for item in self._before(begin, start).values()):
@@ -83,9 +82,12 @@ class Reel:
             yield runner.steps(plan, lease, plan.remembered)
             self._hold(lease)
         plan, lease = self.plan(frame), runner.lease()
-        yield runner.steps(plan, kept, (*plan.outputs.values(), *plan.remembered), timings=timings)
+        # Of a picture that is there, the history may have gone: whoever needs that is led up to it.
+        remembered = () if self._is_there(plan) else plan.remembered
+        yield runner.steps(plan, kept, (*plan.outputs.values(), *remembered), timings=timings)
         for number in plan.remembered:
-            lease.take(plan.surfaces[number].key)
+            if plan.surfaces[number].key in runner.textures:
+                lease.take(plan.surfaces[number].key)
         self._hold(lease)
 
     def render(self, frame: int) -> dict[str, Array]:
@@ -105,6 +107,11 @@ class Reel:
         self._held.close()
 
     # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _is_there(self, plan: Plan) -> bool:
+        """True if the outputs are on the device."""
+        textures = self.renderer.runner.textures
+        return all(plan.surfaces[number].key in textures for number in plan.outputs.values())
 
     def _hold(self, lease: Lease) -> None:
         """Keep what a frame remembered until the next one has been made."""

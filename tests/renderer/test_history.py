@@ -14,6 +14,7 @@ from halation.app.errors import GraphError
 from halation.app.graph import Graph, Input, Output, Port, Settings
 from halation.app.renderer import Reel, Renderer, Wanted, open_device
 from halation.nodes import Draw, Drawn, Image, Kind, Slider, Temporal
+from halation.nodes.color.exposure import Exposure
 from halation.nodes.time.time_offset import TimeOffset
 
 
@@ -136,3 +137,24 @@ def test_looking_at_another_frame_of_a_memory_is_refused(engine):
     graph = graph.connect(Port("offset", "out"), Port("outputs", "out"))
     with pytest.raises(GraphError, match="'trail' makes every frame of the one before"):
         reel(engine, graph).render(3)
+
+
+def test_a_picture_that_is_there_needs_no_history(engine):
+    """Its memory may have gone from the device meanwhile, and all before it."""
+    graph = trail(0.5, frames=(1, 8)).add("light", Exposure(stops=1.0))
+    graph = graph.connect(Port("trail", "out"), Port("light", "image"))
+    graph = graph.connect(Port("light", "out"), Port("outputs", "out"))
+    one = reel(engine, graph)
+    made, shown = engine.runner.lease(), engine.runner.lease()
+    for run in one.steps(6, made):
+        list(run)
+    plan = one.plan(6)
+    shown.take(plan.surfaces[plan.outputs["out"]].key)
+    made.close()
+    one.close()
+    engine.runner.textures.forget()
+    before = engine.runner.counters.passes
+    assert all(plan.surfaces[number].key not in engine.runner.textures for number in plan.remembered)
+    expected = [2.0 * closed_form(0.5, 1, 6)]
+    assert rendered(one, (6,)) == pytest.approx(expected) and engine.runner.counters.passes == before
+    shown.close()
