@@ -15,14 +15,14 @@ if TYPE_CHECKING:
     from rich.progress import Progress as RichProgress
 
     from ..compiler import Pass
-    from ..renderer.job import FrameReport, Progress
+    from ..renderer.job import FrameReport
 
 _PATIENCE = 0.3
 """Seconds that work may take without a bar."""
 
 
 @contextmanager
-def told_to(kind: Literal["bar", "json"], frames: int) -> Iterator[Progress]:
+def told_to(kind: Literal["bar", "json"], frames: int) -> Iterator[Told]:
     """What a job reports to."""
     if kind == "json":
         yield Lines()
@@ -66,6 +66,9 @@ class Bar:
         self._progress: RichProgress | None = None
         self._started = time.perf_counter()
 
+    def shared(self, processes: Sequence[int]) -> None:
+        """A bar has nothing to say of processes."""
+
     def passed(self, frame: int, done: int, total: int, one: Pass) -> None:
         """Show what is computed."""
         if self._frames == 1:
@@ -98,3 +101,7 @@ class Bar:
             self._progress.start()
             self._progress.add_task("render", total=total)
         self._progress.update(self._progress.task_ids[0], completed=done, description=word)
+
+
+Told = Lines | Bar
+"""What hears of frames, and of the processes that share them."""

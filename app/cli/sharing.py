@@ -18,7 +18,7 @@ from .outcome import note
 
 if TYPE_CHECKING:
     from ..graph import Graph, Port
-    from ..renderer.job import Progress
+    from .progress import Told
 
 def independent(graph: Graph, targets: Mapping[str, Port], inputs: Sequence[str], frame: int) -> bool:
     """True if every frame can be made without the ones before it. Raises the errors of `app.errors`."""
@@ -42,7 +42,7 @@ def piped(path: Path, graph: Graph) -> str:
 
 
 def share(
-    words: Sequence[str], frames: Sequence[int], jobs: int, progress: Progress, text: str
+    words: Sequence[str], frames: Sequence[int], jobs: int, progress: Told, text: str
 ) -> list[dict[str, Any]]:
     """Run `halation render` with those words in several processes, which read `text`; their reports.
 
@@ -62,7 +62,7 @@ def share(
         )
         for part in parts
     ]
-    getattr(progress, "shared", bool)([one.pid for one in crew])
+    progress.shared([one.pid for one in crew])
     listener = _Listener(progress, len(frames), text)
     threads_ = [threading.Thread(target=listener.follow, args=(one, crew), daemon=True) for one in crew]
     for thread in threads_:
@@ -83,7 +83,7 @@ def share(
 class _Listener:
     """Collects what processes say."""
 
-    def __init__(self, progress: Progress, total: int, text: str) -> None:
+    def __init__(self, progress: Told, total: int, text: str) -> None:
         self._text = text
         self._progress, self._total, self._lock = progress, total, threading.Lock()
         self._done, self._said = 0, set[str]()
