@@ -47,11 +47,12 @@ def _faults(path: Path) -> Iterator[tuple[int, Problem]]:
     from .. import document
     from ..errors import DocumentError, GraphError
     from ..graph import INPUTS, Problem, problems
+    from ..graph.rules import Rule
 
     try:
         graph = document.load(path)
     except DocumentError as fault:
-        yield fault.exit_code, Problem("", "", str(fault).removeprefix(f"{path}: "))
+        yield fault.exit_code, Problem("", "", str(fault).removeprefix(f"{path}: "), Rule("schema", "error", "", ""))
         return
     found = problems(graph)
     for problem in found:
@@ -59,7 +60,7 @@ def _faults(path: Path) -> Iterator[tuple[int, Problem]]:
     for name, item in graph.inputs.items():
         if not item.file and item.default is None:
             sentence = f"input '{name}' has no file and no default: rendering needs -i {name}=FILE"
-            yield 0, Problem(INPUTS, name, sentence, "warning")
+            yield 0, Problem(INPUTS, name, sentence, Rule("unbound-input", "warning", "", ""))
     if graph.outputs and all(problem.severity == "warning" for problem in found):
         yield from _compiled(graph)
 
@@ -70,6 +71,7 @@ def _compiled(graph: Graph) -> Iterator[tuple[int, Problem]]:
     from ..compiler import Frame, Picture, Probed
     from ..errors import HalationError, InputError
     from ..graph import Problem
+    from ..graph.rules import Rule
 
     unread: dict[str, None] = {}
 
@@ -104,6 +106,6 @@ def _compiled(graph: Graph) -> Iterator[tuple[int, Problem]]:
     try:
         compiler.compile_graph(graph, compiler.Request(bindings=bindings, frame=first), lazy)
     except HalationError as fault:
-        yield fault.exit_code, Problem("", "", str(fault))
+        yield fault.exit_code, Problem("", "", str(fault), Rule("cannot-compile", "error", "", ""))
     for sentence in unread:
-        yield InputError.exit_code, Problem("", "", sentence)
+        yield InputError.exit_code, Problem("", "", sentence, Rule("missing-picture", "error", "", ""))

@@ -6,12 +6,14 @@ Stages, each a function of what the one before made: `expand` flattens groups, `
 
 from __future__ import annotations
 
+from ..glsl import parse
 from ..graph import Graph
 from .bodies import MAX_WEIGHTS
+from .expand import written_texts
 from .explain import as_json, dot, explain
 from .fuse import fuse
 from .ir import Memory, Picture
-from .library import Library, installed, parse
+from .library import Library, installed
 from .lower import lower
 from .named import named_files
 from .outside import Frame, Outside, Probed
@@ -39,7 +41,7 @@ def compile_graph(
     Raises GraphError for a graph that cannot be rendered, InputError (from `outside`) for a file that cannot
     be read, DeviceError for one that is too large, ShaderError for a node and its GLSL that do not agree.
     """
-    library = library or installed()
+    library = (library or installed()).including(written_texts(graph))
     program = lower(graph, request, library, outside)
     passes = fuse(program, target, enabled=fusion)
     return schedule(program, passes, library, target, precision or target.precision)

@@ -32,6 +32,7 @@ from ...nodes import (
     glsl_type,
 )
 from ..errors import ShaderError
+from ..glsl import Function
 from . import fourier, gaussian, transforms
 from .bodies import MAX_TAPS
 from .ir import (
@@ -54,7 +55,7 @@ from .ir import (
     Ref,
     Shape,
 )
-from .library import Function, Library
+from .library import Library
 from .raster import CHANNELS, Mesh
 from .recolor import ColorProgram
 
@@ -105,7 +106,7 @@ class Recorder:
         self._owner, self._fed, self._node = fed.path, fed, node
         self._builder, self._library, self._files = builder, library, files
         self._memory = memory
-        self._shader = shader(node)
+        self._shader = node.shader
         self.remembered: Ref | None = None
 
     def size_of(self, pixels: Pixels) -> Size:
@@ -270,7 +271,7 @@ class Recorder:
         names = tuple(name for _, name in signature.parameters)
         if names != tuple(arguments):
             raise ShaderError(
-                self._owner, f"shaders/{self._shader}.glsl", 1,
+                self._owner, self._library.file(self._shader), 1,
                 f"'{signature.name}' takes ({', '.join(names)}) but is drawn with ({', '.join(arguments)})",
             )
         found: list[Parameter] = []
@@ -318,11 +319,6 @@ class Recorder:
         accessor = Accessor("image", "vec4", made.ref)
         numbers = tuple(Parameter("int", Constant(value)) for value in (axis, factor, apron))
         return self._made(Gather((shape,), self._owner, "primitive/enlarge", "enlarge", (accessor,), numbers, edge))
-
-
-def shader(node: Node) -> str:
-    """The name of a node's GLSL file."""
-    return f"{node.category}/{node.id}"
 
 
 def choices(node: Node) -> tuple[tuple[str, tuple[str, ...]], ...]:

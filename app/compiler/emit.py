@@ -10,10 +10,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from ...nodes import Camera, glsl_type
+from ..glsl import Text, words
 from . import bodies
 from .fuse import Fused
 from .ir import Call, Convolve, Gather, Op, Program, Raster, Reduce, Ref, Shape
-from .library import Library, Text, words
+from .library import Library
 from .names import Names, convert, glsl_channels
 from .plan import LINES_PER_FILE, Shader, Uniform
 from .raster import CHANNELS, fragment_lines, vertex_text
@@ -189,7 +190,7 @@ def _included(text: Text, files: list[str], program: Program, fused: Fused) -> l
     ops = [op for op in (program.ops[index] for index in fused.members) if isinstance(op, (Call, Gather))]
     choices = next((op.choices for op in ops if op.shader == text.name), ())
     macros = [(macro(name, one), number) for name, all_ in choices for number, one in enumerate(all_)]
-    files.append(f"shaders/{text.name}.glsl")
+    files.append(text.file)
     return [
         *(f"#define {name} {number}" for name, number in macros),
         f"#line {LINES_PER_FILE * (len(files) - 1) + 1}", text.body.rstrip("\n"), "#line 1",

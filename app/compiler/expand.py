@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import chain
 from typing import Any
 
 from ...nodes import Node, Socket
 from ..errors import GraphError
+from ..glsl import Text
 from ..graph import INPUTS, OUTPUTS, Graph, Group, Input, Port, Unknown, conversion
+from ..written import Written
 
 MAX_DEPTH = 32
 
@@ -22,8 +24,7 @@ class Flat:
     links: dict[Port, Port] = field(default_factory=dict[Port, Port])
     inputs: dict[Port, Input] = field(default_factory=dict[Port, Input])
     muted: set[str] = field(default_factory=set[str])
-    unknown: dict[str, str] = field(default_factory=dict[str, str])
-    """Types of nodes that are not installed, by path."""
+    unknown: dict[str, Unknown] = field(default_factory=dict[str, Unknown])
     faults: dict[Port, str] = field(default_factory=dict[Port, str])
     """Why links cannot be, by target: said when something follows one."""
     folders: dict[str, str] = field(default_factory=dict[str, str])
@@ -85,7 +86,7 @@ def expand(graph: Graph) -> Flat:
             elif isinstance(item, Group):
                 todo.append((path + "/", item.graph, item.values))
             elif isinstance(item, Unknown):
-                flat.unknown[path] = item.type
+                flat.unknown[path] = item
             else:
                 flat.nodes[path] = item
                 flat.folders[path] = body.folder
@@ -133,3 +134,12 @@ def _mute(flat: Flat, prefix: str, body: Graph) -> None:
             flat.links[port] = Port(prefix + INPUTS, shown)
         else:
             flat.inputs[port] = Input(end.kind, end.width, default=nothing(end.socket(name)))
+
+
+def written_texts(graph: Graph) -> Iterator[Text]:
+    """The code of the nodes that users wrote, groups included."""
+    for item in graph.nodes.values():
+        if isinstance(item, Group):
+            yield from written_texts(item.graph)
+        elif isinstance(item, Written) and item.text is not None:
+            yield item.text

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 from ...nodes import Camera, Edge, Kind, Size
 from ..graph import Port
+from ..written import unprefixed
 from .raster import Mesh
 from .recolor import ColorProgram, Table
 
@@ -159,7 +160,7 @@ class Call(Op):
 
     @property
     def label(self) -> str:
-        return "recolor" if self.program else self.function
+        return "recolor" if self.program else unprefixed(self.function)
 
     @property
     def tables(self) -> tuple[Table, ...]:
@@ -183,7 +184,7 @@ class Gather(Op):
 
     @property
     def label(self) -> str:
-        return self.function
+        return unprefixed(self.function)
 
     def reads(self) -> Iterator[Ref]:
         return (item.operand for item in self.accessors if isinstance(item.operand, Ref))

@@ -35,7 +35,7 @@ from ...nodes import (
 from ..errors import GraphError, HalationError, ShaderError
 from ..graph import INPUTS, OUTPUTS, Graph, Port, did_you_mean
 from . import constants
-from .draws import Fed, Files, Made, Recorder, choices, shader
+from .draws import Fed, Files, Made, Recorder, choices
 from .expand import nothing, stand_in
 from .ir import Builder, Call, Choice, Constant, Operand, Parameter, Picture, Program, Ref, Shape
 from .library import Library
@@ -260,7 +260,7 @@ class _Lowering:
 
     def _is_pattern(self, path: str, node: Node) -> bool:
         """True for a node whose pixels differ even if all that it reads is the same everywhere."""
-        return not node.inputs or self.library.uses(shader(node), frozenset({"pixel", "extent"}), path)
+        return not node.inputs or self.library.uses(node.shader, frozenset({"pixel", "extent"}), path)
 
     def _pointwise(self, fed: Fed, node: Pointwise, size: Size) -> None:
         parameters: list[Parameter] = []
@@ -275,20 +275,20 @@ class _Lowering:
             for socket in sockets
         )
         self._check_function(fed.path, node, [item.glsl for item in parameters], [item.glsl for item in sockets])
-        ref = self.builder.add(Call(shapes, fed.path, shader(node), node.id, tuple(parameters), choices(node)))
+        ref = self.builder.add(Call(shapes, fed.path, node.shader, node.function, tuple(parameters), choices(node)))
         for index, name in enumerate(node.outputs):
             self.results[Port(fed.path, name), fed.frame] = Ref(ref.op, index)
 
     def _check_function(self, path: str, node: Node, taken: list[str], made: list[str]) -> None:
         """Raise ShaderError unless the node's GLSL function takes and makes what the node declares."""
-        found = self.library.function(shader(node), node.id, path)
+        found = self.library.function(node.shader, node.function, path)
         outputs = [glsl for glsl, _ in found.outputs] or [found.result]
         if [glsl for glsl, _ in found.parameters] != taken or outputs != made:
             said, wanted = (f"({', '.join(a)}) to ({', '.join(b)})" for a, b in (
                 ([glsl for glsl, _ in found.parameters], outputs), (taken, made),
             ))
-            fault = f"'{node.id}' takes {said}, but the node declares {wanted}"
-            raise ShaderError(path, f"shaders/{shader(node)}.glsl", found.line, fault)
+            fault = f"'{node.function}' takes {said}, but the node declares {wanted}"
+            raise ShaderError(path, self.library.file(node.shader), found.line, fault)
 
     def _value(self, node: Node, value: Value, wire: Operand | None, size: Size) -> Parameter:
         glsl = value.glsl or "float"

@@ -61,8 +61,9 @@ class Moments:
                 continue
             flat = self.flat(moment[1])
             if path in flat.unknown:
-                fault = f"node '{path}': its type '{flat.unknown[path]}' is unknown to this version of Halation"
-                raise GraphError(fault, node=path)
+                item = flat.unknown[path]
+                fault = item.fault or f"its type '{item.type}' is unknown to this version of Halation"
+                raise GraphError(f"node '{path}': {fault}", node=path)
             if moment in done or path not in flat.nodes:
                 continue
             if path in open_:

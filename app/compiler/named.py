@@ -65,3 +65,20 @@ def named_files(graph: Graph, bindings: Mapping[str, Picture]) -> list[tuple[str
     return [
         (picture.path, owner, missing(owner)) for picture, owner in Named(flat, bindings) if not picture.in_memory
     ]
+
+
+def path_texts(graph: Graph) -> dict[str, tuple[str, str]]:
+    """Every file that inputs and values of nodes name, by who names it: the text, and the path that it leads to.
+
+    Inputs are `inputs.beauty` or `glow/inputs.image`, values `read.path` or `glow/read.path`.
+    """
+    flat = expand(graph)
+    found = {
+        f"{port}": (end.file, str(PurePath(flat.folders[port.node.removesuffix(INPUTS)], end.file)))
+        for port, end in flat.inputs.items() if end.file
+    }
+    for path, node in flat.nodes.items():
+        for value in node.values.values():
+            if value.type == "path" and (text := getattr(node, value.name)):
+                found[f"{path}.{value.name}"] = text, str(PurePath(flat.folders[path], text))
+    return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 from ...nodes import Camera, Size
@@ -109,6 +109,8 @@ class Pass:
     groups: tuple[int, int]
     tables: tuple[Table, ...] = ()
     mesh: Mesh | None = None
+    writers: Mapping[str, str] = field(default_factory=dict[str, str], compare=False, repr=False)
+    """The node behind each file of code that users wrote."""
 
 
 @dataclass(frozen=True)

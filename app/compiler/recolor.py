@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from .library import Text
+from ..glsl import Text
 
 
 @dataclass(frozen=True)

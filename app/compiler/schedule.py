@@ -10,7 +10,7 @@ from ...nodes import Size
 from ..errors import DeviceError
 from .emit import Emitted, emit
 from .fuse import Fused, kept_refs
-from .ir import Call, History, Memory, Op, Program, Raster, Read, Ref, Shape
+from .ir import Call, Gather, History, Memory, Op, Program, Raster, Read, Ref, Shape
 from .library import Library
 from .plan import Depth, Pass, Plan, Surface, Upload, texel, texture_bytes
 from .target import Precision, Target
@@ -41,7 +41,7 @@ def schedule(
     )
     return Plan(
         target, surfaces, tuple(_uploads(program, numbers)),
-        tuple(_pass(program, fused, item, numbers) for fused, item in zip(passes, emitted, strict=True)),
+        tuple(_pass(program, fused, item, numbers, library) for fused, item in zip(passes, emitted, strict=True)),
         MappingProxyType({name: numbers[ref] for name, ref in program.outputs.items()}),
         MappingProxyType({port: numbers[ref] for port, ref in program.results.items() if ref in numbers}),
         program.cameras,
@@ -162,12 +162,20 @@ def _uploads(program: Program, numbers: Mapping[Ref, int]) -> list[Upload]:
     return found
 
 
-def _pass(program: Program, fused: Fused, item: Emitted, numbers: Mapping[Ref, int]) -> Pass:
+def _pass(
+    program: Program, fused: Fused, item: Emitted, numbers: Mapping[Ref, int], library: Library
+) -> Pass:
     ops = [program.ops[index] for index in fused.members]
     return Pass(
         tuple(dict.fromkeys(owner for op in ops for owner in op.owners)), tuple(op.label for op in ops), item.shader,
         tuple(numbers[ref] for ref in fused.reads), tuple(numbers[ref] for ref in fused.writes),
         item.uniforms, item.weights, item.groups,
         tuple(dict.fromkeys(table for op in ops if isinstance(op, Call) for table in op.tables)),
-        next((op.mesh for op in ops if isinstance(op, Raster)), None),
+        next((op.mesh for op in ops if isinstance(op, Raster)), None), _writers(ops, library),
     )
+
+
+def _writers(ops: list[Op], library: Library) -> dict[str, str]:
+    """The nodes behind code that users wrote, by what messages call its file."""
+    calls = (op for op in ops if isinstance(op, (Call, Gather)))
+    return {library.file(op.shader): op.owner for op in calls if op.shader.startswith("written/")}

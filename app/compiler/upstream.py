@@ -82,7 +82,7 @@ class Upstream:
         node = self._flat.nodes[path]
         values = {name: getattr(node, name) for name in node.values}
         read = [f"{source} {self._of(source)}" if source else "-" for source in self._reads[path]]
-        self.hashes[path] = _hash(node.category, node.id, values, path in self._flat.muted, self._settings, *read)
+        self.hashes[path] = _hash(node.shader, values, path in self._flat.muted, self._settings, *read)
 
     def _hash_ends(self) -> None:
         groups: dict[str, str] = {}

@@ -5,16 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, cast, get_args
 
-from ...nodes import Node, Plain, Value, catalogue
+from ...nodes import ColorSettings, Node, Plain, Value, catalogue
 from ..errors import DocumentError, GraphError
 from ..graph import Animation, Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, signature
 from ..graph.animation import adapted
 from ..graph.names import did_you_mean, name_fault
 from ..graph.values import coerced, expected
+from ..written import CodeFault, Language, node_type
 from . import limits, records
 from .animation import read_animation
+from .code import read_code
 from .disk import read_text
 from .migrations import MIGRATIONS, Migration, migrate, newest
 from .records import convert, read_type, unknown_keys
@@ -34,10 +36,14 @@ def load(path: str | Path, catalogue: Types | None = None, migrations: Migration
 
 
 def loads(
-    text: str, file: str = "", folder: str = "", catalogue: Types | None = None, migrations: Migrations = MIGRATIONS
+    text: str, file: str = "", folder: str = "", catalogue: Types | None = None, migrations: Migrations = MIGRATIONS,
+    *, follow: bool = True,
 ) -> Graph:
-    """The graph in `text`. `file` is its name in messages, `folder` is where relative paths start."""
-    return _Loading(_types(catalogue), migrations).text(text, file, folder, ())[0]
+    """The graph in `text`. `file` is its name in messages, `folder` is where relative paths start.
+
+    Without `follow` no other file is read: a group in a file of its own is a node of the unknown type `group`.
+    """
+    return _Loading(_types(catalogue), migrations, follow).text(text, file, folder, ())[0]
 
 
 def _types(given: Types | None) -> Types:
@@ -50,6 +56,7 @@ class _Loading:
 
     types: Types
     migrations: Migrations
+    follow: bool = True
     done: dict[Path, tuple[Graph, int]] = field(default_factory=dict[Path, tuple[Graph, int]])
 
     def file(self, path: Path, outer: tuple[Path, ...] = ()) -> tuple[Graph, int]:
@@ -93,6 +100,8 @@ class _Body:
         reader.keep("", raw, records.GraphRecord)
         settings = convert(record.settings, records.SettingsRecord, self.file, member(at, "settings"))
         reader.keep("settings", record.settings, records.SettingsRecord)
+        color = convert(settings.color, records.ColorRecord, self.file, member(at, "settings.color"))
+        reader.keep("settings.color", settings.color, records.ColorRecord)
         nodes, muted, count = dict[str, Item](), set[str](), 0
         for id, node in record.nodes.items():
             where = reader.named(at, "nodes", id, "node")
@@ -110,7 +119,10 @@ class _Body:
             outputs={name: reader.output(name, end, at) for name, end in record.outputs.items()},
             controls={name: reader.control(name, item, at) for name, item in record.controls.items()},
             animation=reader.animation(record.animation, nodes, at),
-            settings=Settings(settings.size, settings.frames, settings.rate, settings.preroll),
+            settings=Settings(
+                settings.size, settings.frames, settings.rate, settings.preroll,
+                ColorSettings(color.config, color.working),
+            ),
             muted=frozenset(muted), ui=record.ui, extra=reader.extra, folder=self.folder,
         )
         return graph, count
@@ -149,7 +161,9 @@ class _Body:
         found = convert(raw, records.InputRecord, self.file, where)
         self.keep(f"inputs.{name}", raw, records.InputRecord)
         kind, width = read_type(found.type, self.file, where)
-        return Input(kind, width, found.file, found.layer, found.default, found.doc, found.missing)
+        return Input(
+            kind, width, found.file, found.layer, found.default, found.doc, found.missing, found.color_space
+        )
 
     def output(self, name: str, raw: Any, at: str) -> Output:
         """An entry of `outputs`."""
@@ -178,8 +192,10 @@ class _Body:
 
     def item(self, id: str, raw: dict[str, Any], type: str, at: str, depth: int) -> tuple[Item, int]:
         """A node, and how many it stands for."""
-        if type == "group":
+        if type == "group" and (self.loading.follow or not raw.get("path")):
             return self.group(id, raw, at, depth)
+        if type in get_args(Language):
+            return self.written(id, raw, cast("Language", type), at), 1
         if type not in self.loading.types:
             return Unknown(type, unknown_keys(raw, records.TypeRecord)), 1
         self.keep(f"nodes.{id}", raw, records.NodeRecord)
@@ -198,6 +214,20 @@ class _Body:
             fault = f"these are no values of version {record.version} of '{kind.id}'"
             raise DocumentError(self.file, member(at, "values"), fault) from None
         return kind(**self.values(f"nodes.{id}", values, kind.values, at))
+
+    def written(self, id: str, raw: dict[str, Any], language: Language, at: str) -> Item:
+        """A node made of code. One whose code says no node is kept as it is, with the reason."""
+        record = convert(raw, records.CodeRecord, self.file, at)
+        if (record.code is None) == (not record.file):
+            fault = f'a node of type "{language}" needs either "code", its lines, or "file", the name of a file'
+            raise DocumentError(self.file, at, fault)
+        try:
+            kind = node_type(read_code(language, record.code, record.file or "", self.folder))
+        except CodeFault as fault:
+            said = f"{record.file or 'its code'}, {fault}" if fault.line else str(fault)
+            return Unknown(language, unknown_keys(raw, records.TypeRecord), said)
+        self.keep(f"nodes.{id}", raw, records.CodeRecord)
+        return kind(**self.values(f"nodes.{id}", record.values, kind.values, at))
 
     def values(self, path: str, raw: dict[str, Any], known: Mapping[str, Value], at: str) -> dict[str, Plain]:
         """The values that are `known`, by type; ranges and choices are for `problems`. The others are kept aside."""

@@ -45,6 +45,13 @@ class GraphRecord(msgspec.Struct):
     ui: Section = {}
 
 
+class ColorRecord(msgspec.Struct):
+    """The section `color` of `settings`."""
+
+    config: str = ""
+    working: str = ""
+
+
 class SettingsRecord(msgspec.Struct):
     """The section `settings`."""
 
@@ -52,6 +59,7 @@ class SettingsRecord(msgspec.Struct):
     frames: tuple[int, int] | None = None
     rate: Annotated[float, msgspec.Meta(gt=0)] = 24.0
     preroll: Annotated[int, msgspec.Meta(ge=0)] | None = None
+    color: Section = {}
 
 
 class InputRecord(msgspec.Struct):
@@ -61,6 +69,7 @@ class InputRecord(msgspec.Struct):
     file: str = ""
     layer: str = ""
     missing: Missing = "error"
+    color_space: str = ""
     default: float | tuple[float, ...] | None = None
     doc: str = ""
 
@@ -110,6 +119,14 @@ class NodeRecord(TypeRecord):
     """A node of a known type."""
 
     version: Count = 1
+    values: Section = {}
+
+
+class CodeRecord(TypeRecord):
+    """A node whose code stands in `code`, line by line, or in a file."""
+
+    code: list[str] | None = None
+    file: str | None = None
     values: Section = {}
 
 

@@ -12,8 +12,10 @@ from ..errors import GraphError, OutputError
 from ..graph import Control, Graph, Group, Input, Item, Output, Settings, Unknown, signature
 from ..graph.names import name_fault
 from ..graph.values import coerced, expected
+from ..written import Written
 from .animation import written_animation
 from .canonical import pretty
+from .code import written_code
 from .disk import write_text
 from .limits import size_fault
 from .migrations import FORMAT
@@ -52,7 +54,7 @@ def _graph(graph: Graph) -> Section:
 
     _check_names(graph)
     sections: dict[str, Mapping[str, Any]] = {
-        "settings": {**extra.get("settings", {}), **_settings(graph.settings)},
+        "settings": {**extra.get("settings", {}), **_settings(graph.settings, extra.get("settings.color", {}))},
         "inputs": entries("inputs", {name: _input(name, end) for name, end in graph.inputs.items()}),
         "outputs": entries("outputs", {name: _output(end) for name, end in graph.outputs.items()}),
         "controls": entries("controls", {name: _control(item) for name, item in graph.controls.items()}),
@@ -66,13 +68,15 @@ def _graph(graph: Graph) -> Section:
     return {**extra.get("", {}), **{name: section for name, section in sections.items() if section}}
 
 
-def _settings(settings: Settings) -> Section:
-    """What differs from the default."""
+def _settings(settings: Settings, kept: Mapping[str, Any]) -> Section:
+    """What differs from the default; `kept` are keys of `color` that mean nothing."""
     plain = Settings()
-    return {
+    found = {
         field.name: now for field in fields(Settings)
         if (now := getattr(settings, field.name)) != getattr(plain, field.name)
     }
+    color = {**kept, **_filled({"config": settings.color.config, "working": settings.color.working})}
+    return {**found, "color": color} if color else found
 
 
 def _input(name: str, end: Input) -> Section:
@@ -85,6 +89,7 @@ def _input(name: str, end: Input) -> Section:
         default = float(default)
     found = {
         "file": end.file, "layer": end.layer, "doc": end.doc, "missing": end.missing if end.missing != "error" else "",
+        "color_space": end.color_space,
     }
     return {"type": type_name(end.kind, end.width)} | _filled(found) | ({} if default is None else {"default": default})
 
@@ -115,7 +120,8 @@ def _item(id: str, item: Item, graph: Graph) -> Section:
     set_values = {name: _value(id, value, getattr(item, name)) for name, value in item.values.items()}
     changed = {name: plain for name, plain in set_values.items() if plain != item.values[name].default}
     values = {**kept, **changed}
-    return {"type": item.id, "version": item.version} | muted | ({"values": values} if values else {})
+    what = {"version": item.version} if not isinstance(item, Written) else written_code(item.code)
+    return {"type": item.id} | what | muted | ({"values": values} if values else {})
 
 
 def _value(id: str, value: Value, given: object) -> Plain:

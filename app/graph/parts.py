@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, cast
 
-from ...nodes import Kind, Missing, Plain, Size, Socket, Value
+from ...nodes import ColorSettings, Kind, Missing, Plain, Size, Socket, Value
 from ..errors import GraphError
 from .conversion import make_socket
 
@@ -36,7 +36,8 @@ class Input:
     """Where something enters the graph: bound by name, else `default`, else layer `layer` of `file`.
 
     `width` counts the channels of a Vector. `default` is one number, or one per channel. `missing` says what a frame
-    shows that has no file, where `file` names a sequence.
+    shows that has no file, where `file` names a sequence. `color_space` is what color in a file is in, by name or role;
+    "" finds out.
     """
 
     kind: Kind = Kind.IMAGE
@@ -46,6 +47,7 @@ class Input:
     default: Plain | None = None
     doc: str = ""
     missing: Missing = "error"
+    color_space: str = ""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "width", _width(self.kind, self.width))
@@ -87,10 +89,14 @@ class Control:
 
 @dataclass(frozen=True)
 class Unknown:
-    """A node of a type that is not installed. It does nothing, and is saved back as it was read."""
+    """A node of a type that is not installed, or of code that has a `fault`.
+
+    It does nothing, and is saved back as it was read.
+    """
 
     type: str
     raw: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    fault: str = ""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "raw", freeze(self.raw))
@@ -103,13 +109,15 @@ class Settings:
     `size`: the canvas of nodes without image inputs; by default that of the first image read, else 1920x1080.
     `frames`: the first and last frame; by default those of the first sequence that is read, else frame 1 alone.
     `rate`: frames per second. `preroll`: how many frames before the one that is wanted nodes with a memory look back;
-    by default to the first frame, so that a frame is the same wherever a rendering begins.
+    by default to the first frame, so that a frame is the same wherever a rendering begins. `color`: how colors are
+    managed, groups included.
     """
 
     size: Size | None = None
     frames: tuple[int, int] | None = None
     rate: float = 24.0
     preroll: int | None = None
+    color: ColorSettings = ColorSettings()
 
 
 @dataclass(frozen=True)

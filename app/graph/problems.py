@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
-from typing import Literal
+from dataclasses import dataclass, field, replace
 
 from ...nodes import Node, catalogue
 from ..errors import GraphError
+from . import rules
 from .graph import Graph, Group, Item, signature
 from .names import INPUTS, OUTPUTS, did_you_mean, name_fault, pick
 from .parts import Input, Port, Unknown
+from .rules import Rule, Severity
 from .still import animation_fault, loop_faults
 from .values import numbers, value_fault
 from .walk import loop_sentence, loops
@@ -22,21 +23,25 @@ CONTROLS = "controls"
 MAX_DEPTH = 32
 """How deep groups may nest."""
 
-Severity = Literal["error", "warning"]
-
 
 @dataclass(frozen=True)
 class Problem:
     """A mistake in a graph. `sentence` names node and socket and says what to do.
 
     `node` is a path such as `group/inner`; it ends in `inputs`, `outputs` or `controls` for the ends of a graph, and is
-    empty for the graph as a whole. An error keeps that part of the graph from rendering, a warning does not.
+    empty for the graph as a whole. `at` is the JSON path of what is wrong, where node and socket do not say it.
     """
 
     node: str
     socket: str
     sentence: str
-    severity: Severity = "error"
+    rule: Rule
+    at: str = field(default="", compare=False)
+
+    @property
+    def severity(self) -> Severity:
+        """An error keeps that part of the graph from rendering, a warning does not."""
+        return self.rule.severity
 
 
 def problems(graph: Graph, known: Mapping[str, type[Node]] | None = None) -> tuple[Problem, ...]:
@@ -74,18 +79,25 @@ def _inside(graph: Graph, known: Mapping[str, type[Node]], depth: int) -> Iterat
     needed = graph.upstream(OUTPUTS)
     for id, item in graph.nodes.items():
         if fault := name_fault(id, "node"):
-            yield Problem(id, "", fault)
+            yield Problem(id, "", fault, rules.BAD_NAME)
         if isinstance(item, Unknown):
-            yield Problem(id, "", f"node '{id}' has the unknown type '{item.type}'{did_you_mean(item.type, known)}")
+            yield _unknown(id, item, known)
             continue
         yield from _values(id, item)
         yield from _missing(graph, id, item, id in needed)
         if isinstance(item, Group):
             yield from _group(id, item, known, depth)
     for loop in loops({id: sorted(graph.feeding[id]) for id in sorted(graph.nodes)}):
-        yield Problem(loop[0], "", loop_sentence(loop))
+        yield Problem(loop[0], "", loop_sentence(loop), rules.LOOP)
     yield from _animations(graph)
     yield from _leftovers(graph)
+
+
+def _unknown(id: str, item: Unknown, known: Mapping[str, type[Node]]) -> Problem:
+    if item.fault:
+        return Problem(id, "", f"node '{id}': {item.fault}", rules.BROKEN_CODE)
+    hint = did_you_mean(item.type, known)
+    return Problem(id, "", f"node '{id}' has the unknown type '{item.type}'{hint}", rules.UNKNOWN_TYPE)
 
 
 def _animations(graph: Graph) -> Iterator[Problem]:
@@ -93,38 +105,43 @@ def _animations(graph: Graph) -> Iterator[Problem]:
         if isinstance(graph.nodes.get(port.node), Unknown):
             continue
         if fault := animation_fault(graph, port, item):
-            yield Problem(port.node, port.socket, fault)
+            yield Problem(port.node, port.socket, fault, rules.BAD_ANIMATION, f"animation.{port}")
         elif port in graph.links:
-            yield Problem(port.node, port.socket, f"'{port}' is linked, so that its keys do nothing", "warning")
+            sentence = f"'{port}' is linked, so that its keys do nothing"
+            yield Problem(port.node, port.socket, sentence, rules.DEAD_ANIMATION, f"animation.{port}")
     for port, fault in loop_faults(graph):
-        yield Problem(port.node, port.socket, fault)
+        yield Problem(port.node, port.socket, fault, rules.BAD_ANIMATION, f"animation.{port}")
     first, last = graph.settings.frames or (1, 1)
     if last < first:
-        yield Problem("", "", f"the frames {first} to {last} run backwards: the first comes first")
+        sentence = f"the frames {first} to {last} run backwards: the first comes first"
+        yield Problem("", "", sentence, rules.BACKWARD_FRAMES, "settings.frames")
 
 
 def _group(id: str, item: Group, known: Mapping[str, type[Node]], depth: int) -> Iterator[Problem]:
     if depth == MAX_DEPTH:
-        yield Problem(id, "", f"group '{id}': groups nest deeper than {MAX_DEPTH}; flatten some of them")
+        sentence = f"group '{id}': groups nest deeper than {MAX_DEPTH}; flatten some of them"
+        yield Problem(id, "", sentence, rules.DEEP_GROUPS)
         return
     for problem in _inside(item.graph, known, depth + 1):
         where = f"{id}/{problem.node}" if problem.node else id
-        yield replace(problem, node=where, sentence=f"in group '{id}': {problem.sentence}")
+        at = f"nodes.{id}.{f'graph.{problem.at}' if not item.path else 'path'}" if problem.at else ""
+        yield replace(problem, node=where, sentence=f"in group '{id}': {problem.sentence}", at=at)
 
 
 def _links(graph: Graph) -> Iterator[Problem]:
     for target, source in graph.links.items():
         if fault := graph.link_fault(source, target):
-            yield Problem(target.node, target.socket, f"'{source}' cannot feed '{target}': {fault}")
+            sentence = f"'{source}' cannot feed '{target}': {fault}"
+            yield Problem(target.node, target.socket, sentence, rules.BAD_LINK, f"links.{target}")
 
 
 def _missing(graph: Graph, id: str, item: Item, needed: bool) -> Iterator[Problem]:
     for name, socket in signature(item).inputs.items():
         if not socket.optional and Port(id, name) not in graph.links:
             # A node that nothing uses yet is unfinished, not wrong.
-            severity: Severity = "error" if needed else "warning"
+            rule = rules.UNLINKED_INPUT if needed else rules.UNFINISHED_NODE
             article = "an" if socket.kind[0] in "AEIOU" else "a"
-            yield Problem(id, name, f"'{id}.{name}' is not linked: it needs {article} {socket.kind}", severity)
+            yield Problem(id, name, f"'{id}.{name}' is not linked: it needs {article} {socket.kind}", rule)
 
 
 def _values(id: str, item: Item) -> Iterator[Problem]:
@@ -132,26 +149,32 @@ def _values(id: str, item: Item) -> Iterator[Problem]:
     for name, value in values.items():
         now = item.values.get(name, value.default) if isinstance(item, Group) else getattr(item, name)
         if now is not value.default and (fault := value_fault(value, now)):
-            yield Problem(id, name, f"{id}.{name}: {fault}")
+            yield Problem(id, name, f"{id}.{name}: {fault}", rules.BAD_VALUE)
     for name in item.values if isinstance(item, Group) else ():
         if name not in values:
-            yield Problem(id, name, f"group '{id}' has no control '{name}'{did_you_mean(name, values)}")
+            sentence = f"group '{id}' has no control '{name}'{did_you_mean(name, values)}"
+            yield Problem(id, name, sentence, rules.UNKNOWN_CONTROL)
 
 
 def _ends(graph: Graph) -> Iterator[Problem]:
     for name, end in graph.inputs.items():
-        if fault := name_fault(name, "input") or _default_fault(name, end):
-            yield Problem(INPUTS, name, fault)
+        if fault := name_fault(name, "input"):
+            yield Problem(INPUTS, name, fault, rules.BAD_NAME)
+        elif fault := _default_fault(name, end):
+            yield Problem(INPUTS, name, fault, rules.BAD_DEFAULT, f"inputs.{name}.default")
     for name in graph.outputs:
         if fault := name_fault(name, "output"):
-            yield Problem(OUTPUTS, name, fault)
+            yield Problem(OUTPUTS, name, fault, rules.BAD_NAME)
         if Port(OUTPUTS, name) not in graph.links:
-            yield Problem(OUTPUTS, name, f"nothing feeds the output '{name}': link a node to '{OUTPUTS}.{name}'")
+            sentence = f"nothing feeds the output '{name}': link a node to '{OUTPUTS}.{name}'"
+            yield Problem(OUTPUTS, name, sentence, rules.UNFED_OUTPUT)
     for name, control in graph.controls.items():
-        if fault := name_fault(name, "control") or _control_fault(graph, name, control.target):
-            yield Problem(CONTROLS, name, fault)
+        if fault := name_fault(name, "control"):
+            yield Problem(CONTROLS, name, fault, rules.BAD_NAME)
+        elif fault := _control_fault(graph, name, control.target):
+            yield Problem(CONTROLS, name, fault, rules.BAD_CONTROL, f"controls.{name}.target")
     if not graph.outputs:
-        yield Problem("", "", "the graph has no outputs: add one and link a node to it", "warning")
+        yield Problem("", "", "the graph has no outputs: add one and link a node to it", rules.NO_OUTPUT)
 
 
 def _control_fault(graph: Graph, name: str, target: Port) -> str | None:
@@ -179,8 +202,9 @@ def _leftovers(graph: Graph) -> Iterator[Problem]:
     for path, keys in graph.extra.items():
         parts = path.split(".")
         item = graph.nodes.get(parts[1]) if len(parts) == 3 and parts[0] == "nodes" else None
-        for key in keys:
+        for key in keys if path else keys.keys() - {"$schema"}:  # that one is for editors of text
             hint = "" if item is None else did_you_mean(key, signature(item).values)
             where = f"{path}.{key}" if path else key
             node = parts[1] if len(parts) > 1 else ""
-            yield Problem(node, "", f"{where} means nothing to this version and is only kept{hint}", "warning")
+            sentence = f"{where} means nothing to this version and is only kept{hint}"
+            yield Problem(node, "", sentence, rules.UNKNOWN_KEY, where)

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..compiler import FIRST_TABLE, Pass, Shader
 from ..errors import ShaderError
+from ..written import unprefixed
 
 # Mesa: "2:14(5): error: ...", NVIDIA: "2(14) : error ...", Apple and AMD: "ERROR: 2:14: ..."
 _FAULT = re.compile(r"(?:ERROR:\s*)?(\d+)(?::(\d+)(?:\(\d+\))?|\((\d+)\))\s*:\s*(.*)")
@@ -126,6 +127,7 @@ def _located(one: Pass, log: str) -> ShaderError:
         match = _FAULT.match(line.strip())
         if match and not match[4].lower().startswith("warning"):
             name, row = one.shader.locate(int(match[2] or match[3]))
-            return ShaderError(", ".join(one.nodes), name, row, match[4].strip())
+            said = unprefixed(match[4].strip())
+            return ShaderError(one.writers.get(name, ", ".join(one.nodes)), name, row, said)
     first = next((line.strip() for line in log.splitlines() if "error" in line.lower()), log.strip())
     return ShaderError(", ".join(one.nodes), one.shader.files[-1], 1, first)

@@ -24,7 +24,7 @@ from .draw import Affine, Argument, Draw, Drawn, Kernel, Pixels
 from .lights import LIGHT_NUMBERS, MAX_LIGHTS, Light, LightKind, lights_of, numbers_of
 from .mattes import float_bits, listed, matte_of, murmur3, picked, picked_names, toggled
 from .node import Filter, Node, Pointwise, Reader, Source, Temporal
-from .recolor import ColorChange, LookupFile, SpaceChange
+from .recolor import WORKING_SPACE, ColorChange, ColorSettings, LookupFile, SpaceChange
 from .render import Matte, Meaning, Render
 from .scene import BuiltInScene, Motion, Scene, SceneFile, StageName
 from .sockets import Color, Edge, Field, Image, Kind, Number, Output, Size, Socket, Vector, Viewpoint, glsl_type
@@ -59,13 +59,13 @@ from .values import (
 )
 
 __all__ = [
-    "LIGHT_NUMBERS", "MAX_LIGHTS", "MAX_POINTS", "RGBA", "Affine", "Argument", "BuiltInScene", "Camera", "Color",
-    "ColorChange", "Curve", "Doc", "Draw", "Drawn", "Edge", "Field", "File", "FilePath", "Filter", "Fraction",
-    "Handle", "Holds", "Image", "Kernel", "Kernel3x3", "Kind", "Light", "LightKind", "LightList", "Lights",
-    "LookupFile", "Matte", "Meaning", "Missing", "Motion", "Node", "Number", "OfLayer", "Output", "Picks", "Pixels",
-    "Plain", "Points", "Pointwise", "Position", "Ramp", "Reader", "Render", "RenderPath", "Scene", "SceneFile",
-    "ScenePath", "Size", "Slider", "Socket", "Source", "SpaceChange", "StageName", "Stops", "Swatch", "TablePath",
-    "Temporal", "Unit", "Value", "Vector", "Viewpoint", "curve_at", "curve_knots", "float_bits", "glsl_type",
-    "lights_of", "listed", "look_at", "matte_of", "murmur3", "numbers_of", "orbit_camera", "picked", "picked_names",
-    "ramp_at", "ramp_knots", "toggled", "working_factor",
+    "LIGHT_NUMBERS", "MAX_LIGHTS", "MAX_POINTS", "RGBA", "WORKING_SPACE", "Affine", "Argument", "BuiltInScene",
+    "Camera", "Color", "ColorChange", "ColorSettings", "Curve", "Doc", "Draw", "Drawn", "Edge", "Field", "File",
+    "FilePath", "Filter", "Fraction", "Handle", "Holds", "Image", "Kernel", "Kernel3x3", "Kind", "Light", "LightKind",
+    "LightList", "Lights", "LookupFile", "Matte", "Meaning", "Missing", "Motion", "Node", "Number", "OfLayer", "Output",
+    "Picks", "Pixels", "Plain", "Points", "Pointwise", "Position", "Ramp", "Reader", "Render", "RenderPath", "Scene",
+    "SceneFile", "ScenePath", "Size", "Slider", "Socket", "Source", "SpaceChange", "StageName", "Stops", "Swatch",
+    "TablePath", "Temporal", "Unit", "Value", "Vector", "Viewpoint", "curve_at", "curve_knots", "float_bits",
+    "glsl_type", "lights_of", "listed", "look_at", "matte_of", "murmur3", "numbers_of", "orbit_camera", "picked",
+    "picked_names", "ramp_at", "ramp_knots", "toggled", "working_factor",
 ]

@@ -24,6 +24,10 @@ class Node:
     id: ClassVar[str] = ""
     category: ClassVar[str] = ""
     version: ClassVar[int] = 1
+    function: ClassVar[str] = ""
+    """The GLSL function of a pointwise node."""
+    shader: ClassVar[str] = ""
+    """The file of the node's GLSL, such as `color/exposure`."""
     inputs: ClassVar[Mapping[str, Socket]] = {}
     outputs: ClassVar[Mapping[str, Output]] = {}
     values: ClassVar[Mapping[str, Value]] = {}
@@ -35,6 +39,7 @@ class Node:
         body = vars(cls)
         cls.id = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls.__name__).lower()
         cls.category = cls.__module__.rpartition(".")[0].rpartition(".")[2]
+        cls.function, cls.shader = cls.id, f"{cls.category}/{cls.id}"
         cls.inputs = {name: item for name, item in body.items() if isinstance(item, Socket)}
         outputs = {name: item for name, item in body.items() if isinstance(item, Output)}
         dataclasses.dataclass(frozen=True, kw_only=True)(cls)

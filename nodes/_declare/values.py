@@ -145,6 +145,8 @@ class Value:
     maximum: float = float("inf")
     unit: Unit | None = None
     doc: str = ""
+    label: str = ""
+    """What an interface calls it, if not by its name."""
     layer_by: str = ""
     """The value that picks a layer of this file."""
     holds: Holds = "picture"

@@ -9,7 +9,7 @@ from random import Random
 
 import pytest
 from halation.app.errors import GraphError
-from halation.app.graph import Control, Graph, Group, Input, Output, Port, Problem, Unknown, problems
+from halation.app.graph import Control, Graph, Group, Input, Output, Port, Problem, Unknown, problems, rules
 from halation.nodes import Kind
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -55,7 +55,7 @@ def test_an_unbound_input_is_none() -> None:
 def test_links_from_nowhere_or_of_the_wrong_kind(source: str, says: str) -> None:
     graph = linked(small().add_input("z", Input(Kind.FIELD)).add("slope", Slope()), "soften.image", source)
     assert only(linked(graph, "slope.depth", "inputs.z")) == Problem(
-        "soften", "image", f"'{source}' cannot feed 'soften.image': {says}"
+        "soften", "image", f"'{source}' cannot feed 'soften.image': {says}", rules.BAD_LINK
     )
 
 
@@ -88,7 +88,7 @@ def test_loops_are_named_and_order_refuses_them() -> None:
 
 def test_a_missing_input_is_an_error_only_where_it_matters() -> None:
     loose = small().add("loose", Soften())
-    assert only(loose) == Problem("loose", "image", "'loose.image' is not linked: it needs an Image", "warning")
+    assert only(loose) == Problem("loose", "image", "'loose.image' is not linked: it needs an Image", rules.UNFINISHED_NODE)
     assert found(small().disconnect(Port("gain", "image"))) == [("error", "gain", "image")]
     assert only(small().add("slope", Slope())).sentence.endswith("it needs a Field")
 
@@ -106,7 +106,7 @@ def test_a_missing_input_is_an_error_only_where_it_matters() -> None:
 )
 def test_values(values: dict[str, object], name: str, says: str) -> None:
     graph = changed(small(), nodes={**small().nodes, "gain": Gain(**values)})
-    assert only(graph) == Problem("gain", name, f"gain.{name}: {says}")
+    assert only(graph) == Problem("gain", name, f"gain.{name}: {says}", rules.BAD_VALUE)
 
 
 @pytest.mark.parametrize(
@@ -125,7 +125,8 @@ def test_controls_that_point_nowhere(target: str, says: str) -> None:
 
 def test_ends() -> None:
     problem = only(small().disconnect(Port("outputs", "image")))
-    assert problem == Problem("outputs", "image", "nothing feeds the output 'image': link a node to 'outputs.image'")
+    sentence = "nothing feeds the output 'image': link a node to 'outputs.image'"
+    assert problem == Problem("outputs", "image", sentence, rules.UNFED_OUTPUT)
     assert found(Graph()) == [("warning", "", "")]
     for default in ((1.0, 2.0), float("inf"), "red"):
         assert found(changed(small(), inputs={"beauty": Input(default=default)})) == [("error", "inputs", "beauty")]
@@ -135,7 +136,7 @@ def test_ends() -> None:
 
 def test_unknown_types() -> None:
     graph = small().add("x", Unknown("sofen", {})).connect(Port("x", "anything"), Port("soften", "image"))
-    assert only(graph) == Problem("x", "", "node 'x' has the unknown type 'sofen'; did you mean 'soften'?")
+    assert only(graph) == Problem("x", "", "node 'x' has the unknown type 'sofen'; did you mean 'soften'?", rules.UNKNOWN_TYPE)
 
 
 def test_leftover_keys_are_mentioned() -> None:

@@ -16,7 +16,9 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-FLOORS = ("errors", "graph", "document", "compiler", "media", "renderer", "__init__", "editor", "cli")
+FLOORS = (
+    "errors", "glsl", "written", "graph", "document", "compiler", "media", "renderer", "__init__", "editor", "cli",
+)
 """Parts of app from the ground up. `__init__` is the public face of the engine, so it stands on the renderer."""
 
 HOMES = {

@@ -1,0 +1,7 @@
+"""GLSL as text: what can be known of shader code without a driver."""
+
+from __future__ import annotations
+
+from .text import COMMENT, Function, Text, blanked, parse, unified, words
+
+__all__ = ["COMMENT", "Function", "Text", "blanked", "parse", "unified", "words"]

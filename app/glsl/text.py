@@ -1,0 +1,141 @@
+"""Reading GLSL: the functions of a file, their signatures, what it includes, the words that it says."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+
+COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+_INCLUDE = re.compile(r'^[ \t]*#include[ \t]+"([^"]+)"[^\n]*$', re.MULTILINE)
+_FUNCTION = re.compile(
+    r"^[ \t]*(?:(?:highp|precise)\s+)*(\w+)\s+(?!(?:if|for|while|switch)\b)(\w+)\s*\(([^)]*)\)\s*\{", re.MULTILINE
+)
+_PARAMETER = re.compile(r"(?:(out)\s+)?((?:inout\s+)?\w+(?:\s*\[\w*\])?)\s*(\w*)\s*(\[\w*\])?")
+_QUALIFIER = re.compile(r"\b(?:const|in|highp|mediump|lowp|precise)\s+")
+_WORD = re.compile(r"[A-Za-z_]\w*")
+_BLANK = re.compile(r"[^\n]")
+
+
+@dataclass(frozen=True)
+class Function:
+    """A GLSL signature: `result name(parameters)`; `outputs` are the `out` parameters."""
+
+    name: str
+    result: str
+    parameters: tuple[tuple[str, str], ...]
+    outputs: tuple[tuple[str, str], ...]
+    start: int
+    end: int
+    """Where it lies in the text of its file."""
+    line: int
+    words: frozenset[str]
+    """All words of its body: what it calls is among them."""
+
+
+@dataclass(frozen=True)
+class Text:
+    """One GLSL file without comments and `#include` lines (their lines stay, empty, so that numbers hold).
+
+    `file` is what messages call it. `includes` are the lines of what it includes, by name. `functions` are by name;
+    `all_functions` also has every overload, in order.
+    """
+
+    name: str
+    file: str
+    body: str
+    includes: Mapping[str, int]
+    functions: Mapping[str, Function]
+    all_functions: tuple[Function, ...]
+    words: frozenset[str]
+    _cuts: dict[frozenset[str], Text] = field(default_factory=dict[frozenset[str], "Text"], compare=False, repr=False)
+
+    def only(self, entries: frozenset[str]) -> Text:
+        """The text without functions that `entries` do not need: another draw may need other accessors.
+
+        Their lines stay, empty.
+        """
+        entries &= frozenset(self.functions)
+        if entries not in self._cuts:
+            self._cuts[entries] = self._only(entries)
+        return self._cuts[entries]
+
+    def _only(self, entries: frozenset[str]) -> Text:
+        needed: set[str] = set()
+        todo = [*entries, *(self._outside() & self.functions.keys())]
+        while todo:
+            name = todo.pop()
+            if name not in needed:
+                needed.add(name)
+                for one in self.all_functions:
+                    if one.name == name:
+                        todo.extend(word for word in one.words if word in self.functions)
+        text = self.body
+        for one in self.all_functions:
+            if one.name not in needed:
+                blank = _BLANK.sub(" ", text[one.start : one.end])
+                text = text[: one.start] + blank + text[one.end :]
+        return replace(self, body=text, words=words(text), _cuts={})
+
+    def _outside(self) -> frozenset[str]:
+        """The words that stand in no function: those of constants and macros."""
+        text = self.body
+        for one in reversed(self.all_functions):
+            text = text[: one.start] + text[one.end :]
+        return words(text)
+
+
+def _function(match: re.Match[str], code: str) -> Function:
+    result, name, inside = match.groups()
+    depth, end = 1, match.end()
+    while depth and end < len(code):
+        depth += {"{": 1, "}": -1}.get(code[end], 0)
+        end += 1
+    used = frozenset(_WORD.findall(code, match.end(), end))
+    taken: list[tuple[str, str]] = []
+    given: list[tuple[str, str]] = []
+    for part in _QUALIFIER.sub("", inside).split(","):
+        found = _PARAMETER.match(part.strip())
+        if found is not None and found[2] != "void":
+            way, glsl, called, array = found.groups(default="")
+            (given if way else taken).append((glsl + array, called))
+    line = code.count("\n", 0, match.start(2)) + 1
+    return Function(name, result, tuple(taken), tuple(given), match.start(), end, line, used)
+
+
+def blanked(source: str) -> str:
+    """Code whose comments are spaces of the same height: lines and columns stay.
+
+    A brace in a sentence is no code then, and no driver sees letters beyond ASCII.
+    """
+    return COMMENT.sub(_blank, unified(source))
+
+
+def unified(source: str) -> str:
+    """The text with line ends of one kind."""
+    return source.replace("\r\n", "\n").replace("\r", "\n").removeprefix("\ufeff")
+
+
+def parse(name: str, source: str, file: str = "") -> Text:
+    """Read a shader file's functions and includes. `file` is what messages call it."""
+    code = blanked(source)
+    functions = tuple(_function(match, code) for match in _FUNCTION.finditer(code))
+    by_name = MappingProxyType({one.name: one for one in functions})
+    includes = {
+        match[1].removesuffix(".glsl"): code.count("\n", 0, match.start()) + 1 for match in _INCLUDE.finditer(code)
+    }
+    words = frozenset(_WORD.findall(code))
+    return Text(
+        name, file or f"shaders/{name}.glsl", _INCLUDE.sub(_blank, code), MappingProxyType(includes), by_name,
+        functions, words,
+    )
+
+
+def words(*code: str) -> frozenset[str]:
+    """Every word that stands in pieces of GLSL."""
+    return frozenset(_WORD.findall(" ".join(code)))
+
+
+def _blank(match: re.Match[str]) -> str:
+    return _BLANK.sub(" ", match[0])

@@ -1,0 +1,235 @@
+"""How far two pictures are apart, by the measures of the field, and a picture of where."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, log10, nan
+
+import numpy as np
+import OpenImageIO as oiio
+
+from ..errors import UsageError
+from .color import Array, as_float, decode_srgb
+
+CODE = 1.0 / 255.0
+"""One step of an 8-bit picture."""
+
+_TAPS = 11
+_SIGMA = 1.5
+_K1, _K2 = 0.01, 0.03
+_ODD = (1.0, 0.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Compared:
+    """How far a picture is from the one that was expected.
+
+    `max_abs` and `rms` are in the units of the pixels, over all channels. `psnr` is in dB, infinite for equal
+    pictures, its peak the largest number of both, at least 1. `ssim` is 1 for equal pictures, `flip` 0; both are NaN
+    where they were not asked for. `failing` is the fraction of pixels with a channel beyond the threshold. `worst` is
+    the pixel with the largest difference as x, y from the top left, with its numbers on both sides; None for equal
+    pictures.
+
+    A number that is not finite equals only the same on the other side; any other pair fails, with `max_abs` and
+    `rms` infinite; `broken` counts pixels with such pairs. Where pictures cannot be compared `fault` says why in a
+    few words, and all measures are at their worst.
+    """
+
+    max_abs: float = inf
+    rms: float = inf
+    psnr: float = -inf
+    ssim: float = 0.0
+    flip: float = 1.0
+    failing: float = 1.0
+    worst: tuple[int, int] | None = None
+    actual: tuple[float, ...] = ()
+    expected: tuple[float, ...] = ()
+    broken: int = 0
+    fault: str = ""
+
+    @property
+    def equal(self) -> bool:
+        """True if every number is the same."""
+        return self.max_abs == 0.0
+
+
+def compare(
+    actual: Array, expected: Array, *, threshold: float = CODE, linear: bool = True, perceptual: bool = True
+) -> Compared:
+    """Measure two pictures [h, w] or [h, w, c] of floats; integers fill 0..1.
+
+    `linear` light is encoded for the eye before SSIM; other numbers (encoded pictures, data) are taken as they are.
+    `perceptual=False` leaves out SSIM and FLIP, which take most of the time. See `ssim` and `flip`.
+
+    Raises:
+        UsageError: an array that is no picture.
+    """
+    one, other = _picture(actual, "actual"), _picture(expected, "expected")
+    if fault := _mismatch(one, other):
+        return Compared(fault=fault)
+    first, second = one.astype(np.float64), other.astype(np.float64)
+    broken = _broken(first, second)
+    finite = np.isfinite(first) & np.isfinite(second)
+    difference = np.where(finite, np.abs(np.where(finite, first, 0.0) - np.where(finite, second, 0.0)), 0.0)
+    difference[broken] = inf
+    per_pixel = difference.max(axis=2)
+    max_abs, rms = float(per_pixel.max()), float(np.sqrt(np.mean(difference**2)))
+    y, x = (int(place) for place in np.unravel_index(per_pixel.argmax(), per_pixel.shape))
+    return Compared(
+        max_abs, rms, _psnr(rms, first[finite], second[finite]),
+        ssim(one, other, linear=linear) if perceptual else nan, flip(one, other, linear=linear) if perceptual else nan,
+        float(np.mean(per_pixel > threshold)), (x, y) if max_abs else None,
+        tuple(map(float, one[y, x])) if max_abs else (), tuple(map(float, other[y, x])) if max_abs else (),
+        int(broken.any(axis=2).sum()),
+    )
+
+
+def ssim(actual: Array, expected: Array, *, linear: bool = True) -> float:
+    """Structural similarity, the mean over pixels and channels, 1 for equal pictures (Wang et al. 2004).
+
+    An 11x11 Gaussian of sigma 1.5, K1 0.01, K2 0.03, where the window fits in; a side shorter than that is continued
+    by its mirror image. `linear` light is first encoded with the curve of sRGB, continued beyond 1 and mirrored below
+    0. The dynamic range is the largest number of both, at least 1. Pixels near a number that is not finite on one side
+    only count as 0.
+
+    Raises:
+        UsageError: the sizes differ.
+    """
+    one, other = _pair(actual, expected)
+    broken = _broken(one, other)
+    first, second = (_encoded(_finite(item)) if linear else _finite(item) for item in (one, other))
+    first, second = np.where(broken, 0.0, first), np.where(broken, 0.0, second)
+    span = max(1.0, float(np.abs(first).max()), float(np.abs(second).max()))
+    low, high = (_K1 * span) ** 2, (_K2 * span) ** 2
+    total, count = 0.0, 0
+    for channel in range(first.shape[2]):
+        a, b = first[..., channel], second[..., channel]
+        mean_a, mean_b = _windowed(a), _windowed(b)
+        square = mean_a**2 + mean_b**2
+        both = _windowed(a * b) - mean_a * mean_b
+        spread = _windowed(a**2 + b**2) - square
+        found = (2.0 * mean_a * mean_b + low) * (2.0 * both + high) / ((square + low) * (spread + high))
+        if broken[..., channel].any():
+            found[_windowed(broken[..., channel].astype(np.float64)) > 0.0] = 0.0
+        total, count = total + float(found.sum()), count + found.size
+    return total / count
+
+
+def flip(actual: Array, expected: Array, *, linear: bool = True) -> float:
+    """The mean of FLIP's map, 0 for equal pictures and at most 1, as OpenImageIO computes it.
+
+    Scene-linear Rec.709 goes through HDR-FLIP (Andersson et al. 2021) at its fixed range of exposures, so that numbers
+    of different pictures can be compared; sRGB-encoded pictures (`linear=False`) through LDR-FLIP (2020). Both for a
+    4K screen of 0.7 m at 0.7 m. A single channel is gray, two are red and green, of more than three the color is
+    looked at, over black. A pixel that is not finite on one side only counts as 1.
+
+    Raises:
+        UsageError: the sizes differ, or this OpenImageIO is older than FLIP in it.
+    """
+    one, other = _pair(actual, expected)
+    if not hasattr(oiio.ImageBufAlgo, "FLIP_diff"):
+        raise UsageError(f"OpenImageIO {oiio.__version__} has no FLIP: use 3.2, or measure with another metric")
+    broken = np.any(_broken(one, other), axis=2)
+    pair = [three(np.where(broken[..., None], 0.0, _finite(item))).astype(np.float32) for item in (other, one)]
+    pair = pair if linear else [decode_srgb(np.clip(item, 0.0, 1.0)).astype(np.float32) for item in pair]
+    buffers = [oiio.ImageBuf(np.ascontiguousarray(item)) for item in pair]
+    found = oiio.ImageBufAlgo.FLIP_diff(*buffers, hdr=int(linear))
+    if found.has_error:
+        raise UsageError(f"FLIP cannot be computed ({found.geterror()}); measure with another metric")
+    each = np.asarray(found.get_pixels(oiio.FLOAT), np.float64)[..., 0]
+    return float(np.where(broken, 1.0, each).mean())
+
+
+def amplified(actual: Array, expected: Array, gain: float | None = None) -> Array:
+    """The absolute difference times `gain`, as [h, w, 3] of float32 within 0..1, to be shown as it is.
+
+    Without a gain the largest difference is made 1. A difference of alpha is added as gray. Magenta is where one
+    picture is larger than the other, or not finite where the other is.
+    """
+    one, other = _picture(actual, "actual").astype(np.float64), _picture(expected, "expected").astype(np.float64)
+    height, width = (max(sides) for sides in zip(one.shape[:2], other.shape[:2], strict=True))
+    first, second = (_widened(item, height, width) for item in (one, other))
+    odd = np.any(_broken(first, second), axis=2)
+    difference = np.where(odd[..., None], 0.0, np.abs(_finite(first) - _finite(second)))
+    light = three(difference)
+    if difference.shape[2] == 4:
+        light = light + difference[..., 3:]
+    largest = float(light.max(initial=0.0))
+    factor = (1.0 / largest if largest else 1.0) if gain is None else gain
+    light = np.clip(light * factor, 0.0, 1.0)
+    light[odd] = _ODD
+    return light.astype(np.float32)
+
+
+def three(array: Array) -> Array:
+    """[h, w, c] as three channels: one is gray, two are red and green, of more the first three."""
+    if array.shape[2] == 1:
+        return np.repeat(array, 3, axis=2)
+    return np.pad(array, ((0, 0), (0, 0), (0, max(0, 3 - array.shape[2]))))[..., :3]
+
+
+def _picture(array: Array, name: str) -> Array:
+    found = as_float(np.asarray(array))
+    if found.ndim not in (2, 3) or not found.size or found.dtype.kind != "f":
+        raise UsageError(
+            f"the {name} picture is {found.dtype} {list(found.shape)}; give numbers as [height, width, channels]"
+        )
+    return found if found.ndim == 3 else found[..., None]
+
+
+def _pair(actual: Array, expected: Array) -> tuple[Array, Array]:
+    one, other = _picture(actual, "actual"), _picture(expected, "expected")
+    if fault := _mismatch(one, other):
+        raise UsageError(f"these pictures cannot be compared: {fault}")
+    return one.astype(np.float64), other.astype(np.float64)
+
+
+def _mismatch(one: Array, other: Array) -> str:
+    (height, width, channels), (wanted_height, wanted_width, wanted) = one.shape, other.shape
+    if (height, width) != (wanted_height, wanted_width):
+        return f"the size is {width}x{height}, and {wanted_width}x{wanted_height} is expected"
+    plural = "" if channels == 1 else "s"
+    return "" if channels == wanted else f"it has {channels} channel{plural}, and {wanted} are expected"
+
+
+def _broken(one: Array, other: Array) -> Array:
+    """Where a number is not finite and the other is not the same."""
+    same = (one == other) | (np.isnan(one) & np.isnan(other))
+    return ~same & ~(np.isfinite(one) & np.isfinite(other))
+
+
+def _finite(array: Array) -> Array:
+    return np.where(np.isfinite(array), array, 0.0)
+
+
+def _psnr(rms: float, *numbers: Array) -> float:
+    if rms == 0.0:
+        return inf
+    peak = max(1.0, *(float(item.max(initial=0.0)) for item in numbers))
+    return -inf if rms == inf else 20.0 * log10(peak / rms)
+
+
+def _encoded(linear: Array) -> Array:
+    size = np.abs(linear)
+    return np.copysign(np.where(size <= 0.0031308, 12.92 * size, 1.055 * size ** (1.0 / 2.4) - 0.055), linear)
+
+
+def _windowed(channel: Array) -> Array:
+    """The Gaussian mean around every pixel whose window fits in."""
+    place = np.arange(_TAPS) - _TAPS // 2
+    weights = np.exp(-(place**2) / (2.0 * _SIGMA**2))
+    weights /= weights.sum()
+    for axis in (0, 1):
+        if channel.shape[axis] < _TAPS:
+            around = [(_TAPS // 2, _TAPS // 2) if side == axis else (0, 0) for side in (0, 1)]
+            channel = np.pad(channel, around, mode="symmetric")
+        count = channel.shape[axis] - _TAPS + 1
+        parts = (weight * channel.take(range(at, at + count), axis) for at, weight in enumerate(weights))
+        channel = sum(parts, start=np.zeros(()))
+    return channel
+
+
+def _widened(array: Array, height: int, width: int) -> Array:
+    """The same on a larger canvas, NaN where there is nothing."""
+    around = ((0, height - array.shape[0]), (0, width - array.shape[1]), (0, 0))
+    return np.pad(array, around, constant_values=nan)

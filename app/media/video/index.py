@@ -1,0 +1,201 @@
+"""Which frames a video has, and what they are.
+
+Frame 1 is the first that a player shows. What a file says of its length and rate is often wrong, so frames are counted:
+every packet has a time of presentation, and the frames are these times in order, without what an edit list cuts off.
+Where packets cannot be trusted (no times, or equal ones, pictures before the first key frame, VP8's hidden frames, or
+first frames that come out otherwise), the whole video is decoded once and its frames are counted as they come.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from itertools import islice
+from types import MappingProxyType
+from typing import Any
+
+from ....nodes import Size
+from ...errors import InputError
+from .library import HOW_TO_INSTALL, library
+
+_TRIED = 4
+"""Frames that are decoded to see whether packets tell the truth."""
+
+_HIDING = ("vp8",)
+_ALPHA_DECODERS = {"vp8": "libvpx", "vp9": "libvpx-vp9"}
+_USUAL_RATE = Fraction(24)
+_ATTACHED_PICTURE = 1024
+
+
+@dataclass(frozen=True)
+class Key:
+    """A packet from which decoding can begin: when it is shown, and its place among all packets."""
+
+    time: int
+    place: int
+
+
+@dataclass(frozen=True)
+class Index:
+    """Where frames are: `times` of presentation in the units of the stream, `places` of packets by their two times.
+
+    Without `times`, frames can only be counted from the first on.
+    """
+
+    count: int
+    times: tuple[int, ...] = ()
+    places: Mapping[tuple[int | None, int | None], int] = MappingProxyType({})
+    keys: tuple[Key, ...] = ()
+
+    def key(self, time: int) -> int:
+        """The last key that is shown at a time or before; which of `keys`."""
+        return max(bisect_right(self.keys, time, key=lambda key: key.time) - 1, 0)
+
+
+@dataclass(frozen=True)
+class Facts:
+    """What is known of a video. `size` is upright; `rate` is frames per second on average.
+
+    `pixels` is FFmpeg's name of the pixel format, `bits` those of a channel. `matrix`, `range`, `transfer` and
+    `primaries` are the numbers of ITU-T H.273 (range: 1 limited, 2 full), 0 or 2 where the file says nothing.
+    """
+
+    path: str
+    size: Size
+    count: int
+    rate: Fraction
+    container: str
+    codec: str
+    pixels: str
+    bits: int
+    alpha: bool
+    matrix: int
+    range: int
+    transfer: int
+    primaries: int
+    tags: Mapping[str, str]
+
+    @property
+    def seconds(self) -> float:
+        """How long it lasts at its average rate."""
+        return float(self.count / self.rate)
+
+
+@contextmanager
+def opened(path: str) -> Iterator[tuple[Any, Any, Any]]:
+    """An open container, its first stream of pictures, and what decodes that.
+
+    Raises:
+        InputError: it is no video, has no pictures, needs a decoder that is not there, or PyAV is missing.
+    """
+    av = library()
+    if av is None:
+        raise InputError(f"{path}: {HOW_TO_INSTALL}")
+    try:
+        container = av.open(path, metadata_errors="replace")
+    except (av.FFmpegError, ValueError, UnicodeError) as error:
+        raise InputError(f"{path}: {fault(error)}") from error
+    with container:
+        stream = next((one for one in container.streams.video if not _is_cover(one)), None)
+        if stream is None or stream.codec_context is None:
+            raise InputError(f"{path}: holds no moving pictures that can be decoded")
+        yield container, stream, _decoder(av, stream)
+
+
+def packets(container: Any, stream: Any) -> Iterator[Any]:
+    """Those of a stream, without the empty one at the end."""
+    return (packet for packet in container.demux(stream) if packet.size)
+
+
+def frames(container: Any, stream: Any, decoder: Any) -> Iterator[Any]:
+    """All frames from here on, in the order of their presentation."""
+    for packet in packets(container, stream):
+        yield from decoder.decode(packet)
+    yield from decoder.decode(None)
+
+
+def fault(error: Exception) -> str:
+    """What FFmpeg complains about, as the rest of a sentence that starts with the path."""
+    said = getattr(error, "strerror", None) or str(error)
+    if "nvalid data" in said or "End of file" in said:
+        return "is no video, or is cut short or damaged: copy or render it again"
+    return f"cannot be read as a video ({said})"
+
+
+@lru_cache(maxsize=64)
+def surveyed(path: str, mark: str) -> tuple[Facts, Index]:
+    """Look through a video; the same version of a file, which `mark` tells, is looked through once.
+
+    Raises:
+        InputError: it cannot be read, or has no frames.
+    """
+    av = library()
+    with opened(path) as (container, stream, decoder):
+        try:
+            index = _packet_index(container, stream)
+        except av.FFmpegError as error:
+            raise InputError(f"{path}: {fault(error)}") from error
+    with opened(path) as (container, stream, decoder):
+        try:
+            found = frames(container, stream, decoder)
+            first = list(islice(found, _TRIED))
+            if index is None or tuple(frame.pts for frame in first) != index.times[:_TRIED]:
+                index = Index(len(first) + sum(1 for _ in found))
+        except (av.FFmpegError, MemoryError) as error:
+            raise InputError(f"{path}: {fault(error)}") from error
+        if not first:
+            raise InputError(f"{path}: holds no frame that can be decoded: copy or render it again")
+        return _facts(path, container, stream, first[0], index.count), index
+
+
+def _packet_index(container: Any, stream: Any) -> Index | None:
+    """What the packets tell, or None where that may not be what comes out."""
+    times: list[int] = []
+    places: dict[tuple[int | None, int | None], int] = {}
+    keys: list[Key] = []
+    for place, packet in enumerate(packets(container, stream)):
+        places[packet.pts, packet.dts] = place
+        if packet.pts is None:
+            return None
+        if packet.is_keyframe and (not keys or packet.pts > keys[-1].time):
+            keys.append(Key(packet.pts, place))
+        if not packet.is_discard:
+            times.append(packet.pts)
+    if not keys or keys[0].place or min(times, default=0) < keys[0].time:
+        return None
+    if len(set(times)) < len(times) or len(places) <= max(places.values()) or stream.codec_context.name in _HIDING:
+        return None
+    return Index(len(times), tuple(sorted(times)), places, tuple(keys))
+
+
+def _facts(path: str, container: Any, stream: Any, frame: Any, count: int) -> Facts:
+    turned = frame.rotation % 180 == 90
+    size = (frame.height, frame.width) if turned else (frame.width, frame.height)
+    rate = stream.average_rate or stream.guessed_rate or _USUAL_RATE
+    parts = frame.format.components
+    return Facts(
+        path, size, count, Fraction(rate), container.format.name.partition(",")[0], stream.codec_context.codec.name,
+        frame.format.name, max(part.bits for part in parts),
+        any(part.is_alpha for part in parts) or frame.format.has_palette,
+        int(frame.colorspace), int(frame.color_range), int(frame.color_trc), int(frame.color_primaries),
+        MappingProxyType({**container.metadata, **stream.metadata}),
+    )
+
+
+def _decoder(av: Any, stream: Any) -> Any:
+    """The stream's own, or one that knows of the transparency that a VP8 or VP9 stream says it has."""
+    context = stream.codec_context
+    name = _ALPHA_DECODERS.get(context.name, "")
+    if name and stream.metadata.get("alpha_mode") == "1" and name in av.codecs_available:
+        return av.CodecContext.create(name, "r")
+    context.thread_type = "AUTO"
+    return context
+
+
+def _is_cover(stream: Any) -> bool:
+    """True for the still picture that some files carry as a title page."""
+    return bool(int(stream.disposition) & _ATTACHED_PICTURE)

@@ -1,0 +1,142 @@
+"""A decoded frame as arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...errors import InputError
+from .index import Facts
+from .signals import GAMUTS, RGB, Array, enlarged, linear, matrix_of, scales, to_rgb
+
+_CENTERED = ("mjpeg", "mpeg1video", "theora")
+"""Codecs whose chroma lies in the middle between samples of luma; elsewhere it lies at the left ones, as in MPEG-2."""
+
+_UNPACKED = {
+    "nv12": "yuv420p", "nv21": "yuv420p", "nv16": "yuv422p", "nv24": "yuv444p", "nv42": "yuv444p", "nv20le": "yuv422p10le",
+    "p010le": "yuv420p10le", "p012le": "yuv420p12le", "p016le": "yuv420p16le", "p210le": "yuv422p10le",
+    "p216le": "yuv422p16le", "p410le": "yuv444p10le", "p416le": "yuv444p16le", "yuyv422": "yuv422p",
+    "uyvy422": "yuv422p", "yvyu422": "yuv422p", "y210le": "yuv422p10le", "pal8": "gbrap", "ya8": "gbrap",
+    "ya16le": "gbrap16le", "ya16be": "gbrap16le",
+}
+"""Formats that keep several channels in one plane -> the same numbers with a plane each."""
+
+
+@dataclass(frozen=True)
+class Signal:
+    """R'G'B' [h, w, 3] of a frame, 8- or 16-bit integers where the file has these, else floats; straight alpha."""
+
+    rgb: Array
+    alpha: Array | None
+    transfer: int
+    primaries: int
+
+    @property
+    def numbers(self) -> Array:
+        """Color and alpha as they are, without any conversion of color."""
+        if self.alpha is None:
+            return self.rgb
+        return np.concatenate([_floats(self.rgb), _floats(self.alpha)[..., None]], axis=2) \
+            if self.rgb.dtype != self.alpha.dtype else np.concatenate([self.rgb, self.alpha[..., None]], axis=2)
+
+    @property
+    def light(self) -> tuple[Array, str]:
+        """Color and alpha as a picture has them, and the space of the color as OpenColorIO names it."""
+        gamut = GAMUTS.get(self.primaries, "")
+        if not gamut and self.transfer in (0, 2, 13):
+            return self.numbers, "srgb_rec709_scene"
+        made = linear(_floats(self.rgb), self.transfer)
+        if self.alpha is not None:
+            made = np.concatenate([made, _floats(self.alpha)[..., None]], axis=2)
+        return made, gamut or "lin_rec709_scene"
+
+
+def signal_of(frame: Any, facts: Facts) -> Signal:
+    """What a frame of PyAV shows, upright. Raises InputError for a matrix that nobody knows."""
+    frame = _separate(frame)
+    form = frame.format
+    parts = [_plane(frame, part) for part in form.components]
+    alpha = next((plane for plane, part in zip(parts, form.components, strict=True) if part.is_alpha), None)
+    colors = [plane for plane, part in zip(parts, form.components, strict=True) if not part.is_alpha]
+    bits, full = form.components[0].bits, _is_full(frame, facts)
+    if form.is_rgb:
+        rgb = np.stack([_ranged(plane, bits, False) for plane in colors], axis=2)
+    elif len(colors) == 1:
+        rgb = _ranged(colors[0], bits, int(frame.color_range) == 1)[..., None].repeat(3, axis=2)
+    else:
+        rgb = _from_chroma(frame, facts, colors, scales(bits, not full))
+    if alpha is not None:
+        alpha = _ranged(alpha, next(part.bits for part in form.components if part.is_alpha), False)
+    turns = round(frame.rotation / 90) % 4
+    rgb, alpha = np.rot90(rgb, turns), None if alpha is None else np.rot90(alpha, turns)
+    return Signal(rgb, alpha, int(frame.color_trc), int(frame.color_primaries))
+
+
+def _from_chroma(frame: Any, facts: Facts, colors: list[Array], scale: tuple[float, float, float, float]) -> Array:
+    black, white, none, all = (np.float32(number) for number in scale)
+    height, width = colors[0].shape
+    luma = (colors[0].astype(np.float32) - black) / white
+    centered = facts.codec in _CENTERED
+    found: list[Array] = []
+    for plane in colors[1:3]:
+        across, down = (max(1, round(side / have)) for side, have in zip((width, height), plane.shape[::-1], strict=True))
+        chroma = (plane.astype(np.float32) - none) / all
+        chroma = enlarged(chroma, 0, height, down, (down - 1) / 2)
+        found.append(enlarged(chroma, 1, width, across, (across - 1) / 2 if centered else 0.0))
+    try:
+        return to_rgb(luma, found[0], found[1], matrix_of(int(frame.colorspace), facts.size))
+    except InputError as error:
+        raise InputError(f"{facts.path}: {error}") from None
+
+
+def _is_full(frame: Any, facts: Facts) -> bool:
+    """True where 0 is black; luma with color differences leaves room at both ends unless it says otherwise."""
+    return int(frame.color_range) == 2 or facts.pixels.startswith("yuvj")
+
+
+def _ranged(plane: Array, bits: int, limited: bool) -> Array:
+    """Numbers of a channel as 0..1; 8 and 16 bits of the full range stay integers, and floats stay."""
+    if plane.dtype.kind == "f" or (not limited and bits in (8, 16)):
+        return plane
+    black, white, _, _ = scales(bits, limited)
+    return (plane.astype(np.float32) - np.float32(black)) / np.float32(white)
+
+
+def _separate(frame: Any) -> Any:
+    """The frame with a plane for every channel."""
+    form = frame.format
+    planes = [part.plane for part in form.components]
+    if form.name in _UNPACKED:
+        return _converted(frame, _UNPACKED[form.name])
+    if form.is_bit_stream or form.is_bayer or len(set(planes)) < len(planes):
+        deep = max(part.bits for part in form.components) > 8
+        alpha = any(part.is_alpha for part in form.components)
+        if not form.is_rgb and not form.is_bit_stream and not form.is_bayer:
+            return _converted(frame, f"yuv{'a' if alpha else ''}444p{'16le' if deep else ''}")
+        return _converted(frame, f"gbr{'a' if alpha else ''}p{'16le' if deep else ''}")
+    return frame
+
+
+def _converted(frame: Any, name: str) -> Any:
+    """Another arrangement of the same numbers: neither matrix nor range changes."""
+    return frame.reformat(format=name)
+
+
+def _plane(frame: Any, part: Any) -> Array:
+    """The numbers of a channel."""
+    plane = frame.planes[part.plane]
+    order = ">" if frame.format.is_big_endian else "<"
+    dtype = np.dtype(f"{order}f4" if part.bits == 32 else f"{order}u2" if part.bits > 8 else "u1")
+    rows = np.frombuffer(plane, dtype).reshape(plane.height, plane.line_size // dtype.itemsize)
+    return rows[:, : plane.width].astype(dtype.newbyteorder("="), copy=False)
+
+
+def _floats(array: Array) -> Array:
+    if array.dtype.kind == "f":
+        return array
+    return array.astype(np.float32) / np.float32(np.iinfo(array.dtype).max)
+
+
+__all__ = ["RGB", "Signal", "signal_of"]

@@ -1,0 +1,15 @@
+"""Nodes that a user wrote: classes made of code that stands in a graph, or in a file beside it."""
+
+from __future__ import annotations
+
+from .code import Code, CodeFault, Language, Written
+from .glsl import glsl_node, unprefixed
+
+__all__ = ["Code", "CodeFault", "Language", "Written", "node_type", "unprefixed"]
+
+
+def node_type(code: Code) -> type[Written]:
+    """The class of the nodes that this code describes; the same class for equal code. Raises CodeFault."""
+    if code.language == "isf":
+        raise CodeFault(1, "shaders in the Interactive Shader Format are not understood yet")
+    return glsl_node(code)

@@ -1,0 +1,200 @@
+"""How far pictures are apart, against scipy, OpenCV and OpenImageIO."""
+
+from __future__ import annotations
+
+import math
+
+import cv2
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+from halation.app.errors import UsageError
+from halation.app.media.compare import CODE, amplified, compare, flip, ssim
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from scipy.ndimage import gaussian_filter, zoom
+
+Array = np.ndarray
+
+
+def scene(rng: np.random.Generator, height: int = 40, width: int = 56, channels: int = 3, top: float = 1.0) -> Array:
+    """Smooth light with detail, from 0 to `top`."""
+    coarse = zoom(rng.random((5, 7, channels)), (height / 5, width / 7, 1), order=1)
+    return (top * np.clip(0.8 * coarse + 0.2 * rng.random((height, width, channels)), 0.0, 1.0)).astype(np.float32)
+
+
+def nudged(rng: np.random.Generator, picture: Array, by: float = 0.05) -> Array:
+    return (picture + by * rng.standard_normal(picture.shape)).astype(np.float32)
+
+
+def buffer(array: Array) -> oiio.ImageBuf:
+    return oiio.ImageBuf(np.ascontiguousarray(array))
+
+
+@pytest.mark.parametrize("channels", [1, 2, 3, 4])
+@pytest.mark.parametrize("top", [0.5, 1.0, 40.0])
+def test_plain_measures_are_those_of_openimageio(rng: np.random.Generator, channels: int, top: float) -> None:
+    expected = scene(rng, channels=channels, top=top)
+    actual = nudged(rng, expected)
+    found = compare(actual, expected, threshold=0.06, perceptual=False)
+    reference = oiio.ImageBufAlgo.compare(buffer(actual), buffer(expected), 0.06, 0.06)
+    assert found.max_abs == pytest.approx(reference.maxerror, rel=1e-5)
+    assert found.rms == pytest.approx(reference.rms_error, rel=1e-5)
+    assert found.psnr == pytest.approx(reference.PSNR, abs=1e-3)
+    assert found.worst == (reference.maxx, reference.maxy)
+    assert round(found.failing * 40 * 56) == reference.nfail
+    assert math.isnan(found.ssim) and math.isnan(found.flip)
+
+
+def test_the_peak_of_psnr_is_that_of_opencv_where_pictures_end_at_one(rng: np.random.Generator) -> None:
+    expected = scene(rng)
+    actual = np.clip(nudged(rng, expected), 0.0, 1.0)
+    assert compare(actual, expected).psnr == pytest.approx(cv2.PSNR(actual, expected, 1.0), abs=1e-3)
+
+
+def wang(x: Array, y: Array, span: float) -> float:
+    """SSIM of one channel by scipy's filter, as scikit-image documents it for the numbers of Wang et al."""
+    def blur(item: Array) -> Array:
+        return gaussian_filter(item.astype(np.float64), 1.5, truncate=3.5)
+
+    mx, my = blur(x), blur(y)
+    vx, vy, vxy = blur(x * x) - mx * mx, blur(y * y) - my * my, blur(x * y) - mx * my
+    one, two = (0.01 * span) ** 2, (0.03 * span) ** 2
+    found = (2 * mx * my + one) * (2 * vxy + two) / ((mx**2 + my**2 + one) * (vx + vy + two))
+    return float(found[5:-5, 5:-5].mean())
+
+
+@pytest.mark.parametrize("top", [1.0, 40.0])
+def test_ssim_is_that_of_the_paper(rng: np.random.Generator, top: float) -> None:
+    expected = scene(rng, top=top).astype(np.float64)
+    actual = nudged(rng, expected, 0.05 * top).astype(np.float64)
+    span = max(1.0, expected.max(), actual.max())
+    reference = np.mean([wang(actual[..., c], expected[..., c], span) for c in range(3)])
+    assert 0.2 < reference < 0.99
+    assert ssim(actual, expected, linear=False) == pytest.approx(reference, abs=1e-9)
+
+
+def test_ssim_of_linear_light_is_that_of_its_encoding(rng: np.random.Generator) -> None:
+    expected, actual = scene(rng), scene(rng)
+    processor = [oiio.ImageBufAlgo.colorconvert(buffer(item), "lin_rec709_scene", "srgb_rec709_scene")
+                 for item in (actual, expected)]
+    encoded = [item.get_pixels(oiio.FLOAT) for item in processor]
+    assert ssim(actual, expected) == pytest.approx(ssim(*encoded, linear=False), abs=1e-5)
+
+
+@pytest.mark.parametrize(("mean", "contrast"), [(0.5, 1.2), (0.1, 1.0), (0.9, 0.5)])
+def test_ssim_of_flat_pictures_has_a_closed_form(mean: float, contrast: float) -> None:
+    first, second = np.full((16, 16), mean), np.full((16, 16), mean * contrast)
+    span = max(1.0, mean, mean * contrast)
+    one = (0.01 * span) ** 2
+    expected = (2 * mean**2 * contrast + one) / (mean**2 * (1 + contrast**2) + one)
+    assert ssim(second, first, linear=False) == pytest.approx(expected, abs=1e-9)
+
+
+def test_flip_is_openimageios(rng: np.random.Generator) -> None:
+    expected = scene(rng, top=3.0)
+    actual = nudged(rng, expected)
+    for linear, hdr in ((True, 1), (False, 0)):
+        pair = (expected, actual) if linear else [
+            oiio.ImageBufAlgo.colorconvert(buffer(np.clip(item, 0, 1)), "srgb_rec709_scene", "lin_rec709_scene")
+            .get_pixels(oiio.FLOAT) for item in (expected, actual)
+        ]
+        reference = oiio.ImageBufAlgo.FLIP_diff(*map(buffer, pair), hdr=hdr)
+        mean = reference.spec().getattribute("FLIP:meanerror")
+        assert flip(actual, expected, linear=linear) == pytest.approx(mean, abs=2e-5)
+
+
+def test_flip_of_green_and_blue_is_its_largest() -> None:
+    """The largest color difference there is, by which the paper scales all others."""
+    green, blue = np.zeros((24, 24, 3)), np.zeros((24, 24, 3))
+    green[..., 1] = blue[..., 2] = 1.0
+    assert flip(blue, green, linear=False) == pytest.approx(1.0, abs=1e-4)
+
+
+@pytest.mark.parametrize("channels", [0, 1, 2, 3, 4, 6])
+def test_equal_pictures(rng: np.random.Generator, channels: int) -> None:
+    picture = scene(rng, channels=max(1, channels), top=9.0)
+    picture = picture if channels else picture[..., 0]
+    found = compare(picture.copy(), picture)
+    assert found.equal and (found.max_abs, found.rms, found.psnr, found.failing) == (0.0, 0.0, math.inf, 0.0)
+    assert found.ssim == pytest.approx(1.0, abs=1e-9) and found.flip == pytest.approx(0.0, abs=1e-6)
+    assert (found.worst, found.actual, found.expected) == (None, (), ())
+    assert not amplified(picture, picture).any()
+
+
+@pytest.mark.parametrize("number", [np.nan, np.inf, -np.inf])
+def test_what_is_not_finite_equals_the_same_only(rng: np.random.Generator, number: float) -> None:
+    expected = scene(rng)
+    expected[20, 30, 1] = number
+    assert compare(expected.copy(), expected).equal
+    for actual in (np.nan_to_num(expected, nan=0.0, posinf=0.0, neginf=0.0), np.where(expected == 0, 0, -expected)):
+        found = compare(actual, expected)
+        if math.isnan(number) and np.isnan(actual).any():
+            continue
+        assert (found.max_abs, found.rms, found.psnr, found.broken) == (math.inf, math.inf, -math.inf, 1)
+        assert found.worst == (30, 20)
+    clean = np.nan_to_num(expected, nan=0.5, posinf=0.5, neginf=0.5)
+    found, pixels = compare(clean, expected), 40 * 56
+    assert found.failing == pytest.approx(1 / pixels) and found.flip >= 1 / pixels
+    assert found.ssim == pytest.approx(1.0 - 121 / (3 * 30 * 46), abs=1e-9)
+    light = amplified(clean, expected)
+    assert tuple(light[20, 30]) == (1.0, 0.0, 1.0) and light.sum() == 2.0
+
+
+def test_sizes_and_channels_that_differ_are_told() -> None:
+    small, large = np.zeros((4, 6, 3)), np.zeros((5, 6, 3))
+    found = compare(small, large)
+    assert found.fault == "the size is 6x4, and 6x5 is expected"
+    assert (found.max_abs, found.ssim, found.flip, found.failing) == (math.inf, 0.0, 1.0, 1.0)
+    assert "it has 1 channel, and 3 are expected" in compare(small[..., 0], small).fault
+    with pytest.raises(UsageError, match="6x4"):
+        ssim(small, large)
+    light = amplified(small, large)
+    assert light.shape == (5, 6, 3) and (light[4] == (1, 0, 1)).all() and not light[:4].any()
+
+
+@pytest.mark.parametrize("array", [np.zeros((2, 2, 2, 2)), np.zeros(3), np.zeros((0, 4)), np.array([["a"]])])
+def test_what_is_no_picture_is_refused(array: Array) -> None:
+    with pytest.raises(UsageError, match=r"the actual picture is .*\[height, width, channels\]"):
+        compare(array, np.zeros((2, 2)))
+
+
+def test_integers_fill_zero_to_one() -> None:
+    expected = np.full((3, 3, 3), 100, np.uint8)
+    found = compare(expected + np.uint8(2), expected, threshold=1.5 * CODE)
+    assert found.max_abs == pytest.approx(2 / 255, rel=1e-5) and found.failing == 1.0
+
+
+def test_the_picture_of_differences(rng: np.random.Generator) -> None:
+    expected = scene(rng, channels=4)
+    actual = expected.copy()
+    actual[3, 5] += (0.25, 0.0, 0.0, 0.0)
+    actual[9, 9, 3] -= np.float32(0.125)
+    assert amplified(actual, expected)[3, 5] == pytest.approx((1.0, 0.0, 0.0), abs=1e-5)
+    light = amplified(actual, expected, 2.0)
+    assert light[3, 5] == pytest.approx((0.5, 0.0, 0.0), abs=1e-5)
+    assert light[9, 9] == pytest.approx((0.25, 0.25, 0.25), abs=1e-5)
+    assert np.count_nonzero(light.any(axis=2)) == 2
+    assert amplified(actual, expected, 1000.0).max() == 1.0
+
+
+NUMBERS = st.floats(-1e6, 1e6, width=32) | st.sampled_from([np.nan, np.inf, -np.inf])
+PICTURES = st.tuples(st.integers(1, 14), st.integers(1, 14), st.integers(1, 5)).flatmap(
+    lambda shape: st.tuples(*[arrays(np.float32, shape, elements=NUMBERS)] * 2)
+)
+
+
+@settings(max_examples=60, deadline=None)
+@given(PICTURES)
+def test_measures_stay_within_their_bounds(pair: tuple[Array, Array]) -> None:
+    """Nothing warns (the tests make that an error), whatever the numbers; both ways round are the same."""
+    found, back = compare(*pair), compare(*pair[::-1])
+    assert 0.0 <= found.failing <= 1.0 and 0.0 <= found.flip <= 1.0 + 1e-6 and -1.0 - 1e-6 <= found.ssim <= 1.0 + 1e-6
+    assert (found.max_abs, found.rms, found.psnr, found.failing) == (
+        back.max_abs, back.rms, back.psnr, back.failing
+    )
+    assert found.rms <= found.max_abs
+    light = amplified(*pair)
+    assert light.shape == (*pair[0].shape[:2], 3) and light.min() >= 0.0 and light.max() <= 1.0
+    assert compare(pair[0], pair[0].copy()).equal
