@@ -42,10 +42,13 @@ class GraphError(HalationError):
 
 
 class DocumentError(GraphError):
-    """A graph file cannot be read. `path` is the JSON path of the fault, such as `nodes.bloom.values`."""
+    """A graph file cannot be read. `path` is the JSON path of the fault, such as `nodes.bloom.values`.
 
-    def __init__(self, file: str, path: str, fault: str) -> None:
-        self.file, self.path, self.fault = file, path, fault
+    `rule` is what kind of fault it is, by the name that `halation check` gives it; `line` where it is, if known.
+    """
+
+    def __init__(self, file: str, path: str, fault: str, *, rule: str = "schema", line: int = 0) -> None:
+        self.file, self.path, self.fault, self.rule, self.line = file, path, fault, rule, line
         super().__init__(": ".join(part for part in (file, path, fault) if part))
 
 

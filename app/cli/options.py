@@ -14,8 +14,8 @@ from . import parsing
 from .outcome import note
 
 if TYPE_CHECKING:
-    from ...nodes import ColorChange, Missing, Render, Scene
-    from ..compiler import ColorProgram, Frame, Mesh, Picture, Probed
+    from ...nodes import ColorChange, ColorSettings, Missing, Render, Scene
+    from ..compiler import ColorProgram, Frame, Mesh, Picture, Probed, Working
     from ..graph import Graph
     from ..media.pictures import Pictures
 
@@ -157,6 +157,10 @@ class Lazy:
     def recolor(self, change: ColorChange) -> ColorProgram:
         """The program of a change of color."""
         return self.pictures.recolor(change)
+
+    def working(self, color: ColorSettings) -> Working | None:
+        """What shaders know of the working space."""
+        return self.pictures.working(color)
 
     def render(self, path: str, named: Mapping[str, str]) -> Render:
         """What the file of a render holds."""

@@ -47,7 +47,8 @@ def run(arguments: Sequence[str]) -> int:
     """Run one command and return its exit code. Nothing is raised."""
     as_json = "--json" in arguments
     try:
-        code = get_command(app).main(list(arguments), prog_name="halation", standalone_mode=False)
+        words = tuple(arguments)
+        code = get_command(app).main(list(words), prog_name="halation", standalone_mode=False, obj=words)
     except (Exception, KeyboardInterrupt) as fault:
         code = failed(fault, as_json)
     return settle(code if isinstance(code, int) else 0)

@@ -14,12 +14,14 @@ from .options import AsJson, GraphFile, Inputs, Lazy, Node, Scale, Sets, SizeTex
 from .outcome import note, print_json
 from .progress import told_to
 from .sharing import independent, piped, share
+from .watchdog import PATIENCE, Timeout, watched
 
 if TYPE_CHECKING:
     from ..renderer.job import Report
 
 
 def render(
+    context: typer.Context,
     graph: GraphFile,
     output: Annotated[
         list[str],
@@ -58,6 +60,7 @@ def render(
     progress: Annotated[
         str, typer.Option(metavar="bar|json", help="A bar, on a terminal only, or a JSON object per pass and frame.")
     ] = "bar",
+    timeout: Timeout = PATIENCE,
     as_json: AsJson = False,
 ) -> int:
     """Render a graph to files: one frame, or many.
@@ -74,6 +77,8 @@ def render(
     chosen = parsing.frames(frame, frames)
     opened_graph = opened(graph, sets or ())
     report_problems(graph, opened_graph)
+    if (code := watched(context, opened_graph, timeout, piped(graph, opened_graph))) is not None:
+        return code
     bindings, targets = bound(opened_graph, inputs or ()), parsing.targets(opened_graph, node)
     from ..renderer import DEFAULT_BUDGET, Renderer, Wanted, open_device
     from ..renderer.job import Writing, run_job

@@ -7,7 +7,7 @@ Stages, each a function of what the one before made: `expand` flattens groups, `
 from __future__ import annotations
 
 from ..glsl import parse
-from ..graph import Graph
+from ..graph import Graph, color_settings
 from .bodies import MAX_WEIGHTS
 from .expand import written_texts
 from .explain import as_json, dot, explain
@@ -24,11 +24,13 @@ from .request import Request
 from .schedule import schedule
 from .target import NULL, Form, Precision, Target
 from .upstream import Upstream
+from .working import Working, library_for
 
 __all__ = [
     "ATTRIBUTES", "FIRST_TABLE", "MAX_WEIGHTS", "NULL", "ColorProgram", "Form", "Frame", "Library", "Memory", "Mesh",
     "Outside", "Pass", "Picture", "Plan", "Precision", "Probed", "Request", "Shader", "Surface", "Table", "Target",
-    "Upload", "Upstream", "as_json", "compile_graph", "dot", "explain", "installed", "named_files", "parse",
+    "Upload", "Upstream", "Working", "as_json", "compile_graph", "dot", "explain", "installed", "library_for",
+    "named_files", "parse",
 ]
 
 
@@ -41,7 +43,8 @@ def compile_graph(
     Raises GraphError for a graph that cannot be rendered, InputError (from `outside`) for a file that cannot
     be read, DeviceError for one that is too large, ShaderError for a node and its GLSL that do not agree.
     """
-    library = (library or installed()).including(written_texts(graph))
+    working = outside.working(color_settings(graph)) if graph.settings.color.working else None
+    library = library_for(library or installed(), working).including(written_texts(graph))
     program = lower(graph, request, library, outside)
     passes = fuse(program, target, enabled=fusion)
     return schedule(program, passes, library, target, precision or target.precision)

@@ -239,8 +239,8 @@ class Recorder:
     def render(self, path: str, named: Mapping[str, str] = MappingProxyType({})) -> Render:
         return self._files.render(path, named)
 
-    def read(self, path: str, layer: str, result: Socket) -> Drawn:
-        ref = self._files.read(Picture(path, layer, result.kind, result.channels))
+    def read(self, path: str, layer: str, result: Socket, space: str = "") -> Drawn:
+        ref = self._files.read(Picture(path, layer, result.kind, result.channels, space=space))
         return Made(ref, self._builder.shape(ref))
 
     # --- parts ---------------------------------------------------------------------------------------------------

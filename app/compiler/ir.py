@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from ...nodes import Camera, Edge, Kind, Size
+from ...nodes import Camera, ColorSettings, Edge, Kind, Size
 from ..graph import Port
 from ..written import unprefixed
 from .raster import Mesh
@@ -91,7 +91,9 @@ class Accessor:
 class Picture:
     """Pixels from outside: a layer of a file, or an array bound to an input (then `path` is the input's name).
 
-    `pixels` is that array, which the compiler never looks at: a plan has all that it needs to run.
+    `frame` is that of a video, whose file holds all of them; of a picture it is 1. `pixels` is that array, which the
+    compiler never looks at: a plan has all that it needs to run. `space` is what color in a file is in, "" to find out;
+    `color` says how colors are managed.
     """
 
     path: str
@@ -100,6 +102,9 @@ class Picture:
     width: int
     in_memory: bool = False
     pixels: object = field(default=None, compare=False, repr=False)
+    frame: int = 1
+    space: str = ""
+    color: ColorSettings = field(default_factory=ColorSettings)
 
 
 @dataclass(frozen=True)

@@ -40,6 +40,15 @@ class Library:
             self._larger[names] = Library(MappingProxyType({**self.texts, **added}))
         return self._larger[names]
 
+    def replacing(self, text: Text, mark: str) -> Library:
+        """This library with another file in place of the one of that name; `mark` says what it holds."""
+        key = frozenset({text.name, mark})
+        if key not in self._larger:
+            if len(self._larger) >= LARGER:
+                self._larger.pop(next(iter(self._larger)))
+            self._larger[key] = Library(MappingProxyType({**self.texts, text.name: text}))
+        return self._larger[key]
+
     def file(self, shader: str) -> str:
         """What messages call a file."""
         return self.texts[shader].file if shader in self.texts else f"shaders/{shader}.glsl"

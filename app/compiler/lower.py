@@ -33,7 +33,7 @@ from ...nodes import (
     working_factor,
 )
 from ..errors import GraphError, HalationError, ShaderError
-from ..graph import INPUTS, OUTPUTS, Graph, Port, did_you_mean
+from ..graph import INPUTS, OUTPUTS, Graph, Port, color_settings, did_you_mean
 from . import constants
 from .draws import Fed, Files, Made, Recorder, choices
 from .expand import nothing, stand_in
@@ -354,6 +354,8 @@ class _Lowering:
         def recolor(change: ColorChange) -> ColorProgram:
             if isinstance(change, LookupFile):
                 change = replace(change, path=located(change.path))
+            else:
+                change = replace(change, color=color_settings(self.graph))
             return self.outside.recolor(change)
 
         def read(picture: Picture) -> Ref:

@@ -37,11 +37,11 @@ class Named:
         kind, width = socket.kind, socket.socket().channels
         bound = self._bindings.get(port.socket) if port.node == INPUTS else None
         if bound is not None:
-            return replace(bound, kind=kind, width=width)
+            return replace(bound, kind=kind, width=width, space=socket.color_space)
         if not socket.file:
             return None
         folder = self._flat.folders[port.node.removesuffix(INPUTS)]
-        return Picture(str(PurePath(folder, socket.file)), socket.layer, kind, width)
+        return Picture(str(PurePath(folder, socket.file)), socket.layer, kind, width, space=socket.color_space)
 
     def located(self, file: str, node: str) -> str:
         """Relative paths start at the folder of the graph file that the node came from."""

@@ -6,10 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
-from ...nodes import ColorChange, Missing, Render, Scene, Size
+from ...nodes import ColorChange, ColorSettings, Missing, Render, Scene, Size
 from .ir import Picture
 from .raster import Mesh
 from .recolor import ColorProgram
+from .working import Working
 
 
 @dataclass(frozen=True)
@@ -23,10 +24,14 @@ class Probed:
 
 @dataclass(frozen=True)
 class Frame:
-    """The file that a frame shows. `black`: it has none, this one is as large, and black is to be seen."""
+    """The file that a frame shows. `black`: it has none, this one is as large, and black is to be seen.
+
+    `number` is the frame of a video that is to be shown; of a picture it is 1.
+    """
 
     path: str
     black: bool = False
+    number: int = 1
 
 
 class Outside(Protocol):
@@ -42,6 +47,10 @@ class Outside(Protocol):
 
     def recolor(self, change: ColorChange) -> ColorProgram:
         """Write the program of a change of color. Raises UsageError for a space that nobody knows."""
+        ...
+
+    def working(self, color: ColorSettings) -> Working | None:
+        """Look up the working space; None is linear Rec.709. Raises GraphError for one that nobody knows."""
         ...
 
     def render(self, path: str, named: Mapping[str, str]) -> Render:

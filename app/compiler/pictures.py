@@ -7,7 +7,7 @@ from functools import cached_property
 
 from ...nodes import Kind, Missing, Size, Socket
 from ..errors import HalationError
-from ..graph import Graph, make_socket
+from ..graph import Graph, color_settings, make_socket
 from .expand import Flat, nothing
 from .ir import Accessor, Builder, Call, Constant, Gather, Operand, Parameter, Picture, Read, Ref, Shape
 from .named import Named
@@ -23,6 +23,7 @@ class Pictures:
     def __init__(self, graph: Graph, flat: Flat, request: Request, outside: Outside, builder: Builder) -> None:
         self.named = Named(flat, request.bindings)
         self._settled = graph.settings.size
+        self._color = color_settings(graph)
         self._request, self._outside, self._builder = request, outside, builder
 
     @cached_property
@@ -41,7 +42,7 @@ class Pictures:
 
     def _probed(self, picture: Picture, owner: str) -> Probed:
         try:
-            return self._outside.probe(picture)
+            return self._outside.probe(replace(picture, color=self._color))
         except HalationError as error:
             error.node = owner
             raise
@@ -52,10 +53,10 @@ class Pictures:
 
     def read(self, picture: Picture, owner: str, frame: int, missing: Missing) -> Ref:
         """Upload a picture, or that frame of a sequence, at the size wanted."""
-        black = False
+        picture, black = replace(picture, color=self._color), False
         if not picture.in_memory:
             found = self._outside.at(picture.path, frame, missing)
-            picture, black = replace(picture, path=found.path), found.black
+            picture, black = replace(picture, path=found.path, frame=found.number), found.black
         probed = self._probed(picture, owner)
         shape = Shape(probed.size, picture.width, picture.kind is not Kind.IMAGE)
         wanted = self._scaled(self._request.size if self._request.size and probed.size != (1, 1) else probed.size)

@@ -19,7 +19,7 @@ _SPREAD = frozenset({"animation", "controls", "inputs", "links", "nodes", "outpu
 
 
 def pretty(document: Mapping[str, Any]) -> str:
-    """Sorted keys, two spaces, one line for all that fits. Raises GraphError for what JSON cannot hold."""
+    """Sorted keys, two spaces, one line for all that fits but code. Raises GraphError for what JSON cannot hold."""
     return _text(document, 0, 0, "", 1) + "\n"
 
 
@@ -42,7 +42,8 @@ def _text(item: Any, indent: int, column: int, path: str, depth: int) -> str:
     texts = [key + _text(part, inner, inner + len(key), where, depth + 1) for key, part, where in parts]
     flat = f"{opening}{', '.join(texts)}{closing}"
     fits = "\n" not in flat and column + len(flat) < WIDTH
-    if not texts or (fits and path and path not in _SPREAD):
+    is_code = opening == "[" and path.endswith(".code") and len(texts) > 1
+    if not texts or (fits and path and path not in _SPREAD and not is_code):
         return flat
     lines = ",\n".join(" " * inner + text for text in texts)
     return f"{opening}\n{lines}\n{' ' * indent}{closing}"

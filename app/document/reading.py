@@ -41,7 +41,7 @@ def loads(
 ) -> Graph:
     """The graph in `text`. `file` is its name in messages, `folder` is where relative paths start.
 
-    Without `follow` no other file is read: a group in a file of its own is a node of the unknown type `group`.
+    Without `follow` no other file is read: groups and code in files of their own are nodes of unknown types.
     """
     return _Loading(_types(catalogue), migrations, follow).text(text, file, folder, ())[0]
 
@@ -74,7 +74,7 @@ class _Loading:
         format = convert(raw, records.FormatRecord, file, "").halation
         now = newest(self.migrations)
         if format > now:
-            raise DocumentError(file, "halation", _newer(f"format {format}", now))
+            raise DocumentError(file, "halation", _newer(f"format {format}", now), rule="newer-version")
         try:
             raw = migrate(raw, format, self.migrations)
         except _DAMAGED:
@@ -121,7 +121,7 @@ class _Body:
             animation=reader.animation(record.animation, nodes, at),
             settings=Settings(
                 settings.size, settings.frames, settings.rate, settings.preroll,
-                ColorSettings(color.config, color.working),
+                ColorSettings(color.config, color.working), settings.allow,
             ),
             muted=frozenset(muted), ui=record.ui, extra=reader.extra, folder=self.folder,
         )
@@ -194,7 +194,7 @@ class _Body:
         """A node, and how many it stands for."""
         if type == "group" and (self.loading.follow or not raw.get("path")):
             return self.group(id, raw, at, depth)
-        if type in get_args(Language):
+        if type in get_args(Language) and (self.loading.follow or not raw.get("file")):
             return self.written(id, raw, cast("Language", type), at), 1
         if type not in self.loading.types:
             return Unknown(type, unknown_keys(raw, records.TypeRecord)), 1
@@ -205,7 +205,7 @@ class _Body:
         """A node of a known type, its values brought up to its present version."""
         if record.version > kind.version:
             fault = _newer(f"version {record.version} of '{kind.id}'", kind.version)
-            raise DocumentError(self.file, member(at, "version"), fault)
+            raise DocumentError(self.file, member(at, "version"), fault, rule="newer-version")
         values = dict(record.values)
         try:
             for version in range(record.version, kind.version):
@@ -264,7 +264,8 @@ class _Body:
         real = _real(inner)
         if real is None:
             near = did_you_mean(inner.name, _graphs_in(inner.parent))
-            raise DocumentError(self.file, at, f"the group file '{inner}' does not exist{near}")
+            fault = f"the group file '{inner}' does not exist{near}"
+            raise DocumentError(self.file, at, fault, rule="missing-group")
         if real in self.outer:
             loop = " -> ".join(one.name for one in (*self.outer[self.outer.index(real):], real))
             raise DocumentError(self.file, at, f"a group cannot hold itself: {loop}")

@@ -60,6 +60,7 @@ class SettingsRecord(msgspec.Struct):
     rate: Annotated[float, msgspec.Meta(gt=0)] = 24.0
     preroll: Annotated[int, msgspec.Meta(ge=0)] | None = None
     color: Section = {}
+    allow: dict[str, str] = {}
 
 
 class InputRecord(msgspec.Struct):
@@ -158,10 +159,15 @@ def type_name(kind: Kind, width: int) -> str:
     return f"{kind}{width}" if kind is Kind.VECTOR and width != 3 else str(kind)
 
 
+def type_names() -> dict[str, tuple[Kind, int]]:
+    """Kind and channels by all that a file may call a type."""
+    known = {type_name(kind, width): (kind, width) for kind in Kind for width in (2, 3, 4)}
+    return {**known, "Vector3": (Kind.VECTOR, 3)}
+
+
 def read_type(name: str, file: str, path: str) -> tuple[Kind, int]:
     """Kind and channels of a type name."""
-    known = {type_name(kind, width): (kind, width) for kind in Kind for width in (2, 3, 4)}
-    known["Vector3"] = (Kind.VECTOR, 3)
+    known = type_names()
     if name not in known:
         raise DocumentError(file, member(path, "type"), f"'{name}' is no type: write {', '.join(sorted(known))}")
     return known[name]

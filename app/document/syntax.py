@@ -32,7 +32,8 @@ def parse(text: str, file: str) -> dict[str, Any]:
         tree: Any = json.loads(text, object_pairs_hook=_object)
     except json.JSONDecodeError as error:
         said = error.msg[:1].lower() + error.msg[1:].removesuffix(" at")
-        raise DocumentError(file, "", f"not valid JSON: {said} (line {error.lineno}, column {error.colno})") from None
+        fault = f"not valid JSON: {said} (line {error.lineno}, column {error.colno})"
+        raise DocumentError(file, "", fault, rule="syntax", line=error.lineno) from None
     except RecursionError:
         raise DocumentError(file, "", _too_deep()) from None
     except ValueError:
@@ -85,7 +86,8 @@ def _check(tree: Any, file: str) -> None:
         if depth > MAX_NESTING:
             raise DocumentError(file, "", _too_deep())
         if isinstance(item, _Twice):
-            raise DocumentError(file, _path(_Trail(trail, item.key)), "this key is there twice; remove one")
+            where = _path(_Trail(trail, item.key))
+            raise DocumentError(file, where, "this key is there twice; remove one", rule="twice")
         parts = cast("dict[str, Any]", item).items() if isinstance(item, dict) else enumerate(cast("list[Any]", item))
         for key, part in parts:
             if isinstance(key, str) and not _is_text(key):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from .animation import ANIMATED, Animation
+from .color import color_settings
 from .conversion import conversion, make_socket
 from .expressions import Expression
 from .graph import Graph, Group, Item, declared, signature
@@ -16,6 +17,6 @@ from .still import animation_fault, is_animated, keyed_range, still, value_at
 __all__ = [
     "ANIMATED", "INPUTS", "OUTPUTS", "Animation", "Control", "Expression", "Graph", "Group", "Input", "Interpolation",
     "Item", "Key", "Keys", "Output", "Outside", "Port", "Problem", "Settings", "Signature", "Unknown",
-    "animation_fault", "conversion", "declared", "did_you_mean", "is_animated", "keyed_range", "make_socket",
-    "node_output", "problems", "signature", "still", "value_at",
+    "animation_fault", "color_settings", "conversion", "declared", "did_you_mean", "is_animated", "keyed_range",
+    "make_socket", "node_output", "problems", "signature", "still", "value_at",
 ]

@@ -110,14 +110,18 @@ class Settings:
     `frames`: the first and last frame; by default those of the first sequence that is read, else frame 1 alone.
     `rate`: frames per second. `preroll`: how many frames before the one that is wanted nodes with a memory look back;
     by default to the first frame, so that a frame is the same wherever a rendering begins. `color`: how colors are
-    managed, groups included.
+    managed, groups included. `allow`: reasons why what a rule warns of is meant, by `rule` or `rule:node`.
     """
 
     size: Size | None = None
     frames: tuple[int, int] | None = None
     rate: float = 24.0
     preroll: int | None = None
-    color: ColorSettings = ColorSettings()
+    color: ColorSettings = field(default_factory=ColorSettings)
+    allow: Mapping[str, str] = field(default_factory=dict[str, str], repr=False)  # no picture depends on it
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "allow", freeze(self.allow))
 
 
 @dataclass(frozen=True)

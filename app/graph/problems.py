@@ -14,6 +14,7 @@ from .names import INPUTS, OUTPUTS, did_you_mean, name_fault, pick
 from .parts import Input, Port, Unknown
 from .rules import Rule, Severity
 from .still import animation_fault, loop_faults
+from .unmerged import CONFLICTS, unmerged
 from .values import numbers, value_fault
 from .walk import loop_sentence, loops
 
@@ -91,6 +92,8 @@ def _inside(graph: Graph, known: Mapping[str, type[Node]], depth: int) -> Iterat
         yield Problem(loop[0], "", loop_sentence(loop), rules.LOOP)
     yield from _animations(graph)
     yield from _leftovers(graph)
+    for node, socket, sentence, at in unmerged(graph.extra):
+        yield Problem(node, socket, sentence, rules.UNMERGED, at)
 
 
 def _unknown(id: str, item: Unknown, known: Mapping[str, type[Node]]) -> Problem:
@@ -202,7 +205,7 @@ def _leftovers(graph: Graph) -> Iterator[Problem]:
     for path, keys in graph.extra.items():
         parts = path.split(".")
         item = graph.nodes.get(parts[1]) if len(parts) == 3 and parts[0] == "nodes" else None
-        for key in keys if path else keys.keys() - {"$schema"}:  # that one is for editors of text
+        for key in keys if path else keys.keys() - {"$schema", CONFLICTS}:  # the first is for editors of text
             hint = "" if item is None else did_you_mean(key, signature(item).values)
             where = f"{path}.{key}" if path else key
             node = parts[1] if len(parts) > 1 else ""

@@ -74,10 +74,14 @@ UNKNOWN_KEY = Rule(
     "unknown-key", "warning", "A key means nothing to this version; it is kept, and may be a slip of the pen.",
     "Correct its name, or remove it.",
 )
+UNMERGED = Rule(
+    "unmerged", "error", "A merge left something to be decided: both sides changed it.",
+    "Choose a side with halation merge --resolve.",
+)
 
 RULES = (
     UNKNOWN_TYPE, BROKEN_CODE, BAD_NAME, BAD_VALUE, UNKNOWN_CONTROL, UNLINKED_INPUT, UNFINISHED_NODE, BAD_LINK, LOOP,
     BAD_ANIMATION, DEAD_ANIMATION, BACKWARD_FRAMES, DEEP_GROUPS, BAD_DEFAULT, BAD_CONTROL, UNFED_OUTPUT, NO_OUTPUT,
-    UNKNOWN_KEY,
+    UNKNOWN_KEY, UNMERGED,
 )
 """The rules of `problems`."""

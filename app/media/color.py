@@ -1,48 +1,30 @@
-"""Color in and out of the working space, which is linear Rec.709 for now.
+"""Color in and out of the working space.
 
-OpenColorIO is imported when a file needs it: sRGB, the common case of reading, is a table.
+OpenColorIO is imported when a file needs it: sRGB into linear Rec.709, the common case of reading, is a table.
 """
 
 from __future__ import annotations
 
 import difflib
 import os
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any, Literal
 
 import numpy as np
 
-from ..errors import InputError, UsageError
+from ...nodes import ColorSettings
+from ..errors import UsageError
+from .file_space import FileSpace
+from .managed import BUILT_IN, LINEAR_REC709, Managed, Space, builtin, managed, ocio, studio
 
-WORKING = "lin_rec709_scene"
 NO_VIEW = "none"
+NO_LOOK = "none"
 _DISPLAY = "sRGB - Display"
 _PLAIN_VIEW = "Un-tone-mapped"
-_CONFIG = "ocio://default"
-_LINEAR = ("", WORKING, "linear", "scene_linear", "data", "raw", "unknown")
-_SRGB = ("srgb_rec709_scene", "srgb_rec709_display", "srgb")
 _LARGEST = 65504.0
-_PROFILES = {"Display P3": "srgb_p3d65_scene", "Adobe RGB (1998)": "g22_adobergb_scene"}
-_GAMUTS = {
-    (0.713, 0.293, 0.165, 0.830, 0.128, 0.044): "lin_ap1_scene",
-    (0.7347, 0.2653, 0.0, 1.0, 0.0001, -0.077): "lin_ap0_scene",
-    (0.708, 0.292, 0.170, 0.797, 0.131, 0.046): "lin_rec2020_scene",
-    (0.680, 0.320, 0.265, 0.690, 0.150, 0.060): "lin_p3d65_scene",
-}
+_DEFAULT = ColorSettings()
 
 Array = np.ndarray
-
-
-def space_of(tag: str, profile: str, primaries: tuple[float, ...], integer: bool) -> str:
-    """The space of a file's pixels: its tag, ICC profile or EXR chromaticities; else integers are sRGB."""
-    if profile in _PROFILES:
-        return _PROFILES[profile]
-    if tag:
-        return tag
-    for gamut, name in _GAMUTS.items():
-        if len(primaries) == 8 and np.allclose(primaries[:6], gamut, atol=1e-3):
-            return name
-    return _SRGB[0] if integer else WORKING
 
 
 def available_cores() -> int:
@@ -50,33 +32,37 @@ def available_cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def is_linear(space: str) -> bool:
-    """True where the numbers are used as they are."""
-    return space.casefold() in _LINEAR
+def is_working(found: FileSpace, manager: Managed) -> bool:
+    """True where the numbers of a file are used as they are."""
+    return found.space is None or found.space.data or (not manager.plain and found.space == manager.working)
 
 
-def to_linear(rgb: Array, space: str, path: str = "") -> Array:
+def to_working(rgb: Array, found: FileSpace, manager: Managed) -> Array:
     """Colors [..., 3] of any dtype (integers fill 0..1) in the working space, float32.
 
-    sRGB by IEC 61966-2-1; other spaces through OpenColorIO's built-in config.
+    sRGB by IEC 61966-2-1 unless someone chose a config; other spaces through OpenColorIO.
 
     Raises:
-        InputError: nobody knows the space.
+        GraphError, UsageError: the config cannot say how.
     """
-    if space.casefold() in _SRGB:
-        if rgb.dtype == np.uint8 or rgb.dtype == np.uint16:
-            return _srgb_table(rgb.dtype.str)[rgb]
-        return decode_srgb(rgb).astype(np.float32)
-    linear = np.ascontiguousarray(as_float(rgb), dtype=np.float32)
-    if is_linear(space):
-        return linear
-    try:
-        processor = config().getProcessor(space, WORKING).getDefaultCPUProcessor()
-    except ocio().Exception as error:
-        raise InputError(f"{path}: its color space '{space}' is unknown: save it as linear Rec.709 or sRGB") from error
-    linear = linear.copy() if linear is rgb else linear
-    _apply(processor, linear)
-    return linear
+    if is_working(found, manager):
+        return np.ascontiguousarray(as_float(rgb), dtype=np.float32)
+    assert found.space is not None
+    if not manager.chosen and _is_srgb(found.space):
+        srgb = rgb.dtype == np.uint8 or rgb.dtype == np.uint16
+        light = _srgb_table(rgb.dtype.str)[rgb] if srgb else decode_srgb(rgb).astype(np.float32)
+        if manager.plain:
+            return light
+        return _through(light, rgb, manager, Space(LINEAR_REC709, True))
+    return _through(np.ascontiguousarray(as_float(rgb), dtype=np.float32), rgb, manager, found.space)
+
+
+def from_working(rgb: Array, space: Space, manager: Managed) -> Array:
+    """Working-space colors [..., 3] in another space, float32. Raises as `to_working`."""
+    made = np.array(rgb, dtype=np.float32, order="C")
+    if not space.data and space != manager.working:
+        _apply(manager.processor(manager.working, space).getDefaultCPUProcessor(), made)
+    return made
 
 
 def decode_srgb(encoded: Array) -> Array:
@@ -92,55 +78,79 @@ def as_float(array: Array) -> Array:
     return array.astype(np.float32) if array.dtype.kind in "ui" else array
 
 
-@cache
-def _srgb_table(dtype: str) -> Array:
-    count = np.iinfo(dtype).max
-    return decode_srgb(np.arange(count + 1) / count).astype(np.float32)
+def displays(color: ColorSettings = _DEFAULT) -> tuple[str, ...]:
+    """The kinds of screen that pictures can be shown on, the default first.
+
+    Raises:
+        GraphError, UsageError: no config.
+    """
+    config = managed(color).config
+    first = config.getDefaultDisplay()
+    return (*([first] if first else ()), *(name for name in config.getDisplays() if name != first))
 
 
-def displays() -> tuple[str, ...]:
-    """The kinds of screen that pictures can be shown on, the default first."""
-    return tuple(config().getDisplays())
-
-
-def views(display: str = "") -> tuple[str, ...]:
+def views(display: str = "", color: ColorSettings = _DEFAULT) -> tuple[str, ...]:
     """The views that a picture on a display may have, the default first; `none` only encodes as sRGB.
 
     Raises:
         UsageError: unknown display.
+        GraphError, UsageError: no config.
     """
-    return (*config().getViews(_find_display(display)), NO_VIEW)
+    config, screen = managed(color).config, find_display(display, color)
+    first = config.getDefaultView(screen) if screen else ""
+    known = tuple(config.getViews(screen)) if screen else ()
+    return (*([first] if first in known else ()), *(name for name in known if name != first), NO_VIEW)
 
 
-def find_view(name: str, display: str = "") -> str:
+def looks(color: ColorSettings = _DEFAULT) -> tuple[str, ...]:
+    """The looks of the config. Raises GraphError, UsageError: no config."""
+    return tuple(managed(color).config.getLookNames())
+
+
+def find_view(name: str, display: str = "", color: ColorSettings = _DEFAULT) -> str:
     """The view that `name`, or its beginning in any case, means; "" is the default.
 
     Raises:
         UsageError: there is none, or more than one.
     """
-    known = views(display)
-    if not name:
-        return known[0]
+    known = views(display, color)
+    return known[0] if not name else _found(name, known, "view")
+
+
+def find_display(name: str, color: ColorSettings = _DEFAULT) -> str:
+    """The display that `name`, or its beginning in any case, means; "" is the default. Raises UsageError."""
+    known = displays(color)
+    return (known[0] if known else "") if not name else _found(name, known, "display")
+
+
+def find_look(name: str, color: ColorSettings = _DEFAULT) -> str:
+    """The look that `name` means: "" is that of the view, `none` none at all. Raises UsageError."""
+    return name if name in ("", NO_LOOK) else _found(name, (*looks(color), NO_LOOK), "look")
+
+
+def check_shown(view: str, display: str = "", look: str = "", color: ColorSettings = _DEFAULT) -> None:
+    """Raise UsageError for a view, display or look that the config does not have."""
+    find_view(view, display, color)
+    find_look(look, color)
+
+
+def _found(name: str, known: tuple[str, ...], what: str) -> str:
     wanted = name.casefold()
-    match = [view for view in known if view.casefold() == wanted] or [
-        view for view in known if view.casefold().startswith(wanted)
+    match = [one for one in known if one.casefold() == wanted] or [
+        one for one in known if one.casefold().startswith(wanted)
     ]
     if len(match) == 1:
         return match[0]
-    folded = {word: view for view in known for word in (view.casefold(), view.casefold().split()[0])}
+    folded = {word: one for one in known for word in (one.casefold(), one.casefold().split()[0])}
     guess = difflib.get_close_matches(wanted, folded, 1, 0.4)
     hint = f"did you mean '{folded[guess[0]]}'? Choose" if guess else "choose"
-    raise UsageError(f"there is no view '{name}': {hint} from {', '.join(known)}")
+    raise UsageError(f"there is no {what} '{name}': {hint} from {', '.join(known)}")
 
 
-def _find_display(name: str) -> str:
-    known = displays()
-    if name and name not in known:
-        raise UsageError(f"there is no display '{name}': choose from {', '.join(known)}")
-    return name or _DISPLAY
-
-
-def to_display(array: Array, view: str = "", *, bits: Literal[8, 16, 32] = 8, display: str = "") -> Array:
+def to_display(
+    array: Array, view: str = "", *, bits: Literal[8, 16, 32] = 8, display: str = "", look: str = "",
+    color: ColorSettings = _DEFAULT,
+) -> Array:
     """Working-space pixels [h, w, 3 or 4] as seen on a display, sRGB by default, the same shape.
 
     Four channels are premultiplied on the way in and straight on the way out, since no display transform is
@@ -149,45 +159,109 @@ def to_display(array: Array, view: str = "", *, bits: Literal[8, 16, 32] = 8, di
     Returns uint8, uint16 or float32, by `bits`.
 
     Raises:
-        UsageError: unknown view or display.
+        UsageError: unknown view, display or look.
+        GraphError, UsageError: no config.
     """
-    processor = display_processor(view, display).getDefaultCPUProcessor()
+    processor = display_processor(view, display, look, color).getDefaultCPUProcessor()
+    pixels = straight(array)
+    rgb = np.ascontiguousarray(pixels[..., :3])
+    _apply(processor, rgb)
+    pixels[..., :3] = rgb
+    return pixels if bits == 32 else quantized(pixels, bits)
+
+
+def straight(array: Array) -> Array:
+    """A copy of pixels [h, w, 3 or 4] in float32, finite and within half floats, color not multiplied by alpha."""
     pixels = np.array(array, dtype=np.float32)
     np.nan_to_num(pixels, copy=False, nan=0.0, posinf=_LARGEST, neginf=-_LARGEST)
-    rgb = np.ascontiguousarray(pixels[..., :3])
+    rgb = pixels[..., :3]
     if pixels.shape[2] == 4:
         alpha = pixels[..., 3:]
         np.divide(rgb, alpha, out=rgb, where=alpha > 0.0)
     np.clip(rgb, -_LARGEST, _LARGEST, out=rgb)
-    _apply(processor, rgb)
-    pixels[..., :3] = rgb
-    if bits == 32:
-        return pixels
+    return pixels
+
+
+def quantized(pixels: Array, bits: Literal[8, 10, 12, 16]) -> Array:
+    """0..1 as integers of so many bits, rounded, in uint8 or uint16."""
     top = (1 << bits) - 1
-    np.clip(pixels, 0.0, 1.0, out=pixels)
-    return (pixels * top + 0.5).astype(np.uint8 if bits == 8 else np.uint16)
+    return (np.clip(pixels, 0.0, 1.0) * top + 0.5).astype(np.uint8 if bits == 8 else np.uint16)
 
 
-def ocio() -> Any:
-    """OpenColorIO, which comes without types."""
-    import PyOpenColorIO
+def display_processor(view: str, display: str, look: str = "", color: ColorSettings = _DEFAULT) -> Any:
+    """From the working space to what a display shows. A `look` stands in place of those of the view.
 
-    return PyOpenColorIO
+    Raises:
+        UsageError: unknown view, display or look.
+        GraphError, UsageError: no config, or one that lacks something.
+    """
+    if view.casefold() == NO_VIEW and look in ("", NO_LOOK):
+        return _plain_processor(managed(color))
+    screen, chosen, how = find_display(display, color), find_view(view, display, color), find_look(look, color)
+    if chosen == NO_VIEW and how in ("", NO_LOOK):
+        return _plain_processor(managed(color))
+    return _display_processor(managed(color), screen, chosen, how)
+
+
+@lru_cache(maxsize=64)
+def _plain_processor(manager: Managed) -> Any:
+    """From the working space to sRGB."""
+    return manager.attempt(lambda: _views_of(manager, builtin(BUILT_IN), _DISPLAY, _PLAIN_VIEW))
+
+
+def _views_of(manager: Managed, config: Any, display: str, view: str) -> Any:
+    forward, working = ocio().TRANSFORM_DIR_FORWARD, manager.working
+    if not manager.chosen and (known := config.getColorSpace(working.name)):
+        return config.getProcessor(known.getName(), display, view, forward)
+    source = manager.spaces if working.own else studio()
+    return ocio().Config.GetProcessorFromConfigs(source, working.name, config, display, view, forward)
+
+
+@lru_cache(maxsize=64)
+def _display_processor(manager: Managed, display: str, view: str, look: str) -> Any:
+    api = ocio()
+    if not manager.chosen and not look:
+        return manager.attempt(lambda: _views_of(manager, manager.config, display, view))
+
+    def make() -> Any:
+        group, space = manager.bridged()
+        if look not in ("", NO_LOOK):
+            group.appendTransform(api.LookTransform(space, space, look))
+        if view == NO_VIEW:
+            plain = api.Config.GetProcessorFromConfigs(
+                manager.config, space, builtin(BUILT_IN), _DISPLAY, _PLAIN_VIEW, api.TRANSFORM_DIR_FORWARD
+            )
+            group.appendTransform(plain.createGroupTransform())
+            return manager.config.getProcessor(group)
+        group.appendTransform(api.DisplayViewTransform(space, display, view, looksBypass=look != ""))
+        return manager.config.getProcessor(group)
+
+    return manager.attempt(make)
+
+
+def _is_srgb(space: Space) -> bool:
+    return space.name in ("srgb_rec709_scene", "sRGB Encoded Rec.709 (sRGB)")
+
+
+def _through(light: Array, given: Array, manager: Managed, space: Space) -> Array:
+    """Colors through OpenColorIO; what is not a copy of what was given yet becomes one."""
+    light = light.copy() if light is given or np.shares_memory(light, given) else light
+    processor = managed_processor(manager, space)
+    _apply(processor, light)
+    return light
+
+
+@lru_cache(maxsize=256)
+def managed_processor(manager: Managed, space: Space) -> Any:
+    """From a space to the working space."""
+    known = manager.find(space.name) if space.name == LINEAR_REC709 else space
+    return manager.processor(known or space, manager.working).getDefaultCPUProcessor()
 
 
 @cache
-def config() -> Any:
-    """The built-in config."""
-    return ocio().Config.CreateFromBuiltinConfig(_CONFIG)
-
-
-@cache
-def display_processor(view: str, display: str) -> Any:
-    """From the working space to what a display shows."""
-    screen, chosen = _find_display(display), find_view(view, display)
-    if chosen == NO_VIEW:
-        screen, chosen = _DISPLAY, _PLAIN_VIEW
-    return config().getProcessor(WORKING, screen, chosen, ocio().TRANSFORM_DIR_FORWARD)
+def _srgb_table(dtype: str) -> Array:
+    count = np.iinfo(dtype).max
+    return decode_srgb(np.arange(count + 1) / count).astype(np.float32)
 
 
 def _apply(processor: Any, rgb: Array) -> None:

@@ -10,7 +10,8 @@ from typing import Any
 
 import OpenImageIO as oiio
 
-from .info import ImageInfo, described, opened, space, text
+from .info import ImageInfo, described, described_video, opened, space, text, video_facts
+from .video import Facts, is_video, said_of
 
 Value = int | float | str | tuple[Any, ...]
 Window = tuple[int, int, int, int]
@@ -47,6 +48,8 @@ def read_header(path: str | Path) -> Header:
     Raises:
         InputError: as `info`.
     """
+    if is_video(path):
+        return _video_header(video_facts(path))
     with opened(path) as handle:
         info = described(handle, str(path))
         parts: list[PartHeader] = []
@@ -56,6 +59,15 @@ def read_header(path: str | Path) -> Header:
             parts.append(_part(len(parts), spec))
             attributes = {**_attributes(spec), **attributes}
     return Header(info, tuple(parts), MappingProxyType(attributes))
+
+
+def _video_header(facts: Facts) -> Header:
+    info, window = described_video(facts), (0, 0, *facts.size)
+    layer = info.layers[0]
+    part = PartHeader(
+        0, "", "", facts.container, facts.codec, window, window, layer.channels, (layer.format,) * len(layer.channels), "",
+    )
+    return Header(info, (part,), MappingProxyType({**facts.tags, **said_of(facts)}))
 
 
 def _part(index: int, spec: oiio.ImageSpec) -> PartHeader:

@@ -15,6 +15,7 @@ import OpenImageIO as oiio
 from ...nodes import Size
 from ..errors import InputError
 from .layers import Layer, Part, layers_of, pick
+from .video import Facts, facts_of, is_video
 
 _LONGEST_SIDE = 1 << 17
 _MOST_PIXELS = 1 << 28
@@ -46,8 +47,16 @@ def info(path: str | Path) -> ImageInfo:
     Raises:
         InputError: missing, empty, damaged, deep or not a picture.
     """
+    if is_video(path):
+        return described_video(video_facts(path))
     with opened(path) as handle:
         return described(handle, str(path))
+
+
+def video_facts(path: str | Path) -> Facts:
+    """What is known of a video. Raises InputError."""
+    check_file(path)
+    return facts_of(str(path), fingerprint(path))
 
 
 def find_layer(header: ImageInfo, name: str) -> Layer:
@@ -82,15 +91,7 @@ def content_hash(path: str | Path) -> str:
 @contextmanager
 def opened(path: str | Path) -> Iterator[oiio.ImageInput]:
     """The open file; alpha is left as stored, because it must be applied to linear color."""
-    file = Path(path)
-    if file.is_dir():
-        raise InputError(f"{path}: is a folder: name a picture inside it")
-    if not file.is_file():
-        raise InputError(f"{path}: {_missing(file)}")
-    if not os.access(file, os.R_OK):
-        raise InputError(f"{path}: may not be read: check its permissions")
-    if file.stat().st_size == 0:
-        raise InputError(f"{path}: is empty (0 bytes): copy or render it again")
+    file = check_file(path)
     wish = oiio.ImageSpec()
     wish.attribute("oiio:UnassociatedAlpha", 1)
     handle = None
@@ -106,12 +107,25 @@ def opened(path: str | Path) -> Iterator[oiio.ImageInput]:
             handle.close()
 
 
+def check_file(path: str | Path) -> Path:
+    """The file, if there is one that may be read and holds something. Raises InputError."""
+    file = Path(path)
+    if file.is_dir():
+        raise InputError(f"{path}: is a folder: name a picture inside it")
+    if not file.is_file():
+        raise InputError(f"{path}: {_missing(file)}")
+    if not os.access(file, os.R_OK):
+        raise InputError(f"{path}: may not be read: check its permissions")
+    if file.stat().st_size == 0:
+        raise InputError(f"{path}: is empty (0 bytes): copy or render it again")
+    return file
+
+
 def described(handle: oiio.ImageInput, path: str) -> ImageInfo:
     """The header of an open file. Parts of another size (previews, pages) are left out."""
     main = handle.spec()
     size = _size(main)
-    if not all(0 < side <= _LONGEST_SIDE for side in size) or size[0] * size[1] > _MOST_PIXELS:
-        raise InputError(f"{path}: claims to be {size[0]}x{size[1]} pixels, more than can be read (16384x16384 in all)")
+    _check_size(size, path)
     parts: list[Part] = []
     index = 0
     while handle.seek_subimage(index, 0):
@@ -122,6 +136,20 @@ def described(handle: oiio.ImageInput, path: str) -> ImageInfo:
             parts.append(_part(index, spec))
         index += 1
     return ImageInfo(path, size, layers_of(parts), fingerprint(path), handle.format_name())
+
+
+def described_video(facts: Facts) -> ImageInfo:
+    """A video as a picture of one layer, which is another one at every frame."""
+    _check_size(facts.size, facts.path)
+    names = ("R", "G", "B", "A") if facts.alpha else ("R", "G", "B")
+    format = "uint8" if facts.bits == 8 else "uint16" if facts.bits < 32 else "float32"
+    part = Part(0, "", names, (format,) * len(names), "")
+    return ImageInfo(facts.path, facts.size, layers_of([part]), fingerprint(facts.path), f"video, {facts.codec}")
+
+
+def _check_size(size: Size, path: str) -> None:
+    if not all(0 < side <= _LONGEST_SIDE for side in size) or size[0] * size[1] > _MOST_PIXELS:
+        raise InputError(f"{path}: claims to be {size[0]}x{size[1]} pixels, more than can be read (16384x16384 in all)")
 
 
 def _part(index: int, spec: oiio.ImageSpec) -> Part:

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from ...nodes import WORKING_SPACE, ColorSettings
-from ...nodes.color.spaces import SPACES
+from ...nodes.color._spaces import SPACES
 from ..errors import GraphError, HalationError, UsageError
 
 BUILT_IN = "ocio://default"
@@ -42,6 +42,7 @@ class Managed:
         self.source, self.chosen = source, chosen
         """Where the config comes from, and whether anyone asked for it."""
         self._fault, self._wanted = fault, working
+        self._found: dict[str, Space | None] = {}
 
     @property
     def plain(self) -> bool:
@@ -75,6 +76,12 @@ class Managed:
             found = self.find(LINEAR_REC709) or Space(LINEAR_REC709, False)
         if not found.own and self.chosen:
             self._check_bridge(found)
+        config = self.spaces if found.own else studio()
+        if not config.isColorSpaceLinear(found.name, ocio().REFERENCE_SPACE_SCENE):
+            raise GraphError(
+                f"settings.color.working: '{self._wanted or found.name}' is not scene-linear: light is added and blurred "
+                "in the working space; choose one such as ACEScg"
+            )
         return found
 
     @cached_property
@@ -86,6 +93,11 @@ class Managed:
         """A space by name, alias or role in any case, or by the name that nodes call it; None if nobody knows it."""
         if name.casefold() == WORKING_SPACE:
             return self.working
+        if name not in self._found:
+            self._found[name] = self._find(name)
+        return self._found[name]
+
+    def _find(self, name: str) -> Space | None:
         if found := self.spaces.getColorSpace(name):
             return Space(found.getName(), True, found.isData())
         if name.casefold() in _NUMBERS:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,16 +11,21 @@ from typing import Any
 
 import OpenImageIO as oiio
 
-from .info import opened
+from .info import opened, video_facts
+from .video import is_video, passed_on
 
 _STRUCTURAL = re.compile(
     r"(oiio|openexr|png|jpeg|tiff|targa|bmp|gif|hdr|webp|jpegxl|ICCProfile|dwa):.*|Exif:(ColorSpace|Pixel.Dimension|ImageHistory)"
-    r"|compression|planarconfig|Orientation|chromaticities|colorInteropID|name|type|version|view|multiView|chunkCount"
+    r"|compression(:.*)?|planarconfig|Orientation|chromaticities|colorInteropID|name|type|version|view|multiView|chunkCount"
     r"|lineOrder|tiles|channels|dataWindow|displayWindow|screenWindow(Center|Width)|ICCProfile|CICP|acesImageContainerFlag"
     r"|envmap|wrapmodes|textureformat|fovcot|thumbnail.*|DateTime",
     re.IGNORECASE,
 )
 _JPEG_BYTES = 8000
+_PACKED = {"jpeg": "halation:header", "tiff": "DocumentName"}
+"""Formats that keep no text under names of our own: the one name that has to do for all of it."""
+_PACKED_BYTES = 60_000
+_OURS = "halation:"
 
 
 @dataclass(frozen=True)
@@ -38,6 +44,8 @@ def read_metadata(path: str | Path) -> dict[str, int | float | str | Attribute]:
     Raises:
         InputError: the file cannot be read.
     """
+    if is_video(path):
+        return {**passed_on(video_facts(path))}
     with opened(path) as handle:
         found: dict[str, int | float | str | Attribute] = {}
         for item in handle.spec().extra_attribs:
@@ -48,7 +56,7 @@ def read_metadata(path: str | Path) -> dict[str, int | float | str | Attribute]:
             except UnicodeDecodeError:  # text of an unknown alphabet is no reason to refuse a picture
                 continue
             found[item.name] = value if isinstance(value, int | float | str) else Attribute(str(item.type), value)
-        return found
+        return _unpacked(found, _PACKED.get(handle.format_name(), ""))
 
 
 def is_structural(name: str) -> bool:
@@ -62,14 +70,42 @@ def add_metadata(spec: oiio.ImageSpec, metadata: Mapping[str, Any], format: str)
     No date is among them: the same picture gives the same bytes.
     """
     spec.attribute("DateTime", "")
-    for name, value in metadata.items():
+    for name, value in _packed(metadata, format).items():
         if is_structural(name):
             continue
         if format == "png" and not isinstance(value, str):  # PNG holds text only
             value = str(value.value if isinstance(value, Attribute) else value)
-        if format == "jpeg" and len(str(value).encode()) > _JPEG_BYTES:  # libjpeg ends the process beyond 64 KB
+        most = _PACKED_BYTES if name == _PACKED.get(format) else _JPEG_BYTES
+        if format == "jpeg" and len(str(value).encode()) > most:  # libjpeg ends the process beyond 64 KB
             continue
+        if format == "jpeg" and isinstance(value, Attribute):  # it would come back as text
+            continue
+        if format == "jpeg" and name == _PACKED["jpeg"]:
+            spec.attribute("jpeg:com_attributes", 1)
         if isinstance(value, Attribute):
             spec.attribute(name, oiio.TypeDesc(value.type), value.value)
         else:
             spec.attribute(name, value)
+
+
+def _packed(metadata: Mapping[str, Any], format: str) -> dict[str, Any]:
+    """What is written instead: of formats with one place for all that is ours, one text of JSON there."""
+    name = _PACKED.get(format)
+    ours = {key: value for key, value in metadata.items() if key.startswith(_OURS)}
+    if not name or not ours:
+        return dict(metadata)
+    rest = {key: value for key, value in metadata.items() if key not in ours and key != name}
+    return {**rest, name: json.dumps(ours, separators=(",", ":"), default=str)}
+
+
+def _unpacked(found: dict[str, int | float | str | Attribute], name: str) -> dict[str, int | float | str | Attribute]:
+    """What was meant by it."""
+    text = found.get(name, "")
+    if not isinstance(text, str) or not text.startswith(f'{{"{_OURS}'):
+        return found
+    try:
+        ours: Any = json.loads(text)
+    except (ValueError, RecursionError):
+        return found
+    rest = {key: value for key, value in found.items() if key != name}
+    return {**rest, **{key: value for key, value in ours.items() if isinstance(value, str)}}

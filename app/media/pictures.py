@@ -16,8 +16,8 @@ from ..graph import INPUTS, OUTPUTS, Graph, Input, keyed_range
 if TYPE_CHECKING:
     import numpy as np
 
-    from ...nodes import ColorChange, Missing, Render, Scene
-    from ..compiler import ColorProgram, Frame, Mesh
+    from ...nodes import ColorChange, ColorSettings, Missing, Render, Scene
+    from ..compiler import ColorProgram, Frame, Mesh, Working
     from .info import ImageInfo
 
     Array = np.ndarray
@@ -79,7 +79,9 @@ class Pictures:
         from .info import find_layer
 
         header = self.info(picture.path)
-        return Probed(header.size, find_layer(header, picture.layer).half, header.fingerprint)
+        layer = find_layer(header, picture.layer)
+        color = picture.kind in (Kind.IMAGE, Kind.COLOR) and not layer.data
+        return Probed(header.size, layer.half, header.fingerprint + (_converted(picture) if color else ""))
 
     def load(self, picture: Picture) -> Array:
         """Its pixels as [height, width, channels] of float16 or float32."""
@@ -91,7 +93,10 @@ class Pictures:
             return widened(array, picture.kind, picture.width)
         from .read import read
 
-        pixels = read(picture.path, picture.layer, picture.kind, picture.width)
+        pixels = read(
+            picture.path, picture.layer, picture.kind, picture.width, picture.frame, space=picture.space,
+            color=picture.color,
+        )
         if pixels.repaired:
             self.repaired[picture.path] = pixels.repaired
         return pixels.array
@@ -101,6 +106,12 @@ class Pictures:
         from .recolor import recolor
 
         return recolor(change)
+
+    def working(self, color: ColorSettings) -> Working | None:
+        """What shaders know of the working space. Raises GraphError for one that nobody knows."""
+        from .primaries import working_of
+
+        return working_of(color)
 
     def render(self, path: str, named: Mapping[str, str]) -> Render:
         """What the file of a render holds. Raises InputError for one that cannot be read."""
@@ -178,6 +189,18 @@ def _array(item: Array | float | tuple[float, ...], single: bool) -> Array:
 
     array = np.asarray(item)
     return array.reshape(1, 1, -1) if single and array.ndim < 2 else array
+
+
+def _converted(picture: Picture) -> str:
+    """A mark that changes with what color in a file is taken for, and with what it becomes."""
+    from .file_space import check_wanted
+    from .managed import color_mark, managed
+
+    manager = managed(picture.color)
+    check_wanted(picture.space, manager)
+    if not manager.plain:
+        _ = manager.config, manager.working  # what is wrong with them is to be said before anything is read
+    return "" if manager.plain and not picture.space else f" {picture.space} {color_mark(picture.color)}"
 
 
 def _content(array: Array) -> str:

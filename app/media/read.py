@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
 
-from ...nodes import Kind
+from ...nodes import ColorSettings, Kind
 from ..errors import InputError
-from .color import Array, as_float, available_cores, is_linear, space_of, to_linear
-from .info import ImageInfo, described, fault, find_layer, opened, space
+from .color import Array, as_float, available_cores, is_working, to_working
+from .file_space import space_of
+from .hints import hints_of
+from .info import ImageInfo, check_file, described, described_video, fault, find_layer, fingerprint, opened
 from .layers import Layer
+from .managed import managed
+from .video import facts_of, is_video, signal_at
 
 _READ_AS = {"float16": "half", "uint8": "uint8", "uint16": "uint16", "uint32": "uint"}
 _ALPHA = ("a", "alpha")
@@ -24,11 +28,16 @@ oiio.attribute("exr_threads", available_cores())
 
 @dataclass(frozen=True)
 class Want:
-    """A layer, and the socket it is for; `width` counts the channels of a Vector."""
+    """A layer, and the socket it is for; `width` counts the channels of a Vector.
+
+    `space` is what its color is in, by name or role, "" to find out; `color` says how colors are managed.
+    """
 
     layer: str
     kind: Kind = Kind.IMAGE
     width: int = 4
+    space: str = ""
+    color: ColorSettings = field(default_factory=ColorSettings)
 
 
 @dataclass(frozen=True)
@@ -44,26 +53,32 @@ class Pixels:
     repaired: int
 
 
-def read(path: str | Path, layer: str, kind: Kind, width: int = 4) -> Pixels:
+def read(
+    path: str | Path, layer: str, kind: Kind, width: int = 4, frame: int = 1, *, space: str = "",
+    color: ColorSettings = ColorSettings(),
+) -> Pixels:
     """Read one layer over the whole display window; what the file has no data for is 0.
 
-    IMAGE is RGBA, linear Rec.709, premultiplied, alpha 1 where the file has none. FIELD is the first channel, VECTOR
+    IMAGE is RGBA in the working space, premultiplied, alpha 1 where the file has none. FIELD is the first channel, VECTOR
     the first `width` ones, missing ones 0: both are the numbers of the file, without any color conversion.
     Non-finite color becomes the mean of its finite neighbors (OpenImageIO, fixNonFinite BOX3); in data a NaN
-    becomes 0 and infinity, the background of many depth passes, stays.
+    becomes 0 and infinity, the background of many depth passes, stays. Of a video it is the frame of that number.
 
     Raises:
         InputError: the file or the layer is missing, or the file is damaged.
+        GraphError, UsageError: `space` is unknown, or there is no config.
     """
-    return read_many(path, [Want(layer, kind, width)])[0]
+    return read_many(path, [Want(layer, kind, width, space, color)], frame)[0]
 
 
-def read_many(path: str | Path, wants: Sequence[Want]) -> list[Pixels]:
+def read_many(path: str | Path, wants: Sequence[Want], frame: int = 1) -> list[Pixels]:
     """Read several layers of one file; those that lie in one part are decoded together.
 
     Raises:
         InputError: as `read`.
     """
+    if is_video(path):
+        return _read_video(str(check_file(path)), wants, frame)
     with opened(path) as handle:
         header = described(handle, str(path))
         layers = [find_layer(header, want.layer) for want in wants]
@@ -73,6 +88,23 @@ def read_many(path: str | Path, wants: Sequence[Want]) -> list[Pixels]:
             handle.seek_subimage(layer.part, 0)
             made.append(_pixels(block, layer, want, handle.spec(), header))
         return made
+
+
+def _read_video(path: str, wants: Sequence[Want], frame: int) -> list[Pixels]:
+    """What sockets want of one frame of a video."""
+    mark = fingerprint(path)
+    header = described_video(facts_of(path, mark))
+    signal = signal_at(path, mark, frame)
+    made: list[Pixels] = []
+    for want in wants:
+        layer = find_layer(header, want.layer)
+        color = want.kind in (Kind.IMAGE, Kind.COLOR) and not layer.data
+        block, encoding = signal.light if color else (signal.numbers, "data")
+        spec = oiio.ImageSpec(block.shape[1], block.shape[0], block.shape[2], "float")
+        spec.attribute("oiio:ColorSpace", encoding)
+        spec.attribute("oiio:UnassociatedAlpha", 1)
+        made.append(_pixels(_select(block, layer.indices, 0), layer, want, spec, header))
+    return made
 
 
 def _decode(handle: oiio.ImageInput, header: ImageInfo, layers: Sequence[Layer]) -> list[Array]:
@@ -103,7 +135,7 @@ def _select(block: Array, indices: Sequence[int], first: int) -> Array:
 def _pixels(block: Array, layer: Layer, want: Want, spec: oiio.ImageSpec, header: ImageInfo) -> Pixels:
     """The array that a socket wants, from the channels of its layer."""
     if want.kind in (Kind.IMAGE, Kind.COLOR):
-        array = _data_image(block, layer) if layer.data else _image(block, layer, spec, header.path)
+        array = _data_image(block, layer) if layer.data else _image(block, layer, spec, header, want)
     else:
         width = want.width if want.kind is Kind.VECTOR else 1
         array = np.zeros((*block.shape[:2], width), as_float(block[:0]).dtype)
@@ -121,24 +153,21 @@ def _data_image(block: Array, layer: Layer) -> Array:
     return _rgba(as_float(rgb), None if alpha is None else as_float(alpha))
 
 
-def _image(block: Array, layer: Layer, spec: oiio.ImageSpec, path: str) -> Array:
-    """Linear premultiplied RGBA."""
+def _image(block: Array, layer: Layer, spec: oiio.ImageSpec, header: ImageInfo, want: Want) -> Array:
+    """Premultiplied RGBA in the working space."""
     rgb, alpha = _parts(block, layer)
-    primaries = spec.getattribute("chromaticities")
-    encoding = space_of(
-        space(spec), spec.get_string_attribute("ICCProfile:profile_description"),
-        primaries if isinstance(primaries, tuple) else (), block.dtype.kind in "ui",
-    )
+    manager = managed(want.color)
+    found = space_of(header.path, hints_of(spec, header.format, block.dtype.kind in "ui"), manager, want.space)
     straight = spec.get_int_attribute("oiio:UnassociatedAlpha") == 1
     if alpha is not None:
         alpha = as_float(alpha)
-    if is_linear(encoding):
+    if is_working(found, manager):
         rgb = as_float(rgb)
     elif alpha is None or straight:
-        rgb = to_linear(rgb, encoding, path)
+        rgb = to_working(rgb, found, manager)
     else:  # premultiplied after encoding: the encoded color must come out first
         rgb = np.divide(as_float(rgb), alpha, out=np.zeros(rgb.shape, np.float32), where=alpha > 0.0)
-        rgb = to_linear(rgb, encoding, path) * alpha
+        rgb = to_working(rgb, found, manager) * alpha
     if alpha is not None and straight:
         rgb = rgb * alpha
     return _rgba(rgb, alpha)

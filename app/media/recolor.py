@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from ...nodes import ColorChange, LookupFile, SpaceChange
+from ...nodes import ColorChange, ColorSettings, LookupFile, SpaceChange
 from ..compiler import ColorProgram, Table, parse
 from ..errors import InputError, UsageError
-from .color import display_processor, ocio
+from .color import display_processor
 from .info import fingerprint
+from .managed import Space, color_mark, managed, ocio
 
 
 def recolor(change: ColorChange) -> ColorProgram:
@@ -22,8 +23,9 @@ def recolor(change: ColorChange) -> ColorProgram:
     Raises:
         InputError: the file is missing or no table that OpenColorIO can read.
         UsageError: a color space that nobody knows.
+        GraphError, UsageError: no config.
     """
-    return _recolor(change, fingerprint(change.path) if isinstance(change, LookupFile) else "")
+    return _recolor(change, fingerprint(change.path) if isinstance(change, LookupFile) else color_mark(change.color))
 
 
 @cache
@@ -51,19 +53,16 @@ def color_program(processor: Any, name: str) -> ColorProgram:
     return ColorProgram(name, parse(f"OpenColorIO/{name}", made.getShaderText()), tuple(tables))
 
 
-def gpu_view(view: str = "", display: str = "") -> ColorProgram:
+def gpu_view(
+    view: str = "", display: str = "", look: str = "", color: ColorSettings = ColorSettings()
+) -> ColorProgram:
     """The program that computes what `to_display` computes, from straight working-space color.
 
     Raises:
-        UsageError: unknown view or display.
+        UsageError: unknown view, display or look.
+        GraphError, UsageError: no config.
     """
-    return color_program(display_processor(view, display), "view_transform")
-
-
-@cache
-def _spaces() -> Any:
-    """The config whose names changes of space go by: it knows what cameras write, too."""
-    return ocio().Config.CreateFromBuiltinConfig("ocio://studio-config-latest")
+    return color_program(display_processor(view, display, look, color), "view_transform")
 
 
 @lru_cache(maxsize=64)
@@ -73,10 +72,15 @@ def _recolor(change: ColorChange, mark: str) -> ColorProgram:
 
 
 def _of_spaces(change: SpaceChange) -> Any:
-    try:
-        return _spaces().getProcessor(change.source, change.target)
-    except ocio().Exception as error:
-        raise UsageError(f"no color space is called '{change.source}' or '{change.target}': {error}") from error
+    manager = managed(change.color)
+
+    def found(name: str) -> Space:
+        space = manager.find(name)
+        if space is None:
+            raise UsageError(f"no color space is called '{name}'{manager.hint(name)}")
+        return space
+
+    return manager.processor(found(change.source), found(change.target))
 
 
 def _of_file(change: LookupFile) -> Any:

@@ -1,7 +1,7 @@
 """Numbered pictures: which frames there are, and the file of each.
 
-A path is a pattern (`shot.####.exr`), a folder that holds numbered pictures, or one picture. A file whose name happens
-to look like a pattern is one picture. Of a folder the name with the most frames counts; of several with as many, that
+A path is a pattern (`shot.####.exr`), a folder that holds numbered pictures, a video, or one picture. A file whose name
+happens to look like a pattern is one picture or video, whose frames count from 1. Of a folder the name with the most frames counts; of several with as many, that
 whose number comes last in the name, then the first by alphabet. Only the one folder is ever listed.
 """
 
@@ -15,6 +15,7 @@ from bisect import bisect_left
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property, lru_cache
 from itertools import pairwise
 from pathlib import Path
@@ -24,7 +25,9 @@ from ...nodes import Missing
 from ..compiler import Frame
 from ..errors import InputError, UsageError
 from ..graph.frames import Pattern, format_frames
+from .info import video_facts
 from .thumbnail import readable
+from .video import is_video
 
 _UNSETTLED = 2_000_000_000
 """Nanoseconds: how coarse the clocks of file systems are. A folder that changed just now may change again unseen."""
@@ -37,10 +40,14 @@ _NUMBER = re.compile(r"(?:(?<![^._-])-)?[0-9]+")
 
 @dataclass(frozen=True)
 class Sequence:
-    """The frames of a pattern that have a file; `names` are the names of the files, by frame and in order."""
+    """The frames of a pattern that have a file; `names` are the names of the files, by frame and in order.
+
+    Of a video all are in the one file, and `rate` is how many of them a second has.
+    """
 
     pattern: Pattern
     names: Mapping[int, str]
+    rate: Fraction | None = None
 
     @cached_property
     def frames(self) -> tuple[int, ...]:
@@ -73,14 +80,14 @@ class Sequence:
 
 
 def find_sequence(path: str) -> Sequence | None:
-    """The numbered pictures that a path means, maybe none at all; None for a path that is one picture.
+    """The numbered pictures or the video that a path means, maybe without a frame; None for a path that is one picture.
 
     Raises:
-        InputError: a folder without numbered pictures, or one that may not be read.
+        InputError: a video that cannot be read, a folder without numbered pictures, or one that may not be read.
         UsageError: as `Pattern.parse`.
     """
     if _is_file(path):
-        return None
+        return _video(path) if is_video(path) else None
     if pattern := Pattern.parse(path):
         return _sequence(pattern, _listed(pattern.folder))
     if not _is_folder(path):
@@ -95,7 +102,7 @@ def find_sequence(path: str) -> Sequence | None:
 
 
 def frame_file(path: str, frame: int, missing: Missing = "error") -> Frame:
-    """The file that shows a frame. A path that is one picture is its own, whatever the frame.
+    """The file that shows a frame; of a video, which of its frames. One picture is its own, whatever the frame.
 
     `hold` takes the last frame before it, or the first of all; `nearest` the one at the smallest distance, of two the
     earlier; `black` names the nearest one too, for its size.
@@ -105,7 +112,7 @@ def frame_file(path: str, frame: int, missing: Missing = "error") -> Frame:
         UsageError: as `Pattern.parse`.
     """
     if _is_file(path):
-        return Frame(path)
+        return _video_frame(path, frame, missing) if is_video(path) else Frame(path)
     pattern = Pattern.parse(path)
     if pattern and _is_file(usual := pattern.name(frame)):
         return Frame(usual)
@@ -124,6 +131,25 @@ def frame_file(path: str, frame: int, missing: Missing = "error") -> Frame:
     near = found.frames[max(0, after - 1) : after + 1]
     chosen = near[0] if missing == "hold" else min(near, key=lambda there: (abs(there - frame), there))
     return Frame(found.path(chosen), missing == "black")
+
+
+def _video(path: str) -> Sequence:
+    """A video as a sequence of frames that are all in one file."""
+    facts, name = video_facts(path), Path(path).name
+    pattern = Pattern(path, path[: len(path) - len(name)], (name,), ())
+    return Sequence(pattern, MappingProxyType(dict.fromkeys(range(1, facts.count + 1), name)), facts.rate)
+
+
+def _video_frame(path: str, frame: int, missing: Missing) -> Frame:
+    count = video_facts(path).count
+    if 1 <= frame <= count:
+        return Frame(path, number=frame)
+    if missing == "error":
+        raise InputError(
+            f"{path}: has no frame {frame}, only 1-{count}: render fewer, or choose hold, nearest or black for missing "
+            "frames"
+        )
+    return Frame(path, missing == "black", 1 if frame < 1 else count)
 
 
 def check_any(found: Sequence) -> None:

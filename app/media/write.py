@@ -13,7 +13,8 @@ import OpenImageIO as oiio
 
 from ...nodes import Kind, Size
 from ..errors import OutputError, UsageError
-from .color import WORKING, Array, find_view, to_display
+from .color import Array, find_view, to_display
+from .managed import LINEAR_REC709 as WORKING
 from .layers import is_depth
 from .metadata import add_metadata
 from .store import check_room, store

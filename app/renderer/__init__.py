@@ -7,6 +7,7 @@ from .display import Display, Drawable, Handle
 from .engine import DEFAULT_BUDGET, Renderer, Wanted
 from .executor import Counters
 from .look import Look, fitted, to_panel, to_picture
+from .pinned import open_pinned, pinned
 from .probe import Nonfinite, Probe, first_nonfinite
 from .reel import Reel
 from .run import Run
@@ -15,6 +16,6 @@ from .textures import Lease
 
 __all__ = [
     "DEFAULT_BUDGET", "Counters", "Device", "Display", "Drawable", "Handle", "Lease", "Look", "Nonfinite", "Probe",
-    "Reel", "Renderer", "Run", "Runner", "Wanted", "describe", "first_nonfinite", "fitted", "open_device", "to_panel",
-    "to_picture",
+    "Reel", "Renderer", "Run", "Runner", "Wanted", "describe", "first_nonfinite", "fitted", "open_device", "open_pinned",
+    "pinned", "to_panel", "to_picture",
 ]

@@ -73,6 +73,11 @@ class Device:
         self.context.release()
 
     @property
+    def driver(self) -> str:
+        """What the driver says of its version, such as `4.5 (Core Profile) Mesa 22.3.6`."""
+        return str(self.context.info["GL_VERSION"])
+
+    @property
     def description(self) -> str:
         """One line that says what does the work."""
         kind = "software rasterizer" if self.target.software else "GPU"

@@ -12,6 +12,7 @@ from ..compiler import FIRST_TABLE, MAX_WEIGHTS, Mesh, Pass, Plan, Upload
 from ..errors import InputError, RenderError
 from .decoding import Array
 from .device import Device
+from .heartbeat import Heartbeat
 from .meshes import MeshBuffers
 from .programs import Program, Programs
 from .tables import Tables
@@ -45,6 +46,7 @@ class Executor:
         self._meshes = MeshBuffers(device.context)
         self._weights: dict[tuple[float, ...], moderngl.Buffer] = {}
         self._query: moderngl.Query | None = None
+        self._heart = Heartbeat()
 
     def close(self) -> None:
         """Give everything back."""
@@ -91,6 +93,15 @@ class Executor:
 
     def execute(self, plan: Plan, one: Pass, lease: Lease) -> None:
         """Run a pass whose textures are on the device. Raises ShaderError, DeviceError, RenderError."""
+        if not (one.writers and self._heart.watched):
+            self._execute(plan, one, lease)
+            return
+        self.device.context.finish()
+        with self._heart.running(tuple(one.writers.values())):
+            self._execute(plan, one, lease)
+            self.device.context.finish()
+
+    def _execute(self, plan: Plan, one: Pass, lease: Lease) -> None:
         targets = [plan.surfaces[number] for number in one.targets]
         missing = [surface for surface in targets if surface.key not in self.textures]
         for surface in targets:

@@ -1,96 +1,127 @@
-"""What a finished picture says of itself: what it was made of, and how to make it again."""
+"""What a finished picture says of itself: what it was made of, and how to make it again.
+
+Nothing in it depends on when or where it was made: the same graph and the same files give the same bytes.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import replace
+import shlex
+from collections.abc import Mapping, Sequence
 from hashlib import blake2b
 from importlib import metadata
-from pathlib import Path
 from typing import Any
 
 from .. import document, media
-from ..compiler import Picture, Plan
+from ..compiler import Pass, Plan, Target
 from ..errors import HalationError
-from ..graph import Graph, Group
+from ..graph import Graph
+from ..graph.paths import inlined
 from .destinations import Destination, Writing
 from .engine import Wanted
+from .sources import Hashes, Source, said
 
+PREFIX = "halation:"
 _KEY = "halation:key"
 
 
-class Hashes:
-    """SHA-256 of files, computed on another thread, once for every version of a file."""
-
-    def __init__(self) -> None:
-        self._pool = ThreadPoolExecutor(1, thread_name_prefix="hash")
-        self._found: dict[tuple[str, str], Future[str]] = {}
-
-    def of(self, paths: Iterable[str]) -> dict[str, Future[str]]:
-        """The hashes of files by path, sooner or later."""
-        return {path: self._begun(path) for path in paths}
-
-    def close(self) -> None:
-        """Stop."""
-        self._pool.shutdown(wait=False, cancel_futures=True)
-
-    def _begun(self, path: str) -> Future[str]:
-        key = (path, media.fingerprint(path))
-        if key not in self._found:
-            self._found[key] = self._pool.submit(media.content_hash, path)
-        return self._found[key]
+def header(
+    graph: Graph, target: Target, wanted: Wanted, frames: tuple[int, int], writing: Writing, file: Destination,
+    plan: Plan, sources: Sequence[Source], hashes: Hashes,
+) -> dict[str, Any]:
+    """What a file says: metadata of what was read passes through, and how to make it again is added."""
+    found: dict[str, Any] = {}
+    for path in dict.fromkeys(item.path for item in sources if item.is_picture):
+        found = media.read_metadata(path) | found
+    found = {name: item for name, item in found.items() if not name.startswith(PREFIX)}
+    found["halation:graph"] = document.dumps(inlined(graph))
+    found["halation:version"] = metadata.version("halation")
+    found["halation:renderer"] = target.renderer
+    found["halation:settings"] = settings(wanted, target, writing, file, frames if plan.memories else None)
+    for source in sources:
+        found |= said(source, hashes)
+    found[_KEY] = frame_key(graph, wanted, plan, file, writing, sources, hashes)
+    return found
 
 
-def frame_key(plan: Plan, file: Destination, writing: Writing) -> str:
+def settings(
+    wanted: Wanted, target: Target, writing: Writing, file: Destination, frames: tuple[int, int] | None
+) -> str:
+    """How a file was rendered and written, as `name=value` words that a shell would take apart.
+
+    `frames` are the first and last of the graph, where history matters.
+    """
+    parts = [("scale", wanted.scale), ("frame", wanted.frame)]
+    words = [f"{name}={value}" for name, value in parts]
+    if frames:
+        words.append(f"frames={frames[0]}..{frames[1]}")
+    if wanted.size:
+        words.append(f"size={wanted.size[0]}x{wanted.size[1]}")
+    words += [f"node={name}" for name in wanted.targets]
+    words += [f"output={name}" for name in file.layers.values() if name not in wanted.targets]
+    words += [f"precision={writing.precision}", f"intermediates={wanted.precision or target.precision}"]
+    words += [f"form={target.form}", f"view={file.view}", f"compression={writing.compression}"]
+    return " ".join(shlex.quote(word) for word in words if not word.endswith("="))
+
+
+def frame_key(
+    graph: Graph, wanted: Wanted, plan: Plan, file: Destination, writing: Writing, sources: Sequence[Source],
+    hashes: Hashes,
+) -> str:
     """What tells whether a file is still what would be written: it is equal only where all bytes of pixels are.
 
-    The keys of a plan cover shaders, values, history and the versions of all pictures that are read.
+    It covers shaders, values and the content of all that is read; where history matters, the whole graph.
     """
-    pixels = {layer: plan.surfaces[plan.outputs[name]].key for layer, name in file.layers.items()}
+    contents = {item.picture.path: hashes.of(item.picture.path) for item in plan.uploads if not item.picture.in_memory}
+    before = ""
+    if plan.memories:
+        led = [(item.owner, hashes.of_all(item.files.values())) for item in sources if item.files]
+        before = _digest(document.dumps(inlined(graph)), led, wanted.scale, wanted.size, plan.target.form)
+    keys = _content_keys(plan, contents, before)
+    pixels = {layer: keys[plan.outputs[name]] for layer, name in file.layers.items()}
     how = (file.path.suffix, file.view, writing.compression, writing.precision)
-    said = (metadata.version("halation"), sorted(pixels.items()), sorted(file.kinds.items()), how)
-    return blake2b(repr(said).encode(), digest_size=16).hexdigest()
+    return _digest(metadata.version("halation"), sorted(pixels.items()), sorted(file.kinds.items()), how)
+
+
+def is_marked(file: Destination) -> bool:
+    """True if that file is there and says what it was made of."""
+    return bool(_mark(file))
 
 
 def is_written(file: Destination, key: str) -> bool:
     """True if that file is there and says that it was made with that key."""
+    return _mark(file) == key
+
+
+def _mark(file: Destination) -> object:
     try:
-        return file.path.is_file() and media.read_metadata(file.path).get(_KEY) == key
+        return media.read_metadata(file.path).get(_KEY) if file.path.is_file() else None
     except HalationError:  # whatever it is, it is not what would be written
-        return False
+        return None
 
 
-def header(
-    graph: Graph, renderer: str, wanted: Wanted, sources: Mapping[str, Picture], hashes: Mapping[str, Future[str]],
-    key: str,
-) -> dict[str, Any]:
-    """What a file says: metadata of what was read passes through, and how to make it again is added."""
-    found: dict[str, Any] = {}
-    for path in hashes:
-        found = media.read_metadata(path) | found
-    found = {name: item for name, item in found.items() if not name.startswith("halation:")}
-    found["halation:graph"] = document.dumps(_whole(graph))
-    found["halation:version"] = metadata.version("halation")
-    found["halation:renderer"] = renderer
-    found["halation:settings"] = _settings(wanted)
-    found[_KEY] = key
-    for node, picture in sources.items():
-        layer = f":{picture.layer}" if picture.layer else ""
-        digest = hashes[picture.path].result()
-        found[f"halation:input:{node}"] = f"{Path(picture.path).name}{layer} sha256:{digest}"
-    return found
+def _content_keys(plan: Plan, contents: Mapping[str, str], before: str) -> dict[int, str]:
+    """Keys of surfaces as a plan has them, but of what is in files instead of where these are and how old.
+
+    What was remembered of the frame before is known by `before`.
+    """
+    keys: dict[int, str] = {}
+    for item in plan.uploads:
+        picture, surface = item.picture, plan.surfaces[item.surface]
+        content = surface.key if picture.in_memory else contents[picture.path]
+        keys[item.surface] = _digest(content, picture.layer, picture.kind, picture.width, surface.texel, surface.size)
+    for one in plan.passes:
+        made = _digest(*_work(one), [keys.get(number, before) for number in one.textures])
+        for place, number in enumerate(one.targets):
+            surface = plan.surfaces[number]
+            keys[number] = f"{made}.{place}.{surface.size}.{surface.texel}"
+    return {number: keys.get(number, before) for number in range(len(plan.surfaces))}
 
 
-def _whole(graph: Graph) -> Graph:
-    """The graph with the bodies of its groups in it: their files may change, and their values may differ already."""
-    nodes = {
-        id: replace(item, graph=_whole(item.graph), path="") if isinstance(item, Group) else item
-        for id, item in graph.nodes.items()
-    }
-    return replace(graph, nodes=nodes)
+def _work(one: Pass) -> tuple[object, ...]:
+    mesh = one.mesh.digest if one.mesh is not None else ""
+    return one.shader.source, one.shader.vertex, one.uniforms, one.weights, mesh
 
 
-def _settings(wanted: Wanted) -> str:
-    parts = {"scale": wanted.scale, "frame": wanted.frame, "size": wanted.size, "precision": wanted.precision}
-    return " ".join(f"{name}={value}" for name, value in parts.items() if value is not None)
+def _digest(*parts: object) -> str:
+    return blake2b("\0".join(map(str, parts)).encode(), digest_size=16).hexdigest()
+

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Protocol
 
 from .. import media
 from ..compiler import Pass, Plan
@@ -21,8 +21,9 @@ from ..graph import Graph
 from .decoding import Array
 from .destinations import Destination, Writing, check, destinations
 from .engine import Renderer, Wanted
-from .header import Hashes, frame_key, header, is_written
+from .header import frame_key, header, is_marked, is_written
 from .reel import Reel
+from .sources import Hashes, Source, Sources
 from .textures import Lease
 
 __all__ = ["FrameReport", "Progress", "Report", "Writing", "run_job"]
@@ -94,12 +95,12 @@ def run_job(
 
 @dataclass(frozen=True)
 class _Task:
-    """One frame: its files, the keys that they shall have, and how it is made."""
+    """One frame: its files, how it is made, and of what."""
 
     frame: int
     files: tuple[Destination, ...]
-    keys: tuple[str, ...]
     plan: Plan
+    sources: tuple[Source, ...]
 
 
 class _Job:
@@ -111,6 +112,7 @@ class _Job:
         self._resume, self._progress, self._frames = resume, progress, frames
         self._reel = Reel(renderer, graph, wanted)
         self._hashes = Hashes()
+        self._sources = Sources(renderer.pictures, graph, renderer.pictures.bind(graph, wanted.bound))
         self._writer = ThreadPoolExecutor(1, thread_name_prefix="write")
         self._writes: deque[Future[FrameReport]] = deque()
         self._reports: list[FrameReport] = []
@@ -155,15 +157,26 @@ class _Job:
         while todo:
             frame, started = todo.popleft(), time.perf_counter()
             plan, files = self._reel.plan(frame), self._files[frame]
-            sources = {item.node: item.picture for item in plan.uploads if not item.picture.in_memory}
-            check(files, plan, sources, self._writing.compression)
-            keys = tuple(frame_key(plan, file, self._writing) for file in files)
+            reading = {item.node: item.picture for item in plan.uploads if not item.picture.in_memory}
+            check(files, plan, reading, self._writing.compression)
+            task = _Task(frame, files, plan, self._sources.of(plan, frame, self._reel.begin(frame)))
             self.seconds["compile"] += time.perf_counter() - started
-            if self._resume and all(map(is_written, files, keys)):
+            if self._resume and self._is_done(task):
                 self._finished(FrameReport(frame, tuple(file.path for file in files), 0, kept=True))
                 continue
-            return _Task(frame, files, keys, plan)
+            return task
         return None
+
+    def _is_done(self, task: _Task) -> bool:
+        """True if the files of a frame are there and would come out the same."""
+        if not all(map(is_marked, task.files)):
+            return False
+        wanted = replace(self._wanted, frame=task.frame)
+        keys = (
+            frame_key(self._graph, wanted, task.plan, file, self._writing, task.sources, self._hashes)
+            for file in task.files
+        )
+        return all(map(is_written, task.files, keys))
 
     def _begun(self, task: _Task) -> tuple[Lease, int]:
         """Send a frame's passes to the device: what will hold the outputs, and how many passes they were."""
@@ -187,15 +200,18 @@ class _Job:
         return outputs
 
     def _write(self, task: _Task, outputs: Mapping[str, Array], passes: int) -> None:
-        sources = {item.node: item.picture for item in task.plan.uploads if not item.picture.in_memory}
-        hashes = self._hashes.of({picture.path for picture in sources.values()})
+        self._hashes.begin(task.sources)
         wanted = replace(self._wanted, frame=task.frame)
-        device = self._renderer.device.target.renderer
+        target, driver = self._renderer.device.target, self._renderer.device.driver
 
         def write() -> FrameReport:
             started = time.perf_counter()
-            for file, key in zip(task.files, task.keys, strict=True):
-                said: dict[str, Any] = header(self._graph, device, wanted, sources, hashes, key)
+            for file in task.files:
+                said = header(
+                    self._graph, target, wanted, self._reel.frames, self._writing, file, task.plan, task.sources,
+                    self._hashes,
+                )
+                said["halation:driver"] = driver
                 layers = {layer: outputs[name] for layer, name in file.layers.items()}
                 media.write(
                     file.path, layers, kinds=file.kinds, precision=self._writing.precision,

@@ -156,6 +156,6 @@ class Draw(Protocol):
         """
         ...
 
-    def read(self, path: str, layer: str, result: Socket) -> Drawn:
-        """The pixels of a layer of an image file, as `result` says."""
+    def read(self, path: str, layer: str, result: Socket, space: str = "") -> Drawn:
+        """The pixels of a layer of an image file, as `result` says. Color is in that color space, "" to find out."""
         ...

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Literal
 
-WORKING_SPACE = "working"
+WORKING_SPACE: Literal["working"] = "working"
 """The name of the space that pictures are in between nodes, whichever that is."""
 
 
@@ -27,7 +28,7 @@ class SpaceChange:
 
     source: str
     target: str
-    color: ColorSettings = ColorSettings()
+    color: ColorSettings = field(default_factory=ColorSettings)
 
 
 @dataclass(frozen=True)

@@ -6,17 +6,19 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Literal
 
+from .._declare import WORKING_SPACE
+
 Space = Literal[
-    "linear rec709", "srgb", "gamma 2.2", "gamma 2.4", "rec709 camera", "linear p3", "display p3", "linear rec2020",
-    "rec2100 pq", "rec2100 hlg", "linear adobergb", "adobergb", "acescg", "acescct", "acescc", "aces2065-1",
+    "working", "linear rec709", "srgb", "gamma 2.2", "gamma 2.4", "rec709 camera", "linear p3", "display p3",
+    "linear rec2020", "rec2100 pq", "rec2100 hlg", "linear adobergb", "adobergb", "acescg", "acescct", "acescc", "aces2065-1",
     "arri logc3", "arri logc4", "apple log", "blackmagic film", "canon log2", "canon log3", "davinci intermediate",
     "dji d-log", "panasonic v-log", "red log3g10", "sony s-log3", "sony s-log3 cine",
 ]
 
-WORKING: Space = "linear rec709"
-"""What pictures are in between nodes."""
+WORKING: Space = WORKING_SPACE
+"""What pictures are in between nodes: linear Rec.709 unless the graph says otherwise."""
 
-SPACES: Mapping[Space, str] = MappingProxyType({
+SPACES: Mapping[str, str] = MappingProxyType({
     "linear rec709": "lin_rec709_scene",
     "srgb": "srgb_rec709_scene",
     "gamma 2.2": "g22_encoded_rec709",
@@ -46,3 +48,8 @@ SPACES: Mapping[Space, str] = MappingProxyType({
     "sony s-log3": "slog3_sgamut3",
     "sony s-log3 cine": "slog3_sgamut3cine",
 })
+
+
+def named(space: Space) -> str:
+    """What the library calls a space; the working space is whatever the graph says."""
+    return SPACES.get(space, space)

@@ -1,25 +1,32 @@
 from typing import Annotated
 
 from .._declare import Doc, Draw, Drawn, Filter, Image, SpaceChange
-from ._spaces import SPACES, WORKING, Space
+from ._spaces import WORKING, Space, named
 
 
 class ColorSpace(Filter):
     """Convert colors from one space to another: primaries, white point and encoding.
 
-    Between nodes pictures are in linear Rec.709: convert to another space for an operation that wants it, and back. To
-    the HDR displays (PQ, HLG) 1 is 100 cd/m2. Computed by OpenColorIO's own GLSL from its ACES studio config, exactly.
-    Works on the color without its alpha; alpha stays.
+    Between nodes pictures are in the working space, linear Rec.709 unless the graph says otherwise: convert to another
+    space for an operation that wants it, and back. A space of the graph's color config is named in `source_name` or
+    `target_name`. To the HDR displays (PQ, HLG) 1 is 100 cd/m2. Computed by OpenColorIO's own GLSL, exactly; what the
+    config does not have comes from the ACES studio config. Works on the color without its alpha; alpha stays.
     """
 
     image = Image()
     source: Annotated[Space, Doc("What the numbers are in.")] = WORKING
     target: Annotated[Space, Doc("What they come out in.")] = "acescg"
+    source_name: Annotated[str, Doc("A space or role of the graph's color config, in place of the source.")] = ""
+    target_name: Annotated[str, Doc("A space or role of the graph's color config, in place of the target.")] = ""
 
     def identity(self) -> str | None:
-        return "image" if self.source == self.target else None
+        return "image" if self._names[0] == self._names[1] else None
+
+    @property
+    def _names(self) -> tuple[str, str]:
+        return self.source_name or named(self.source), self.target_name or named(self.target)
 
     def passes(self, draw: Draw) -> Drawn:
         color = draw.point("color_space_color", self.image)
-        changed = draw.recolor(color, SpaceChange(SPACES[self.source], SPACES[self.target]))
+        changed = draw.recolor(color, SpaceChange(*self._names))
         return draw.point("color_space", self.image, changed=changed)

@@ -1,7 +1,7 @@
 from typing import Annotated
 
 from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, LookupFile, SpaceChange, TablePath
-from ._spaces import SPACES, WORKING, Space
+from ._spaces import WORKING, Space, named
 
 
 class LutFile(Filter):
@@ -26,8 +26,8 @@ class LutFile(Filter):
         first, last = (self.gives, self.takes) if self.inverse else (self.takes, self.gives)
         color = draw.point("lut_file_color", self.image)
         if first != WORKING:
-            color = draw.recolor(color, SpaceChange(SPACES[WORKING], SPACES[first]))
+            color = draw.recolor(color, SpaceChange(named(WORKING), named(first)))
         color = draw.recolor(color, LookupFile(self.file, self.inverse))
         if last != WORKING:
-            color = draw.recolor(color, SpaceChange(SPACES[last], SPACES[WORKING]))
+            color = draw.recolor(color, SpaceChange(named(last), named(WORKING)))
         return draw.point("lut_file", self.image, changed=color, amount=self.amount)

@@ -14,10 +14,17 @@ class ReadImage(Reader):
 
     path: Annotated[str, File(layer="layer"), Doc("Image file, relative to the graph's folder.")] = ""
     layer: Annotated[str, Doc("Name of the layer; empty for the file's first color layer.")] = ""
+    color_space: Annotated[str, Doc(
+        "What the color of `out` is in, by a name or role of the color config, such as ACEScg or sRGB; empty finds out. "
+        "Data is never converted."
+    )] = ""
 
     out = Output()
     field = Output(Field())
     vector = Output(Vector(width=3))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
-        return {name: draw.read(self.path, self.layer, output.socket) for name, output in self.outputs.items()}
+        return {
+            name: draw.read(self.path, self.layer, output.socket, self.color_space)
+            for name, output in self.outputs.items()
+        }

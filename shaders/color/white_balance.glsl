@@ -1,4 +1,5 @@
 #include "lib/finite.glsl"
+#include "lib/working.glsl"
 
 const float white_balance_daylight = 6504.0;  // correlated color temperature of D65
 const float white_balance_offset = 0.0032647;  // how far D65 lies from the Planckian locus: its Duv
@@ -43,5 +44,5 @@ vec4 white_balance(vec4 image, float temperature, float tint, int method) {
     vec3 lit = max(white_balance_cones(temperature, tint, to_cones), white_balance_darkest);
     vec3 white = white_balance_cones(white_balance_daylight, 0.0, to_cones);
     mat3 from_rgb = WHITE_BALANCE_XYZ * to_cones;
-    return finite(vec4((image.rgb * from_rgb) * (white / lit) * inverse(from_rgb), image.a));
+    return finite(vec4(from_rec709((to_rec709(image.rgb) * from_rgb) * (white / lit) * inverse(from_rgb)), image.a));
 }

@@ -41,11 +41,11 @@ float agx_curve(float light) {
     return pow(max(agx_sigmoid((stops + 10.0) / 16.5), 0.0), 2.4);
 }
 
-// Scene-linear to display-linear Rec.709, 0..1. The curves turn hues; 60 % of the turn is taken back.
+// Scene-linear to display-linear, which is within 0..1 in Rec.709. The curves turn hues; 60 % of the turn is taken back.
 vec3 agx(vec3 rgb) {
-    vec3 scene = max(rgb * REC709_TO_REC2020, 0.0) * AGX_INSET;
+    vec3 scene = max(to_rec709(rgb) * REC709_TO_REC2020, 0.0) * AGX_INSET;
     vec3 formed = vec3(agx_curve(scene.r), agx_curve(scene.g), agx_curve(scene.b));
     float turn = hue(formed) - hue(scene);
     formed = with_hue(formed, hue(scene) + 0.4 * (turn - round(turn)));
-    return clamp(formed * AGX_OUTSET * REC2020_TO_REC709, 0.0, 1.0);
+    return from_rec709(clamp(formed * AGX_OUTSET * REC2020_TO_REC709, 0.0, 1.0));
 }

@@ -1,6 +1,5 @@
-// Color science of the working space: scene-linear with Rec.709 primaries.
-
-const vec3 LUMINANCE_WEIGHTS = vec3(0.2126, 0.7152, 0.0722);  // ITU-R BT.709-6
+// Color science of the working space, which is scene-linear.
+#include "lib/working.glsl"
 
 float luminance(vec3 rgb) { return dot(rgb, LUMINANCE_WEIGHTS); }
 

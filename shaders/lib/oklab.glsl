@@ -1,11 +1,12 @@
 // OKLab (Ottosson 2020): lightness, then how red and how yellow, as even as the eye sees it. Scaling light by k scales
 // all three by the cube root of k, so premultiplied color may be turned and saturated as it is.
+#include "lib/working.glsl"
 
 float signed_cbrt(float x) { return sign(x) * pow(abs(x), 1.0 / 3.0); }
 
 // Matrices are written by rows and multiplied from the left.
 vec3 to_oklab(vec3 rgb) {
-    vec3 cones = rgb * mat3(
+    vec3 cones = to_rec709(rgb) * mat3(
         0.4122214708, 0.5363325363, 0.0514459929,
         0.2119034982, 0.6806995451, 0.1073969566,
         0.0883024619, 0.2817188376, 0.6299787005
@@ -23,9 +24,9 @@ vec3 from_oklab(vec3 lab) {
         1.0, -0.1055613458, -0.0638541728,
         1.0, -0.0894841775, -1.2914855480
     );
-    return root * root * root * mat3(
+    return from_rec709(root * root * root * mat3(
         4.0767416621, -3.3077115913, 0.2309699292,
         -1.2684380046, 2.6097574011, -0.3413193965,
         -0.0041960863, -0.7034186147, 1.7076147010
-    );
+    ));
 }

@@ -1,4 +1,5 @@
 // Light of many wavelengths for three primaries: tents that overlap. Divide sums by the sum of the responses.
+#include "lib/working.glsl"
 
 // What red, green and blue see at a place in the spectrum from -1, red light, to 1, blue light; alpha sees all alike.
 vec4 spectrum_response(float place) { return vec4(max(-place, 0.0), 1.0 - abs(place), max(place, 0.0), 1.0); }
@@ -8,8 +9,8 @@ float spectrum_lobe(float nm, float middle, float below, float above) {
     return exp(-0.5 * t * t);
 }
 
-// The color that light of one wavelength has for the CIE 1931 observer (fits by Wyman, Sloan and Shirley 2013), in
-// Rec.709 primaries; what these cannot show is cut off. Divide sums by the sum over 400 to 700 nm for white light.
+// The color that light of one wavelength has for the CIE 1931 observer (fits by Wyman, Sloan and Shirley 2013), cut
+// off where Rec.709 primaries cannot show it. Divide sums by the sum over 400 to 700 nm for white light.
 vec3 spectrum_color(float nm) {
     vec3 xyz = vec3(
         1.056 * spectrum_lobe(nm, 599.8, 37.9, 31.0) + 0.362 * spectrum_lobe(nm, 442.0, 16.0, 26.7)
@@ -20,5 +21,5 @@ vec3 spectrum_color(float nm) {
     const mat3 rec709 = mat3(
         3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108, -0.2040259, -0.4985314, 0.0415560, 1.0572252
     );
-    return max(rec709 * xyz, 0.0);
+    return from_rec709(max(rec709 * xyz, 0.0));
 }

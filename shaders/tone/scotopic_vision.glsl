@@ -10,7 +10,7 @@ const mat3 SCOTOPIC_VISION_XYZ = mat3(
 // What rods see of a color (Ward Larson et al. 1997), as a factor of what they see of white.
 float scotopic_vision_rods(vec3 rgb) {
     const float white = 1.33 * (1.0 + (1.0 + 1.08905775) / 0.95045593) - 1.68;
-    vec3 xyz = max(rgb, 0.0) * SCOTOPIC_VISION_XYZ;
+    vec3 xyz = max(to_rec709(rgb), 0.0) * SCOTOPIC_VISION_XYZ;
     return max(xyz.y * (1.33 * (1.0 + (xyz.y + xyz.z) / max(xyz.x, 1e-30)) - 1.68), 0.0) / white;
 }
 

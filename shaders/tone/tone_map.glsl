@@ -22,9 +22,9 @@ float tone_map_luminance(
 
 // ACES RRT and sRGB ODT (Hill). Rows, multiplied from the left.
 vec3 tone_map_aces(vec3 rgb) {
-    vec3 v = rgb * mat3(0.59719, 0.35458, 0.04823, 0.07600, 0.90834, 0.01566, 0.02840, 0.13383, 0.83777);
+    vec3 v = to_rec709(rgb) * mat3(0.59719, 0.35458, 0.04823, 0.07600, 0.90834, 0.01566, 0.02840, 0.13383, 0.83777);
     v = (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.4329510) + 0.238081);
-    return v * mat3(1.60475, -0.53108, -0.07367, -0.10208, 1.10813, -0.00605, -0.00327, -0.07276, 1.07602);
+    return from_rec709(v * mat3(1.60475, -0.53108, -0.07367, -0.10208, 1.10813, -0.00605, -0.00327, -0.07276, 1.07602));
 }
 
 // Takes off the reflection of clear coat (Fresnel, 4 %), compresses above 0.8 and fades the brightest to white.

@@ -88,7 +88,8 @@ def test_loops_are_named_and_order_refuses_them() -> None:
 
 def test_a_missing_input_is_an_error_only_where_it_matters() -> None:
     loose = small().add("loose", Soften())
-    assert only(loose) == Problem("loose", "image", "'loose.image' is not linked: it needs an Image", rules.UNFINISHED_NODE)
+    sentence = "'loose.image' is not linked: it needs an Image"
+    assert only(loose) == Problem("loose", "image", sentence, rules.UNFINISHED_NODE)
     assert found(small().disconnect(Port("gain", "image"))) == [("error", "gain", "image")]
     assert only(small().add("slope", Slope())).sentence.endswith("it needs a Field")
 
@@ -136,7 +137,8 @@ def test_ends() -> None:
 
 def test_unknown_types() -> None:
     graph = small().add("x", Unknown("sofen", {})).connect(Port("x", "anything"), Port("soften", "image"))
-    assert only(graph) == Problem("x", "", "node 'x' has the unknown type 'sofen'; did you mean 'soften'?", rules.UNKNOWN_TYPE)
+    sentence = "node 'x' has the unknown type 'sofen'; did you mean 'soften'?"
+    assert only(graph) == Problem("x", "", sentence, rules.UNKNOWN_TYPE)
 
 
 def test_leftover_keys_are_mentioned() -> None:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import lru_cache
 from itertools import islice
@@ -48,7 +48,7 @@ class Index:
 
     count: int
     times: tuple[int, ...] = ()
-    places: Mapping[tuple[int | None, int | None], int] = MappingProxyType({})
+    places: Mapping[tuple[int | None, int | None], int] = field(default_factory=dict[Any, int])
     keys: tuple[Key, ...] = ()
 
     def key(self, time: int) -> int:

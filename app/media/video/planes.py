@@ -9,7 +9,7 @@ import numpy as np
 
 from ...errors import InputError
 from .index import Facts
-from .signals import GAMUTS, RGB, Array, enlarged, linear, matrix_of, scales, to_rgb
+from .signals import GAMUTS, Array, enlarged, linear, matrix_of, scales, to_rgb
 
 _CENTERED = ("mjpeg", "mpeg1video", "theora")
 """Codecs whose chroma lies in the middle between samples of luma; elsewhere it lies at the left ones, as in MPEG-2."""
@@ -38,8 +38,9 @@ class Signal:
         """Color and alpha as they are, without any conversion of color."""
         if self.alpha is None:
             return self.rgb
-        return np.concatenate([_floats(self.rgb), _floats(self.alpha)[..., None]], axis=2) \
-            if self.rgb.dtype != self.alpha.dtype else np.concatenate([self.rgb, self.alpha[..., None]], axis=2)
+        same = self.rgb.dtype == self.alpha.dtype
+        rgb, alpha = (self.rgb, self.alpha) if same else (_floats(self.rgb), _floats(self.alpha))
+        return np.concatenate([rgb, alpha[..., None]], axis=2)
 
     @property
     def light(self) -> tuple[Array, str]:
@@ -138,5 +139,3 @@ def _floats(array: Array) -> Array:
         return array
     return array.astype(np.float32) / np.float32(np.iinfo(array.dtype).max)
 
-
-__all__ = ["RGB", "Signal", "signal_of"]

@@ -1,0 +1,210 @@
+"""The format as a JSON Schema (draft 2020-12), made of the catalogue and of the records that reading uses.
+
+What JSON Schema cannot say is left to `halation check`: that links fit, that keys are in order, that nothing loops.
+"""
+
+from __future__ import annotations
+
+import inspect
+import math
+from collections.abc import Mapping
+from typing import Any, get_args
+
+import msgspec
+
+from ...nodes import LIGHT_NUMBERS, MAX_LIGHTS, MAX_POINTS, Node, Value
+from ..graph import INPUTS, OUTPUTS
+from ..written import Language
+from . import records
+from .migrations import FORMAT
+
+Schema = dict[str, Any]
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
+_PORT: Schema = {"type": "string", "pattern": r"^[^.]+\.[^.]+$"}
+_NAME: Schema = {"pattern": "^[^./\\u0000-\\u001f\\u007f]+$"}
+_NUMBERS: Schema = {"type": "array", "items": {"type": "number"}}
+
+_DOCS = {
+    "GraphRecord.halation": "The number of the format.",
+    "GraphRecord.settings": "What holds for the graph as a whole.",
+    "GraphRecord.inputs": "Where pictures and numbers enter the graph, by name.",
+    "GraphRecord.outputs": "Where pictures leave the graph, by name.",
+    "GraphRecord.controls": "Values that the graph shows under names of its own.",
+    "GraphRecord.nodes": "Nodes by id.",
+    "GraphRecord.links": 'Links from target to source: "bloom.image": "inputs.beauty".',
+    "GraphRecord.animation": "Values that change over time, by node.value.",
+    "GraphRecord.ui": "The layout in the editor. No picture depends on it.",
+    "SettingsRecord.size": "Width and height of the canvas in pixels; by default those of the first picture.",
+    "SettingsRecord.frames": "The first and the last frame.",
+    "SettingsRecord.rate": "Frames per second.",
+    "SettingsRecord.preroll": "How many frames before the one that is wanted nodes with a memory look back.",
+    "SettingsRecord.color": "How colors are managed.",
+    "SettingsRecord.allow": "Why what halation check warns of is meant: reasons by rule, or by rule:node.",
+    "InputRecord.type": "What travels on the links from here.",
+    "InputRecord.file": "The picture that is read unless another one is bound, relative to this file.",
+    "InputRecord.layer": "The layer of the file; empty for its first color layer.",
+    "InputRecord.missing": "What a frame shows that has no file.",
+    "InputRecord.default": "One number, or one for each channel, where there is no picture.",
+    "OutputRecord.layer": "The name of the layer in a file of several; by default that of the output.",
+    "OutputRecord.view": "The view that shows it; none for what a tone map made ready for the display.",
+    "ControlRecord.target": "The value that it turns, as node.value.",
+    "AnimationRecord.keys": "Keys in the order of their frames.",
+    "AnimationRecord.outside": "What comes before the first key and after the last.",
+    "AnimationRecord.expression": "A formula, such as 0.5 + 0.5 * sin(time).",
+    "TypeRecord.muted": "A muted node passes its first input through.",
+    "GroupRecord.graph": "The body of the group.",
+    "GroupRecord.path": "The file with the body of the group, relative to this one.",
+    "CodeRecord.code": "The code, line by line.",
+    "CodeRecord.file": "The file with the code, relative to this one.",
+    "NodeRecord.version": "The version of the node type that saved the values.",
+    "NodeRecord.values": "What differs from the default.",
+}
+
+
+def schema(types: Mapping[str, type[Node]]) -> Schema:
+    """The schema of a graph file, for these node types by id."""
+    found = {f"node {id}": _node(kind) for id, kind in sorted(types.items())}
+    languages = sorted(get_args(Language))
+    code = _either(_record(records.CodeRecord), code="array", file="name")
+    homes = {**{id: f"node {id}" for id in sorted(types)}, "group": "group", **dict.fromkeys(languages, "code")}
+    type_name: Schema = {"description": "What it does.", "anyOf": [{"enum": list(homes)}, {"type": "string"}]}
+    return {
+        "$schema": DIALECT,
+        "title": "Halation graph",
+        "description": "A graph of effects. See halation nodes for what each of them does.",
+        "allOf": [{"$ref": "#/$defs/graph"}],
+        "type": "object",
+        "required": ["halation"],
+        "properties": {
+            "$schema": {"description": "Where editors of text find the schema; it means nothing else."},
+            "halation": {"type": "integer", "minimum": 1, "maximum": FORMAT},
+        },
+        "$defs": {
+            "graph": _graph(),
+            "node": {
+                **_record(records.TypeRecord, type=type_name),
+                "allOf": [_case(type, home) for type, home in homes.items()],
+            },
+            "group": _either(_record(records.GroupRecord, graph=_nullable("graph")), graph="object", path="name"),
+            "code": code,
+            "animation": _either(
+                _record(records.AnimationRecord, keys={"type": ["array", "null"], "items": {"$ref": "#/$defs/key"}}),
+                keys="array", expression="string",
+            ),
+            "key": _record(records.KeyRecord, value={"anyOf": [
+                {"type": ["number", "boolean"]}, {**_NUMBERS, "minItems": 1},
+            ]}),
+            "curve": _points(2, range(2, MAX_POINTS + 1)),
+            "ramp": _points(5, range(2, MAX_POINTS + 1)),
+            "lights": _points(LIGHT_NUMBERS, range(MAX_LIGHTS + 1)),
+            **found,
+        },
+    }
+
+
+def _graph() -> Schema:
+    """A document, or the body of a group."""
+    nodes = {**_NAME, "not": {"enum": [INPUTS, OUTPUTS]}}
+    type_names = {"enum": sorted(records.type_names()), "default": "Image"}
+    color = _record(records.ColorRecord)
+    return _record(
+        records.GraphRecord,
+        halation={},
+        settings=_record(records.SettingsRecord, color=color),
+        inputs=_entries(_record(records.InputRecord, type=type_names), _NAME),
+        outputs=_entries(_record(records.OutputRecord, type=type_names), _NAME),
+        controls=_entries(_record(records.ControlRecord, target=_PORT), _NAME),
+        nodes=_entries({"$ref": "#/$defs/node"}, nodes),
+        links=_entries(_PORT, _PORT),
+        animation=_entries({"$ref": "#/$defs/animation"}, _PORT),
+    )
+
+
+def _record(kind: records.RecordType, **known: Schema) -> Schema:
+    """A record; `known` says more about fields of it than their types do. Other keys are kept, so they may be there.
+
+    What every node has is said once, of any node.
+    """
+    _, parts = msgspec.json.schema_components([kind])
+    made: Schema = parts[kind.__name__]
+    fields: dict[str, Schema] = made["properties"]
+    homes = [base for base in kind.__mro__ if issubclass(base, msgspec.Struct)]
+
+    def field(name: str) -> Schema:
+        doc = next((found for home in homes if (found := _DOCS.get(f"{home.__name__}.{name}"))), "")
+        return {**(known.get(name) or fields[name]), **({"description": doc} if doc else {})}
+
+    shared = () if kind is records.TypeRecord else records.TypeRecord.__struct_fields__
+    own = [name for name in fields if name not in shared or not issubclass(kind, records.TypeRecord)]
+    needed = [name for name in made["required"] if name in own]
+    return {
+        "type": "object", "properties": {name: field(name) for name in own},
+        **({"required": needed} if needed else {}),
+    }
+
+
+def _node(kind: type[Node]) -> Schema:
+    """A node of a type. Values that an older version of it saved are not looked at."""
+    values: Schema = {
+        "type": "object", "properties": {name: _value(value) for name, value in kind.values.items()},
+    }
+    version = {"type": "integer", "minimum": 1, "maximum": kind.version, "default": 1}
+    made = _record(records.NodeRecord, version=version, **({"values": values} if kind.version == 1 else {}))
+    if kind.version > 1:
+        present: Schema = {"properties": {"version": {"const": kind.version}}, "required": ["version"]}
+        made |= {"if": present, "then": {"properties": {"values": values}}}
+    return {"description": inspect.getdoc(kind) or "", **made}
+
+
+def _value(value: Value) -> Schema:
+    """What a value may be set to."""
+    limits = (("minimum", value.minimum), ("maximum", value.maximum))
+    bounds: Schema = {name: limit for name, limit in limits if math.isfinite(limit)}
+    number: Schema = {"type": "number", **bounds}
+    match value.type:
+        case "float":
+            made = number
+        case "int":
+            made = {"type": "integer", **bounds}
+        case "bool":
+            made: Schema = {"type": "boolean"}
+        case "choice":
+            made = {"enum": list(value.choices)}
+        case "path" | "text":
+            made = {"type": "string"}
+        case "color" | "vector" | "matrix":
+            length = 4 if value.type == "color" else value.length
+            made = {"type": "array", "items": number, "minItems": length, "maxItems": length}
+        case "curve" | "ramp" | "lights":
+            made = {"$ref": f"#/$defs/{value.type}"}
+    unit = f"Unit: {value.unit}." if value.unit else ""
+    doc = " ".join(part for part in (value.doc, unit) if part)
+    return {**made, "default": value.default, **({"description": doc} if doc else {})}
+
+
+def _points(width: int, counts: range) -> Schema:
+    """A flat list of so many points of `width` numbers each."""
+    return {**_NUMBERS, "anyOf": [{"minItems": width * count, "maxItems": width * count} for count in counts]}
+
+
+def _entries(entry: Schema, names: Schema) -> Schema:
+    """A section: entries by name."""
+    return {"type": "object", "propertyNames": names, "additionalProperties": entry}
+
+
+def _nullable(definition: str) -> Schema:
+    return {"anyOf": [{"$ref": f"#/$defs/{definition}"}, {"type": "null"}]}
+
+
+def _either(record: Schema, **kinds: str) -> Schema:
+    """The record with just one of these keys, of these types; an empty name is none."""
+    filled = {"name": {"type": "string", "minLength": 1}}
+    given = {name: filled.get(kind, {"type": kind}) for name, kind in kinds.items()}
+    return {**record, "oneOf": [{"required": [name], "properties": {name: kind}} for name, kind in given.items()]}
+
+
+def _case(type: str, definition: str) -> Schema:
+    named: Schema = {"properties": {"type": {"const": type}}, "required": ["type"]}
+    return {"if": named, "then": {"$ref": f"#/$defs/{definition}"}}

@@ -1,0 +1,214 @@
+"""Loops that might not end, found in the text of a shader and given an end: a loop that goes on for ever hangs the GPU.
+
+A loop is left as it is where its text says how often it runs. All others count their rounds together in one variable,
+and are left when there are too many: loops inside loops end too, and so do those of functions that loops call.
+"""
+
+from __future__ import annotations
+
+import ast
+import operator
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from .text import blanked
+
+MOST_ROUNDS = 1 << 16
+"""Of all counted loops of a pixel together; also the rounds that loops may have that are not counted."""
+
+_LOOP = re.compile(r"\b(for|while|do)\b")
+_DIRECTIVE = re.compile(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*", re.MULTILINE)
+_NAMED = re.compile(
+    r"^[ \t]*#[ \t]*define[ \t]+(\w+)[ \t]+([^\n]+)$|\bconst\s+(?:int|uint|float)\s+(\w+)\s*=\s*([^;,]+);", re.MULTILINE
+)
+_BEGIN = re.compile(r"\s*(?:(?:int|uint|float)\s+)?(\w+)\s*=\s*([^,;]+)")
+_TEST = re.compile(r"\s*(\w+)\s*(<=|>=|<|>|!=)\s*([^&|?]+)")
+_STEP = re.compile(r"\s*(?:(\+\+|--)\s*(\w+)|(\w+)\s*(\+\+|--)|(\w+)\s*(\+=|-=)\s*([^,]+))\s*")
+_NUMBER = re.compile(r"(?<![\w.])((?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)[uUfF]?(?![\w.])")
+_OPERATORS: Mapping[type[ast.operator], Callable[[float, float], float]] = MappingProxyType({
+    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
+})
+
+
+@dataclass(frozen=True)
+class _Loop:
+    """Where a loop's body is: from `start` to `end`, without its braces if it has some; how often it runs, if known."""
+
+    start: int
+    end: int
+    braced: bool
+    rounds: float | None
+
+
+class _Broken(Exception):
+    """The braces or brackets do not close: what is to be done with it is up to the driver."""
+
+
+def guarded(source: str, counter: str, most: int = MOST_ROUNDS) -> str:
+    """The text with loops that might not end leaving when `counter`, an int declared elsewhere, comes to `most`.
+
+    Lines stay where they are, comments go. The same text without comments if all loops surely end.
+    """
+    code = blanked(source)
+    plain = _DIRECTIVE.sub(_masked, code)
+    try:
+        loops = tuple(_loops(plain, _constants(code), 0, len(plain), 1.0))
+    except _Broken:
+        return code
+    check = f"if (++{counter} > {most}) break; "
+    marks: dict[int, str] = {}
+    for loop in loops:
+        if loop.rounds is None:
+            marks[loop.start] = marks.get(loop.start, "") + (" " if loop.braced else "{ ") + check
+            if not loop.braced:
+                marks[loop.end] = " }" + marks.get(loop.end, "")
+    parts, at = list[str](), 0
+    for place in sorted(marks):
+        parts += [code[at:place], marks[place]]
+        at = place
+    return "".join([*parts, code[at:]])
+
+
+def _loops(code: str, constants: Mapping[str, float], start: int, end: int, outer: float) -> Iterator[_Loop]:
+    """The loops between two places, those inside of others after them. `outer` rounds are made around them."""
+    at = start
+    while found := _LOOP.search(code, at, end):
+        header = ""
+        after = found.end()
+        if found[1] != "do":
+            opened = code.find("(", after)
+            if opened < 0 or code[after:opened].strip():
+                raise _Broken
+            after = _closing(code, opened)
+            header = code[opened + 1 : after - 1]
+        first = _skip(code, after)
+        braced = code[first : first + 1] == "{"
+        last = _statement(code, first)
+        inner = (first + 1, last - 1) if braced else (first, last)
+        rounds = _rounds(header, code[first:last], constants, code) if found[1] == "for" else None
+        rounds = None if rounds is None or rounds * outer > MOST_ROUNDS else rounds
+        yield _Loop(*inner, braced, rounds)
+        yield from _loops(code, constants, *inner, outer * (rounds or 1.0))
+        at = last
+        if found[1] == "do":
+            ended = re.compile(r"\s*while\s*\(").match(code, last)
+            if not ended:
+                raise _Broken
+            at = _closing(code, ended.end() - 1)
+
+
+def _rounds(header: str, body: str, constants: Mapping[str, float], code: str) -> float | None:
+    """How often a `for` runs at most, if its text says so."""
+    parts = header.split(";")
+    if len(parts) != 3:
+        return None
+    begin, test, step = _BEGIN.fullmatch(parts[0].rstrip()), _TEST.fullmatch(parts[1]), _STEP.fullmatch(parts[2])
+    if not begin or not test or not step:
+        return None
+    name = begin[1]
+    if test[1] != name or name not in (step[2], step[3], step[5]) or _changes(name, body, code):
+        return None
+    low, high = _value(begin[2], constants), _value(test[3], constants)
+    by = 1.0 if step[7] is None else _value(step[7], constants)
+    if low is None or high is None or not by:
+        return None
+    if "-" in (step[1] or step[4] or step[6]):
+        by = -by
+    way = test[2]
+    upward = way in ("<", "<=") or (way == "!=" and by > 0.0)
+    if upward != (by > 0.0) or (way == "!=" and not ((high - low) / by).is_integer()):
+        return None
+    return max((high - low) / by, 0.0) + 1.0
+
+
+def _changes(name: str, body: str, code: str) -> bool:
+    """True if the body may set the variable."""
+    if re.search(rf"\b{name}\s*(?:=(?!=)|[-+*/%&|^]=|<<=|>>=|\+\+|--)|(?:\+\+|--)\s*{name}\b", body):
+        return True
+    passed = re.search(rf"[(,]\s*{name}\s*[,)]", body)
+    return passed is not None and re.search(r"\b(out|inout|modf|frexp)\b", code) is not None
+
+
+def _constants(code: str) -> dict[str, float]:
+    """What the text gives a name to: constants and macros that are numbers, unless the name is used for more."""
+    found: dict[str, float] = {}
+    for match in _NAMED.finditer(code):
+        name, text = match[1] or match[3], match[2] or match[4]
+        value = _value(text, found)
+        if value is not None and name not in found:
+            found[name] = value
+        else:
+            found.pop(name, None)
+    return found
+
+
+def _value(text: str, constants: Mapping[str, float]) -> float | None:
+    """What an expression of numbers and constants is worth; divisions of whole numbers may be larger in GLSL's eyes."""
+    try:
+        tree = ast.parse(_NUMBER.sub(r"\1", re.sub(r"\b(?:int|uint|float)\s*\(", "(", text)).strip(), mode="eval")
+        return _evaluated(tree.body, constants)
+    except (SyntaxError, ValueError, KeyError, ZeroDivisionError, RecursionError, MemoryError):
+        return None
+
+
+def _evaluated(node: ast.expr, constants: Mapping[str, float]) -> float:
+    match node:
+        case ast.Constant(value=int() | float() as number):
+            return float(number)
+        case ast.Name(id=name):
+            return constants[name]
+        case ast.UnaryOp(op=ast.USub(), operand=inner):
+            return -_evaluated(inner, constants)
+        case ast.BinOp(left=left, op=op, right=right) if type(op) in _OPERATORS:
+            return _OPERATORS[type(op)](_evaluated(left, constants), _evaluated(right, constants))
+        case _:
+            raise ValueError
+
+
+def _statement(code: str, at: int) -> int:
+    """The end of the statement that begins at a place."""
+    at = _skip(code, at)
+    if code[at : at + 1] == "{":
+        return _closing(code, at)
+    word = re.compile(r"\w*").match(code, at)
+    assert word is not None
+    match word[0]:
+        case "for" | "while" | "if" | "switch":
+            opened = code.find("(", at)
+            if opened < 0:
+                raise _Broken
+            end = _statement(code, _closing(code, opened))
+            rest = re.compile(r"\s*else\b").match(code, end) if word[0] == "if" else None
+            return _statement(code, rest.end()) if rest else end
+        case "do":
+            ended = code.find(";", _statement(code, word.end()))
+        case _:
+            ended = code.find(";", at)
+    if ended < 0:
+        raise _Broken
+    return ended + 1
+
+
+def _closing(code: str, opened: int) -> int:
+    """The place after the bracket that closes the one at a place."""
+    one, depth = code[opened], 0
+    other = {"(": ")", "{": "}"}[one]
+    for at in range(opened, len(code)):
+        depth += (code[at] == one) - (code[at] == other)
+        if not depth:
+            return at + 1
+    raise _Broken
+
+
+def _skip(code: str, at: int) -> int:
+    """The next place that is no space."""
+    while at < len(code) and code[at].isspace():
+        at += 1
+    return at
+
+
+def _masked(match: re.Match[str]) -> str:
+    """As many spaces, lines as they were."""
+    return re.sub(r"[^\n]", " ", match[0])

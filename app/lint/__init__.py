@@ -1,0 +1,1 @@
+"""What is wrong with graph files and how they could be better: everything that `halation check` says."""

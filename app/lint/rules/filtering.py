@@ -1,0 +1,96 @@
+"""Pictures that are filtered twice where once would do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import hypot
+
+from ....nodes import Pointwise
+from ....nodes.blur.gaussian_blur import GaussianBlur
+from ....nodes.distort.resize import Resize
+from ....nodes.distort.transform import Transform
+from ...graph import Item, Port, Problem
+from ...graph.rules import Rule
+from ...written import Written
+from ..sheet import Check, Sheet
+
+FILTERING_TWICE = Rule(
+    "filtering-twice", "warning",
+    "A picture is resampled or blurred twice where once would do, which costs sharpness and time. Transforms right "
+    "behind each other with the same edge act as one, and are fine.",
+    "Put transforms next to each other; make one of two resizes or two blurs.",
+)
+_PLACES = frozenset({"pixel", "extent"})
+"""What a shader says whose result depends on where a pixel is."""
+
+
+def find(sheet: Sheet) -> Iterator[Problem]:
+    """Nodes that filter what has just been filtered."""
+    for id in sheet.graph.nodes:
+        item = sheet.works(id)
+        if isinstance(item, Transform | Resize | GaussianBlur):
+            before, between = _filtered(sheet, id)
+            if before and (way_out := _way_out(sheet, before, between, id)):
+                sentence = f"'{before}' and '{id}' filter the picture twice: {way_out}"
+                yield Problem(id, "image", sentence, FILTERING_TWICE, f"nodes.{id}")
+
+
+def _filtered(sheet: Sheet, id: str) -> tuple[str, list[str]]:
+    """The node that filtered the picture of `id`, and of nothing else, with what is between; "" if there is none."""
+    between: list[str] = []
+    port = sheet.source(Port(id, "image"))
+    while port and sheet.readers[port] == 1:
+        item = sheet.works(port.node)
+        if isinstance(item, Transform | Resize | GaussianBlur):
+            return port.node, between
+        if not isinstance(item, Pointwise) or not (name := _picture(sheet, port.node, item)):
+            break
+        between.insert(0, port.node)
+        port = sheet.source(Port(port.node, name))
+    return "", []
+
+
+def _picture(sheet: Sheet, id: str, item: Pointwise) -> str:
+    """The one input that is linked of a node that does the same to every pixel, so that it may as well come later."""
+    fed = [name for name in (*item.inputs, *item.values) if Port(id, name) in sheet.graph.links]
+    alike = len(fed) == len(item.outputs) == 1 and fed[0] in item.inputs and not isinstance(item, Written)
+    return fed[0] if alike and not sheet.library.uses(item.shader, _PLACES, id) else ""
+
+
+def _way_out(sheet: Sheet, before: str, between: list[str], id: str) -> str:
+    """What to do about two nodes that filter, or nothing where both are needed."""
+    first, second = sheet.graph.nodes[before], sheet.graph.nodes[id]
+    still = not sheet.moves(before) and not sheet.moves(id)
+    match first, second:
+        case Transform(), Transform() if between and first.edge == second.edge and not _hard(first, second):
+            return f"put {_listed(between)} behind '{id}', so that the two transforms act as one"
+        case Resize(), Resize() if still and _same_way(first, second):
+            wide, high = (a * b for a, b in zip(first.scale, second.scale, strict=True))
+            return f"one resize by {wide:.4g}, {high:.4g} does both"
+        case (Resize() as resize, Transform()) | (Transform(), Resize() as resize):
+            if still and max(resize.scale) <= 1.0 and not _hard(first, second):
+                return f"let the transform scale by {resize.scale[0]:.4g}, {resize.scale[1]:.4g} too, and crop behind it"
+        case GaussianBlur(), GaussianBlur() if still and not between and first.edge == second.edge:
+            if first.scale == second.scale:
+                return f"one blur with a sigma of {hypot(first.sigma, second.sigma):.4g} does both"
+        case _:
+            pass
+    return ""
+
+
+def _hard(*items: Item) -> bool:
+    """True if pixels are meant to stay as they are."""
+    return any(isinstance(item, Transform | Resize) and item.kernel in ("nearest", "box") for item in items)
+
+
+def _same_way(first: Resize, second: Resize) -> bool:
+    """False where a picture is made small and large again: what that loses may be meant."""
+    pairs = list(zip(first.scale, second.scale, strict=True))
+    return all(max(pair) <= 1.0 for pair in pairs) or all(min(pair) >= 1.0 for pair in pairs)
+
+
+def _listed(names: list[str]) -> str:
+    return " and ".join(f"'{name}'" for name in names)
+
+
+CHECKS = (Check(FILTERING_TWICE, find),)

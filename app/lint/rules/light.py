@@ -1,0 +1,100 @@
+"""Pictures for a display where light is wanted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import PurePath
+
+from ....nodes import Kind, Node
+from ....nodes.color.color_space import ColorSpace
+from ....nodes.color.lut_file import LutFile
+from ....nodes.input.read_image import ReadImage
+from ....nodes.tone.local_tone_map import LocalToneMap
+from ....nodes.tone.photoreceptor_tone_map import PhotoreceptorToneMap
+from ....nodes.tone.tone_map import ToneMap
+from ...graph import INPUTS, Group, Port, Problem, signature
+from ...graph.rules import Rule
+from ...written import Written
+from ..sheet import Check, Sheet
+
+DISPLAY_LIGHT = Rule(
+    "display-light", "warning",
+    "A node that reckons with light gets a picture that a tone map made ready for the display: brightness is bent, "
+    "and lights are cut off.",
+    "Put the node before the tone map.",
+)
+CLIPPED_LIGHT = Rule(
+    "clipped-light", "warning",
+    "A node that makes lights glow or spread gets a file of 8 bits, in which nothing is brighter than white.",
+    "Read an EXR of the same picture, or allow it where the file is all there is.",
+)
+
+_TONE = (ToneMap, LocalToneMap, PhotoreceptorToneMap)
+_GLOWS = frozenset({"bloom", "bright_pass", "eye_glare", "ghosts", "kernel_glare", "star", "streaks"})
+_SPREADS = frozenset({"depth_of_field"})
+_LIGHT = _GLOWS | _SPREADS | {
+    "auto_exposure", "deferred_lighting", "exposure", "eye_adaptation", "film_halation", "fog", "image_based_light",
+    "light_shafts", "local_tone_map", "motion_blur", "over_exposure", "photoreceptor_tone_map", "scotopic_vision",
+    "screen_reflections", "sun_beams", "tone_map",
+}
+_BYTES = frozenset({".bmp", ".gif", ".jpeg", ".jpg", ".tga", ".webp"})
+"""Endings of files that hold 8 bits whatever is in them; those of a PNG or TIFF may be more."""
+
+
+def display_light(sheet: Sheet) -> Iterator[Problem]:
+    """Nodes that work with light, behind a tone map. The first of each chain is named."""
+    maker: dict[Port, str] = {}
+    for id in sheet.graph.order():
+        item = sheet.works(id)
+        if item is None or isinstance(item, Written):
+            continue
+        pictures = [source for source in _pictures(sheet, id) if source]
+        made = {maker[source] for source in pictures if source in maker}
+        if isinstance(item, Node) and item.id in _LIGHT and pictures and pictures[0] in maker:
+            name, by = next(iter(item.inputs)), maker[pictures[0]]
+            sentence = f"'{id}' works with light, but '{by}' has made its picture ready for the display: put it before"
+            yield Problem(id, name, f"{sentence} '{by}'", DISPLAY_LIGHT, f"links.{id}.{name}")
+        for name in _shown(sheet, id):
+            maker[Port(id, name)] = id
+        keeps = isinstance(item, Node) and not isinstance(item, ColorSpace | LutFile) and item.id not in _LIGHT
+        if keeps and made and all(source in maker for source in pictures):
+            for name, output in item.outputs.items():
+                if output.socket.kind is Kind.IMAGE:
+                    maker[Port(id, name)] = min(made)
+
+
+def clipped_light(sheet: Sheet) -> Iterator[Problem]:
+    """Nodes that need light above white, right behind a file that has none."""
+    for id in sheet.graph.nodes:
+        item = sheet.works(id)
+        if isinstance(item, Node) and item.id in _GLOWS | _SPREADS and (source := sheet.first(id)):
+            file = _file(sheet, source)
+            if PurePath(file).suffix.lower() in _BYTES:
+                sentence = f"'{id}' wants light brighter than white, and '{file}' has none: read an EXR"
+                name = next(iter(item.inputs))
+                yield Problem(id, name, sentence, CLIPPED_LIGHT, f"links.{id}.{name}")
+
+
+def _pictures(sheet: Sheet, id: str) -> list[Port | None]:
+    """What feeds the inputs of a node that take an image."""
+    inputs = signature(sheet.graph.nodes[id]).inputs
+    return [sheet.source(Port(id, name)) for name, socket in inputs.items() if socket.kind is Kind.IMAGE]
+
+
+def _shown(sheet: Sheet, id: str) -> list[str]:
+    """Outputs of a node that are for a display, by what it is."""
+    item = sheet.graph.nodes[id]
+    if isinstance(item, Group):
+        return [name for name, output in item.graph.outputs.items() if output.view == "none"]
+    return ["out"] if isinstance(item, _TONE) else []
+
+
+def _file(sheet: Sheet, source: Port) -> str:
+    """The file that a port shows, if any."""
+    if source.node == INPUTS:
+        return sheet.graph.inputs[source.socket].file
+    item = sheet.graph.nodes[source.node]
+    return item.path if isinstance(item, ReadImage) else ""
+
+
+CHECKS = (Check(DISPLAY_LIGHT, display_light), Check(CLIPPED_LIGHT, clipped_light))

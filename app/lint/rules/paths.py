@@ -1,0 +1,66 @@
+"""Paths that only one machine understands."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import PurePosixPath, PureWindowsPath
+
+from ...graph import INPUTS, Graph, Group, Problem, signature
+from ...graph.rules import Rule
+from ...written import Written
+from ..sheet import Check, Sheet
+
+ABSOLUTE_PATH = Rule(
+    "absolute-path", "warning", "A path begins at the root of one machine: on another one the file is not there.",
+    "Write the path from the folder of the graph file.",
+)
+BACKSLASH_PATH = Rule(
+    "backslash-path", "warning", "A path with backslashes is one name on every system but Windows.",
+    "Write it with slashes, which Windows takes too.",
+)
+
+
+def named_paths(graph: Graph) -> Iterator[tuple[str, str, str, str]]:
+    """Every file that a graph names, groups aside: node, socket, JSON path in the graph, and the path as written."""
+    for name, end in graph.inputs.items():
+        if end.file:
+            yield INPUTS, name, f"inputs.{name}.file", end.file
+    for id, item in graph.nodes.items():
+        if isinstance(item, Group):
+            if item.path:
+                yield id, "", f"nodes.{id}.path", item.path
+        elif isinstance(item, Written) and item.code.file:
+            yield id, "", f"nodes.{id}.file", item.code.file
+        for name, value in signature(item).values.items():
+            given = getattr(item, name, "") if not isinstance(item, Group) else item.values.get(name, "")
+            if value.type == "path" and isinstance(given, str) and given:
+                yield id, name, f"nodes.{id}.values.{name}", given
+
+
+def is_absolute(path: str) -> bool:
+    """True for a path that begins at the root of a system or at a drive, whatever system this is."""
+    return PurePosixPath(path).is_absolute() or bool(PureWindowsPath(path).drive)
+
+
+def absolute_path(sheet: Sheet) -> Iterator[Problem]:
+    """Paths from the root."""
+    for node, socket, at, path in named_paths(sheet.graph):
+        if is_absolute(path):
+            sentence = f"{_who(node, socket)}: '{path}' is there on one machine alone: name it from the graph's folder"
+            yield Problem(node, socket, sentence, ABSOLUTE_PATH, at)
+
+
+def backslash_path(sheet: Sheet) -> Iterator[Problem]:
+    """Paths of Windows."""
+    for node, socket, at, path in named_paths(sheet.graph):
+        if "\\" in path and not is_absolute(path):
+            better = path.replace("\\", "/")
+            sentence = f"{_who(node, socket)}: only Windows reads '{path}' as a path: write '{better}'"
+            yield Problem(node, socket, sentence, BACKSLASH_PATH, at)
+
+
+def _who(node: str, socket: str) -> str:
+    return f"{node}.{socket}" if socket else node
+
+
+CHECKS = (Check(ABSOLUTE_PATH, absolute_path), Check(BACKSLASH_PATH, backslash_path))

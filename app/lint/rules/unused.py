@@ -1,0 +1,75 @@
+"""What no picture depends on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, cast
+
+from ...graph import INPUTS, OUTPUTS, Expression, Problem
+from ...graph.rules import Rule
+from ...graph.still import named
+from ..sheet import Check, Sheet
+
+UNUSED_BRANCH = Rule(
+    "unused-branch", "warning", "Nodes lead to no output, so that they never do anything.",
+    "Link the last of them to an output, or remove them.",
+)
+UNUSED_INPUT = Rule(
+    "unused-input", "warning", "An input of the graph feeds nothing, so that a picture bound to it is ignored.",
+    "Link it, or remove it.",
+)
+STALE_LAYOUT = Rule(
+    "stale-layout", "warning",
+    "The layout places nodes that are not there, as after a node was deleted by hand or in a merge.",
+    "Remove the entries, or save the graph in the editor.",
+)
+
+
+def unused_branch(sheet: Sheet) -> Iterator[Problem]:
+    """The ends of branches that lead nowhere."""
+    graph = sheet.graph
+    if not graph.outputs:
+        return
+    needed = set(graph.upstream(OUTPUTS)) | _wanted(sheet)
+    for id in sorted(needed):
+        needed |= graph.upstream(id)
+    for id in graph.nodes:
+        if id not in needed and not graph.fed[id] - {id}:
+            rest = len(graph.upstream(id) - needed - {id})
+            more = f", nor do the {rest} before it" if rest > 1 else ", nor does the one before it" if rest else ""
+            sentence = f"'{id}' leads to no output{more}: link it to something, or remove it"
+            yield Problem(id, "", sentence, UNUSED_BRANCH, f"nodes.{id}")
+
+
+def unused_input(sheet: Sheet) -> Iterator[Problem]:
+    """Inputs that feed nothing."""
+    read = {source.socket for source in sheet.graph.links.values() if source.node == INPUTS}
+    for name in sheet.graph.inputs:
+        if name not in read:
+            sentence = f"the input '{name}' feeds nothing: link it, or remove it"
+            yield Problem(INPUTS, name, sentence, UNUSED_INPUT, f"inputs.{name}")
+
+
+def stale_layout(sheet: Sheet) -> Iterator[Problem]:
+    """Places of nodes that are gone."""
+    graph, places = sheet.graph, sheet.graph.ui.get("nodes")
+    ends = {INPUTS: graph.inputs, OUTPUTS: graph.outputs}
+    for name in cast("Mapping[str, Any]", places) if isinstance(places, Mapping) else ():
+        node, dot, socket = name.partition(".")
+        if socket not in ends.get(node, ()) if dot else name not in graph.nodes:
+            sentence = f"the layout has a place for '{name}', which is not there: remove it"
+            yield Problem("", "", sentence, STALE_LAYOUT, f"ui.nodes.{name}")
+
+
+def _wanted(sheet: Sheet) -> set[str]:
+    """Nodes that expressions read values of, and those that a viewer shows."""
+    graph, viewers = sheet.graph, sheet.graph.ui.get("viewers")
+    found = {
+        named(graph, name)[0].node
+        for item in graph.animation.values() if isinstance(item, Expression) for name in item.names
+    }
+    shown = cast("Mapping[str, Any]", viewers).values() if isinstance(viewers, Mapping) else ()
+    return (found | {str(port).partition(".")[0] for port in shown}) & graph.nodes.keys()
+
+
+CHECKS = (Check(UNUSED_BRANCH, unused_branch), Check(UNUSED_INPUT, unused_input), Check(STALE_LAYOUT, stale_layout))

@@ -1,0 +1,76 @@
+"""What rules look at: a graph that can be rendered, without what does nothing."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+from ...nodes import Node
+from ..compiler import Library, installed
+from ..graph import Graph, Group, Item, Port, Problem, signature
+from ..graph.rules import Rule
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A graph, or the body of a group that is part of its file, that has no errors."""
+
+    graph: Graph
+
+    @cached_property
+    def readers(self) -> Counter[Port]:
+        """How many links start at a port."""
+        return Counter(self.graph.links.values())
+
+    @cached_property
+    def library(self) -> Library:
+        """What the shaders of nodes are."""
+        return installed()
+
+    def works(self, id: str) -> Item | None:
+        """The node of that id, unless there is none or it passes its picture through."""
+        item = self.graph.nodes.get(id)
+        if item is None or id in self.graph.muted:
+            return None
+        return None if isinstance(item, Node) and self._neutral(id, item) else item
+
+    def moves(self, id: str) -> bool:
+        """True if a value of the node changes over time or is wired."""
+        item = self.graph.nodes[id]
+        values = signature(item).values
+        return any(Port(id, name) in self.graph.animation or Port(id, name) in self.graph.links for name in values)
+
+    def source(self, target: Port) -> Port | None:
+        """What feeds an input, past all nodes that pass their picture through."""
+        found = self.graph.links.get(target)
+        while found is not None and found.node in self.graph.nodes and self.works(found.node) is None:
+            found = self.graph.bypass(found.node, self.graph.target(target))
+        return found
+
+    def first(self, id: str) -> Port | None:
+        """What feeds the first input of a node: its picture."""
+        return next((self.source(Port(id, name)) for name in signature(self.graph.nodes[id]).inputs), None)
+
+    def _neutral(self, id: str, item: Node) -> bool:
+        return not self.moves(id) and len(item.outputs) == 1 and item.identity() is not None
+
+
+class Check(NamedTuple):
+    """A rule and what finds its problems in a graph."""
+
+    rule: Rule
+    find: Callable[[Sheet], Iterator[Problem]]
+
+
+def bodies(graph: Graph, inside: str = "", at: str = "") -> Iterator[tuple[Graph, str, str]]:
+    """The graph and all groups that are part of its file, each with the path of the group and its JSON path.
+
+    A group from a file of its own is for whoever looks at that file.
+    """
+    yield graph, inside, at
+    for id, item in graph.nodes.items():
+        if isinstance(item, Group) and not item.path:
+            yield from bodies(item.graph, f"{inside}{id}/", f"{at}nodes.{id}.graph.")

@@ -1,0 +1,91 @@
+"""Rules about what lies around a graph file: the folder, the repository."""
+
+from __future__ import annotations
+
+import os
+import unicodedata
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path, PurePath
+
+from ..graph import Graph, Problem
+from ..graph.frames import Pattern
+from ..graph.rules import Rule
+from .rules.paths import is_absolute, named_paths
+from .sheet import bodies
+
+PATH_CASE = Rule(
+    "path-case", "warning",
+    "A path is spelled in other letters (capitals, or accents made otherwise) than the file on disk: some systems find "
+    "it, others do not.",
+    "Spell it as the disk does.",
+)
+OUTSIDE_REPOSITORY = Rule(
+    "outside-repository", "warning", "A path leads out of the repository: a fresh clone does not have the file.",
+    "Move the file into the repository, or allow it where a script puts it there.",
+)
+RULES = (PATH_CASE, OUTSIDE_REPOSITORY)
+
+
+@dataclass
+class Surroundings:
+    """What was found out about folders, each looked at once."""
+
+    _names: dict[str, frozenset[str]] = field(default_factory=dict[str, frozenset[str]])
+    _roots: dict[str, Path | None] = field(default_factory=dict[str, "Path | None"])
+
+    def problems(self, graph: Graph) -> Iterator[Problem]:
+        """What is wrong with the paths of a graph that has a folder."""
+        folder = os.path.abspath(graph.folder)  # noqa: PTH100
+        root = self.root(Path(folder))
+        for body, inside, above in bodies(graph):
+            for node, socket, at, path in named_paths(body):
+                if is_absolute(path):
+                    continue
+                who = f"{inside}{node}.{socket}".removesuffix(".")
+                problem = Problem(f"{inside}{node}", socket, "", PATH_CASE, f"{above}{at}")
+                if right := self._spelled(folder, path):
+                    yield replace(problem, sentence=f"{who}: '{path}' is called '{right}' on disk: spell it like that")
+                whole = Path(os.path.normpath(Path(folder, path)))
+                if root and root not in whole.parents:
+                    sentence = f"{who}: '{path}' leads out of the repository, where a fresh clone has nothing"
+                    yield replace(problem, sentence=sentence, rule=OUTSIDE_REPOSITORY)
+
+    def root(self, folder: Path) -> Path | None:
+        """The repository that a folder belongs to, if it is in one."""
+        key = str(folder)
+        if key not in self._roots:
+            home = (folder / ".git").exists()
+            self._roots[key] = folder if home else self.root(folder.parent) if folder.parent != folder else None
+        return self._roots[key]
+
+    def _spelled(self, folder: str, path: str) -> str:
+        """The path as the disk spells it, where only that is different; else nothing."""
+        here, right = folder, list[str]()
+        for part in PurePath(path).parts:
+            if part != ".." and part not in self._in(here):
+                if Pattern.parse(part):
+                    right.append(part)
+                    break
+                alike = [name for name in self._in(here) if _plain(name) == _plain(part)]
+                if len(alike) != 1:
+                    return ""
+                right.append(alike[0])
+            else:
+                right.append(part)
+            here = os.path.normpath(os.path.join(here, right[-1]))  # noqa: PTH118
+        found = "/".join(right)
+        return found if found != "/".join(PurePath(path).parts) else ""
+
+    def _in(self, folder: str) -> frozenset[str]:
+        """What is in a folder."""
+        if folder not in self._names:
+            try:
+                self._names[folder] = frozenset(os.listdir(folder))  # noqa: PTH208
+            except OSError:
+                self._names[folder] = frozenset()
+        return self._names[folder]
+
+
+def _plain(name: str) -> str:
+    return unicodedata.normalize("NFC", name).casefold()

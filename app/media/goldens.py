@@ -1,0 +1,124 @@
+"""Pictures to be compared and shown: the parts of a file number by number, who made it, and copies of it."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+
+from ...nodes import Kind
+from ..errors import InputError, OutputError
+from .color import Array, to_display
+from .compare import three
+from .info import fault, opened
+from .metadata import read_metadata
+from .store import store
+from .write import write
+
+_MAKER = ("halation:renderer", "halation:driver", "halation:version")
+_FLOATS = ("half", "float", "double")
+
+
+@dataclass(frozen=True)
+class Stored:
+    """One part of a file: [h, w, c] of float32 over its display window. Integers fill 0..1, alpha is as stored.
+
+    `encoded` are integers, which are meant for a display as they are; `data` are numbers that are no color.
+    """
+
+    array: Array
+    channels: tuple[str, ...]
+    encoded: bool
+
+    @property
+    def data(self) -> bool:
+        """True for depth, normals and the like."""
+        return not self.encoded and not any(name.rpartition(".")[2] in ("R", "G", "B") for name in self.channels)
+
+    @property
+    def linear(self) -> bool:
+        """True for scene-linear light."""
+        return not self.encoded and not self.data
+
+    @property
+    def unusable(self) -> int:
+        """Pixels with a NaN, or an infinite color; data may be infinite, as depth is where nothing is."""
+        wrong = np.isnan(self.array) if self.data else ~np.isfinite(self.array)
+        return int(np.count_nonzero(np.any(wrong, axis=2)))
+
+
+def read_stored(path: str | Path) -> dict[str, Stored]:
+    """The parts of a file by name. Nothing is repaired or converted. Raises InputError."""
+    count = 0
+    with opened(path) as handle:
+        while handle.seek_subimage(count, 0):
+            count += 1
+    wish = oiio.ImageSpec()
+    wish.attribute("oiio:UnassociatedAlpha", 1)
+    found: dict[str, Stored] = {}
+    for index in range(count):
+        buffer = oiio.ImageBuf(str(path), index, 0, wish)
+        pixels = buffer.get_pixels(oiio.FLOAT, roi=buffer.roi_full) if buffer.read(index, 0, True, oiio.FLOAT) else None
+        if pixels is None:
+            raise InputError(f"{path}: {fault(buffer.geterror() or 'corrupt')}")
+        spec = buffer.spec()
+        name = str(spec.get_string_attribute("oiio:subimagename")) or str(index or "")
+        integers = str(buffer.nativespec().format) not in _FLOATS
+        found[name] = Stored(np.asarray(pixels), tuple(spec.channelnames), integers)
+    return found
+
+
+def maker(path: str | Path) -> str:
+    """What rendered a picture: renderer, driver and version as its header has them, "" where it does not say."""
+    said = read_metadata(path)
+    parts = [str(said[key]) for key in _MAKER if said.get(key)]
+    if len(parts) > 1 and _MAKER[2] in said:
+        parts[-1] = f"Halation {parts[-1]}"
+    return ", ".join(parts)
+
+
+def keep(path: Path, source: Path) -> None:
+    """Replace a file by a copy of another, whole or not at all; its folder is made. Raises OutputError."""
+    def copy(name: str) -> None:
+        shutil.copyfile(source, name)
+
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as refusal:
+        raise OutputError(f"{path}: its folder cannot be made ({refusal.strerror}); choose another") from None
+    store(path, copy, source.stat().st_size)
+
+
+def codes_of(part: Stored, view: str = "", span: tuple[float, float] = (0.0, 1.0)) -> Array:
+    """[h, w, 3] of uint8 for people: light through a view over black, data with the ends of `span` black and white."""
+    if part.encoded:
+        return _codes(three(part.array))
+    if part.data:
+        low, high = span
+        finite = np.nan_to_num(part.array, nan=low, posinf=high, neginf=low)
+        return _codes(three((finite - low) / ((high - low) or 1.0)))
+    return to_display(np.ascontiguousarray(part.array[..., :3]), view)
+
+
+def png(codes: Array) -> bytes:
+    """[h, w, 3] of uint8, or of numbers within 0..1, as the bytes of a PNG file."""
+    buffer = oiio.ImageBuf(np.ascontiguousarray(codes if codes.dtype == np.uint8 else _codes(codes)))
+    with tempfile.TemporaryDirectory(prefix="halation-") as folder:
+        path = Path(folder) / "picture.png"
+        if not buffer.write(str(path), oiio.UINT8):
+            raise OutputError(f"{path}: cannot be written: {buffer.geterror()}")
+        return path.read_bytes()
+
+
+def write_difference(path: Path, differences: Mapping[str, Array]) -> None:
+    """Absolute differences of layers as an EXR of 32 bits. Raises OutputError."""
+    write(path, differences, kinds=dict.fromkeys(differences, Kind.IMAGE), precision="float")
+
+
+def _codes(numbers: Array) -> Array:
+    return (np.clip(np.nan_to_num(numbers, nan=0.0), 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)

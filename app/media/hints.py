@@ -1,0 +1,24 @@
+"""What the header of a file says of its color."""
+
+from __future__ import annotations
+
+import OpenImageIO as oiio
+
+from .file_space import SRGB, Hints
+from .info import space as tag_of
+from .info import text
+from .managed import LINEAR_REC709
+
+
+def hints_of(spec: oiio.ImageSpec, format: str, integer: bool) -> Hints:
+    """What a header says of its color."""
+    tag, usual = tag_of(spec), ""
+    if format != "openexr" and tag in (SRGB, "sRGB"):  # as good as nothing: readers say so of any picture
+        tag, usual = "", SRGB
+    if format == "hdr" and tag == LINEAR_REC709:
+        tag, usual = "", tag
+    primaries = spec.getattribute("chromaticities")
+    return Hints(
+        tag, usual, text(spec.get_string_attribute("ICCProfile:profile_description")),
+        tuple(primaries) if isinstance(primaries, tuple) else (), integer,
+    )

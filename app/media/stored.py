@@ -1,0 +1,31 @@
+"""The numbers in a file as they are stored, without any change of color: to see whether two files hold the same."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InputError
+from .color import Array
+from .info import described, fault, opened
+
+
+def stored(path: str | Path) -> Mapping[str, Array]:
+    """Every part by its name, [h, w, c] in the type of the file; integers are codes. Channels are in their order.
+
+    Raises:
+        InputError: the file cannot be read.
+    """
+    found: dict[str, Array] = {}
+    with opened(path) as handle:
+        described(handle, str(path))
+        while handle.seek_subimage(len(found), 0):
+            spec = handle.spec()
+            block = handle.read_image(len(found), 0, 0, spec.nchannels, str(spec.format))
+            if block is None:
+                raise InputError(f"{path}: {fault(handle.geterror() or 'corrupt')}")
+            name = spec.get_string_attribute("oiio:subimagename") or spec.get_string_attribute("name")
+            found[name if name and name not in found else f"part {len(found) + 1}" if found else ""] = np.asarray(block)
+    return found

@@ -1,0 +1,53 @@
+"""The same bytes everywhere: what Mesa's software rasterizer may do differently from machine to machine is pinned.
+
+Passes are fragment shaders, intermediates have 32 bits (`Wanted.precision`), and the processor's instructions stop at
+SSE 4.1: a multiplication and an addition that newer ones do at once are rounded once instead of twice. Neither the
+number of threads nor the width of vectors changes a bit.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from .device import Device, open_device
+
+_SET = {"LIBGL_ALWAYS_SOFTWARE": "1", "GALLIUM_DRIVER": "llvmpipe", "GALLIUM_OVERRIDE_CPU_CAPS": "sse4.1"}
+_UNSET = (
+    "MESA_LOADER_DRIVER_OVERRIDE", "MESA_GL_VERSION_OVERRIDE", "MESA_GLSL_VERSION_OVERRIDE", "MESA_EXTENSION_OVERRIDE",
+    "MESA_NO_ERROR", "GALLIUM_NOSSE", "LP_DEBUG", "LP_PERF", "GALLIVM_DEBUG", "GALLIVM_PERF", "DRI_PRIME",
+)
+_MESA = Path("/usr/share/glvnd/egl_vendor.d/50_mesa.json")
+
+
+@contextmanager
+def pinned() -> Iterator[None]:
+    """Inside, an OpenGL context that is opened is the software rasterizer's where the system has one.
+
+    The variables of the environment that say so are as before afterwards. A process that has opened a context already
+    keeps the instructions that it chose then.
+    """
+    wanted = {**_SET, **({"__EGL_VENDOR_LIBRARY_FILENAMES": str(_MESA)} if _MESA.is_file() else {})}
+    before = {name: os.environ.get(name) for name in (*wanted, *_UNSET)}
+    for name in _UNSET:
+        os.environ.pop(name, None)
+    os.environ.update(wanted)
+    try:
+        yield
+    finally:
+        for name, text in before.items():
+            if text is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = text
+
+
+def open_pinned() -> Device:
+    """The software rasterizer; another device where there is none. Raises DeviceError where there is no OpenGL at all.
+
+    `Device.target.software` says which it is.
+    """
+    with pinned():
+        return open_device("fragment")

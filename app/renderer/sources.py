@@ -1,0 +1,152 @@
+"""What a frame is made of: the files that it reads, those of the frames before it too, and what is in them."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from threading import Lock
+from typing import TYPE_CHECKING
+
+from .. import media
+from ..compiler import Picture, Plan, named_files
+from ..compiler.named import path_texts
+from ..errors import HalationError
+from ..graph import INPUTS, OUTPUTS, Graph
+from ..graph.frames import format_frames
+
+if TYPE_CHECKING:
+    from ...nodes import Missing
+    from ..media.pictures import Pictures
+
+
+@dataclass(frozen=True)
+class Source:
+    """A file that a frame reads.
+
+    `owner` is who reads it: an input of the graph as `inputs.beauty`, a node for its pixels as `read`, another value
+    that is a file as `camera.path`. Of a sequence that is read at several frames `path` is one file, `pattern` the name
+    of all, and `files` are those that are read, by frame and in order.
+    """
+
+    owner: str
+    path: str
+    layer: str = ""
+    is_picture: bool = True
+    pattern: str = ""
+    files: Mapping[int, str] = field(default_factory=dict[int, str])
+
+
+class Hashes:
+    """SHA-256 of files, computed on another thread, once for every version of a file."""
+
+    def __init__(self) -> None:
+        self._pool = ThreadPoolExecutor(1, thread_name_prefix="hash")
+        self._found: dict[tuple[str, str], Future[str]] = {}
+        self._chains: dict[str, tuple[tuple[str, ...], hashlib._Hash]] = {}
+        self._lock = Lock()
+
+    def begin(self, sources: Sequence[Source]) -> None:
+        """Begin with what will be asked for."""
+        for path in {path for item in sources for path in (item.path, *item.files.values())}:
+            self._begun(path)
+
+    def of(self, path: str) -> str:
+        """That of a file, sooner or later."""
+        return self._begun(path).result()
+
+    def of_all(self, files: Iterable[str]) -> str:
+        """That of the hashes of several files, in their order. A list that goes on takes no longer than what is new."""
+        paths = tuple(files)
+        with self._lock:
+            known, digest = self._chains.get(paths[0], ((), hashlib.sha256()))
+            if known != paths[: len(known)]:
+                known, digest = (), hashlib.sha256()
+            digest = digest.copy()
+            for path in paths[len(known) :]:
+                digest.update(self.of(path).encode())
+            self._chains[paths[0]] = paths, digest
+            return digest.hexdigest()
+
+    def close(self) -> None:
+        """Stop."""
+        self._pool.shutdown(wait=False, cancel_futures=True)
+
+    def _begun(self, path: str) -> Future[str]:
+        key = (path, media.fingerprint(path))
+        if key not in self._found:
+            self._found[key] = self._pool.submit(media.content_hash, path)
+        return self._found[key]
+
+
+class Sources:
+    """Finds what the frames of a graph read."""
+
+    def __init__(self, pictures: Pictures, graph: Graph, bound: Mapping[str, Picture]) -> None:
+        self._pictures, self._graph, self._bound = pictures, graph, bound
+        self._led: dict[str, dict[int, str]] = {}
+
+    def of(self, plan: Plan, frame: int, begin: int) -> tuple[Source, ...]:
+        """What a frame reads whose history begins at another one."""
+        read: dict[str, list[Picture]] = {}
+        for item in plan.uploads:
+            if not item.picture.in_memory:
+                read.setdefault(item.node, []).append(item.picture)
+        lead = range(begin, frame) if plan.memories else range(0)
+        found = {owner: self._pictured(owner, pictures, lead) for owner, pictures in read.items()}
+        for owner, path in self._others.items():
+            if owner.rpartition(".")[0] not in found and (file := self._file(path, frame)):
+                found[owner] = Source(owner, file, is_picture=False)
+        return tuple(found.values())
+
+    def _pictured(self, owner: str, pictures: Sequence[Picture], lead: range) -> Source:
+        layer = pictures[0].layer if owner.startswith(f"{INPUTS}.") else ""
+        source = Source(owner, pictures[0].path, layer)
+        path, missing = self._named.get(owner, ("", "error"))
+        sequence = media.find_sequence(path) if path else None
+        if sequence is None or not (lead or len({picture.path for picture in pictures}) > 1):
+            return source
+        led = self._led.setdefault(owner, {})
+        for frame in lead:
+            if frame not in led:
+                led[frame] = self._pictures.at(path, frame, missing).path
+        files = [*(led[frame] for frame in lead), *(picture.path for picture in pictures)]
+        named = {sequence.pattern.frame(Path(file).name): file for file in files}
+        ordered = {frame: named[frame] for frame in sorted(frame for frame in named if frame is not None)}
+        return Source(owner, source.path, layer, True, Path(sequence.pattern.text).name, ordered)
+
+    def _file(self, path: str, frame: int) -> str:
+        """The file of a frame, or "" if there is none."""
+        try:
+            file = self._pictures.at(path, frame, "nearest").path
+        except HalationError:
+            return ""
+        return file if Path(file).is_file() else ""
+
+    @cached_property
+    def _named(self) -> dict[str, tuple[str, Missing]]:
+        """The path of every picture, and what shows where a frame has no file, by who reads it."""
+        return {owner: (path, missing) for path, owner, missing in named_files(self._graph, self._bound)}
+
+    @cached_property
+    def _others(self) -> dict[str, str]:
+        """Files of nodes, which may be no pictures, or of which only the header is read, by who names them."""
+        used = self._graph.upstream(OUTPUTS)
+        named = {owner: path for owner, (_, path) in path_texts(self._graph).items()}
+        return {
+            owner: path for owner, path in named.items()
+            if not owner.rpartition(".")[0].endswith(INPUTS) and owner.split(".")[0].split("/")[0] in used
+        }
+
+
+def said(source: Source, hashes: Hashes) -> dict[str, str]:
+    """What a header says of a source."""
+    layer = f":{source.layer}" if source.layer else ""
+    found = {f"halation:input:{source.owner}": f"{Path(source.path).name}{layer} sha256:{hashes.of(source.path)}"}
+    if source.files:
+        frames, digest = format_frames(tuple(source.files)), hashes.of_all(source.files.values())
+        found[f"halation:frames:{source.owner}"] = f"{source.pattern} {frames} sha256:{digest}"
+    return found

@@ -1,0 +1,83 @@
+"""Cases: each a graph and the pictures that it must give."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+ENDING = ".suite.toml"
+
+
+@dataclass(frozen=True)
+class Metric:
+    """A measure of how far pictures are apart. `least` says that the tolerance is the smallest allowed value."""
+
+    name: str
+    tolerance: float
+    least: bool = False
+    unit: str = ""
+
+    def allows(self, value: float, tolerance: float) -> bool:
+        """True if a case with this value passes."""
+        return value >= tolerance if self.least else value <= tolerance
+
+    def said(self, value: float, tolerance: float) -> str:
+        """Value and tolerance for a sentence."""
+        bound = "at least" if self.least else "at most"
+        return f"{self.name} {number(value)}{self.unit} where {bound} {number(tolerance)}{self.unit} is allowed"
+
+
+METRICS = {
+    item.name: item for item in (
+        Metric("max_abs", 0.004), Metric("rms", 0.001), Metric("psnr", 40.0, True, " dB"), Metric("ssim", 0.99, True),
+        Metric("flip", 0.01),
+    )
+}
+
+
+@dataclass(frozen=True)
+class Golden:
+    """A picture that a case must give. `output` is the graph's; "" stands for all of them."""
+
+    path: Path
+    output: str = ""
+
+
+@dataclass(frozen=True)
+class Case:
+    """One test. Paths are complete; `values` are as they stand in the file.
+
+    Without goldens a case must only render. With `error` it must fail, with this text in the sentence. `failing` is
+    the percentage of pixels that may be beyond the tolerance of `max_abs`.
+    """
+
+    suite: Path
+    name: str
+    graph: Path
+    inputs: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    values: Mapping[str, Any] = field(default_factory=dict[str, Any])
+    frames: tuple[int, ...] = ()
+    size: tuple[int, int] | None = None
+    scale: float = 1.0
+    node: str = ""
+    goldens: tuple[Golden, ...] = ()
+    metric: str = "max_abs"
+    tolerance: float = METRICS["max_abs"].tolerance
+    failing: float = 0.0
+    precision: str = "half"
+    view: str = ""
+    error: str = ""
+    allow: tuple[str, ...] = ()
+    skip: str = ""
+
+    @property
+    def id(self) -> str:
+        """How a case is named everywhere: by its file and its own name."""
+        return f"{self.suite.as_posix()}::{self.name}"
+
+
+def number(value: float) -> str:
+    """A measure in few digits."""
+    return f"{value:.4g}"

@@ -1,0 +1,103 @@
+"""All cases: here, or shared among processes."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from functools import cache
+from importlib import metadata
+from multiprocessing import get_context
+
+from .. import renderer as engine
+from .cases import Case
+from .results import Outcome, Session
+from .running import How, run_case
+
+Hears = Callable[[Outcome], None]
+
+
+@dataclass(frozen=True)
+class _Done:
+    """A case, and what it ran on."""
+
+    outcome: Outcome
+    device: str
+    software: bool
+
+
+def run_cases(
+    cases: Sequence[Case], how: How, *, jobs: int = 1, stop_early: bool = False, hears: Hears | None = None
+) -> Session:
+    """Run cases and tell of each as it ends. With `stop_early` the first failure is the last case to be told of.
+
+    Raises DeviceError without OpenGL, OutputError for a folder that cannot be written.
+    """
+    started = time.perf_counter()
+    found: dict[str, Outcome] = {}
+    device, software = "", True
+    crew = min(jobs, len(cases))
+    with closing(_shared(cases, how, crew) if crew > 1 else _alone(cases, how)) as made:
+        for done in made:
+            found[done.outcome.case.id], device, software = done.outcome, done.device, done.software
+            if hears is not None:
+                hears(done.outcome)
+            if stop_early and done.outcome.status == "failed":
+                break
+    ordered = [found[case.id] for case in cases if case.id in found]
+    remark = "" if software or not how.deterministic else (
+        f"no software rasterizer was found: {device} rendered, so only tolerances can be relied on"
+    )
+    version = metadata.version("halation")
+    return Session(ordered, device, time.perf_counter() - started, how.deterministic and software, remark, version)
+
+
+@contextmanager
+def opened(how: How) -> Iterator[engine.Renderer]:
+    """A renderer for cases: the pinned one, or whatever the system has."""
+    device = engine.open_pinned() if how.deterministic else engine.open_device()
+    renderer = engine.Renderer(device, budget=0)
+    try:
+        yield renderer
+    finally:
+        renderer.close()
+
+
+def _alone(cases: Iterable[Case], how: How) -> Generator[_Done, None, None]:
+    with opened(how) as renderer:
+        for case in cases:
+            yield _done(case, renderer, how)
+
+
+def _shared(cases: Sequence[Case], how: How, jobs: int) -> Generator[_Done, None, None]:
+    # Processes that each used all cores would only get into each other's way.
+    threads = str(max(1, (os.cpu_count() or 1) // jobs))
+    pool = ProcessPoolExecutor(jobs, get_context("spawn"), _begin, (threads,))
+    try:
+        waiting: list[Future[_Done]] = [pool.submit(_work, case, how) for case in cases]
+        for done in as_completed(waiting):
+            yield done.result()
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _begin(threads: str) -> None:
+    os.environ.setdefault("LP_NUM_THREADS", threads)
+
+
+def _work(case: Case, how: How) -> _Done:
+    return _done(case, _renderer(how), how)
+
+
+def _done(case: Case, renderer: engine.Renderer, how: How) -> _Done:
+    return _Done(run_case(case, renderer, how), renderer.device.description, renderer.device.target.software)
+
+
+@cache
+def _renderer(how: How) -> engine.Renderer:
+    """One device for all cases of a process; it ends with the process."""
+    device = engine.open_pinned() if how.deterministic else engine.open_device()
+    return engine.Renderer(device, budget=0)

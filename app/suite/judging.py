@@ -1,0 +1,97 @@
+"""One rendered file against its golden."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from math import inf
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import HalationError
+from ..media.compare import Compared, compare
+from ..media.goldens import Stored, maker, read_stored
+from .cases import METRICS, Case, number
+from .results import Check
+
+Parts = Mapping[str, Stored]
+
+
+def judged(case: Case, actual: Path, golden: Path, frame: int) -> tuple[Check, Parts, Parts]:
+    """What there is to say of a picture, and the parts of both files. Nothing is raised for a bad golden."""
+    made, made_by = read_stored(actual), maker(actual)
+    fresh = Check(golden, frame, made_by=made_by)
+    if not golden.is_file():
+        return replace(fresh, sentence=f"the golden {golden} is missing: --update makes it"), made, {}
+    try:
+        wanted, golden_by = read_stored(golden), maker(golden)
+    except HalationError as fault:
+        return replace(fresh, sentence=str(fault)), made, {}
+    fresh = replace(fresh, golden_by=golden_by)
+    if list(made) != list(wanted):
+        said = f"{golden}: the layers are {_names(made)}, and {_names(wanted)} are expected"
+        return replace(fresh, sentence=said), made, wanted
+    checks = [_measured(case, fresh, name, made[name], wanted[name]) for name in made]
+    return max(checks, key=lambda check: (bool(check.sentence), _badness(case, check))), made, wanted
+
+
+def unusable(case: Case, parts: Parts) -> str:
+    """Why a picture should not become a golden, or pass where none is asked for; "" if nothing speaks against it."""
+    if "nonfinite" not in case.allow:
+        for name, part in parts.items():
+            if part.unusable:
+                of = f" of '{name}'" if name else ""
+                return f'{part.unusable} pixels{of} are not finite; allow = ["nonfinite"] if they may be'
+    if "black" not in case.allow and not any(part.array[..., :3].any() for part in parts.values()):
+        return 'the picture is all black; allow = ["black"] if it may be'
+    return ""
+
+
+def _measured(case: Case, fresh: Check, name: str, made: Stored, wanted: Stored) -> Check:
+    found = compare(
+        made.array, wanted.array, threshold=case.tolerance if case.metric == "max_abs" else 1.0 / 255.0,
+        linear=made.linear and wanted.linear, perceptual=case.metric in ("ssim", "flip"),
+    )
+    check = replace(fresh, layer=name, compared=found)
+    if found.fault:
+        return replace(check, sentence=f"{_of(check)}{found.fault}")
+    value = float(getattr(found, case.metric))
+    return replace(check, value=value, sentence=_verdict(case, check, found, value))
+
+
+def _verdict(case: Case, check: Check, found: Compared, value: float) -> str:
+    metric = METRICS[case.metric]
+    if metric.allows(value, case.tolerance):
+        return ""
+    if case.failing and case.metric == "max_abs":
+        if 100.0 * found.failing <= case.failing:
+            return ""
+        share = f"{number(100.0 * found.failing)} % of the pixels are beyond {number(case.tolerance)}"
+        return f"{_of(check)}{share} where {number(case.failing)} % may be{_where(found)}"
+    return f"{_of(check)}{metric.said(value, case.tolerance)}{_where(found)}"
+
+
+def _of(check: Check) -> str:
+    layer = f" '{check.layer}'" if check.layer else ""
+    return f"{check.golden}{layer}: "
+
+
+def _where(found: Compared) -> str:
+    """The worst pixel in words."""
+    if found.worst is None:
+        return ""
+    actual, expected = (" ".join(number(part) for part in side) for side in (found.actual, found.expected))
+    broken = f"; {found.broken} pixels are not finite on one side" if found.broken else ""
+    return f"; worst at {found.worst[0]},{found.worst[1]}: {actual} instead of {expected}{broken}"
+
+
+def _badness(case: Case, check: Check) -> float:
+    if check.value is None:
+        return inf
+    value = -check.value if METRICS[case.metric].least else check.value
+    return inf if np.isnan(value) else value
+
+
+def _names(parts: Parts) -> str:
+    return ", ".join(name or "(unnamed)" for name in parts)

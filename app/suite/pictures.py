@@ -1,0 +1,68 @@
+"""Pictures of what differs, for reports and folders."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import OutputError
+from ..media.compare import amplified
+from ..media.goldens import Stored, codes_of, keep, png, write_difference
+from .cases import Case
+from .judging import Parts
+from .results import Check, Views
+
+_UNSAFE = re.compile(r"[^\w.+-]+")
+
+
+def views_of(check: Check, made: Parts, wanted: Parts, view: str) -> Views:
+    """The worst layer to look at: both pictures, and what differs with the largest difference white."""
+    name = check.layer if check.layer in made else next(iter(made))
+    actual, expected = made[name], wanted.get(name)
+    if expected is None:
+        return Views(png(codes_of(actual, view, _span(actual))))
+    span = _span(expected)
+    light = amplified(actual.array, expected.array)
+    largest = check.compared.max_abs if check.compared and np.isfinite(check.compared.max_abs) else 0.0
+    return Views(
+        png(codes_of(actual, view, span)), png(codes_of(expected, view, span)), png(light ** (1.0 / 2.2)),
+        1.0 / largest if largest else 1.0,
+    )
+
+
+def left(check: Check, case: Case, actual: Path, made: Parts, wanted: Parts, folder: Path) -> Check:
+    """The same check with its pictures in a folder: as stored and as PNG; differences as EXR and PNG.
+
+    Raises OutputError.
+    """
+    folder = folder / _UNSAFE.sub("_", case.suite.name.partition(".")[0]) / _UNSAFE.sub("_", case.name)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as fault:
+        raise OutputError(f"{folder}: the folder cannot be made ({fault.strerror}); choose another --out") from None
+    stem = check.golden.stem
+    files = [folder / f"{stem}.actual{actual.suffix}"]
+    keep(files[0], actual)
+    if wanted:
+        files.append(folder / f"{stem}.expected{check.golden.suffix}")
+        keep(files[1], check.golden)
+        layer = check.layer if check.layer in made and check.layer in wanted else next(iter(made.keys() & wanted), "")
+        if layer in made and layer in wanted:
+            files.append(folder / f"{stem}.difference.exr")
+            write_difference(files[2], {layer: amplified(made[layer].array, wanted[layer].array, 1.0)})
+    if check.views:
+        for word in ("actual", "expected", "difference"):
+            data: bytes = getattr(check.views, word)
+            if data:
+                files.append(folder / f"{stem}.{word}.view.png")
+                files[-1].write_bytes(data)
+    return replace(check, files=tuple(files))
+
+
+def _span(part: Stored) -> tuple[float, float]:
+    """What is black and what is white where data is shown."""
+    finite = part.array[np.isfinite(part.array)]
+    return (float(finite.min()), float(finite.max())) if part.data and finite.size else (0.0, 1.0)

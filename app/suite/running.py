@@ -1,0 +1,175 @@
+"""Cases into outcomes."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import reduce
+from pathlib import Path
+from typing import Any
+
+from .. import document
+from ..compiler import named_files
+from ..errors import GraphError, HalationError
+from ..graph import Expression, Graph, Port, node_output, problems
+from ..graph.frames import Pattern
+from ..media.goldens import Stored, keep
+from ..media.pictures import split_layer
+from ..renderer import Reel, Renderer, Wanted
+from ..renderer.job import Writing, run_job
+from .cases import Case, Golden
+from .judging import Parts, judged, unusable
+from .pictures import left, views_of
+from .results import Check, Outcome
+
+
+@dataclass(frozen=True)
+class How:
+    """How cases are run. `update` writes goldens that are missing or fail, `out` is a folder for what failed.
+
+    `pictures` asks for views of what failed.
+    """
+
+    update: bool = False
+    out: Path | None = None
+    pictures: bool = False
+    deterministic: bool = True
+
+
+def run_case(case: Case, renderer: Renderer, how: How = How()) -> Outcome:
+    """What becomes of a case. A fault of the case is an outcome; OutputError is raised for `out` alone."""
+    started = time.perf_counter()
+    if case.skip:
+        return Outcome(case, "skipped", case.skip)
+    try:
+        outcome = _expected_to_fail(case, renderer, how) if case.error else _rendered(case, renderer, how)
+    except HalationError as fault:
+        outcome = Outcome(case, "failed", str(fault))
+    return replace(outcome, seconds=time.perf_counter() - started)
+
+
+def _expected_to_fail(case: Case, renderer: Renderer, how: How) -> Outcome:
+    try:
+        _render_only(case, renderer, how)
+    except HalationError as fault:
+        said = str(fault)
+        if case.error.casefold() in said.casefold():
+            return Outcome(case, "passed", said)
+        return Outcome(case, "failed", f"it fails as it should, but not with '{case.error}': {said}")
+    return Outcome(case, "failed", f"it should fail with '{case.error}', but it renders")
+
+
+def _rendered(case: Case, renderer: Renderer, how: How) -> Outcome:
+    if not case.goldens:
+        return _render_only(case, renderer, how)
+    graph = _graph(case)
+    wanted = _wanted(case, graph, how)
+    frames = case.frames or (renderer.frames(graph, wanted)[0],)
+    with tempfile.TemporaryDirectory(prefix="halation-") as name:
+        folders = [Path(name) / str(index) for index in range(len(case.goldens))]
+        for folder in folders:
+            folder.mkdir()
+        actual = [folder / golden.path.name for folder, golden in zip(folders, case.goldens, strict=True)]
+        files = tuple((golden.output, path) for golden, path in zip(case.goldens, actual, strict=True))
+        precision = "float" if case.precision == "float" else "half"
+        run_job(renderer, graph, wanted, Writing(files, case.view, precision=precision), frames)
+        checks, blessed = list[Check](), list[str]()
+        for frame in frames:
+            for golden, path in zip(case.goldens, actual, strict=True):
+                check, said = _looked_at(case, graph, golden, _at(path, frame), frame, how)
+                checks.append(check)
+                blessed += [said] if said else []
+    faults = [check for check in checks if check.sentence]
+    if faults:
+        rest = f" (and {len(faults) - 1} more pictures)" if len(faults) > 1 else ""
+        note = f"; {faults[0].elsewhere}" if faults[0].elsewhere else ""
+        return Outcome(case, "failed", f"{faults[0].sentence}{note}{rest}", checks=tuple(checks))
+    return Outcome(case, "blessed" if blessed else "passed", "; ".join(blessed), checks=tuple(checks))
+
+
+def _looked_at(case: Case, graph: Graph, golden: Golden, actual: Path, frame: int, how: How) -> tuple[Check, str]:
+    """The verdict on one picture, and what was blessed."""
+    path = _at(golden.path, frame)
+    check, made, wanted = judged(case, actual, path, frame)
+    if not check.sentence:
+        return check, ""
+    if how.update:
+        refusal = unusable(case, made) or _read_by(graph, case, path)
+        if not refusal:
+            old = check.sentence.removeprefix(f"{path}: ") if wanted else "new"
+            keep(path, actual)
+            return judged(case, actual, path, frame)[0], f"{path}: {old}"
+        check = replace(check, sentence=f"{path} is not blessed: {refusal}")
+    if how.pictures or how.out is not None:
+        check = _shown(check, case, graph, made, wanted)
+    if how.out is not None:
+        check = left(check, case, actual, made, wanted, how.out)
+    return check, ""
+
+
+def _shown(check: Check, case: Case, graph: Graph, made: Parts, wanted: Parts) -> Check:
+    outputs = list(graph.outputs.values())
+    return replace(check, views=views_of(check, made, wanted, case.view or (outputs[0].view if outputs else "")))
+
+
+def _render_only(case: Case, renderer: Renderer, how: How) -> Outcome:
+    """A case without goldens: it must render, in finite numbers, and not only black."""
+    graph = _graph(case)
+    wanted = _wanted(case, graph, how)
+    reel = Reel(renderer, graph, wanted)
+    try:
+        for frame in case.frames or (reel.frames[0],):
+            pictures = reel.render(frame)
+            if not case.error and (said := _fault_of(case, graph, wanted, pictures)):
+                return Outcome(case, "failed", f"frame {frame}: {said}")
+    finally:
+        reel.close()
+    return Outcome(case, "passed")
+
+
+def _fault_of(case: Case, graph: Graph, wanted: Wanted, pictures: Mapping[str, Any]) -> str:
+    letters = {1: ("Y",), 2: ("X", "Y"), 3: ("X", "Y", "Z"), 4: ("R", "G", "B", "A")}
+    return unusable(case, {
+        name: Stored(array, letters.get(array.shape[2], ("X",)), encoded=False) for name, array in pictures.items()
+    })
+
+
+def _graph(case: Case) -> Graph:
+    """The graph with its values set. Raises GraphError, also for what `halation check` calls an error."""
+    graph = reduce(_set, case.values.items(), document.load(case.graph))
+    errors = [problem for problem in problems(graph) if problem.severity == "error"]
+    if errors:
+        raise GraphError(f"{case.graph}: {errors[0].sentence}")
+    return graph
+
+
+def _set(graph: Graph, setting: tuple[str, Any]) -> Graph:
+    name, value = setting
+    try:
+        is_expression = isinstance(value, str) and value.startswith("=")
+        return graph.override(name, Expression(value[1:].strip()) if is_expression else value)
+    except GraphError as fault:
+        raise GraphError(f"set.{name}: {str(fault).removeprefix(f'{name}: ')}") from None
+
+
+def _wanted(case: Case, graph: Graph, how: How) -> Wanted:
+    targets: dict[str, Port] = {case.node: node_output(graph, case.node)} if case.node else {}
+    precision = "float" if how.deterministic else None
+    return Wanted(case.inputs, targets, case.size, case.scale, precision=precision)
+
+
+def _read_by(graph: Graph, case: Case, golden: Path) -> str:
+    """Why a golden must not be written: the graph reads that file."""
+    read = [path for path, _, _ in named_files(graph, {})]
+    read += [split_layer(item)[0] for item in case.inputs.values() if isinstance(item, str)]
+    if any(os.path.realpath(path) == os.path.realpath(golden) for path in read):
+        return "the graph reads this file; name another"
+    return ""
+
+
+def _at(path: Path, frame: int) -> Path:
+    pattern = Pattern.parse(str(path))
+    return path if pattern is None else Path(pattern.name(frame))

@@ -1,0 +1,113 @@
+"""Suite files into cases."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+
+from ..errors import DocumentError, UsageError
+from .cases import ENDING, METRICS, Case
+from .reading import Table, frames_of, goldens_of, inputs_of, parse, size_of
+
+_KEYS = (
+    "graph", "inputs", "set", "frame", "frames", "size", "scale", "node", "golden", "metric", "tolerance", "failing",
+    "precision", "view", "error", "allow", "skip",
+)
+_ALLOWABLE = ("nonfinite", "black")
+
+
+def find_suites(paths: Iterable[Path]) -> tuple[Path, ...]:
+    """Suite files: those named, and those below folders. Raises UsageError where there is none."""
+    found: dict[Path, None] = {}
+    for path in paths:
+        if path.is_dir():
+            inside = sorted(item for item in path.rglob(f"*{ENDING}") if _is_visible(item.relative_to(path)))
+            if not inside:
+                raise UsageError(f"{path}: there is no suite in this folder; the name of one ends in {ENDING}")
+            found.update(dict.fromkeys(inside))
+        elif not path.exists():
+            raise UsageError(f"{path}: there is no such file or folder")
+        elif not path.name.endswith(ENDING):
+            raise UsageError(f"{path}: this is no suite: the name of one ends in {ENDING}")
+        else:
+            found[path] = None
+    return tuple(found)
+
+
+def load_suite(path: Path) -> tuple[Case, ...]:
+    """The cases of a file, in its order. Raises DocumentError that names the file and the key at fault."""
+    tree = Table(str(path), "", parse(path))
+    tree.only(("defaults", "cases"))
+    defaults = tree.table("defaults")
+    defaults.only(tuple(name for name in _KEYS if name not in ("error", "skip")))
+    cases = tree.table("cases")
+    if not cases.items:
+        raise DocumentError(str(path), "cases", 'there is no case: begin one with [cases.NAME] and graph = "FILE"')
+    made: dict[str, Case] = {}
+    for name in cases.items:
+        for case in _cases(path, name, cases.table(name), defaults):
+            if case.name in made:
+                raise DocumentError(str(path), f"cases.{name}", f"there are two cases '{case.name}'; rename one")
+            made[case.name] = case
+    _check_goldens(path, made.values())
+    return tuple(made.values())
+
+
+def _cases(path: Path, name: str, own: Table, defaults: Table) -> Iterator[Case]:
+    """The case of a table; several where the name of its graph has wildcards."""
+    own.only(_KEYS)
+    both = own.over(defaults)
+    pattern = both.text("graph")
+    if not pattern:
+        raise both.fault("graph", 'which graph? Write graph = "FILE", relative to this file')
+    if not any(sign in pattern for sign in "*?["):
+        yield _case(path, name, path.parent / pattern, own, both)
+        return
+    graphs = sorted(item for item in path.parent.glob(pattern) if item.is_file())
+    if not graphs:
+        raise both.fault("graph", f"no file is called {pattern}")
+    for graph in graphs:
+        yield _case(path, f"{name}/{graph.stem}", graph, own, both)
+
+
+def _case(path: Path, name: str, graph: Path, own: Table, both: Table) -> Case:
+    if "metric" in own.items and "tolerance" not in own.items:
+        both = both.without("tolerance")
+    metric = both.choice("metric", tuple(METRICS), "max_abs")
+    failing = both.number("failing", 0.0, 0.0, 100.0)
+    if failing and metric != "max_abs":
+        raise both.fault("failing", f"a share of pixels may fail with the metric max_abs only, not with {metric}")
+    error = both.text("error")
+    if "error" in own.items and not error:
+        raise both.fault("error", "give some words of the sentence that rendering must fail with")
+    if error and own.items.get("golden"):
+        raise both.fault("golden", "a case that must fail gives no picture: leave out golden or error")
+    return Case(
+        path, name, graph, inputs_of(both, path.parent), both.table("set").items, frames_of(both), size_of(both),
+        both.number("scale", 1.0, 0.0, 1.0), both.text("node"),
+        () if error else goldens_of(both, path.parent, name, graph.stem),
+        metric, both.number("tolerance", METRICS[metric].tolerance, None, None), failing,
+        both.choice("precision", ("half", "float"), "half"), both.text("view"), error,
+        both.choices("allow", _ALLOWABLE), both.text("skip"),
+    )
+
+
+def _check_goldens(path: Path, cases: Iterable[Case]) -> None:
+    """A golden belongs to one case: `--update` would otherwise make one of two fail."""
+    owner: dict[Path, str] = {}
+    for case in cases:
+        for golden in case.goldens:
+            if owner.setdefault(golden.path, case.name) != case.name:
+                raise DocumentError(
+                    str(path), f"cases.{case.name}",
+                    f"golden {golden.path} is that of '{owner[golden.path]}' too: give each its own, with {{case}}",
+                )
+
+
+def _is_visible(path: Path) -> bool:
+    return not any(part.startswith(".") for part in path.parts)
+
+
+def load_suites(paths: Sequence[Path]) -> tuple[Case, ...]:
+    """The cases of several files and folders. Raises UsageError, DocumentError."""
+    return tuple(case for path in find_suites(paths) for case in load_suite(path))
