@@ -45,8 +45,10 @@ def middle(renderer: Renderer, graph: Graph) -> int:
 
 
 @contextmanager
-def batch(output: Path, total: int) -> Iterator[Batch]:
+def batch(output: Path, total: int, budget: int = 0) -> Iterator[Batch]:
     """Make the folder, open a device and show the bar; at the end both are closed.
+
+    `budget` is how many bytes of results may stay on the device from one picture to the next.
 
     Raises OutputError for a folder that cannot be made, DeviceError without usable OpenGL.
     """
@@ -60,7 +62,7 @@ def batch(output: Path, total: int) -> Iterator[Batch]:
         output.mkdir(parents=True, exist_ok=True)
     except OSError as fault:
         raise OutputError(f"{output}: the folder cannot be made ({fault.strerror}); choose another with -o") from None
-    renderer = Renderer(open_device(), budget=0)
+    renderer = Renderer(open_device(), budget=budget)
     note(renderer.device.description)
     console = Console(stderr=True)
     columns = (TextColumn("{task.description:<24}", markup=False), BarColumn(), MofNCompleteColumn())

@@ -1,111 +1,134 @@
-"""`halation check`: everything that `render` would refuse, without rendering."""
+"""`halation check`: everything that `render` would refuse, without rendering, and what could be better."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import asdict
+import json
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .options import AsJson, Lazy
-from .outcome import print_json
+from .options import AsJson, standard_input
+from .outcome import note, print_json
 
 if TYPE_CHECKING:
-    from ...nodes import Missing
-    from ..graph import Graph, Problem
+    from ..graph.rules import Rule
+    from ..lint.checking import Checker, Finding, Report
 
-_SIZE = (1920, 1080)
-"""What stands for a picture that is not there."""
+_REFUSED = 3
+"""What `--strict` makes of a warning: the graph is at fault."""
 
 
 def check(
-    graphs: Annotated[list[Path], typer.Argument(help="Graphs, as JSON.")],
+    graphs: Annotated[
+        list[Path] | None,
+        typer.Argument(help="Graphs, as JSON; folders for all graphs in them and below; patterns such as '**/*.json'."),
+    ] = None,
+    off: Annotated[
+        list[str] | None, typer.Option("--off", metavar="RULE", help="Leave out a rule, any number of times.")
+    ] = None,
+    strict: Annotated[bool, typer.Option("--strict", help="Fail for warnings too.")] = False,
+    rules: Annotated[bool, typer.Option("--rules", help="List all rules and stop.")] = False,
+    sarif: Annotated[
+        str, typer.Option(metavar="FILE|-", help="Write a SARIF 2.1.0 log, for code hosts; - to standard output.")
+    ] = "",
     as_json: AsJson = False,
 ) -> int:
-    """Look for faults in graphs: schema, types, links, loops, ranges, missing files and layers."""
-    worst = 0
-    reports: list[dict[str, Any]] = []
-    for path in graphs:
-        found = list(_faults(path))
-        code = max((code for code, _ in found), default=0)
-        worst = max(worst, code)
-        reports.append({"graph": str(path), "exit_code": code, "problems": [asdict(problem) for _, problem in found]})
-        if not as_json:
-            for _, problem in found:
-                print(f"{path}: {problem.severity}: {problem.sentence}")
-            if code == 0:
-                print(f"{path}: ok")
+    """Look for faults in graphs: schema, types, links, loops, ranges, files and layers, and habits that cost."""
+    from ..errors import UsageError
+    from ..lint.checking import RULES, Checker
+
+    if rules:
+        _list(RULES, as_json)
+        return 0
+    if not graphs:
+        raise UsageError("no graph is given: name files, folders or patterns; see halation check --help")
+    if as_json and sarif == "-":
+        raise UsageError("--json and --sarif -: both would go to standard output; choose one, or name a file")
+    checker = Checker(frozenset(_known(off or (), RULES)))
+    reports = _reports(checker, graphs, quiet=as_json or sarif == "-")
+    if sarif:
+        _write_sarif(reports, RULES, sarif)
     if as_json:
-        print_json({"graphs": reports})
-    return worst
+        print_json({"graphs": [_told(report, strict) for report in reports]})
+    return max((_code(report, strict) for report in reports), default=0)
 
 
-def _faults(path: Path) -> Iterator[tuple[int, Problem]]:
-    """What there is to say of a graph file, each with the exit code that rendering would have."""
-    from .. import document
-    from ..errors import DocumentError, GraphError
-    from ..graph import INPUTS, Problem, problems
-    from ..graph.rules import Rule
+def _reports(checker: Checker, graphs: Sequence[Path], quiet: bool) -> list[Report]:
+    """Check one after the other; say at once what is found."""
+    from ..lint.files import graphs as found
 
-    try:
-        graph = document.load(path)
-    except DocumentError as fault:
-        yield fault.exit_code, Problem("", "", str(fault).removeprefix(f"{path}: "), Rule("schema", "error", "", ""))
+    reports: list[Report] = []
+    for path in found(graphs):
+        text = standard_input() if str(path) == "-" else None
+        report = checker.file(path) if text is None else checker.text(text, "-", "")
+        reports.append(report)
+        for finding in () if quiet else report.findings:
+            problem = finding.problem
+            print(f"{path}:{finding.line}: {problem.severity}: {problem.sentence} [{problem.rule.name}]")
+        if not quiet and not report.findings and path in graphs:
+            print(f"{path}: ok")
+    if not reports:
+        note("there are no graphs")
+    elif len(reports) > 1 and not quiet:
+        severities = [finding.problem.severity for report in reports for finding in report.findings]
+        counts = [f"{severities.count(word)} {word}s" for word in ("error", "warning")]
+        note(f"{len(reports)} graphs: {', '.join(counts)}")
+    return reports
+
+
+def _known(names: Sequence[str], rules: Mapping[str, Rule]) -> Sequence[str]:
+    from ..errors import UsageError
+    from ..graph import did_you_mean
+
+    for name in names:
+        if name not in rules:
+            raise UsageError(f"--off {name}: there is no such rule{did_you_mean(name, rules)}; see check --rules")
+    return names
+
+
+def _list(rules: Mapping[str, Rule], as_json: bool) -> None:
+    if as_json:
+        told = [
+            {"rule": rule.name, "severity": rule.severity, "doc": rule.doc, "help": rule.way_out}
+            for rule in rules.values()
+        ]
+        print_json({"rules": told})
         return
-    found = problems(graph)
-    for problem in found:
-        yield (GraphError.exit_code if problem.severity == "error" else 0), problem
-    for name, item in graph.inputs.items():
-        if not item.file and item.default is None:
-            sentence = f"input '{name}' has no file and no default: rendering needs -i {name}=FILE"
-            yield 0, Problem(INPUTS, name, sentence, Rule("unbound-input", "warning", "", ""))
-    if graph.outputs and all(problem.severity == "warning" for problem in found):
-        yield from _compiled(graph)
+    for rule in rules.values():
+        print(f"{rule.name} ({rule.severity}): {rule.doc} {rule.way_out}")
 
 
-def _compiled(graph: Graph) -> Iterator[tuple[int, Problem]]:
-    """What only shows when the graph is compiled: pictures and their layers."""
-    from .. import compiler
-    from ..compiler import Frame, Picture, Probed
-    from ..errors import HalationError, InputError
-    from ..graph import Problem
-    from ..graph.rules import Rule
+def _code(report: Report, strict: bool) -> int:
+    return report.code or (_REFUSED if strict and report.findings else 0)
 
-    unread: dict[str, None] = {}
 
-    class Forgiving(Lazy):
-        """Goes on after a picture that cannot be read."""
+def _told(report: Report, strict: bool) -> dict[str, Any]:
+    def problem(finding: Finding) -> dict[str, Any]:
+        found = finding.problem
+        return {
+            "rule": found.rule.name, "severity": found.severity, "line": finding.line, "node": found.node,
+            "socket": found.socket, "sentence": found.sentence,
+        }
 
-        def at(self, path: str, frame: int, missing: Missing) -> Frame:
-            try:
-                return super().at(path, frame, missing)
-            except InputError as fault:
-                unread[str(fault)] = None
-            return Frame(path)
-
-        def probe(self, picture: Picture) -> Probed:
-            if not picture.in_memory:
-                try:
-                    return super().probe(picture)
-                except InputError as fault:
-                    unread[str(fault)] = None
-            return Probed(graph.settings.size or _SIZE, False, picture.path)
-
-    lazy, first, last = Forgiving(), 1, 1
-    try:
-        first, last = lazy.frames(graph, ())
-        lazy.check_frames(graph, range(first, last + 1))
-    except InputError as fault:
-        unread[str(fault)] = None
-    bindings = {
-        name: Picture(name, "", item.kind, item.socket().channels, in_memory=True)
-        for name, item in graph.inputs.items() if not item.file and item.default is None
+    return {
+        "graph": report.file, "exit_code": _code(report, strict),
+        "problems": [problem(finding) for finding in report.findings],
     }
-    try:
-        compiler.compile_graph(graph, compiler.Request(bindings=bindings, frame=first), lazy)
-    except HalationError as fault:
-        yield fault.exit_code, Problem("", "", str(fault), Rule("cannot-compile", "error", "", ""))
-    for sentence in unread:
-        yield InputError.exit_code, Problem("", "", sentence, Rule("missing-picture", "error", "", ""))
+
+
+def _write_sarif(reports: Sequence[Report], rules: Mapping[str, Rule], file: str) -> None:
+    """Paths in the log start at the repository that this folder is in, else at this folder."""
+    from importlib import metadata
+
+    from ..document.disk import write_text
+    from ..lint.sarif import sarif
+    from ..lint.surroundings import Surroundings
+
+    here = Path.cwd()
+    log = sarif(reports, rules, Surroundings().root(here) or here, metadata.version("halation"))
+    if file == "-":
+        print_json(log)
+    else:
+        write_text(Path(file), json.dumps(log, indent=2, ensure_ascii=False) + "\n")

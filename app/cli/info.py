@@ -76,6 +76,8 @@ def _shot_facts(shot: Sequence) -> dict[str, Any]:
 
 def _facts(found: Survey) -> dict[str, Any]:
     """Everything, for machines."""
+    from ..media.spaces import space_rows
+
     header = found.header
     return {
         "file": header.info.path, "format": header.info.format, "size": list(header.info.size),
@@ -95,6 +97,7 @@ def _facts(found: Survey) -> dict[str, Any]:
             }
             for item in found.passes
         ],
+        "color_spaces": [list(row) for row in space_rows(header.info.path)],
         "roles": {role: layer.name if (layer := found.layer(role)) else None for role in found.roles},
         "undecided": {role: [layer.name for layer in layers] for role, layers in found.rivals.items()},
         "conventions": {

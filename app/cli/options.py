@@ -49,24 +49,31 @@ def opened(path: Path, sets: Sequence[str]) -> Graph:
     The paths in one from standard input start at the current folder.
     """
     from .. import document
-    from ..errors import GraphError, UsageError
-    from ..graph import animation_fault
 
     piped = str(path) == "-"
-    graph = document.loads(_standard_input(), "-") if piped else document.load(path)
+    graph = document.loads(standard_input(), "-") if piped else document.load(path)
     for name, text in parsing.assignments(sets, "--set").items():
-        value = parsing.setting(text)
-        try:
-            graph = graph.override(name, value)
-            for port, item in graph.animation.items():
-                if item is value and (said := animation_fault(graph, port, item)):
-                    raise GraphError(said)
-        except GraphError as fault:
-            raise UsageError(f"--set {name}={text}: {str(fault).removeprefix(f'{name}: ')}") from None
+        graph = changed(graph, name, text)
     return graph
 
 
-def _standard_input() -> str:
+def changed(graph: Graph, name: str, text: str) -> Graph:
+    """A graph with one value set as `--set` has it. Raises UsageError."""
+    from ..errors import GraphError, UsageError
+    from ..graph import animation_fault
+
+    value = parsing.setting(text)
+    try:
+        graph = graph.override(name, value)
+        for port, item in graph.animation.items():
+            if item is value and (said := animation_fault(graph, port, item)):
+                raise GraphError(said)
+    except GraphError as fault:
+        raise UsageError(f"--set {name}={text}: {str(fault).removeprefix(f'{name}: ')}") from None
+    return graph
+
+
+def standard_input() -> str:
     """All of it. Raises DocumentError."""
     from ..errors import DocumentError
 

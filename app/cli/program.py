@@ -18,12 +18,16 @@ from .info import info
 from .nodes import nodes
 from .outcome import EXIT_CODES, failed, guarded, settle
 from .render import render
+from .schema import schema
+from .reproduce import reproduce
+from .sweep import sweep
+from .test import test
 
 app = typer.Typer(
     name="halation", add_completion=False, rich_markup_mode=None, epilog=EXIT_CODES,
     help="A node-graph compositor for screen-space effects.",
 )
-for command in (edit, render, check, explain, info, nodes, fmt, demo, gallery):
+for command in (edit, render, check, explain, info, nodes, fmt, demo, gallery, reproduce, test, schema):
     app.command()(guarded(command))
 
 

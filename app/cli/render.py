@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -49,7 +49,14 @@ def render(
         str | None, typer.Option(metavar="half|float", help="Precision of intermediates and of EXR files.")
     ] = None,
     view: Annotated[
-        str, typer.Option(help="OpenColorIO view for PNG, JPEG, TIFF and WebP; 'none' for plain sRGB.")
+        str, typer.Option(help="OpenColorIO view for PNG, JPEG, TIFF, WebP and DPX; 'none' for plain sRGB.")
+    ] = "",
+    display: Annotated[str, typer.Option(help="OpenColorIO display for those; by default that of the config.")] = "",
+    look: Annotated[
+        str, typer.Option(help="OpenColorIO look for those, in place of the looks of the view; 'none' for no look.")
+    ] = "",
+    colorspace: Annotated[
+        str, typer.Option(metavar="NAME", help="Write the numbers of a color space, such as ACEScg, into any format.")
     ] = "",
     compression: Annotated[
         str, typer.Option(help="EXR compression: none, rle, zips, zip, piz, pxr24, dwaa, ...")
@@ -89,7 +96,8 @@ def render(
     if min(jobs, len(chosen)) > 1 and independent(opened_graph, targets, inputs or (), chosen[0]):
         # What came from standard input goes on with its values set.
         rest = sets if str(graph) != "-" else ()
-        words = _words(graph, output, inputs, rest, node, size, scale, resume, precision, view, compression, form)
+        words = _words(graph, output, inputs, rest, node, size, scale, resume, precision, compression, form)
+        words += _flags({"--view": view, "--display": display, "--look": look, "--colorspace": colorspace})
         with told_to(told, len(chosen)) as hears:
             reports = share(words, chosen, jobs, hears, piped(graph, opened_graph))
         return _told(_added(reports), time.perf_counter() - started, as_json)
@@ -98,7 +106,7 @@ def render(
     note(renderer.device.description)
     ready = time.perf_counter()
     wanted = Wanted(bindings, targets, canvas, proxy, precision=depth)
-    writing = Writing(destinations, view, compression, depth or "half")
+    writing = Writing(destinations, view, compression, depth or "half", display, look, colorspace)
     with told_to(told, len(chosen)) as hears:
         report = run_job(renderer, opened_graph, wanted, writing, chosen, resume=resume, progress=hears)
     spent = {"load": loaded - started, "open": ready - loaded, **report.seconds}
@@ -151,13 +159,17 @@ def _told(report: dict[str, Any], total: float, as_json: bool) -> int:
 
 
 def _words(graph: Path, output: Sequence[str], inputs: Sequence[str] | None, sets: Sequence[str] | None, node: str,
-           size: str | None, scale: float, resume: bool, precision: str | None, view: str, compression: str,
+           size: str | None, scale: float, resume: bool, precision: str | None, compression: str,
            form: str | None) -> list[str]:
     """The same call for another process."""
     listed = {"-o": output, "-i": inputs or (), "--set": sets or ()}
     single = {
-        "--node": node, "--size": size, "--scale": repr(scale), "--precision": precision, "--view": view,
+        "--node": node, "--size": size, "--scale": repr(scale), "--precision": precision,
         "--compression": compression, "--form": form,
     }
     words = [str(graph), *(word for flag, items in listed.items() for item in items for word in (flag, item))]
-    return [*words, *(f"{flag}={text}" for flag, text in single.items() if text), *(["--resume"] if resume else [])]
+    return [*words, *_flags(single), *(["--resume"] if resume else [])]
+
+
+def _flags(texts: Mapping[str, str | None]) -> list[str]:
+    return [f"{flag}={text}" for flag, text in texts.items() if text]

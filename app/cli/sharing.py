@@ -28,7 +28,7 @@ def independent(graph: Graph, targets: Mapping[str, Port], inputs: Sequence[str]
         return True
     outside = Lazy()
     plan = compile_graph(graph, Request(targets, outside.bind(graph, inputs), frame=frame), outside)
-    for node in plan.memories:
+    for node in plan.remembering:
         note(f"one process renders all frames: node '{node}' makes each of the one before")
         break
     return not plan.memories

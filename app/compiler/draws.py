@@ -26,8 +26,10 @@ from ...nodes import (
     Plain,
     Render,
     Scene,
+    ShaderText,
     Size,
     Socket,
+    Uniform,
     Viewpoint,
     glsl_type,
 )
@@ -43,6 +45,7 @@ from .ir import (
     Choice,
     Constant,
     Convolve,
+    Foreign,
     Gather,
     History,
     Memory,
@@ -93,6 +96,7 @@ class Files:
     recolor: Callable[[ColorChange], ColorProgram]
     mesh: Callable[[Scene], Mesh]
     render: Callable[[str, Mapping[str, str]], Render]
+    asset: Callable[[Picture], Ref]
 
 
 class Recorder:
@@ -100,14 +104,14 @@ class Recorder:
 
     def __init__(
         self, fed: Fed, node: Filter, size: Size, builder: Builder, library: Library, files: Files,
-        memory: Memory | None, rate: float,
+        memories: Mapping[str, Memory], rate: float, start: int,
     ) -> None:
-        self.size, self.frame, self.rate = size, fed.frame, rate
+        self.size, self.frame, self.rate, self.start = size, fed.frame, rate, start
         self._owner, self._fed, self._node = fed.path, fed, node
         self._builder, self._library, self._files = builder, library, files
-        self._memory = memory
+        self._memories = memories
         self._shader = node.shader
-        self.remembered: Ref | None = None
+        self.remembered: dict[str, Ref] = {}
 
     def size_of(self, pixels: Pixels) -> Size:
         operand = self._operand(pixels)
@@ -163,6 +167,14 @@ class Recorder:
             )
         )
 
+    def program(
+        self, text: ShaderText, pictures: Mapping[str, Drawn], uniforms: Mapping[str, Uniform], *,
+        size: Size | None = None, result: Socket | None = None,
+    ) -> Drawn:
+        samplers = tuple((name, self._pixels(item).ref) for name, item in pictures.items())
+        values = tuple((name, Constant(value)) for name, value in uniforms.items())
+        return self._made(Foreign((self._shape(result, size or self.size),), self._owner, text, samplers, values))
+
     def blur(self, image: Pixels, sigma: float | tuple[float, float], edge: Edge = "clamp") -> Drawn:
         sigmas = sigma if isinstance(sigma, tuple) else (sigma, sigma)
         return self._blurred(image, [gaussian.plan_axis(max(0.0, one)) for one in sigmas], edge)
@@ -214,16 +226,16 @@ class Recorder:
             made = self._made(Reduce((shape,), self._owner, made.ref, operation))
         return made
 
-    def history(self, first: Pixels) -> Drawn:
-        made, memory = self._pixels(first), self._memory
+    def history(self, first: Pixels, name: str = "") -> Drawn:
+        made, memory = self._pixels(first), self._memories.get(name)
         # A memory of another size is of another picture.
         if memory is None or memory.shape != made.shape:
             return made
         return Made(self._builder.add(History((made.shape,), self._owner, memory.key, memory.half)), made.shape)
 
-    def remember(self, pixels: Drawn) -> None:
+    def remember(self, pixels: Drawn, name: str = "") -> None:
         assert isinstance(pixels, Made)
-        self.remembered = pixels.ref
+        self.remembered[name] = pixels.ref
 
     def table(self, numbers: tuple[float, ...], width: int) -> Drawn:
         rows = max(1, -(-len(numbers) // (4 * width)))
@@ -243,9 +255,13 @@ class Recorder:
         ref = self._files.read(Picture(path, layer, result.kind, result.channels, space=space))
         return Made(ref, self._builder.shape(ref))
 
+    def asset(self, path: str, folder: str) -> Drawn:
+        ref = self._files.asset(Picture(path, "", Kind.IMAGE, 4, within=folder))
+        return Made(ref, self._builder.shape(ref))
+
     # --- parts ---------------------------------------------------------------------------------------------------
 
-    def _made(self, op: Call | Gather | Convolve | Read | Reduce) -> Made:
+    def _made(self, op: Call | Foreign | Gather | Convolve | Read | Reduce) -> Made:
         return Made(self._builder.add(op), op.shapes[0])
 
     def _shape(self, result: Socket | None, size: Size) -> Shape:

@@ -9,14 +9,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from ...nodes import Camera, glsl_type
+from ...nodes import Camera, Uniform, glsl_type
 from ..glsl import Text, words
 from . import bodies
+from .foreign import foreign
 from .fuse import Fused
-from .ir import Call, Convolve, Gather, Op, Program, Raster, Reduce, Ref, Shape
+from .ir import Call, Convolve, Foreign, Gather, Op, Program, Raster, Reduce, Ref, Shape
 from .library import Library
 from .names import Names, convert, glsl_channels
-from .plan import LINES_PER_FILE, Shader, Uniform
+from .plan import LINES_PER_FILE, Shader
 from .raster import CHANNELS, fragment_lines, vertex_text
 from .target import Target
 
@@ -42,6 +43,9 @@ def emit(program: Program, fused: Fused, library: Library, target: Target, texel
     root = program.ops[fused.root]
     if isinstance(root, Raster):
         return _drawn(program, root, fused, library)
+    if isinstance(root, Foreign):
+        rounding = _half_rounding(target, [texels[ref].endswith("16f") for ref in fused.writes])
+        return Emitted(*foreign(root, fused, rounding), (), (0, 0))
     by_image = target.loads_images and len(fused.reads) + len(fused.writes) <= target.max_images
     names = Names(program, {ref: number for number, ref in enumerate(fused.reads)}, target.form, by_image)
     halves = [texels[ref].endswith("16f") for ref in fused.writes]

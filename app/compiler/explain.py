@@ -41,7 +41,7 @@ def frames_text(plan: Plan) -> str:
     """Whether a frame can be made without the ones before it, and why not."""
     if not plan.memories:
         return "independent: each can be rendered alone, and several at a time"
-    nodes = " and ".join(f"'{node}'" for node in plan.memories)
+    nodes = " and ".join(f"'{node}'" for node in plan.remembering)
     size = size_text(sum(plan.surfaces[number].nbytes for number in plan.remembered))
     return f"each is made of the one before, of which {size} are kept for {nodes}"
 
@@ -51,7 +51,7 @@ def as_json(plan: Plan) -> dict[str, object]:
     return {
         "target": plan.target.renderer,
         "form": plan.target.form,
-        "frames": {"independent": not plan.memories, "remembering": sorted(plan.memories)},
+        "frames": {"independent": not plan.memories, "remembering": sorted(plan.remembering)},
         "uploads": [
             {"surface": item.surface, "node": item.node, "path": item.picture.path, "layer": item.picture.layer}
             for item in plan.uploads

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from ...nodes import Camera, ColorSettings, Edge, Kind, Size
+from ...nodes import Camera, ColorSettings, Edge, Kind, ShaderText, Size
 from ..graph import Port
 from ..written import unprefixed
 from .raster import Mesh
@@ -93,7 +93,7 @@ class Picture:
 
     `frame` is that of a video, whose file holds all of them; of a picture it is 1. `pixels` is that array, which the
     compiler never looks at: a plan has all that it needs to run. `space` is what color in a file is in, "" to find out;
-    `color` says how colors are managed.
+    `color` says how colors are managed. With a folder `within` the file must lie in it, links followed.
     """
 
     path: str
@@ -105,6 +105,7 @@ class Picture:
     frame: int = 1
     space: str = ""
     color: ColorSettings = field(default_factory=ColorSettings)
+    within: str = ""
 
 
 @dataclass(frozen=True)
@@ -226,6 +227,22 @@ class Reduce(Op):
 
 
 @dataclass(frozen=True)
+class Foreign(Op):
+    """A program that is no function of ours: its pictures by sampler, its uniforms by name."""
+
+    text: ShaderText
+    pictures: tuple[tuple[str, Ref], ...]
+    uniforms: tuple[tuple[str, Constant], ...]
+
+    @property
+    def label(self) -> str:
+        return self.text.fragment.file
+
+    def reads(self) -> Iterator[Ref]:
+        return (ref for _, ref in self.pictures)
+
+
+@dataclass(frozen=True)
 class Raster(Op):
     """Meshes, drawn into the channels of `CHANNELS`. `cameras` and `motions` are rows: now, before, after."""
 
@@ -264,8 +281,8 @@ class Program:
 
     ops: tuple[Op, ...]
     outputs: Mapping[str, Ref]
-    memories: Mapping[str, Ref]
-    """What to remember for the next frame, by node."""
+    memories: Mapping[Port, Ref]
+    """What to remember for the next frame, by node and name."""
     results: Mapping[Port, Ref]
     """What outputs of nodes and groups, and inputs of graphs, stand for, in the order in which they were lowered."""
     cameras: Mapping[Port, Camera]

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib import resources
 from importlib.resources.abc import Traversable
-from types import MappingProxyType
 
 from ..errors import ShaderError
 from ..glsl import Function, Text, parse
@@ -37,7 +36,7 @@ class Library:
         if names not in self._larger:
             if len(self._larger) >= LARGER:
                 self._larger.pop(next(iter(self._larger)))
-            self._larger[names] = Library(MappingProxyType({**self.texts, **added}))
+            self._larger[names] = Library(Layered(added, self.texts))
         return self._larger[names]
 
     def replacing(self, text: Text, mark: str) -> Library:
@@ -46,7 +45,7 @@ class Library:
         if key not in self._larger:
             if len(self._larger) >= LARGER:
                 self._larger.pop(next(iter(self._larger)))
-            self._larger[key] = Library(MappingProxyType({**self.texts, text.name: text}))
+            self._larger[key] = Library(Layered({text.name: text}, self.texts))
         return self._larger[key]
 
     def file(self, shader: str) -> str:
@@ -92,18 +91,56 @@ class Library:
         done[name] = text
 
 
-def _walk(folder: Traversable, prefix: str) -> dict[str, Text]:
-    found: dict[str, Text] = {}
+class Layered(Mapping[str, Text]):
+    """Texts over others, which are still only read when they are asked for."""
+
+    def __init__(self, above: Mapping[str, Text], below: Mapping[str, Text]) -> None:
+        self._above, self._below = above, below
+
+    def __getitem__(self, name: str) -> Text:
+        return self._above[name] if name in self._above else self._below[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter({**dict.fromkeys(self._below), **dict.fromkeys(self._above)})
+
+    def __len__(self) -> int:
+        return len(set(self._below).union(self._above))
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._above or name in self._below
+
+
+class Texts(Mapping[str, Text]):
+    """Shader files of a folder by name; each is read when it is asked for."""
+
+    def __init__(self, folder: Traversable) -> None:
+        self._files = dict(_walk(folder, ""))
+        self._read: dict[str, Text] = {}
+
+    def __getitem__(self, name: str) -> Text:
+        if name not in self._read:
+            self._read[name] = parse(name, self._files[name].read_bytes().decode(errors="replace"))
+        return self._read[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._files)
+
+    def __len__(self) -> int:
+        return len(self._files)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._files
+
+
+def _walk(folder: Traversable, prefix: str) -> Iterator[tuple[str, Traversable]]:
     for item in folder.iterdir():
         if item.is_dir():
-            found |= _walk(item, f"{prefix}{item.name}/")
+            yield from _walk(item, f"{prefix}{item.name}/")
         elif item.name.endswith(".glsl"):
-            name = prefix + item.name.removesuffix(".glsl")
-            found[name] = parse(name, item.read_bytes().decode(errors="replace"))
-    return found
+            yield prefix + item.name.removesuffix(".glsl"), item
 
 
 @cache
 def installed() -> Library:
     """The library that ships with Halation."""
-    return Library(MappingProxyType(_walk(resources.files(f"{__name__.partition('.')[0]}.shaders"), "")))
+    return Library(Texts(resources.files(f"{__name__.partition('.')[0]}.shaders")))

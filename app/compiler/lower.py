@@ -37,7 +37,7 @@ from ..graph import INPUTS, OUTPUTS, Graph, Port, color_settings, did_you_mean
 from . import constants
 from .draws import Fed, Files, Made, Recorder, choices
 from .expand import nothing, stand_in
-from .ir import Builder, Call, Choice, Constant, Operand, Parameter, Picture, Program, Ref, Shape
+from .ir import Builder, Call, Choice, Constant, Memory, Operand, Parameter, Picture, Program, Ref, Shape
 from .library import Library
 from .moments import Moments
 from .outside import Outside
@@ -63,7 +63,7 @@ class _Lowering:
         self.builder = Builder()
         self.pictures = Pictures(graph, self.flat, request, outside, self.builder)
         self.results: dict[tuple[Port, int], Operand] = {}
-        self.memories: dict[str, Ref] = {}
+        self.memories: dict[Port, Ref] = {}
         self.cameras: dict[Port, Camera] = {}
 
     def run(self) -> Program:
@@ -314,18 +314,22 @@ class _Lowering:
             fed.inputs[name] = self._as_pixels(path, node.inputs[name], fed.inputs[name], size)
         for (name, frame), operand in fed.others.items():
             fed.others[name, frame] = self._as_pixels(path, node.inputs[name], operand, size)
+        settings = self.graph.settings
         recorder = Recorder(
             fed, node, size, self.builder, self.library, self._files(fed),
-            self.request.memories.get(path) if remembers else None, self.graph.settings.rate,
+            self._remembered(path) if remembers else {}, settings.rate, (settings.frames or (1, 1))[0],
         )
         drawn = node.passes(recorder)
-        if recorder.remembered is not None:
-            self.memories[path] = recorder.remembered
+        self.memories |= {Port(path, name): ref for name, ref in recorder.remembered.items()}
         made = drawn if isinstance(drawn, Mapping) else {next(iter(node.outputs)): drawn}
         for name, item in made.items():
             assert isinstance(item, Made | Camera)
             result = Constant(item.rows) if isinstance(item, Camera) else item.ref
             self.results[Port(path, name), fed.frame] = result
+
+    def _remembered(self, path: str) -> dict[str, Memory]:
+        """What a node remembered of the frame before, by name."""
+        return {port.socket: memory for port, memory in self.request.memories.items() if port.node == path}
 
     def _as_pixels(self, path: str, socket: Socket, operand: Operand, size: Size) -> Operand:
         """A filter looks around in its input: give it real pixels with the channels that it declares."""
@@ -369,4 +373,8 @@ class _Lowering:
         def render(file: str, named: Mapping[str, str]) -> Render:
             return self.outside.render(self.outside.at(located(file), fed.frame, missing).path, named)
 
-        return Files(read, recolor, mesh, render)
+        def asset(picture: Picture) -> Ref:
+            whole = replace(picture, path=located(picture.path), within=located(picture.within))
+            return self.pictures.asset(whole, fed.path)
+
+        return Files(read, recolor, mesh, render, asset)

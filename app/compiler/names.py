@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from ...nodes import glsl_type
+from ...nodes import Uniform, glsl_type
 from .ir import Choice, Constant, Parameter, Program, Ref, Shape
-from .plan import Uniform
 from .target import Form
 
 _FLOAT32 = 3.4e38
@@ -58,7 +57,7 @@ class Names:
         if glsl == "bool":
             return self.uniform(glsl, item.value > 0.5)
         if glsl == "int":
-            return self.uniform(glsl, math.floor(min(max(item.value, -_INT32), _INT32 - 1) + 0.5))
+            return self.uniform(glsl, math.floor(_int32(item.value) + 0.5))
         return convert(self.uniform("float", _float32(item.value)), 1, glsl)
 
     def argument(self, item: Parameter, values: dict[Ref, str]) -> str:
@@ -74,6 +73,13 @@ class Names:
         if item.factor != 1.0:
             text = f"{text} * {self.uniform('float', item.factor)}"
         return convert(text, channels, item.glsl)
+
+
+def held(item: Constant) -> Uniform:
+    """A constant as a uniform of its own type can hold it."""
+    if isinstance(item.value, tuple):
+        return tuple(_float32(part) for part in item.value)
+    return _float32(item.value) if isinstance(item.value, float) else int(_int32(item.value))
 
 
 def convert(text: str, channels: int, glsl: str) -> str:
@@ -97,6 +103,10 @@ def glsl_channels(glsl: str) -> int:
 
 def _bound(limit: float) -> str:
     return repr(_float32(limit))
+
+
+def _int32(value: float) -> float:
+    return min(max(value, -_INT32), _INT32 - 1)
 
 
 def _float32(value: float) -> float:

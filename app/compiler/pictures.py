@@ -66,6 +66,13 @@ class Pictures:
         ref = self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half))
         return self.fit(ref, wanted, owner)
 
+    def asset(self, picture: Picture, owner: str) -> Ref:
+        """Upload a picture that belongs to a node, as it is."""
+        picture = replace(picture, color=self._color)
+        probed = self._probed(picture, owner)
+        shape = Shape(probed.size, picture.width, picture.kind is not Kind.IMAGE)
+        return self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half))
+
     def fit(self, ref: Ref, size: Size, owner: str) -> Ref:
         """The picture at another size. Equal up to rounding: stretched; otherwise scaled to cover and cropped."""
         shape = self._builder.shape(ref)

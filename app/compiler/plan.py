@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from ...nodes import Camera, Size
+from ...nodes import Camera, Size, Uniform
 from ..graph import Port
 from .ir import Memory, Picture
 from .raster import Mesh
@@ -17,10 +17,8 @@ Depth = Literal["f2", "f4"]
 FIRST_TABLE = 16
 """Texture units below are for pictures: no stage has more."""
 
-LINES_PER_FILE = 1000
+LINES_PER_FILE = 10_000
 """Line n of file f of a program is line f * LINES_PER_FILE + n: not all drivers report file numbers."""
-
-Uniform = float | int | bool | tuple[float, ...]
 
 
 def texel(channels: int, half: bool) -> str:
@@ -74,7 +72,9 @@ class Shader:
     files: tuple[str, ...]
     reads_images: bool
     vertex: str = ""
-    """The vertex shader of a pass that draws meshes; others cover the whole picture."""
+    """The vertex shader of a pass that draws meshes, or a strip of its own; others cover the whole picture."""
+    foreign: bool = False
+    """True if it has names of its own for its textures, to which uniforms are set, and reads them filtered."""
 
     def locate(self, line: int) -> tuple[str, int]:
         """The file and line that a driver means by `line`."""
@@ -129,10 +129,15 @@ class Plan:
     """
     cameras: Mapping[Port, Camera]
     """What inputs of nodes that take a camera were given."""
-    memories: Mapping[str, Memory]
-    """What temporal nodes will want of this frame, by node."""
+    memories: Mapping[Port, Memory]
+    """What temporal nodes will want of this frame, by node and name."""
     slots: tuple[int, ...]
     """Bytes of each texture that the plan needs at the same time."""
+
+    @property
+    def remembering(self) -> tuple[str, ...]:
+        """The nodes that remember, as paths through groups."""
+        return tuple(dict.fromkeys(port.node for port in self.memories))
 
     @property
     def remembered(self) -> tuple[int, ...]:

@@ -27,8 +27,8 @@ class Request:
     size: Size | None = None
     scale: float = 1.0
     frame: int = 1
-    memories: Mapping[str, Memory] = field(default_factory=lambda: MappingProxyType({}))
-    """What temporal nodes remembered of the frame before; none for a frame that follows no other."""
+    memories: Mapping[Port, Memory] = field(default_factory=lambda: MappingProxyType({}))
+    """What temporal nodes remembered of the frame before, by node and name; none for a frame that follows no other."""
 
     def __post_init__(self) -> None:
         if not 0.0 < self.scale < math.inf:

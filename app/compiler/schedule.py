@@ -10,7 +10,7 @@ from ...nodes import Size
 from ..errors import DeviceError
 from .emit import Emitted, emit
 from .fuse import Fused, kept_refs
-from .ir import Call, Gather, History, Memory, Op, Program, Raster, Read, Ref, Shape
+from .ir import Call, Foreign, Gather, History, Memory, Op, Program, Raster, Read, Ref, Shape
 from .library import Library
 from .plan import Depth, Pass, Plan, Surface, Upload, texel, texture_bytes
 from .target import Precision, Target
@@ -66,7 +66,7 @@ def _check_size(size: Size, owner: str, target: Target) -> None:
 
 
 def _check_outputs(count: int, op: Op, target: Target) -> None:
-    most = target.max_images if target.form == "compute" and not isinstance(op, Raster) else target.max_targets
+    most = target.max_images if target.form == "compute" and not isinstance(op, Foreign | Raster) else target.max_targets
     if count > most:
         raise DeviceError(
             f"node '{op.owner}': {target.renderer} writes {most} pictures at once, not {count}; "
@@ -106,6 +106,8 @@ def _keys(
 
 def _digest(op: Op) -> str:
     """What is drawn, where that is neither text nor a picture."""
+    if isinstance(op, Foreign):
+        return repr(op.text.vertex)
     return op.mesh.digest if isinstance(op, Raster) else ""
 
 
@@ -178,4 +180,8 @@ def _pass(
 def _writers(ops: list[Op], library: Library) -> dict[str, str]:
     """The nodes behind code that users wrote, by what messages call its file."""
     calls = (op for op in ops if isinstance(op, (Call, Gather)))
-    return {library.file(op.shader): op.owner for op in calls if op.shader.startswith("written/")}
+    found = {library.file(op.shader): op.owner for op in calls if op.shader.startswith("written/")}
+    for op in ops:
+        if isinstance(op, Foreign):
+            found |= {stage.file: op.owner for stage in (op.text.fragment, op.text.vertex) if stage}
+    return found

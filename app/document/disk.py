@@ -22,19 +22,19 @@ def read_text(path: Path) -> str:
     try:
         with path.open("rb") as file:
             if fault := size_fault(max(os.fstat(file.fileno()).st_size, 1)):
-                raise DocumentError(str(path), "", fault, rule="unreadable")
+                raise DocumentError(str(path), "", fault, rule="unreadable-graph")
             found = file.read(MAX_BYTES + 1)
     except FileNotFoundError:
-        raise DocumentError(str(path), "", "there is no such file", rule="unreadable") from None
+        raise DocumentError(str(path), "", "there is no such file", rule="unreadable-graph") from None
     except IsADirectoryError:
-        raise DocumentError(str(path), "", "this is a folder, not a graph file", rule="unreadable") from None
+        raise DocumentError(str(path), "", "this is a folder, not a graph file", rule="unreadable-graph") from None
     except (OSError, ValueError) as error:
-        raise DocumentError(str(path), "", f"it cannot be read ({_reason(error)})", rule="unreadable") from None
+        raise DocumentError(str(path), "", f"it cannot be read ({_reason(error)})", rule="unreadable-graph") from None
     try:
         return found.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         fault = f"the text is not UTF-8 (byte {error.start}); save it as UTF-8"
-        raise DocumentError(str(path), "", fault, rule="unreadable") from None
+        raise DocumentError(str(path), "", fault, rule="unreadable-graph") from None
 
 
 def write_text(path: Path, text: str) -> None:

@@ -87,7 +87,7 @@ def _check(tree: Any, file: str) -> None:
             raise DocumentError(file, "", _too_deep())
         if isinstance(item, _Twice):
             where = _path(_Trail(trail, item.key))
-            raise DocumentError(file, where, "this key is there twice; remove one", rule="twice")
+            raise DocumentError(file, where, "this key is there twice; remove one", rule="double-key")
         parts = cast("dict[str, Any]", item).items() if isinstance(item, dict) else enumerate(cast("list[Any]", item))
         for key, part in parts:
             if isinstance(key, str) and not _is_text(key):

@@ -15,21 +15,30 @@ from types import MappingProxyType
 
 from .text import blanked
 
-MOST_ROUNDS = 1 << 16
-"""Of all counted loops of a pixel together; also the rounds that loops may have that are not counted."""
+COUNTER = "halation_rounds"
+"""The variable that counts: `lib/rounds.glsl` declares it."""
+
+MOST_ROUNDS = 60_000
+"""Rounds that all counted loops may make for a pixel, together. Mesa's rasterizer leaves any loop after 65535."""
+
+MOST_STATED = 1 << 20
+"""Rounds up to which a loop, with the loops around it, is believed that says how many it makes."""
 
 _LOOP = re.compile(r"\b(for|while|do)\b")
 _DIRECTIVE = re.compile(r"^[ \t]*#(?:[^\n]*\\\n)*[^\n]*", re.MULTILINE)
 _NAMED = re.compile(
     r"^[ \t]*#[ \t]*define[ \t]+(\w+)[ \t]+([^\n]+)$|\bconst\s+(?:int|uint|float)\s+(\w+)\s*=\s*([^;,]+);", re.MULTILINE
 )
-_BEGIN = re.compile(r"\s*(?:(?:int|uint|float)\s+)?(\w+)\s*=\s*([^,;]+)")
-_TEST = re.compile(r"\s*(\w+)\s*(<=|>=|<|>|!=)\s*([^&|?]+)")
+_BEGIN = re.compile(r"\s*(int|uint|float)\s+(\w+)\s*=\s*([^,;]+)")
+_TEST = re.compile(r"\s*(\w+)\s*(<=|>=|<|>|!=)\s*([^|?]+)")
 _STEP = re.compile(r"\s*(?:(\+\+|--)\s*(\w+)|(\w+)\s*(\+\+|--)|(\w+)\s*(\+=|-=)\s*([^,]+))\s*")
 _NUMBER = re.compile(r"(?<![\w.])((?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)[uUfF]?(?![\w.])")
 _OPERATORS: Mapping[type[ast.operator], Callable[[float, float], float]] = MappingProxyType({
-    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
+    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul,
+    ast.Div: lambda a, b: int(a / b) if isinstance(a, int) and isinstance(b, int) else a / b,
 })
+_STILL = 1e-6
+"""Of a float, a part that adding may leave as it is."""
 
 
 @dataclass(frozen=True)
@@ -46,8 +55,8 @@ class _Broken(Exception):
     """The braces or brackets do not close: what is to be done with it is up to the driver."""
 
 
-def guarded(source: str, counter: str, most: int = MOST_ROUNDS) -> str:
-    """The text with loops that might not end leaving when `counter`, an int declared elsewhere, comes to `most`.
+def guarded(source: str, most: int = MOST_ROUNDS) -> str:
+    """The text with loops that might not end leaving when they have made more than `most` rounds.
 
     Lines stay where they are, comments go. The same text without comments if all loops surely end.
     """
@@ -55,9 +64,9 @@ def guarded(source: str, counter: str, most: int = MOST_ROUNDS) -> str:
     plain = _DIRECTIVE.sub(_masked, code)
     try:
         loops = tuple(_loops(plain, _constants(code), 0, len(plain), 1.0))
-    except _Broken:
+    except (_Broken, RecursionError):
         return code
-    check = f"if (++{counter} > {most}) break; "
+    check = f"if (++{COUNTER} > {most}) break; "
     marks: dict[int, str] = {}
     for loop in loops:
         if loop.rounds is None:
@@ -88,7 +97,7 @@ def _loops(code: str, constants: Mapping[str, float], start: int, end: int, oute
         last = _statement(code, first)
         inner = (first + 1, last - 1) if braced else (first, last)
         rounds = _rounds(header, code[first:last], constants, code) if found[1] == "for" else None
-        rounds = None if rounds is None or rounds * outer > MOST_ROUNDS else rounds
+        rounds = None if rounds is None or max(rounds / MOST_ROUNDS, rounds * outer / MOST_STATED) > 1 else rounds
         yield _Loop(*inner, braced, rounds)
         yield from _loops(code, constants, *inner, outer * (rounds or 1.0))
         at = last
@@ -104,21 +113,25 @@ def _rounds(header: str, body: str, constants: Mapping[str, float], code: str) -
     parts = header.split(";")
     if len(parts) != 3:
         return None
-    begin, test, step = _BEGIN.fullmatch(parts[0].rstrip()), _TEST.fullmatch(parts[1]), _STEP.fullmatch(parts[2])
-    if not begin or not test or not step:
+    begin, step = _BEGIN.fullmatch(parts[0].rstrip()), _STEP.fullmatch(parts[2])
+    if not begin or not step or (name := begin[2]) not in (step[2], step[3], step[5]):
         return None
-    name = begin[1]
-    if test[1] != name or name not in (step[2], step[3], step[5]) or _changes(name, body, code):
+    low, by = _value(begin[3], constants), 1 if step[7] is None else _value(step[7], constants)
+    if low is None or not by or _changes(name, parts[1] + body, code):
         return None
-    low, high = _value(begin[2], constants), _value(test[3], constants)
-    by = 1.0 if step[7] is None else _value(step[7], constants)
-    if low is None or high is None or not by:
+    by = -by if "-" in (step[1] or step[4] or step[6]) else by
+    if begin[1] == "uint" and by < 0:
+        return None  # less than nothing is the largest of all
+    tests = (test for part in parts[1].split("&&") if (test := _TEST.fullmatch(part)) and test[1] == name)
+    return next((found for test in tests if (found := _until(low, test[2], _value(test[3], constants), by))), None)
+
+
+def _until(low: float, way: str, high: float | None, by: float) -> float | None:
+    """The rounds from one number to another; None if it is never reached."""
+    if high is None or abs(by) <= _STILL * max(abs(low), abs(high)):
         return None
-    if "-" in (step[1] or step[4] or step[6]):
-        by = -by
-    way = test[2]
-    upward = way in ("<", "<=") or (way == "!=" and by > 0.0)
-    if upward != (by > 0.0) or (way == "!=" and not ((high - low) / by).is_integer()):
+    upward = way in ("<", "<=") or (way == "!=" and high >= low)
+    if upward != (by > 0) or (way == "!=" and (high - low) % by):
         return None
     return max((high - low) / by, 0.0) + 1.0
 
@@ -134,29 +147,31 @@ def _changes(name: str, body: str, code: str) -> bool:
 def _constants(code: str) -> dict[str, float]:
     """What the text gives a name to: constants and macros that are numbers, unless the name is used for more."""
     found: dict[str, float] = {}
+    seen: set[str] = set()
     for match in _NAMED.finditer(code):
-        name, text = match[1] or match[3], match[2] or match[4]
-        value = _value(text, found)
-        if value is not None and name not in found:
-            found[name] = value
-        else:
+        name, value = match[1] or match[3], _value(match[2] or match[4], found)
+        again = name in seen or re.search(rf"(?<!const )\b(?:int|uint|float)\s+{name}\b", code)
+        seen.add(name)
+        if value is None or again:
             found.pop(name, None)
+        else:
+            found[name] = value
     return found
 
 
 def _value(text: str, constants: Mapping[str, float]) -> float | None:
-    """What an expression of numbers and constants is worth; divisions of whole numbers may be larger in GLSL's eyes."""
+    """What an expression of numbers and constants is worth."""
+    plain = re.sub(r"\bfloat\s*(?=\()", "", text).strip()
     try:
-        tree = ast.parse(_NUMBER.sub(r"\1", re.sub(r"\b(?:int|uint|float)\s*\(", "(", text)).strip(), mode="eval")
-        return _evaluated(tree.body, constants)
-    except (SyntaxError, ValueError, KeyError, ZeroDivisionError, RecursionError, MemoryError):
+        return _evaluated(ast.parse(_NUMBER.sub(r"\1", plain), mode="eval").body, constants)
+    except (SyntaxError, ValueError, LookupError, ArithmeticError, RecursionError, MemoryError):
         return None
 
 
 def _evaluated(node: ast.expr, constants: Mapping[str, float]) -> float:
     match node:
         case ast.Constant(value=int() | float() as number):
-            return float(number)
+            return number
         case ast.Name(id=name):
             return constants[name]
         case ast.UnaryOp(op=ast.USub(), operand=inner):

@@ -361,11 +361,11 @@ def signature(item: Item) -> Signature:
 
 
 def control_value(graph: Graph, name: str) -> Value | None:
-    """The value behind a control, called by the control's name, its present setting as the default."""
+    """The value behind a control, called as the control is, its present setting as the default."""
     control = graph.controls[name]
     item = graph.nodes.get(control.target.node)
     value = None if item is None else _present(item, control.target.socket)
-    return value and dataclasses.replace(value, name=name, doc=control.doc or value.doc)
+    return value and dataclasses.replace(value, name=name, label=control.label, doc=control.doc or value.doc)
 
 
 def declared(item: Item, name: str, id: str) -> Value:

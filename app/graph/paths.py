@@ -6,8 +6,11 @@ import os
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path, PurePath
+from typing import get_args
 
 from ...nodes import Node, Plain
+from ..written import Language, Written, node_type
+from .color import BUILT_IN
 from .graph import Graph, Group, Item, signature
 
 Change = Callable[[str], str]
@@ -20,7 +23,10 @@ def rebased(graph: Graph, folder: str) -> Graph:
     """
     if graph.folder == folder:
         return graph
-    old = graph.folder
+    old, color = graph.folder, graph.settings.color
+    if color.config and not color.config.startswith(BUILT_IN):
+        color = replace(color, config=relocated(color.config, old, folder))
+        graph = replace(graph, settings=replace(graph.settings, color=color))
     return _changed(graph, folder, lambda path: relocated(path, old, folder))
 
 
@@ -57,7 +63,7 @@ def _item(item: Item, folder: str, change: Change) -> Item:
     paths = _paths(item)
     if isinstance(item, Node):
         changed: dict[str, Plain] = {name: change(getattr(item, name)) for name in paths}
-        return item.changed(**changed) if changed else item
+        return _code(item.changed(**changed) if changed else item, change)
     if isinstance(item, Group):
         values = {
             name: change(str(plain)) if name in paths and _is_ours(item, name) else plain
@@ -65,7 +71,16 @@ def _item(item: Item, folder: str, change: Change) -> Item:
         }
         graph = item.graph if item.path else _changed(item.graph, folder, change)
         return Group(graph, change(item.path), values)
-    return item
+    file = item.raw.get("file") if item.type in get_args(Language) else None
+    return replace(item, raw={**item.raw, "file": change(file)}) if isinstance(file, str) else item
+
+
+def _code(item: Node, change: Change) -> Node:
+    """The same node with the file that its code is in, if it is in one, somewhere else."""
+    if not isinstance(item, Written) or not item.code.file:
+        return item
+    kind = node_type(replace(item.code, file=change(item.code.file)))
+    return kind(**{name: getattr(item, name) for name in item.values})
 
 
 def _inlined(item: Item, folder: str) -> Item:

@@ -21,7 +21,7 @@ def unmerged(extra: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[str, str,
     found: object = extra.get("", {}).get(CONFLICTS, ())
     entries = cast("tuple[object, ...]", found) if isinstance(found, tuple) else (found,)
     for entry in entries:
-        known = cast("Mapping[str, object]", entry) if isinstance(entry, Mapping) else {}
+        known = cast("Mapping[str, object]", entry if isinstance(entry, Mapping) else {})
         at = known.get("at")
         keys = tuple(map(str, cast("tuple[object, ...]", at))) if isinstance(at, tuple) else ()
         if not keys:
@@ -50,7 +50,7 @@ def _place(keys: tuple[str, ...]) -> tuple[str, str]:
     while len(keys) > 3 and keys[0] == "nodes" and keys[2] == "graph":
         groups.append(keys[1])
         keys = keys[3:]
-    section, name = keys[0], keys[1] if len(keys) > 1 else ""
+    section, name = (*keys, "")[:2]
     if section in ("links", "animation"):
         node, _, socket = name.partition(".")
     elif section == "nodes":

@@ -27,7 +27,7 @@ def coerced(value: Value, given: object) -> Plain | None:
         case "choice" | "path" | "text":
             return given if isinstance(given, str) else None
         case "color" | "vector" | "matrix":
-            return numbers(given, 4 if value.type == "color" else value.length)
+            return numbers(given, value.length)
         case "curve" | "ramp":
             return _points(given, value.length, 2)
         case "lights":
@@ -64,9 +64,7 @@ def expected(value: Value) -> str:
             return f"one of {', '.join(value.choices)}"
         case "path" | "text":
             return "a string"
-        case "color":
-            return "a list of 4 numbers"
-        case "vector" | "matrix":
+        case "color" | "vector" | "matrix":
             return f"a list of {value.length} numbers"
         case "curve":
             return "a list of x, y for every point, at least two"

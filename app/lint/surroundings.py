@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePath
 
+from ..errors import UsageError
 from ..graph import Graph, Problem
 from ..graph.frames import Pattern
 from ..graph.rules import Rule
@@ -64,7 +65,7 @@ class Surroundings:
         here, right = folder, list[str]()
         for part in PurePath(path).parts:
             if part != ".." and part not in self._in(here):
-                if Pattern.parse(part):
+                if _is_pattern(part):
                     right.append(part)
                     break
                 alike = [name for name in self._in(here) if _plain(name) == _plain(part)]
@@ -85,6 +86,13 @@ class Surroundings:
             except OSError:
                 self._names[folder] = frozenset()
         return self._names[folder]
+
+
+def _is_pattern(name: str) -> bool:
+    try:
+        return Pattern.parse(name) is not None
+    except UsageError:
+        return False
 
 
 def _plain(name: str) -> str:

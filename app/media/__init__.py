@@ -1,10 +1,13 @@
 """Files and arrays: every picture format that OpenImageIO reads, color through OpenColorIO."""
 
-from .color import displays, to_display, views
+from .color import displays, looks, to_display, views
+from .encoding import Encoding
 from .info import ImageInfo, content_hash, find_layer, fingerprint, info
 from .layers import Layer
+from .managed import color_digest, color_mark
 from .metadata import Attribute, read_metadata
 from .naming import Role
+from .primaries import working_of
 from .read import Pixels, Want, read, read_many
 from .recolor import gpu_view
 from .sequences import Sequence, find_sequence, frame_file, suggest_pattern
@@ -13,7 +16,8 @@ from .survey import Survey, survey
 from .write import check_destination, write
 
 __all__ = [
-    "Attribute", "ImageInfo", "Layer", "Pixels", "Role", "Sequence", "Survey", "Want", "check_destination",
-    "content_hash", "displays", "find_layer", "find_sequence", "fingerprint", "frame_file", "gpu_view", "info", "read",
-    "read_many", "read_metadata", "suggest_pattern", "survey", "sweep", "to_display", "views", "write",
+    "Attribute", "Encoding", "ImageInfo", "Layer", "Pixels", "Role", "Sequence", "Survey", "Want", "check_destination",
+    "color_digest", "color_mark", "content_hash", "displays", "find_layer", "find_sequence", "fingerprint",
+    "frame_file", "gpu_view", "info", "looks", "read", "read_many", "read_metadata", "suggest_pattern", "survey",
+    "sweep", "to_display", "views", "working_of", "write",
 ]

@@ -15,14 +15,13 @@ import numpy as np
 from ...nodes import ColorSettings
 from ..errors import UsageError
 from .file_space import FileSpace
-from .managed import BUILT_IN, LINEAR_REC709, Managed, Space, builtin, managed, ocio, studio
+from .managed import BUILT_IN, DEFAULT_COLOR, LINEAR_REC709, Managed, Space, builtin, managed, ocio, studio
 
 NO_VIEW = "none"
 NO_LOOK = "none"
 _DISPLAY = "sRGB - Display"
 _PLAIN_VIEW = "Un-tone-mapped"
 _LARGEST = 65504.0
-_DEFAULT = ColorSettings()
 
 Array = np.ndarray
 
@@ -78,7 +77,7 @@ def as_float(array: Array) -> Array:
     return array.astype(np.float32) if array.dtype.kind in "ui" else array
 
 
-def displays(color: ColorSettings = _DEFAULT) -> tuple[str, ...]:
+def displays(color: ColorSettings = DEFAULT_COLOR) -> tuple[str, ...]:
     """The kinds of screen that pictures can be shown on, the default first.
 
     Raises:
@@ -89,7 +88,7 @@ def displays(color: ColorSettings = _DEFAULT) -> tuple[str, ...]:
     return (*([first] if first else ()), *(name for name in config.getDisplays() if name != first))
 
 
-def views(display: str = "", color: ColorSettings = _DEFAULT) -> tuple[str, ...]:
+def views(display: str = "", color: ColorSettings = DEFAULT_COLOR) -> tuple[str, ...]:
     """The views that a picture on a display may have, the default first; `none` only encodes as sRGB.
 
     Raises:
@@ -102,12 +101,12 @@ def views(display: str = "", color: ColorSettings = _DEFAULT) -> tuple[str, ...]
     return (*([first] if first in known else ()), *(name for name in known if name != first), NO_VIEW)
 
 
-def looks(color: ColorSettings = _DEFAULT) -> tuple[str, ...]:
+def looks(color: ColorSettings = DEFAULT_COLOR) -> tuple[str, ...]:
     """The looks of the config. Raises GraphError, UsageError: no config."""
     return tuple(managed(color).config.getLookNames())
 
 
-def find_view(name: str, display: str = "", color: ColorSettings = _DEFAULT) -> str:
+def find_view(name: str, display: str = "", color: ColorSettings = DEFAULT_COLOR) -> str:
     """The view that `name`, or its beginning in any case, means; "" is the default.
 
     Raises:
@@ -117,18 +116,18 @@ def find_view(name: str, display: str = "", color: ColorSettings = _DEFAULT) -> 
     return known[0] if not name else _found(name, known, "view")
 
 
-def find_display(name: str, color: ColorSettings = _DEFAULT) -> str:
+def find_display(name: str, color: ColorSettings = DEFAULT_COLOR) -> str:
     """The display that `name`, or its beginning in any case, means; "" is the default. Raises UsageError."""
     known = displays(color)
     return (known[0] if known else "") if not name else _found(name, known, "display")
 
 
-def find_look(name: str, color: ColorSettings = _DEFAULT) -> str:
+def find_look(name: str, color: ColorSettings = DEFAULT_COLOR) -> str:
     """The look that `name` means: "" is that of the view, `none` none at all. Raises UsageError."""
     return name if name in ("", NO_LOOK) else _found(name, (*looks(color), NO_LOOK), "look")
 
 
-def check_shown(view: str, display: str = "", look: str = "", color: ColorSettings = _DEFAULT) -> None:
+def check_shown(view: str, display: str = "", look: str = "", color: ColorSettings = DEFAULT_COLOR) -> None:
     """Raise UsageError for a view, display or look that the config does not have."""
     find_view(view, display, color)
     find_look(look, color)
@@ -149,7 +148,7 @@ def _found(name: str, known: tuple[str, ...], what: str) -> str:
 
 def to_display(
     array: Array, view: str = "", *, bits: Literal[8, 16, 32] = 8, display: str = "", look: str = "",
-    color: ColorSettings = _DEFAULT,
+    color: ColorSettings = DEFAULT_COLOR,
 ) -> Array:
     """Working-space pixels [h, w, 3 or 4] as seen on a display, sRGB by default, the same shape.
 
@@ -188,7 +187,7 @@ def quantized(pixels: Array, bits: Literal[8, 10, 12, 16]) -> Array:
     return (np.clip(pixels, 0.0, 1.0) * top + 0.5).astype(np.uint8 if bits == 8 else np.uint16)
 
 
-def display_processor(view: str, display: str, look: str = "", color: ColorSettings = _DEFAULT) -> Any:
+def display_processor(view: str, display: str, look: str = "", color: ColorSettings = DEFAULT_COLOR) -> Any:
     """From the working space to what a display shows. A `look` stands in place of those of the view.
 
     Raises:

@@ -24,7 +24,8 @@ _ODD = (1.0, 0.0, 1.0)
 class Compared:
     """How far a picture is from the one that was expected.
 
-    `max_abs` and `rms` are in the units of the pixels, over all channels. `psnr` is in dB, infinite for equal
+    `max_abs` and `rms` are in the units of the pixels, over all channels; `max_rel` is the largest difference in
+    parts of the expected number where that is beyond 1, as the precision of floats goes. `psnr` is in dB, infinite for equal
     pictures, its peak the largest number of both, at least 1. `ssim` is 1 for equal pictures, `flip` 0; both are NaN
     where they were not asked for. `failing` is the fraction of pixels with a channel beyond the threshold. `worst` is
     the pixel with the largest difference as x, y from the top left, with its numbers on both sides; None for equal
@@ -46,6 +47,7 @@ class Compared:
     expected: tuple[float, ...] = ()
     broken: int = 0
     fault: str = ""
+    max_rel: float = inf
 
     @property
     def equal(self) -> bool:
@@ -54,10 +56,12 @@ class Compared:
 
 
 def compare(
-    actual: Array, expected: Array, *, threshold: float = CODE, linear: bool = True, perceptual: bool = True
+    actual: Array, expected: Array, *, threshold: float = CODE, relative: bool = False, linear: bool = True,
+    perceptual: bool = True,
 ) -> Compared:
     """Measure two pictures [h, w] or [h, w, c] of floats; integers fill 0..1.
 
+    With `relative` the threshold grows with the expected number where that is beyond 1, and the worst pixel is sought so.
     `linear` light is encoded for the eye before SSIM; other numbers (encoded pictures, data) are taken as they are.
     `perceptual=False` leaves out SSIM and FLIP, which take most of the time. See `ssim` and `flip`.
 
@@ -72,15 +76,16 @@ def compare(
     finite = np.isfinite(first) & np.isfinite(second)
     difference = np.where(finite, np.abs(np.where(finite, first, 0.0) - np.where(finite, second, 0.0)), 0.0)
     difference[broken] = inf
-    per_pixel = difference.max(axis=2)
-    max_abs, rms = float(per_pixel.max()), float(np.sqrt(np.mean(difference**2)))
+    parts = difference / np.maximum(1.0, np.where(finite, np.abs(second), 1.0))
+    per_pixel = (parts if relative else difference).max(axis=2)
+    max_abs, rms = float(difference.max()), float(np.sqrt(np.mean(difference**2)))
     y, x = (int(place) for place in np.unravel_index(per_pixel.argmax(), per_pixel.shape))
     return Compared(
         max_abs, rms, _psnr(rms, first[finite], second[finite]),
         ssim(one, other, linear=linear) if perceptual else nan, flip(one, other, linear=linear) if perceptual else nan,
         float(np.mean(per_pixel > threshold)), (x, y) if max_abs else None,
         tuple(map(float, one[y, x])) if max_abs else (), tuple(map(float, other[y, x])) if max_abs else (),
-        int(broken.any(axis=2).sum()),
+        int(broken.any(axis=2).sum()), max_rel=float(parts.max()),
     )
 
 

@@ -48,8 +48,8 @@ class FileSpace:
 
 
 def space_of(path: str, hints: Hints, managed: Managed, wanted: str = "") -> FileSpace:
-    """The space of color in a file: what is `wanted`, what its header says, what a rule of the config says, else what is
-    usual for such files: sRGB for integers, the working space for the rest.
+    """The space of color in a file: what is `wanted`, what its header says, what a rule of the config says, else what
+    is usual for such files: sRGB for integers, the working space for the rest.
 
     Raises:
         GraphError: what is wanted is unknown.

@@ -17,6 +17,9 @@ from ..errors import InputError
 from .layers import Layer, Part, layers_of, pick
 from .video import Facts, facts_of, is_video
 
+TAG = "halation:colorspace"
+"""Names the color space in formats that have no word for it."""
+
 _LONGEST_SIDE = 1 << 17
 _MOST_PIXELS = 1 << 28
 _DTYPES = {"half": "float16", "uint8": "uint8", "uint16": "uint16", "uint": "uint32"}
@@ -162,7 +165,8 @@ def _part(index: int, spec: oiio.ImageSpec) -> Part:
 
 def space(spec: oiio.ImageSpec) -> str:
     """The color space that the header names, "data" for none at all, "" where it says nothing."""
-    return text(spec.get_string_attribute("oiio:ColorSpace") or spec.get_string_attribute("colorInteropID"))
+    names = (TAG, "oiio:ColorSpace", "colorInteropID")
+    return text(next(filter(None, map(spec.get_string_attribute, names)), ""))
 
 
 def text(name: str) -> str:

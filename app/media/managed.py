@@ -11,6 +11,7 @@ import os
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache, cached_property, lru_cache
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -19,9 +20,11 @@ from ...nodes.color._spaces import SPACES
 from ..errors import GraphError, HalationError, UsageError
 
 BUILT_IN = "ocio://default"
+DEFAULT_COLOR = ColorSettings()
 LINEAR_REC709 = "lin_rec709_scene"
 _STUDIO = "ocio://studio-config-latest"
 _DEFAULTS = frozenset({"", "linear rec709", LINEAR_REC709, "linear rec.709 (srgb)"})
+_BUILT_IN_MARK = "ocio://"
 _NUMBERS = ("raw", "data", "unknown", "none")
 
 
@@ -35,8 +38,10 @@ class Space:
 
 
 class Managed:
-    """A config, and the working space in it. Asking for anything loads the config, which raises GraphError or UsageError
-    where it cannot be read."""
+    """A config, and the working space in it.
+
+    Asking for anything loads the config, which raises GraphError or UsageError where it cannot be read.
+    """
 
     def __init__(self, source: str, chosen: bool, fault: type[HalationError], working: str) -> None:
         self.source, self.chosen = source, chosen
@@ -79,8 +84,8 @@ class Managed:
         config = self.spaces if found.own else studio()
         if not config.isColorSpaceLinear(found.name, ocio().REFERENCE_SPACE_SCENE):
             raise GraphError(
-                f"settings.color.working: '{self._wanted or found.name}' is not scene-linear: light is added and blurred "
-                "in the working space; choose one such as ACEScg"
+                f"settings.color.working: '{self._wanted or found.name}' is not scene-linear: light is added and "
+                "blurred in the working space; choose one such as ACEScg"
             )
         return found
 
@@ -112,7 +117,9 @@ class Managed:
 
     def names(self) -> tuple[str, ...]:
         """The color spaces of the config that pictures can be in."""
-        return tuple(self.spaces.getColorSpaceNames(ocio().SEARCH_REFERENCE_SPACE_ALL, ocio().COLORSPACE_ACTIVE))
+        api = ocio()
+        kinds = (api.SEARCH_REFERENCE_SPACE_SCENE, api.SEARCH_REFERENCE_SPACE_DISPLAY)
+        return tuple(name for kind in kinds for name in self.spaces.getColorSpaceNames(kind, api.COLORSPACE_ACTIVE))
 
     def hint(self, name: str) -> str:
         """The rest of a sentence about a space that nobody knows."""
@@ -189,16 +196,17 @@ class Managed:
         try:
             return builtin(source) if source.startswith("ocio://") else ocio().Config.CreateFromFile(source)
         except ocio().Exception as error:
+            said = f"is no color config that can be read: {_first_line(error)}"
             if source.startswith("ocio://"):
                 near = difflib.get_close_matches(source, builtin_configs(), 1, 0.3)
-                raise self._fault(f"{self._said(source)}: there is no such built-in config{_suggested(near)}") from None
-            raise self._fault(f"{self._said(source)}: is no color config that can be read: {_first_line(error)}") from None
+                said = f"there is no such built-in config{_suggested(near)}"
+            raise self._fault(f"{self._said(source)}: {said}") from None
 
     def _said(self, source: str) -> str:
         return f"$OCIO: {source}" if self._fault is UsageError else f"settings.color.config: {source}"
 
 
-def managed(color: ColorSettings = ColorSettings()) -> Managed:
+def managed(color: ColorSettings = DEFAULT_COLOR) -> Managed:
     """How colors are managed by these settings, whose config is a path as it stands."""
     named = os.environ.get("OCIO", "").strip()
     source = color.config or named or BUILT_IN
@@ -210,6 +218,19 @@ def color_mark(color: ColorSettings) -> str:
     """Changes when the config does."""
     found = managed(color)
     return f"{found.source} {_version(found.source)} {color.working}"
+
+
+def color_digest(color: ColorSettings) -> str:
+    """The same wherever colors are managed in the same way: "" for linear Rec.709 in the built-in config."""
+    found = managed(color)
+    if found.plain:
+        return ""
+    if found.source.startswith(_BUILT_IN_MARK):
+        return f"{found.source} {color.working}"
+    try:
+        return f"{sha256(Path(found.source).read_bytes()).hexdigest()} {color.working}"
+    except OSError:
+        return f"{found.source} {color.working}"
 
 
 @lru_cache(maxsize=16)

@@ -16,7 +16,7 @@ from .file_space import space_of
 from .hints import hints_of
 from .info import ImageInfo, check_file, described, described_video, fault, find_layer, fingerprint, opened
 from .layers import Layer
-from .managed import managed
+from .managed import DEFAULT_COLOR, managed
 from .video import facts_of, is_video, signal_at
 
 _READ_AS = {"float16": "half", "uint8": "uint8", "uint16": "uint16", "uint32": "uint"}
@@ -55,7 +55,7 @@ class Pixels:
 
 def read(
     path: str | Path, layer: str, kind: Kind, width: int = 4, frame: int = 1, *, space: str = "",
-    color: ColorSettings = ColorSettings(),
+    color: ColorSettings = DEFAULT_COLOR,
 ) -> Pixels:
     """Read one layer over the whole display window; what the file has no data for is 0.
 

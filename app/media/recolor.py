@@ -14,7 +14,7 @@ from ..compiler import ColorProgram, Table, parse
 from ..errors import InputError, UsageError
 from .color import display_processor
 from .info import fingerprint
-from .managed import Space, color_mark, managed, ocio
+from .managed import DEFAULT_COLOR, Space, color_mark, managed, ocio
 
 
 def recolor(change: ColorChange) -> ColorProgram:
@@ -54,7 +54,7 @@ def color_program(processor: Any, name: str) -> ColorProgram:
 
 
 def gpu_view(
-    view: str = "", display: str = "", look: str = "", color: ColorSettings = ColorSettings()
+    view: str = "", display: str = "", look: str = "", color: ColorSettings = DEFAULT_COLOR
 ) -> ColorProgram:
     """The program that computes what `to_display` computes, from straight working-space color.
 

@@ -10,6 +10,7 @@ from ...nodes import Camera
 from .conventions import Convention
 from .header import PartHeader
 from .metadata import is_structural
+from .spaces import space_rows
 from .survey import FoundCamera, Survey
 
 _WIDEST = 84
@@ -26,6 +27,7 @@ def report(found: Survey) -> Iterator[str]:
          item.role.words if item.role else "-", item.reason)
         for item in found.passes
     ])
+    yield from _section("color", space_rows(found.header.info.path))
     yield from _section("to be decided", _open_rows(found))
     yield from _section("conventions", [
         (role.words, rule.words, certainty(rule), rule.reason) for role, rule in found.conventions.items()

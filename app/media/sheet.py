@@ -106,6 +106,35 @@ def grouped_sheet(
     return decode_srgb(_pixels(paper)).astype(np.float32)
 
 
+def grid_sheet(
+    rows: Sequence[Sequence[Array]], down: Sequence[str], across: Sequence[str], *, width: int = 0, title: str = "",
+    letters: int = 16,
+) -> Array:
+    """The same for pictures by row and column, which have headings: `down` and `across`."""
+    first = rows[0][0]
+    width = width or first.shape[1]
+    cell = (width, _height(first, width))
+    room = max(oiio.ImageBufAlgo.text_size(_words(text), letters).width for text in down) + 2 * _GAP
+    head = _MARGIN + (3 * letters if title else 0) + 2 * letters
+    left, top = _MARGIN + room, head + _GAP // 2
+    size = (left + len(across) * (cell[0] + _GAP) - _GAP + _MARGIN, top + len(down) * (cell[1] + _GAP) - _GAP + _MARGIN)
+    made = np.full((*size[::-1], 3), _BACK, np.float32)
+    places = [[(left + x * (cell[0] + _GAP), top + y * (cell[1] + _GAP)) for x in range(len(across))] for y in range(len(down))]
+    for row, spots in zip(rows, places, strict=True):
+        for picture, (x, y) in zip(row, spots, strict=True):
+            _paste(made, _fitted(picture, cell, width / first.shape[1]), x, y, cell)
+    if title:
+        made[_MARGIN + 2 * letters : _MARGIN + 2 * letters + _RULE, _MARGIN : size[0] - _MARGIN] = _DIM
+    paper, draw = oiio.ImageBuf(made), oiio.ImageBufAlgo.render_text
+    if title:
+        draw(paper, _MARGIN, _MARGIN + round(1.3 * letters), _words(title), letters + 3, _BOLD, _TEXT)
+    for text, (x, _) in zip(across, places[0], strict=True):
+        _label(paper, text, x, head - letters // 3, cell[0], letters)
+    for text, ((_, y), *_) in zip(down, places, strict=True):
+        draw(paper, left - _GAP, y + cell[1] // 2, _words(text), letters, "", _DIM, "right", "center")
+    return decode_srgb(_pixels(paper)).astype(np.float32)
+
+
 def write_sheet(path: str | Path, light: Array, description: str = "") -> None:
     """Keep a sheet as JPEG, small enough for a page. Raises OutputError."""
     pixels = np.ascontiguousarray((_encoded(light) * 255.0 + 0.5).astype(np.uint8))

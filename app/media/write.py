@@ -13,15 +13,16 @@ import OpenImageIO as oiio
 
 from ...nodes import Kind, Size
 from ..errors import OutputError, UsageError
-from .color import Array, find_view, to_display
-from .managed import LINEAR_REC709 as WORKING
+from .color import Array
+from .encoding import Encoding, png_space
+from .info import TAG
 from .layers import is_depth
 from .metadata import add_metadata
 from .store import check_room, store
 
 _FORMATS = {
     ".exr": "openexr", ".png": "png", ".jpg": "jpeg", ".jpeg": "jpeg", ".tif": "tiff", ".tiff": "tiff", ".webp": "webp",
-    ".hdr": "hdr",
+    ".hdr": "hdr", ".dpx": "dpx",
 }
 _EXR_LOSSY = ("pxr24", "b44", "b44a", "dwaa", "dwab")
 _COMPRESSIONS = {
@@ -44,51 +45,54 @@ class _Part:
 def write(
     path: str | Path, layers: Mapping[str, Array], *, kinds: Mapping[str, Kind], precision: Precision = "half",
     compression: str = "zip", view: str = "", metadata: Mapping[str, Any] | None = None,
+    encoding: Encoding | None = None,
 ) -> None:
     """Write [h, w, c] or [h, w] arrays; the ending of the name decides the format.
 
     EXR: linear; one layer has plain channels (RGBA; Z or Y; XYZW), several become parts whose channels are
     `name.R` and so on, "" staying plain. Color is stored in `precision` (beyond the range of half: clamped),
     data always as float and never with a lossy `compression`. HDR: linear RGB of the first Image.
-    PNG, JPEG, TIFF, WebP: the first Image (or Field, as gray) seen through `view` at 8 bits, 16 in PNG and TIFF with
-    `precision="float"`, alpha straight and only where something is transparent; JPEG shows it over black.
+    PNG, JPEG, TIFF, WebP, DPX: the first Image (or Field, as gray) seen through `view` at 8 bits (DPX 10), 16 in PNG,
+    TIFF and DPX with `precision="float"`, alpha straight and only where something is transparent; JPEG and DPX show it
+    over black. An `encoding` says more than a view: see there.
     `metadata` is kept as far as the format can: all of it in EXR, text in PNG.
 
     Raises:
-        UsageError: unknown ending, compression or view, or layers that such a file cannot hold.
+        UsageError: unknown ending, compression, view or color space, or layers that such a file cannot hold.
         OutputError: the file could not be written; an older one is still there.
     """
     layers = {name: array if array.ndim == 3 else array[..., None] for name, array in layers.items()}
     sizes = {name: (array.shape[1], array.shape[0]) for name, array in layers.items()}
-    format = _checked(path, {name: kinds[name] for name in layers}, sizes, compression, view)
+    encoding = encoding or Encoding(view)
+    format = _checked(path, {name: kinds[name] for name in layers}, sizes, compression, encoding)
     metadata = metadata or {}
     if format == "openexr":
-        parts = _exr_parts(layers, kinds, precision, compression)
+        parts = _exr_parts(layers, kinds, precision, compression, encoding)
     else:
         shown = _shown(path, {name: kinds[name] for name in layers})
-        parts = [_picture(layers[shown], format, precision, compression, view)]
+        parts = [_picture(layers[shown], format, precision, compression, encoding)]
     add_metadata(parts[0].spec, metadata, format)
     room = sum(part.array.nbytes for part in parts) + sum(len(str(value)) for value in metadata.values())
     store(path, _encoder(path, format, parts), room)
 
 
 def check_destination(
-    path: str | Path, kinds: Mapping[str, Kind], sizes: Mapping[str, Size], *, compression: str = "zip", view: str = ""
+    path: str | Path, kinds: Mapping[str, Kind], sizes: Mapping[str, Size], *, compression: str = "zip", view: str = "",
+    encoding: Encoding | None = None,
 ) -> None:
     """Refuse, before there are pixels, what `write` would refuse: the same errors, a full disk aside."""
-    _checked(path, kinds, sizes, compression, view)
+    _checked(path, kinds, sizes, compression, encoding or Encoding(view))
     check_room(path)
 
 
 def _checked(
-    path: str | Path, kinds: Mapping[str, Kind], sizes: Mapping[str, Size], compression: str, view: str
+    path: str | Path, kinds: Mapping[str, Kind], sizes: Mapping[str, Size], compression: str, encoding: Encoding
 ) -> str:
     """The format, if the file can hold layers of these kinds and sizes. Raises UsageError."""
     format = _format(Path(path))
     if not kinds:
         raise UsageError(f"{path}: there is nothing to write: the graph has no outputs")
-    if view:
-        find_view(view)
+    encoding.check()
     choices = _COMPRESSIONS.get(format, (compression,))
     if compression not in choices:
         guess = difflib.get_close_matches(compression.casefold(), choices, 1, 0.4)
@@ -111,7 +115,7 @@ def _format(path: Path) -> str:
 
 
 def _exr_parts(
-    layers: Mapping[str, Array], kinds: Mapping[str, Kind], precision: Precision, compression: str
+    layers: Mapping[str, Array], kinds: Mapping[str, Kind], precision: Precision, compression: str, encoding: Encoding
 ) -> list[_Part]:
     parts: list[_Part] = []
     for name, array in layers.items():
@@ -123,13 +127,25 @@ def _exr_parts(
         spec.channelnames = tuple(prefix + letter for letter in _letters(name, kinds[name], count))
         spec.alpha_channel = 3 if color and count == 4 else -1
         spec.attribute("compression", "zip" if compression in _EXR_LOSSY and not color else compression)
-        spec.attribute("oiio:ColorSpace", WORKING if color else "data")
+        _tag(spec, encoding, color)
         if len(layers) > 1:
             spec.attribute("oiio:subimagename", name or "rgba")
+        if color:
+            array = encoding.numbers(array)
         if half:
             array = np.clip(array, -_HALF_MAX, _HALF_MAX).astype(np.float16)
         parts.append(_Part(spec, np.ascontiguousarray(array)))
     return parts
+
+
+def _tag(spec: oiio.ImageSpec, encoding: Encoding, color: bool) -> None:
+    """Say in an EXR header what the numbers are."""
+    spec.attribute("oiio:ColorSpace", encoding.header if color else "data")
+    if not color or encoding.plain:
+        return
+    spec.attribute("colorInteropID", encoding.header)
+    if encoding.gamut:
+        spec.attribute("chromaticities", oiio.TypeDesc("float[8]"), encoding.gamut)
 
 
 def _letters(name: str, kind: Kind, count: int) -> str:
@@ -149,25 +165,30 @@ def _shown(path: str | Path, kinds: Mapping[str, Kind]) -> str:
     return shown[0]
 
 
-def _picture(array: Array, format: str, precision: Precision, compression: str, view: str) -> _Part:
+def _picture(array: Array, format: str, precision: Precision, compression: str, encoding: Encoding) -> _Part:
     """The one picture of a format that holds no layers."""
     if array.shape[2] < 3:
         array = array[..., :1].repeat(3, axis=2)
-    if format in ("hdr", "jpeg") or (array.shape[2] == 4 and bool((array[..., 3] == 1.0).all())):
+    if format in ("hdr", "jpeg", "dpx") or (array.shape[2] == 4 and bool((array[..., 3] == 1.0).all())):
         array = array[..., :3]
+    deep = precision == "float" and format in ("png", "tiff", "dpx")
     if format == "hdr":
-        array = np.nan_to_num(np.maximum(array, 0.0), nan=0.0).astype(np.float32)
+        array = np.nan_to_num(np.maximum(encoding.radiance(array), 0.0), nan=0.0).astype(np.float32)
     else:
-        array = to_display(array, view, bits=16 if precision == "float" and format in ("png", "tiff") else 8)
+        array = encoding.codes(array, 16 if deep else 10 if format == "dpx" else 8)
     spec = oiio.ImageSpec(array.shape[1], array.shape[0], array.shape[2], _STORED[array.dtype.name])
     if format == "tiff":
         spec.attribute("compression", compression)
     if format == "jpeg":
         spec.attribute("compression", "jpeg:95")
         spec.attribute("jpeg:subsampling", "4:4:4")
-    if format != "hdr":
-        spec.attribute("oiio:ColorSpace", "srgb_rec709_scene")
+    if format == "dpx":
+        spec.attribute("oiio:BitsPerSample", 16 if deep else 10)
+    elif format != "hdr":
+        spec.attribute("oiio:ColorSpace", png_space(encoding.shown_as))
         spec.attribute("oiio:UnassociatedAlpha", 1)
+    if format == "png" and encoding.shown_as != "srgb_rec709_scene":
+        spec.attribute(TAG, encoding.shown_as)
     return _Part(spec, np.ascontiguousarray(array))
 
 

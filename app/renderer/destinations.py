@@ -11,7 +11,7 @@ from ...nodes import Kind, Socket
 from .. import media
 from ..compiler import Picture, Plan, Precision
 from ..errors import UsageError
-from ..graph import OUTPUTS, Graph, Port, did_you_mean
+from ..graph import OUTPUTS, Graph, Port, color_settings, did_you_mean
 from ..graph.frames import Pattern, check_numbered
 from .engine import Wanted
 
@@ -20,13 +20,17 @@ from .engine import Wanted
 class Writing:
     """Where and how results are written. `files` are pairs of an output's name and a file; "" stands for all outputs.
 
-    Without a `view`, outputs are shown as they ask for themselves.
+    Without a `view`, outputs are shown as they ask for themselves. `display`, `look` and `space` are those of
+    `media.Encoding`.
     """
 
     files: Sequence[tuple[str, Path]]
     view: str = ""
     compression: str = "zip"
     precision: Precision = "half"
+    display: str = ""
+    look: str = ""
+    space: str = ""
 
 
 @dataclass(frozen=True)
@@ -36,7 +40,12 @@ class Destination:
     path: Path
     layers: Mapping[str, str]
     kinds: Mapping[str, Kind]
-    view: str
+    encoding: media.Encoding
+
+    @property
+    def view(self) -> str:
+        """The view that it is seen through."""
+        return self.encoding.view
 
 
 def destinations(
@@ -90,7 +99,7 @@ def check(found: Sequence[Destination], plan: Plan, sources: Mapping[str, Pictur
         if node := reading.get(os.path.realpath(file.path)):
             raise UsageError(f"{file.path}: this file is read by '{node.removeprefix('inputs.')}'; write to another")
         sizes = {layer: plan.surfaces[plan.outputs[name]].size for layer, name in file.layers.items()}
-        media.check_destination(file.path, file.kinds, sizes, compression=compression, view=file.view)
+        media.check_destination(file.path, file.kinds, sizes, compression=compression, encoding=file.encoding)
 
 
 def _destination(graph: Graph, wanted: Wanted, writing: Writing, path: Path, names: Sequence[str]) -> Destination:
@@ -105,8 +114,11 @@ def _destination(graph: Graph, wanted: Wanted, writing: Writing, path: Path, nam
             )
         layers[layer], kinds[layer] = name, _kind(graph, _port(wanted, name))
     first = _port(wanted, names[0]) if names else Port("", "")
-    view = writing.view or (graph.outputs[first.socket].view if first.node == OUTPUTS else "")
-    return Destination(path, layers, kinds, view)
+    asked = graph.outputs[first.socket].view if first.node == OUTPUTS and not writing.space else ""
+    encoding = media.Encoding(
+        writing.view or asked, writing.display, writing.look, writing.space, color_settings(graph)
+    )
+    return Destination(path, layers, kinds, encoding)
 
 
 def _port(wanted: Wanted, name: str) -> Port:

@@ -8,9 +8,10 @@ from typing import Protocol, get_args
 
 import moderngl
 
+from ..media import color_mark
 from .device import Device
 from .look import Channels, Look, Meaning, Point, Size, origin
-from .view_programs import ViewProgram, ViewPrograms
+from .view_programs import Seen, ViewProgram, ViewPrograms
 
 Rect = tuple[int, int, int, int]
 
@@ -74,7 +75,7 @@ class Display:
             a = b
         if look.compare not in ("wipe", "difference"):
             b = None
-        shown = ((max(1, size[0]), max(1, size[1])), _mark(a), _mark(b), look)
+        shown = ((max(1, size[0]), max(1, size[1])), _mark(a), _mark(b), look, color_mark(look.color))
         panel = self._panels.get(slot)
         if panel is None or panel.shown != shown:
             with self._device.drawing():
@@ -128,15 +129,15 @@ class Display:
         if a is None or covered is None:
             return
         plain = look.meaning != "image" or look.channels in ("alpha", "false color")
-        view = None if plain else (look.view, look.display)
+        view = None if plain else Seen(look.view, look.display, look.look)
         texels = _enlarged(size, a, covered, look) if view is not None and b is None else None
         if view is not None and texels is not None:
             self._look_through(view, a, texels, look)
-            program = self._programs.get(None, viewed=True)
+            program = self._programs.get(None, look.color, viewed=True)
             program.set("viewed_first", texels[:2])
             program.set("viewed", 1)
         else:
-            program = self._programs.get(view, "off" if b is None else look.compare)
+            program = self._programs.get(view, look.color, "off" if b is None else look.compare)
         framebuffer.viewport = covered
         framebuffer.use()
         self._place(program, "a", 0, a, size, look)
@@ -147,7 +148,7 @@ class Display:
         _settings(program, size, a.full_size, look)
         program.draw()
 
-    def _look_through(self, view: tuple[str, str], a: Drawable, texels: Rect, look: Look) -> None:
+    def _look_through(self, view: Seen, a: Drawable, texels: Rect, look: Look) -> None:
         """Bring texels of a picture through a view."""
         x, y, width, height = texels
         if self._texels is None or self._texels.texture.width < width or self._texels.texture.height < height:
@@ -157,7 +158,7 @@ class Display:
         self._texels.framebuffer.viewport = (0, 0, width, height)
         self._texels.framebuffer.use()
         a.texture.use(0)
-        program = self._programs.get(view, texels=True)
+        program = self._programs.get(view, look.color, texels=True)
         program.set("a", 0)
         program.set("a_channels", a.channels)
         program.set("viewed_first", (x, y))

@@ -36,7 +36,7 @@ class Wanted:
     scale: float = 1.0
     frame: int = 1
     precision: Precision | None = None
-    memories: Mapping[str, Memory] = field(default_factory=lambda: MappingProxyType({}))
+    memories: Mapping[Port, Memory] = field(default_factory=lambda: MappingProxyType({}))
     """What nodes remember of the frame before: see `Reel`."""
 
     @property

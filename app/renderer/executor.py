@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import moderngl
 import numpy as np
 
-from ..compiler import FIRST_TABLE, MAX_WEIGHTS, Mesh, Pass, Plan, Upload
+from ..compiler import FIRST_TABLE, MAX_WEIGHTS, Mesh, Pass, Plan, Shader, Upload
 from ..errors import InputError, RenderError
 from .decoding import Array
 from .device import Device
@@ -44,6 +44,9 @@ class Executor:
         self.closed = False
         self._tables = Tables(device.context)
         self._meshes = MeshBuffers(device.context)
+        self._filtered = device.context.sampler(
+            repeat_x=False, repeat_y=False, filter=(moderngl.LINEAR, moderngl.LINEAR)
+        )
         self._weights: dict[tuple[float, ...], moderngl.Buffer] = {}
         self._query: moderngl.Query | None = None
         self._heart = Heartbeat()
@@ -55,6 +58,7 @@ class Executor:
         self.programs.clear()
         self._tables.clear()
         self._meshes.clear()
+        self._filtered.release()
         for buffer in self._weights.values():
             buffer.release()
         self._weights.clear()
@@ -127,7 +131,7 @@ class Executor:
             elif one.shader.form == "compute":
                 self._dispatch(plan, one, program, textures, made)
             else:
-                self._draw(one, program.vertices, textures, made)
+                self._draw(one.shader, program.vertices, textures, made)
             error = self.device.context.error
             if error != "GL_NO_ERROR":
                 raise RenderError(
@@ -164,19 +168,26 @@ class Executor:
         self.device.context.memory_barrier()
 
     def _draw(
-        self, one: Pass, vertices: moderngl.VertexArray | None, textures: list[Texture], made: list[Texture]
+        self, shader: Shader, vertices: moderngl.VertexArray | None, textures: list[Texture], made: list[Texture]
     ) -> None:
         assert vertices is not None
         context = self.device.context
         for unit, texture in enumerate(textures):
             texture.handle.use(unit)
+            if shader.foreign:
+                self._filtered.use(unit)
         alone = made[0] if len(made) == 1 else None
         framebuffer = alone.framebuffer if alone else None
         if framebuffer is None:
             framebuffer = context.framebuffer([texture.handle for texture in made])
         framebuffer.use()
         context.disable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
-        vertices.render(moderngl.TRIANGLES, vertices=3)
+        if shader.foreign:
+            framebuffer.clear()
+        strip = bool(shader.vertex)
+        vertices.render(moderngl.TRIANGLE_STRIP if strip else moderngl.TRIANGLES, vertices=4 if strip else 3)
+        for unit in range(len(textures) if shader.foreign else 0):
+            self._filtered.clear(unit)
         self.device.idle.use()
         if alone:
             alone.framebuffer = framebuffer

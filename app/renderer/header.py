@@ -59,7 +59,8 @@ def settings(
     words += [f"node={name}" for name in wanted.targets]
     words += [f"output={name}" for name in file.layers.values() if name not in wanted.targets]
     words += [f"precision={writing.precision}", f"intermediates={wanted.precision or target.precision}"]
-    words += [f"form={target.form}", f"view={file.view}", f"compression={writing.compression}"]
+    words += [f"form={target.form}", f"view={file.view}", f"display={writing.display}", f"look={writing.look}"]
+    words += [f"colorspace={writing.space}", f"compression={writing.compression}"]
     return " ".join(shlex.quote(word) for word in words if not word.endswith("="))
 
 
@@ -78,7 +79,8 @@ def frame_key(
         before = _digest(document.dumps(inlined(graph)), led, wanted.scale, wanted.size, plan.target.form)
     keys = _content_keys(plan, contents, before)
     pixels = {layer: keys[plan.outputs[name]] for layer, name in file.layers.items()}
-    how = (file.path.suffix, file.view, writing.compression, writing.precision)
+    seen = (file.view, writing.display, writing.look, writing.space, media.color_digest(file.encoding.color))
+    how = (file.path.suffix, *seen, writing.compression, writing.precision)
     return _digest(metadata.version("halation"), sorted(pixels.items()), sorted(file.kinds.items()), how)
 
 
@@ -108,7 +110,9 @@ def _content_keys(plan: Plan, contents: Mapping[str, str], before: str) -> dict[
     for item in plan.uploads:
         picture, surface = item.picture, plan.surfaces[item.surface]
         content = surface.key if picture.in_memory else contents[picture.path]
-        keys[item.surface] = _digest(content, picture.layer, picture.kind, picture.width, surface.texel, surface.size)
+        keys[item.surface] = _digest(
+            content, picture.layer, picture.kind, picture.width, picture.space, surface.texel, surface.size
+        )
     for one in plan.passes:
         made = _digest(*_work(one), [keys.get(number, before) for number in one.textures])
         for place, number in enumerate(one.targets):

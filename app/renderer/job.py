@@ -215,7 +215,7 @@ class _Job:
                 layers = {layer: outputs[name] for layer, name in file.layers.items()}
                 media.write(
                     file.path, layers, kinds=file.kinds, precision=self._writing.precision,
-                    compression=self._writing.compression, view=file.view, metadata=said,
+                    compression=self._writing.compression, metadata=said, encoding=file.encoding,
                 )
             self.seconds["write"] += time.perf_counter() - started
             return FrameReport(task.frame, tuple(file.path for file in task.files), passes)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
+
+from ...nodes import ColorSettings
 
 Channels = Literal["color", "red", "green", "blue", "alpha", "luminance", "false color"]
 Meaning = Literal["image", "field", "vector", "normal"]
@@ -33,6 +35,10 @@ class Look:
     view: str = ""
     """A view of OpenColorIO; "" is the default, "none" only encodes as sRGB."""
     display: str = ""
+    look: str = ""
+    """A look of OpenColorIO in place of those of the view; "" is what the view says, "none" none."""
+    color: ColorSettings = field(default_factory=ColorSettings)
+    """How colors are managed; a config is a path as it stands."""
     compare: Compare = "off"
     wipe: Point = (0.5, 0.5)
     """A point of the line between a and b, as a fraction of picture a."""

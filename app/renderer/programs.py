@@ -82,7 +82,7 @@ class Programs:
             else:
                 vertex = one.shader.vertex
                 handle = self._context.program(vertex_shader=vertex or VERTEX, fragment_shader=one.shader.source)
-                program = Program(handle, None if vertex else self._context.vertex_array(handle, []))
+                program = Program(handle, None if one.mesh else self._context.vertex_array(handle, []))
         except moderngl.Error as fault:
             raise _located(one, str(fault)) from None
         weights = program.handle.get("Weights", None)
@@ -90,7 +90,7 @@ class Programs:
             weights.binding = 0
         for unit, table in enumerate(one.tables, FIRST_TABLE):
             program.set(table.sampler, unit)
-        if one.shader.form == "fragment":
+        if one.shader.form == "fragment" and not one.shader.foreign:
             for number in range(len(one.textures)):
                 program.set(f"t{number}", number)
         return program

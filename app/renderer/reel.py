@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from ..compiler import Memory, Plan
-from ..graph import Graph
+from ..graph import Graph, Port
 from .decoding import Array
 from .engine import Renderer, Wanted
 from .run import Run, Timings
@@ -14,7 +14,7 @@ from .textures import Lease
 
 KEPT_PLANS = 8
 
-Memories = Mapping[str, Memory]
+Memories = Mapping[Port, Memory]
 
 
 class Reel:

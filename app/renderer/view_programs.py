@@ -7,15 +7,25 @@ from typing import cast, get_args
 
 import moderngl
 
-from ..compiler import ColorProgram, installed
+from ...nodes import ColorSettings
+from ..compiler import ColorProgram, Library, installed, library_for
 from ..errors import DeviceError
-from ..media import gpu_view
+from ..media import color_mark, gpu_view, working_of
 from .look import Channels, Compare, Meaning
 from .programs import VERTEX, undisturbed
 from .tables import table_texture
 
 FIRST_LUT = 2
 """The texture unit of a view's first table; pictures are bound to those before."""
+
+
+@dataclass(frozen=True)
+class Seen:
+    """A view of OpenColorIO: see `Look`."""
+
+    view: str
+    display: str
+    look: str
 
 
 @dataclass(eq=False)
@@ -46,18 +56,20 @@ class ViewPrograms:
         self._known: dict[object, ViewProgram] = {}
 
     def get(
-        self, view: tuple[str, str] | None, compare: Compare = "off", *, texels: bool = False, viewed: bool = False
+        self, view: Seen | None, color: ColorSettings, compare: Compare = "off", *, texels: bool = False,
+        viewed: bool = False,
     ) -> ViewProgram:
-        """The program for a view and its display, or for data.
+        """The program for a view, or for data, of pictures whose colors are managed that way.
 
         With `texels` it brings the texels of a picture through the view; with `viewed` it draws what that one made.
-        Raises UsageError for an unknown view.
+        Raises UsageError for an unknown view; GraphError, UsageError without a config.
         """
-        key = (view, compare, texels, viewed)
+        key = (view, color, color_mark(color), compare, texels, viewed)
         if key not in self._known:
-            text = gpu_view(*view) if view else None
+            text = gpu_view(view.view, view.display, view.look, color) if view else None
+            library = library_for(installed(), working_of(color))
             with undisturbed():
-                self._known[key] = self._compile(text, _source(text, compare, texels, viewed))
+                self._known[key] = self._compile(text, _source(text, library, compare, texels, viewed))
         return self._known[key]
 
     def release(self) -> None:
@@ -80,7 +92,7 @@ class ViewPrograms:
         return program
 
 
-def _source(view: ColorProgram | None, compare: Compare, texels: bool, viewed: bool) -> str:
+def _source(view: ColorProgram | None, library: Library, compare: Compare, texels: bool, viewed: bool) -> str:
     """The whole fragment shader; modes are numbers by name."""
     names = {f"COMPARE_{mode}": number for number, mode in enumerate(cast("tuple[str, ...]", get_args(Compare)))}
     names |= {mode: number for number, mode in enumerate(cast("tuple[str, ...]", get_args(Channels)))}
@@ -89,5 +101,5 @@ def _source(view: ColorProgram | None, compare: Compare, texels: bool, viewed: b
     defines = [f"#define {name.replace(' ', '_').upper()} {number:d}" for name, number in names.items()]
     return "\n".join([
         "#version 410 core", *defines, f"#define COMPARE COMPARE_{compare.upper()}", view.text.body if view else "",
-        *(text.body for text in installed().closure((f"viewer/{'texels' if texels else 'display'}",), "viewer")),
+        *(text.body for text in library.closure((f"viewer/{'texels' if texels else 'display'}",), "viewer")),
     ])

@@ -29,10 +29,11 @@ class Metric:
         return f"{self.name} {number(value)}{self.unit} where {bound} {number(tolerance)}{self.unit} is allowed"
 
 
+PER_PIXEL = ("max_rel", "max_abs")
 METRICS = {
     item.name: item for item in (
-        Metric("max_abs", 0.004), Metric("rms", 0.001), Metric("psnr", 40.0, True, " dB"), Metric("ssim", 0.99, True),
-        Metric("flip", 0.01),
+        Metric("max_rel", 0.004), Metric("max_abs", 0.004), Metric("rms", 0.001), Metric("psnr", 40.0, True, " dB"), 
+        Metric("ssim", 0.99, True), Metric("flip", 0.01),
     )
 }
 
@@ -50,7 +51,7 @@ class Case:
     """One test. Paths are complete; `values` are as they stand in the file.
 
     Without goldens a case must only render. With `error` it must fail, with this text in the sentence. `failing` is
-    the percentage of pixels that may be beyond the tolerance of `max_abs`.
+    the percentage of pixels that may be beyond the tolerance of `max_rel` or `max_abs`.
     """
 
     suite: Path
@@ -63,8 +64,8 @@ class Case:
     scale: float = 1.0
     node: str = ""
     goldens: tuple[Golden, ...] = ()
-    metric: str = "max_abs"
-    tolerance: float = METRICS["max_abs"].tolerance
+    metric: str = "max_rel"
+    tolerance: float = METRICS["max_rel"].tolerance
     failing: float = 0.0
     precision: str = "half"
     view: str = ""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from contextlib import closing, contextmanager
+from contextlib import closing
 from dataclasses import dataclass
 from functools import cache
 from importlib import metadata
@@ -55,21 +55,10 @@ def run_cases(
     return Session(ordered, device, time.perf_counter() - started, how.deterministic and software, remark, version)
 
 
-@contextmanager
-def opened(how: How) -> Iterator[engine.Renderer]:
-    """A renderer for cases: the pinned one, or whatever the system has."""
-    device = engine.open_pinned() if how.deterministic else engine.open_device()
-    renderer = engine.Renderer(device, budget=0)
-    try:
-        yield renderer
-    finally:
-        renderer.close()
-
-
 def _alone(cases: Iterable[Case], how: How) -> Generator[_Done, None, None]:
-    with opened(how) as renderer:
-        for case in cases:
-            yield _done(case, renderer, how)
+    renderer = _renderer(how.deterministic)
+    for case in cases:
+        yield _done(case, renderer, how)
 
 
 def _shared(cases: Sequence[Case], how: How, jobs: int) -> Generator[_Done, None, None]:
@@ -84,12 +73,17 @@ def _shared(cases: Sequence[Case], how: How, jobs: int) -> Generator[_Done, None
         pool.shutdown(cancel_futures=True)
 
 
+def in_this_process(case: Case, how: How) -> Outcome:
+    """What becomes of a case; the device stays open for the next one."""
+    return run_case(case, _renderer(how.deterministic), how)
+
+
 def _begin(threads: str) -> None:
     os.environ.setdefault("LP_NUM_THREADS", threads)
 
 
 def _work(case: Case, how: How) -> _Done:
-    return _done(case, _renderer(how), how)
+    return _done(case, _renderer(how.deterministic), how)
 
 
 def _done(case: Case, renderer: engine.Renderer, how: How) -> _Done:
@@ -97,7 +91,6 @@ def _done(case: Case, renderer: engine.Renderer, how: How) -> _Done:
 
 
 @cache
-def _renderer(how: How) -> engine.Renderer:
+def _renderer(deterministic: bool) -> engine.Renderer:
     """One device for all cases of a process; it ends with the process."""
-    device = engine.open_pinned() if how.deterministic else engine.open_device()
-    return engine.Renderer(device, budget=0)
+    return engine.Renderer(engine.open_pinned() if deterministic else engine.open_device(), budget=0)

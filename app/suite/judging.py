@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import HalationError
-from ..media.compare import Compared, compare
+from ..media.compare import CODE, Compared, compare
 from ..media.goldens import Stored, maker, read_stored
-from .cases import METRICS, Case, number
+from .cases import METRICS, PER_PIXEL, Case, number
 from .results import Check
 
 Parts = Mapping[str, Stored]
@@ -50,8 +50,8 @@ def unusable(case: Case, parts: Parts) -> str:
 
 def _measured(case: Case, fresh: Check, name: str, made: Stored, wanted: Stored) -> Check:
     found = compare(
-        made.array, wanted.array, threshold=case.tolerance if case.metric == "max_abs" else 1.0 / 255.0,
-        linear=made.linear and wanted.linear, perceptual=case.metric in ("ssim", "flip"),
+        made.array, wanted.array, threshold=case.tolerance if case.metric in PER_PIXEL else CODE,
+        relative=case.metric != "max_abs", linear=made.linear and wanted.linear, perceptual=case.metric in ("ssim", "flip"),
     )
     check = replace(fresh, layer=name, compared=found)
     if found.fault:
@@ -64,7 +64,7 @@ def _verdict(case: Case, check: Check, found: Compared, value: float) -> str:
     metric = METRICS[case.metric]
     if metric.allows(value, case.tolerance):
         return ""
-    if case.failing and case.metric == "max_abs":
+    if case.failing and case.metric in PER_PIXEL:
         if 100.0 * found.failing <= case.failing:
             return ""
         share = f"{number(100.0 * found.failing)} % of the pixels are beyond {number(case.tolerance)}"

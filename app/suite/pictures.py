@@ -9,11 +9,13 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import OutputError
-from ..media.compare import amplified
+from ..media.compare import amplified, three
 from ..media.goldens import Stored, codes_of, keep, png, write_difference
 from .cases import Case
 from .judging import Parts
 from .results import Check, Views
+
+Array = np.ndarray
 
 _UNSAFE = re.compile(r"[^\w.+-]+")
 
@@ -52,7 +54,7 @@ def left(check: Check, case: Case, actual: Path, made: Parts, wanted: Parts, fol
         layer = check.layer if check.layer in made and check.layer in wanted else next(iter(made.keys() & wanted), "")
         if layer in made and layer in wanted:
             files.append(folder / f"{stem}.difference.exr")
-            write_difference(files[2], {layer: amplified(made[layer].array, wanted[layer].array, 1.0)})
+            write_difference(files[2], {layer: _difference(made[layer].array, wanted[layer].array)})
     if check.views:
         for word in ("actual", "expected", "difference"):
             data: bytes = getattr(check.views, word)
@@ -60,6 +62,12 @@ def left(check: Check, case: Case, actual: Path, made: Parts, wanted: Parts, fol
                 files.append(folder / f"{stem}.{word}.view.png")
                 files[-1].write_bytes(data)
     return replace(check, files=tuple(files))
+
+
+def _difference(actual: Array, expected: Array) -> Array:
+    """The absolute difference as numbers; where sizes differ, a picture of that."""
+    same = actual.shape == expected.shape
+    return np.abs(three(actual) - three(expected)) if same else amplified(actual, expected, 1.0)
 
 
 def _span(part: Stored) -> tuple[float, float]:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from ..errors import DocumentError, UsageError
-from .cases import ENDING, METRICS, Case
+from .cases import ENDING, METRICS, PER_PIXEL, Case
 from .reading import Table, frames_of, goldens_of, inputs_of, parse, size_of
 
 _KEYS = (
@@ -73,10 +73,10 @@ def _cases(path: Path, name: str, own: Table, defaults: Table) -> Iterator[Case]
 def _case(path: Path, name: str, graph: Path, own: Table, both: Table) -> Case:
     if "metric" in own.items and "tolerance" not in own.items:
         both = both.without("tolerance")
-    metric = both.choice("metric", tuple(METRICS), "max_abs")
+    metric = both.choice("metric", tuple(METRICS), "max_rel")
     failing = both.number("failing", 0.0, 0.0, 100.0)
-    if failing and metric != "max_abs":
-        raise both.fault("failing", f"a share of pixels may fail with the metric max_abs only, not with {metric}")
+    if failing and metric not in PER_PIXEL:
+        raise both.fault("failing", f"a share of pixels may fail with the metrics max_rel and max_abs, not with {metric}")
     error = both.text("error")
     if "error" in own.items and not error:
         raise both.fault("error", "give some words of the sentence that rendering must fail with")

@@ -11,8 +11,9 @@ from types import new_class
 from typing import Any, Literal, cast
 
 from ...nodes import Draw, Drawn, Edge, Field, Filter, Image, Output, Pointwise, Socket, Value, Vector
-from ..glsl import COMMENT, Function, Text, blanked, parse, unified
+from ..glsl import COMMENT, Function, Text, blanked, guarded, parse, unified
 from .code import Code, CodeFault, Written
+from .ending import ended
 from .notes import Note, read_note
 from .passes import drawn
 from .values import value_of
@@ -74,6 +75,8 @@ def _class(
     if len(edges) > 1:
         raise CodeFault(entry.line, f"pictures end in different ways ({', '.join(sorted(edges))}): choose one edge")
     renamed = _renamed(source, text, prefix)
+    if (safe := guarded(renamed)) != renamed:
+        renamed = ended(safe, entry, prefix)
     body: dict[str, Any] = {"__module__": __name__, "__doc__": _doc(source, entry), "__annotations__": {}}
     for one in parameters:
         if one.name in inputs:
@@ -191,7 +194,7 @@ def _renamed(source: str, text: Text, prefix: str) -> str:
 
 def unprefixed(message: str) -> str:
     """A driver's message with names as the user wrote them."""
-    return re.sub(r"\bw[0-9a-f]{8}_(?=\w)", "", message)
+    return re.sub(r"\bw[0-9a-f]{8}x?_(?=\w)", "", message)
 
 
 def _entries(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal, Protocol
 
@@ -11,7 +12,7 @@ from .recolor import ColorChange
 from .render import Render
 from .scene import Motion, Scene
 from .sockets import Edge, Size, Socket, Viewpoint
-from .values import Plain
+from .values import Plain, Uniform
 
 
 class Drawn(Protocol):
@@ -29,6 +30,28 @@ Kernel = Literal["nearest", "triangle", "catmull-rom", "mitchell", "lanczos"]
 """How pixels between pixels are made. Catmull-Rom and Mitchell: Mitchell and Netravali 1988; Lanczos has 3 lobes."""
 
 Argument = Socket | Drawn | Plain
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One shader of a program: GLSL 4.10 without `#version`. Messages count the lines of `text`, as those of `file`."""
+
+    head: str
+    text: str
+    tail: str
+    file: str
+
+
+@dataclass(frozen=True)
+class ShaderText:
+    """A program of its own, which declares its uniforms and samplers.
+
+    The fragment shader has a function `vec4 halation_pixel()`, the color at gl_FragCoord; row 0 is the top. A vertex
+    shader is asked for the four corners of a strip: gl_VertexID is 0 to 3. Without one everything is covered.
+    """
+
+    fragment: Stage
+    vertex: Stage | None = None
 
 
 class Draw(Protocol):
@@ -50,6 +73,11 @@ class Draw(Protocol):
     @property
     def rate(self) -> float:
         """Frames per second."""
+        ...
+
+    @property
+    def start(self) -> int:
+        """The first frame of the graph, from which time counts."""
         ...
 
     def size_of(self, pixels: Pixels) -> Size:
@@ -82,6 +110,17 @@ class Draw(Protocol):
 
     def point(self, function: str, /, *inputs: Socket, result: Socket | None = None, **arguments: Argument) -> Drawn:
         """Call a pointwise `function`; every argument, pixels too, is a parameter, in order. It can fuse."""
+        ...
+
+    def program(
+        self, text: ShaderText, pictures: Mapping[str, Drawn], uniforms: Mapping[str, Uniform], *,
+        size: Size | None = None, result: Socket | None = None,
+    ) -> Drawn:
+        """Run a program that is no function of ours over every pixel of `size`; four channels come out.
+
+        Pictures are by the names of its samplers, which filter (bilinear) and end in their outermost pixels. What it
+        does not draw stays black.
+        """
         ...
 
     def blur(self, image: Pixels, sigma: float | tuple[float, float], edge: Edge = "clamp") -> Drawn:
@@ -137,11 +176,14 @@ class Draw(Protocol):
         """Sum or maximum of every channel over all pixels, as 1x1; exact at any size."""
         ...
 
-    def history(self, first: Pixels) -> Drawn:
-        """What this node remembered of the frame before; on a first frame, `first`. For `Temporal` nodes."""
+    def history(self, first: Pixels, name: str = "") -> Drawn:
+        """What this node remembered of the frame before; on a first frame, `first`. For `Temporal` nodes.
+
+        One that remembers several pictures tells them apart by `name`.
+        """
         ...
 
-    def remember(self, pixels: Drawn) -> None:
+    def remember(self, pixels: Drawn, name: str = "") -> None:
         """Keep these pixels for the next frame. For `Temporal` nodes."""
         ...
 
@@ -158,4 +200,8 @@ class Draw(Protocol):
 
     def read(self, path: str, layer: str, result: Socket, space: str = "") -> Drawn:
         """The pixels of a layer of an image file, as `result` says. Color is in that color space, "" to find out."""
+        ...
+
+    def asset(self, path: str, folder: str) -> Drawn:
+        """A picture that belongs to the node itself, at its own size always. It must lie in `folder`, links followed."""
         ...

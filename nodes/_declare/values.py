@@ -128,6 +128,9 @@ ValueType = Literal[
 Plain = float | int | bool | str | tuple[float, ...]
 """What a value may be: JSON scalars and flat lists of numbers."""
 
+Uniform = float | int | bool | tuple[float, ...]
+"""What a uniform of a shader may be set to."""
+
 
 @dataclass(frozen=True)
 class Value:

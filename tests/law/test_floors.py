@@ -17,7 +17,8 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 FLOORS = (
-    "errors", "glsl", "written", "graph", "document", "compiler", "media", "renderer", "__init__", "editor", "cli",
+    "errors", "glsl", "written", "graph", "document", "compiler", "media", "lint", "renderer", "__init__",
+    "suite", "editor", "cli",
 )
 """Parts of app from the ground up. `__init__` is the public face of the engine, so it stands on the renderer."""
 
@@ -26,6 +27,7 @@ HOMES = {
     "OpenImageIO": "media", "PyOpenColorIO": "media",
     "glfw": "editor", "imgui_bundle": "editor",
     "typer": "cli",
+    "pytest": "suite.plugin",
 }
 """Library -> the only part of app that may import it."""
 
@@ -153,6 +155,7 @@ def test_every_library_is_declared() -> None:
     providers = packages_distributions()
     ours = {name.split(".")[0] for name in MODULES}
     used = {target.split(".")[0] for _, target in links()} - ours - sys.stdlib_module_names
+    used -= {"pytest"}  # it loads our plugin, never we it
     assert not {name for name in used if not declared & {provider.lower() for provider in providers.get(name, [])}}
 
 

@@ -47,6 +47,25 @@ def test_plain_measures_are_those_of_openimageio(rng: np.random.Generator, chann
     assert math.isnan(found.ssim) and math.isnan(found.flip)
 
 
+def test_relative_differences_are_parts_of_the_expected_where_numbers_are_large(rng: np.random.Generator) -> None:
+    expected = scene(rng, top=50.0) + np.float32(3.0)
+    actual = nudged(rng, expected, 1.0)
+    found = compare(actual, expected, threshold=0.1, relative=True, perceptual=False)
+    reference = np.abs(actual.astype(float) - expected) / expected
+    assert found.max_rel == pytest.approx(reference.max(), rel=1e-6)
+    assert found.failing == pytest.approx(np.mean(reference.max(axis=2) > 0.1))
+    y, x = np.unravel_index(reference.max(axis=2).argmax(), reference.shape[:2])
+    assert found.worst == (x, y)
+
+
+@pytest.mark.parametrize("top", [0.25, 1.0])
+def test_relative_differences_are_absolute_up_to_one(rng: np.random.Generator, top: float) -> None:
+    expected = scene(rng, top=top)
+    actual = nudged(rng, expected)
+    plain, relative = (compare(actual, expected, relative=flag, perceptual=False) for flag in (False, True))
+    assert plain == relative and plain.max_rel == plain.max_abs
+
+
 def test_the_peak_of_psnr_is_that_of_opencv_where_pictures_end_at_one(rng: np.random.Generator) -> None:
     expected = scene(rng)
     actual = np.clip(nudged(rng, expected), 0.0, 1.0)

@@ -149,7 +149,7 @@ def test_the_examples_of_the_manual(run: Run) -> None:
     smear = re.search(r"```glsl\n(.*?)\n```", text, re.DOTALL)
     assert tint and smear
     code = json.loads(f"{{{tint[1]}}}")["nodes"]["tint"]["code"]
-    made = run(node("\n".join(code), amount=1.0), {"image": np.zeros((3, 3, 4)) + [0.0, 0.0, 0.0, 1.0]})
+    made = run(node("\n".join(code), amount=1.0), {"image": np.tile([0.0, 0.0, 0.0, 1.0], (3, 3, 1))})
     assert np.allclose(made, [0.0, 0.2, 1.0, 1.0])
     flat = np.full((9, 40, 4), 0.25, np.float32)
     assert np.allclose(run(node(smear[1], length=9.0), {"image": flat}), 0.25)

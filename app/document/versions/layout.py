@@ -12,8 +12,8 @@ def without_strays(made: Any, base: Any) -> Any:
     """A graph without the places of nodes, and the routes of links, that were in the base and are gone."""
     if not is_tree(made) or not is_tree(base) or not is_tree(ui := made.get("ui")):
         return made
-    things, links = ({*things_of(base)} - {*things_of(made)}), base.get("links", {}).keys() - made.get("links", {}).keys()
-    gone = {"nodes": things, "routes": links}
+    links = base.get("links", {}).keys() - made.get("links", {}).keys()
+    gone = {"nodes": {*things_of(base)} - {*things_of(made)}, "routes": links}
     kept: Tree = dict(ui)
     for section, names in gone.items():
         if is_tree(entries := ui.get(section)) and names & entries.keys():

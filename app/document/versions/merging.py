@@ -17,7 +17,7 @@ from ..reading import loads
 from ..writing import dumps
 from .aligning import align_three
 from .conflicts import Conflict, with_conflicts
-from .faults import faulty_links
+from .faults import faults
 from .layout import without_strays
 from .lines import merged_lines
 from .parts import (
@@ -61,7 +61,7 @@ def merged(base: Graph, ours: Graph, theirs: Graph) -> Merged:
     work = _Merging()
     parts = work.part((), sides)
     try:
-        while wrong := [at for at in faulty_links(_graph(parts), ours, theirs) if at not in work.found]:
+        while wrong := [at for at in faults(_graph(parts), ours, theirs) if at not in work.found]:
             for at in wrong:
                 parts = put_part(parts, at, work.undecided(at, tuple(at_part(side, at) for side in sides)))
         text = dumps(_graph(with_conflicts(parts, work.found)))

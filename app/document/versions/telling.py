@@ -13,6 +13,7 @@ from .parts import ABSENT, At, Tree, is_list, is_tree, local, names_of, path_of,
 from .wording import animation_text, end_text, item_text, key_text, pair, text, value_at
 
 Sign = Literal["+", "-", "~"]
+_ORDER: Final = ("nodes", "links", "animation", "inputs", "outputs", "controls", "settings")
 _WORD: Final = {"inputs": "input", "outputs": "output", "controls": "control"}
 
 
@@ -30,8 +31,11 @@ def told(wanted: Difference, before: Graph, after: Graph) -> tuple[Line, ...]:
     found = [
         Line("~", f"node {'/'.join((*one.group, one.old))} is now called {one.new}") for one in wanted.renamed
     ]
-    for change in wanted.changes:
-        found += _Telling(change.at, (after, before)).lines(change.before, change.after)
+    gone = {change.at for change in wanted.changes if change.after is ABSENT}
+    for change in sorted(wanted.changes, key=lambda change: _ORDER.index(change.at[0])
+                         if change.at[0] in _ORDER else len(_ORDER)):
+        if change.at not in gone or not _goes_with(change.at, gone):
+            found += _Telling(change.at, (after, before)).lines(change.before, change.after)
     return tuple(found)
 
 
@@ -75,6 +79,8 @@ class _Telling:
             yield Line("~", f"node {self._up().name} {'is muted' if after is True else 'works again'}")
         elif is_list(before) and is_list(after) and here[0] == "nodes" and here[2:] == ("code",):
             yield Line("~", f"{self.name}:", _code(before, after))
+        elif here[0] == "links" and isinstance(before, str) and isinstance(after, str):
+            yield Line("~", f"link {self.name}: {before} -> {after}")
         elif here[0] == "animation" and is_tree(before) and is_tree(after) and len(here) == 2:
             one, other = (animation_text(item, self.value) for item in (before, after))
             yield Line("~", f"animation of {self.name}: {one} -> {other}")
@@ -160,7 +166,7 @@ class _Telling:
         here = local(self.at)
         if here[0] == "animation":
             return ""
-        return "link " if here[0] == "links" else "layout " if here[0] == "ui" else ""
+        return "layout " if here[0] == "ui" else ""
 
     def _down(self, *keys: str) -> _Telling:
         return _Telling((*self.at, *keys), self.graphs)
@@ -168,6 +174,14 @@ class _Telling:
     def _up(self) -> _Telling:
         """The part that holds this one; what holds a key is the animation."""
         return _Telling(self.at[:-2] if local(self.at)[0] == "animation" else self.at[:-1], self.graphs)
+
+
+def _goes_with(at: At, gone: set[At]) -> bool:
+    """True for a link to, or keys of, a node that is gone too."""
+    here = local(at)
+    if len(here) != 2 or here[0] not in ("links", "animation"):
+        return False
+    return (*at[:-2], "nodes", str(here[1]).partition(".")[0]) in gone
 
 
 def _code(before: list[Any], after: list[Any]) -> tuple[str, ...]:

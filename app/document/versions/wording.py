@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import Any, Final
 
 from ....nodes import Value
 from ...graph import Graph, Group, signature
 from .parts import ABSENT, At, Tree, is_list, is_tree, plain
+
+_PLAIN: Final = ("ratio", "count")
+"""Units that a number needs not be followed by."""
 
 _LONG = 8
 """Numbers of a list that are still written out."""
@@ -58,7 +61,7 @@ def text(part: Any, value: Value | None = None, exact: bool = False) -> str:
     """A value with its unit; one that is absent is the default."""
     if part is ABSENT:
         return "none" if value is None else f"{text(value.default, value, exact)} (default)"
-    unit = f" {value.unit}" if value and value.unit else ""
+    unit = f" {value.unit}" if value and value.unit and value.unit not in _PLAIN else ""
     if isinstance(part, bool) or part is None:
         return json.dumps(part)
     if isinstance(part, int | float):

@@ -190,13 +190,12 @@ def node_layout(id: str, item: Item, graph: Graph, facts: Facts) -> Layout:
 
 
 def _value_rows(id: str, item: Item, graph: Graph, facts: Facts, values: Mapping[str, Value]) -> list[Row]:
-    labels = {name: one.label for name, one in item.graph.controls.items()} if isinstance(item, Group) else {}
     rows: list[Row] = []
     for name, value in values.items():
         kind = value_kind(value) if name in facts.linked_ins or _wireable(graph, Port(id, name)) else None
         pin = Pin(name, kind, 0.0, 0.0, True, True) if kind else None
         plain = getattr(item, name) if isinstance(item, Node) else graph.value(Port(id, name))
-        linked, label = name in facts.linked_ins, labels.get(name) or words(name)
+        linked, label = name in facts.linked_ins, value.label or words(name)
         rows.append(Row(0.0, pin, None, value, label, plain, linked, shown=_shown(value, plain)))
     return rows
 

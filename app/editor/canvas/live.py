@@ -10,7 +10,7 @@ from ....nodes import Plain, Value
 from ...graph import Port
 from ..editor import Editor
 from ..inspector.choice_field import toggle_field
-from ..inspector.color_field import color_picker
+from ..inspector.color_field import color_picker, has_alpha, rgba
 from ..inspector.colors import intensity
 from ..inspector.fields import Edit, Fields
 from ..inspector.file_field import browse
@@ -141,11 +141,11 @@ class Live:
             )
             return
         if opening:
-            fields.stops = intensity(plain) if opening == "color" else 0.0  # pyright: ignore
+            fields.stops = intensity(rgba(plain)) if opening == "color" else 0.0
             imgui.open_popup(_PICKER if opening == "color" else _CHOICES)
         imgui.set_next_window_pos(self._at, imgui.Cond_.appearing)
         if value.type == "color" and imgui.begin_popup(_PICKER):
-            if edit := color_picker(fields, f"canvas {port} picker", plain):  # pyright: ignore
+            if edit := color_picker(fields, f"canvas {port} picker", rgba(plain), alpha=has_alpha(plain)):
                 self._edits.append((port, edit))
             imgui.end_popup()
         elif value.type == "choice" and imgui.begin_popup(_CHOICES):

@@ -37,7 +37,8 @@ def color_field(
 
     Without `alpha` that is not shown, and stays as it is or is to be ignored.
     """
-    color = _rgba(value)
+    color = rgba(value)
+    alpha = alpha and has_alpha(value)
     numbers = not label and width > imgui.get_font_size() * 12.0
     side = imgui.get_frame_height() * 1.2
     rect = place(side if numbers else width)
@@ -92,7 +93,7 @@ def color_picker(
     text = text_field(fields, f"{id} hex", hexadecimal(color), _TEXT, room)
     fresh = numbers or (from_hex(text) if text else None) or _buttons(fields, id, color, eyedropper)
     if fresh:
-        fields.stops = intensity(_rgba(fresh.value))
+        fields.stops = intensity(rgba(fresh.value))
     return fresh or found
 
 
@@ -213,7 +214,13 @@ def _sun(fields: Fields, rect: Rect, color: RGBA) -> None:
     )
 
 
-def _rgba(value: Plain) -> RGBA:
+def rgba(value: Plain) -> RGBA:
+    """A color as a picker takes it; one without an alpha is opaque."""
     assert isinstance(value, tuple)
-    red, green, blue, alpha = value
+    red, green, blue, alpha = (*value, 1.0)[:4]
     return red, green, blue, alpha
+
+
+def has_alpha(value: Plain) -> bool:
+    """True for a color of four numbers."""
+    return isinstance(value, tuple) and len(value) == 4

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
@@ -36,8 +35,8 @@ class NodeView:
         """One node: header, values, inputs."""
         session = rows.editor.session
         item = session.graph.nodes[id]
-        face, labels = signature(item), _labels(item)
-        rows.fit(("name", *face.inputs, *(labels.get(name) or name for name in face.values)))
+        face = signature(item)
+        rows.fit(("name", *face.inputs, *(value.label or name for name, value in face.values.items())))
         heading(rows, title_of(item), rows.palette.category(_category(item)), lambda: self._buttons(rows, id, item), 3)
         name_field(rows, self._fields, id, id, lambda new: session.rename(id, new), "What links and files call it")
         self._explained = explanation(rows, doc_of(item), self._explained)
@@ -53,7 +52,7 @@ class NodeView:
             self._renders.draw(rows, id, item)
         else:
             for name, declaration in face.values.items():
-                self._values.draw(rows, (Port(id, name),), declaration, labels.get(name, ""))
+                self._values.draw(rows, (Port(id, name),), declaration)
         if face.inputs:
             rows.heading("Inputs")
         for name, socket in face.inputs.items():
@@ -71,7 +70,7 @@ class NodeView:
         if not found:
             rows.note("These nodes have no value in common.")
             return
-        rows.fit(declaration.name for declaration in found)
+        rows.fit(declaration.label or declaration.name for declaration in found)
         rows.heading("Values in Common")
         for declaration in found:
             self._values.draw(rows, tuple(Port(id, declaration.name) for id in ids), declaration)
@@ -144,13 +143,6 @@ def _input(rows: Rows, port: Port, socket: Socket) -> None:
 def _default(socket: Socket) -> str:
     default = socket.default
     return " ".join(f"{part:g}" for part in default) if isinstance(default, tuple) else f"{default:g}"
-
-
-def _labels(item: Item) -> Mapping[str, str]:
-    """What the controls of a group are called, where that is not their name."""
-    if not isinstance(item, Group):
-        return {}
-    return {name: control.label for name, control in item.graph.controls.items() if control.label}
 
 
 def _category(item: Item) -> str:

@@ -55,7 +55,7 @@ class ValueRows:
         value = value_now(session, port)[0] if moves else graph.value(port)
         changed = any(one in graph.animation or graph.value(one) != default_of(graph, one) for one in ports)
         control = session.control_of(port) if len(ports) == 1 else None
-        rows.name(key, label or port.socket, doc=_tip(declaration, control), changed=changed, color=color,
+        rows.name(key, label or declaration.label or port.socket, doc=_tip(declaration, control), changed=changed, color=color,
                   spare=WIDTH * ui_scale())
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left):
             rows.act(lambda: reset(session, ports))

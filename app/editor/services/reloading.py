@@ -35,7 +35,7 @@ class NodeFiles:
 
     def __init__(self) -> None:
         self.folder = Path(nodes.__path__[0])
-        catalogue()
+        dict(catalogue())
         self._texts = self._read()
 
     def reload(self) -> str:
@@ -61,13 +61,13 @@ class NodeFiles:
             for name in sorted(stale & texts.keys()):
                 if name not in sys.modules:
                     _load(name, texts[name])
-            catalogue.__wrapped__()
+            dict(catalogue.__wrapped__())
         except (Exception, SystemExit) as fault:
             for name, module in before.items():
                 _install(name, module)
             return f"{self._told(fault)}; all nodes stay as they were"
         catalogue.cache_clear()
-        catalogue()
+        dict(catalogue())
         self._texts = texts
         return ""
 

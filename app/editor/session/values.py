@@ -22,15 +22,17 @@ class Values(Animating):
 
     def set(self, port: Port, value: object, merge: str = "") -> None:
         """Set a value, or where it has keys a key at `frame`; equal `merge` tokens in a row make one step."""
-        if keys := self._with_key(port, value):
+        if keys := self._with_key(port, self._fitted(port, value)):
             self.animate(port, keys, f"Key {port}", merge)
             return
-        self.edit(f"Set {port}", self.graph.set(port, clean(value) if isinstance(value, str) else value), merge=merge)
+        fitted = clean(value) if isinstance(value, str) else self._fitted(port, value)
+        self.edit(f"Set {port}", self.graph.set(port, fitted), merge=merge)
 
     def set_all(self, values: Mapping[Port, object], label: str, merge: str = "") -> None:
         """The same for several values, as one step."""
         graph = self.graph
-        for port, value in values.items():
+        for port, given in values.items():
+            value = self._fitted(port, given)
             keys = self._with_key(port, value)
             graph = graph.animate(port, keys) if keys else graph.set(port, value)
         self.edit(label, graph, merge=merge)
@@ -83,6 +85,13 @@ class Values(Animating):
         found = {key: clean(text) for key, text in (("label", label), ("doc", doc)) if text is not None}
         item = replace(self.graph.controls[name], **found)
         self.edit(f"Describe {name}", replace(self.graph, controls={**self.graph.controls, name: item}), merge=merge)
+
+    def _fitted(self, port: Port, value: object) -> object:
+        """A color as the value takes it: pickers make four numbers, which is one too many for a color without alpha."""
+        item = self.graph.nodes.get(port.node)
+        declared = None if item is None else signature(item).values.get(port.socket)
+        rgb = declared is not None and declared.type == "color" and declared.length == 3
+        return value[:3] if rgb and isinstance(value, tuple) and len(value) == 4 else value
 
     @staticmethod
     def _without(graph: Graph, port: Port) -> Graph:

@@ -69,7 +69,8 @@ def _way_out(sheet: Sheet, before: str, between: list[str], id: str) -> str:
             return f"one resize by {wide:.4g}, {high:.4g} does both"
         case (Resize() as resize, Transform()) | (Transform(), Resize() as resize):
             if still and max(resize.scale) <= 1.0 and not _hard(first, second):
-                return f"let the transform scale by {resize.scale[0]:.4g}, {resize.scale[1]:.4g} too, and crop behind it"
+                wide, high = resize.scale
+                return f"let the transform scale by {wide:.4g}, {high:.4g} too, and crop behind it"
         case GaussianBlur(), GaussianBlur() if still and not between and first.edge == second.edge:
             if first.scale == second.scale:
                 return f"one blur with a sigma of {hypot(first.sigma, second.sigma):.4g} does both"

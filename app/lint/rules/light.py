@@ -33,7 +33,7 @@ _TONE = (ToneMap, LocalToneMap, PhotoreceptorToneMap)
 _GLOWS = frozenset({"bloom", "bright_pass", "eye_glare", "ghosts", "kernel_glare", "star", "streaks"})
 _SPREADS = frozenset({"depth_of_field"})
 _LIGHT = _GLOWS | _SPREADS | {
-    "auto_exposure", "deferred_lighting", "exposure", "eye_adaptation", "film_halation", "fog", "image_based_light",
+    "auto_exposure", "deferred_lighting", "eye_adaptation", "film_halation", "fog", "image_based_light",
     "light_shafts", "local_tone_map", "motion_blur", "over_exposure", "photoreceptor_tone_map", "scotopic_vision",
     "screen_reflections", "sun_beams", "tone_map",
 }
@@ -56,11 +56,10 @@ def display_light(sheet: Sheet) -> Iterator[Problem]:
             yield Problem(id, name, f"{sentence} '{by}'", DISPLAY_LIGHT, f"links.{id}.{name}")
         for name in _shown(sheet, id):
             maker[Port(id, name)] = id
-        keeps = isinstance(item, Node) and not isinstance(item, ColorSpace | LutFile) and item.id not in _LIGHT
+        keeps = not isinstance(item, ColorSpace | LutFile | Group) and getattr(item, "id", "") not in _LIGHT
         if keeps and made and all(source in maker for source in pictures):
-            for name, output in item.outputs.items():
-                if output.socket.kind is Kind.IMAGE:
-                    maker[Port(id, name)] = min(made)
+            outputs = signature(item).outputs
+            maker |= {Port(id, name): min(made) for name, output in outputs.items() if output.kind is Kind.IMAGE}
 
 
 def clipped_light(sheet: Sheet) -> Iterator[Problem]:

@@ -25,8 +25,6 @@ def library() -> Any:
     """PyAV, or None where it is not installed."""
     try:
         import av
-        import av.logging
     except ImportError:
         return None
-    av.logging.set_level(av.logging.PANIC)  # what is wrong is said once, by us
-    return av
+    return av  # it keeps quiet by itself; its levels of logging would have the decoder's threads wait for us

@@ -1,0 +1,158 @@
+"""`halation reproduce`: a picture again, from its own header."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from . import parsing
+from .options import AsJson, report_problems
+from .outcome import note, print_json
+
+if TYPE_CHECKING:
+    from ..renderer.finding import Found
+    from ..renderer.recipe import Recipe
+    from ..renderer.reproduction import Layer, Reproduction
+
+_SHORT = 12
+
+
+def reproduce(
+    picture: Annotated[Path, typer.Argument(help="A picture that Halation rendered: EXR, PNG, TIFF or JPEG.")],
+    output: Annotated[
+        list[Path] | None, typer.Option("-o", "--output", metavar="FILE", help="Keep the rebuilt picture too.")
+    ] = None,
+    inputs: Annotated[
+        list[str] | None,
+        typer.Option("-i", "--input", metavar="NAME=FILE", help="Where an input, or a file that a node reads, is now."),
+    ] = None,
+    search: Annotated[
+        list[Path] | None,
+        typer.Option("--search", metavar="DIR", help="Look for inputs below this folder, by name and by content."),
+    ] = None,
+    graph: Annotated[
+        Path | None,
+        typer.Option("--graph", metavar="FILE", help="Save the graph that made the picture; renders only with -o."),
+    ] = None,
+    tolerance: Annotated[
+        float | None,
+        typer.Option(metavar="X", min=0.0, help="How far numbers may be apart; by default 0 on the same renderer."),
+    ] = None,
+    as_json: AsJson = False,
+) -> int:
+    """Rebuild a picture from its own header, and say what differs: 0 if the pixels are the same, 1 if not."""
+    from ..renderer.finding import Finder, missing
+    from ..renderer.recipe import read_recipe
+
+    given = parsing.assignments(inputs or (), "-i")
+    recipe = read_recipe(picture)
+    found = Finder(recipe, given, search or ()).all()
+    saved = _saved(recipe, found, graph) if graph else ""
+    if graph and not output:
+        if as_json:
+            print_json({"picture": str(picture), "graph": saved, "inputs": [_input(item) for item in found]})
+        return 0
+    if fault := missing(found, picture):
+        raise fault
+    report_problems(picture, recipe.graph)
+    from ..renderer import Renderer
+    from ..renderer.reproduction import open_alike, reproduce
+
+    renderer = Renderer(open_alike(recipe), budget=0)
+    note(renderer.device.description)
+    made = reproduce(renderer, recipe, found, tuple(output or ()), tolerance)
+    if as_json:
+        print_json(_as_json(recipe, found, made, saved))
+    else:
+        _print(recipe, found, made)
+    return 0 if made.same else 1
+
+
+def _saved(recipe: Recipe, found: tuple[Found, ...], path: Path) -> str:
+    """Save the graph with what was found in it; where to."""
+    from dataclasses import replace
+
+    from .. import document
+    from ..graph.paths import rebased
+    from ..renderer.finding import pointed
+
+    whole = pointed(recipe.graph, found)
+    folder = str(path.absolute().parent)
+    below = rebased(replace(whole, folder=str(recipe.path.absolute().parent)), folder)
+    if str(path) == "-":
+        print(document.dumps(below), end="")
+        return "-"
+    document.save(below, path)
+    note(f"{path}: the graph of {recipe.path}")
+    return str(path)
+
+
+def _print(recipe: Recipe, found: tuple[Found, ...], made: Reproduction) -> None:
+    proxy = f", scale {recipe.scale:g}" if recipe.scale != 1.0 else ""
+    print(f"{recipe.path}: frame {recipe.frame}{proxy}, by Halation {recipe.version} on {recipe.renderer}")
+    for item in made.differences:
+        print(f"  {item.what:<9} was {item.then}, is {item.now}")
+    for item in found:
+        name = item.used.pattern or item.used.name
+        then = item.used.together or item.used.digest
+        if item.state == "same":
+            moved = f" (now {item.path})" if Path(item.path).name != name else ""
+            print(f"  input     {_name(item)}: {name}: the same{moved}")
+        else:
+            now = f"changed, was {then[:_SHORT]}, is {item.digest[:_SHORT]} ({item.path})"
+            print(f"  input     {_name(item)}: {name}: {now}")
+    for layer in made.layers:
+        print(f"  pixels    {f'{layer.name}: ' if layer.name else ''}{_told(layer, made.tolerance)}")
+    for path in made.written:
+        note(f"{path}  the rebuilt picture")
+
+
+def _told(layer: Layer, tolerance: float) -> str:
+    measured = layer.compared
+    if measured.fault:
+        return f"differ: {measured.fault}"
+    if measured.equal:
+        return "the same, bit for bit"
+    within = "within" if layer.farthest <= tolerance else "beyond"
+    x, y = measured.worst or (0, 0)
+    return (
+        f"{'the same' if within == 'within' else 'differ'}: at most {measured.max_abs:.3g} apart at {x},{y}, "
+        f"rms {measured.rms:.3g}, {measured.failing:.2%} of the pixels; {within} the tolerance of {tolerance:.3g}"
+    )
+
+
+def _name(item: Found) -> str:
+    return item.used.owner.removeprefix("inputs.")
+
+
+def _input(item: Found) -> dict[str, Any]:
+    used = item.used
+    return {
+        "name": _name(item), "file": used.pattern or used.name, "layer": used.layer, "state": item.state,
+        "path": item.path, "then": used.together or used.digest, "now": item.digest,
+    }
+
+
+def _as_json(recipe: Recipe, found: tuple[Found, ...], made: Reproduction, saved: str) -> dict[str, Any]:
+    return {
+        "picture": str(recipe.path), "same": made.same, "tolerance": made.tolerance, "frame": recipe.frame,
+        "version": recipe.version, "renderer": recipe.renderer,
+        "differences": [{"what": item.what, "then": item.then, "now": item.now} for item in made.differences],
+        "inputs": [_input(item) for item in found],
+        "pixels": [
+            {
+                "layer": layer.name, "equal": layer.compared.equal, "farthest": _number(layer.farthest),
+                "max_abs": _number(layer.compared.max_abs), "rms": _number(layer.compared.rms),
+                "failing": layer.compared.failing, "fault": layer.compared.fault,
+            }
+            for layer in made.layers
+        ],
+        "graph": saved, "written": [str(path) for path in made.written],
+    }
+
+
+def _number(found: float) -> float | None:
+    """JSON has no infinity."""
+    return found if found < float("inf") else None

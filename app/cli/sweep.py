@@ -1,0 +1,131 @@
+"""`halation sweep`: a contact sheet of one graph at many values."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from . import parsing
+from .batch import batch
+from .options import AsJson, GraphFile, Inputs, Lazy, Node, Scale, SizeText, bound, opened, report_problems
+from .outcome import note, print_json
+from .sweeping import axes
+
+if TYPE_CHECKING:
+    from ..graph import Graph
+
+
+def sweep(
+    graph: GraphFile,
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="FILE", help="The sheet: .png, .jpg, .tif, .webp.")],
+    sets: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set", metavar="NODE.VALUE=X,Y,...",
+            help="What to sweep: 1,2,4 or 1..8/4 or 1..100/5log; * for all choices; colors and vectors with ; between.",
+        ),
+    ] = None,
+    inputs: Inputs = None,
+    node: Node = "",
+    size: SizeText = None,
+    scale: Scale = 1.0,
+    frame: Annotated[
+        int | None, typer.Option(help="The frame of all pictures; by default the first of the graph.")
+    ] = None,
+    frames: Annotated[str | None, typer.Option(metavar="1-24x8", help="Sweep these frames.")] = None,
+    show: Annotated[str, typer.Option("--show", metavar="NAME", help="The output to show; by default the first.")] = "",
+    view: Annotated[str, typer.Option(help="OpenColorIO view; 'none' for plain sRGB.")] = "",
+    cell: Annotated[int, typer.Option(metavar="PIXELS", min=16, max=4096, help="Width of a picture on the sheet.")] = 480,
+    columns: Annotated[int, typer.Option(min=0, help="Pictures side by side; by default what makes a good shape.")] = 0,
+    cells: Annotated[
+        Path | None, typer.Option("--cells", metavar="DIR", help="Write each picture alone into this folder too.")
+    ] = None,
+    ending: Annotated[
+        str, typer.Option(metavar=".png|.exr|...", help="What kind of files --cells writes.")
+    ] = ".png",
+    precision: Annotated[
+        str | None, typer.Option(metavar="half|float", help="Precision of intermediates and of EXR files.")
+    ] = None,
+    as_json: AsJson = False,
+) -> int:
+    """Render a graph at many values, onto one sheet with labels.
+
+    One value that is swept makes a row that wraps, two make a grid; a value that is given once is just set.
+    """
+    from dataclasses import replace
+
+    from .. import media
+    from ...nodes import Kind
+    from ..errors import UsageError
+    from ..renderer import DEFAULT_BUDGET, Wanted
+    from ..renderer import sweep as sweeping
+    from ..renderer.job import Writing
+
+    started = time.perf_counter()
+    depth = parsing.precision(precision) if precision is not None else None
+    chosen = parsing.frames(frame, frames) or ()
+    canvas, proxy = parsing.size(size), parsing.scale(scale)
+    whole, swept = axes(opened(graph, ()), sets or (), chosen)
+    report_problems(graph, whole)
+    bindings, targets = bound(whole, inputs or ()), parsing.targets(whole, node)
+    at = chosen[0] if chosen else Lazy().frames(whole, inputs or ())[0]
+    name = _output(whole, show, node)
+    look = view or ("" if node else whole.outputs[name].view)
+    count = len(sweeping.cells(whole, swept, at))
+    media.check_destination(output, {"": Kind.IMAGE}, {"": (1, 1)}, view=look)
+    if output.suffix.casefold() in (".exr", ".hdr"):
+        raise UsageError(f"{output}: a sheet is for eyes: write it as .png, .jpg, .tif or .webp")
+    written = Writing((("", cells),), view, precision=depth or "half") if cells is not None else None
+    wanted = Wanted(bindings, targets, canvas, proxy, precision=depth)
+    title = f"{graph.stem if str(graph) != '-' else 'graph'}  {', '.join(axis.name for axis in swept)}"
+    with batch(cells or output.parent, count, DEFAULT_BUDGET) as work:
+        how = sweeping.Swept(wanted, name, look, cell, columns, written, _ending(ending), title)
+        made = sweeping.sweep(work.renderer, whole, swept, how, at, work.step)
+        device = work.device
+    said = {"ImageDescription": "\n".join(item.label for item in made.cells)}
+    media.write(output, {"": made.light}, kinds={"": Kind.IMAGE}, view="none", metadata=said)
+    spent = time.perf_counter() - started
+    if as_json:
+        print_json(_as_json(output, made, device, spent))
+    else:
+        height, width = made.light.shape[:2]
+        note(f"{output}  {count} pictures, {width}x{height}, {spent:.2f} s")
+    return 0
+
+
+def _output(graph: Graph, show: str, node: str) -> str:
+    """The output to show. Raises UsageError."""
+    from ..errors import UsageError
+    from ..graph import did_you_mean
+
+    if node:
+        if show:
+            raise UsageError("--show and --node: choose one")
+        return node
+    if not graph.outputs:
+        raise UsageError("the graph has no output to show: take a node with --node")
+    if show and show not in graph.outputs:
+        raise UsageError(f"--show {show}: there is no output '{show}'{did_you_mean(show, graph.outputs)}")
+    return show or next(iter(graph.outputs))
+
+
+def _ending(text: str) -> str:
+    return text if text.startswith(".") else f".{text}"
+
+
+def _as_json(output: Path, made: Any, device: str, spent: float) -> dict[str, Any]:
+    return {
+        "written": str(output), "size": list(made.light.shape[1::-1]), "device": device,
+        "cells": [
+            {
+                "label": cell.label, "frame": cell.frame,
+                "values": {axis.name: step.text for axis, step in cell.steps if step.frame is None},
+                **({"file": str(made.files[place])} if made.files else {}),
+            }
+            for place, cell in enumerate(made.cells)
+        ],
+        "seconds": round(spent, 3),
+    }

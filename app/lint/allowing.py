@@ -1,0 +1,48 @@
+"""What a graph file says is meant: `settings.allow` holds reasons by `rule`, or by `rule:node`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from ..graph import INPUTS, OUTPUTS, Graph, Problem, did_you_mean
+from ..graph.problems import CONTROLS
+from ..graph.rules import Rule
+
+STALE_ALLOW = Rule(
+    "stale-allow", "warning",
+    "settings.allow allows what no rule warns of: it was mended since, the name is wrong, or it is an error.",
+    "Remove the entry, or correct its name.",
+)
+RULES = (STALE_ALLOW,)
+
+
+def where(problem: Problem) -> str:
+    """What `rule:node` calls the place of a problem: `glow/bloom`, `inputs.beauty`; "" for the graph as a whole."""
+    end = problem.node.rpartition("/")[2] in (INPUTS, OUTPUTS, CONTROLS)
+    return f"{problem.node}.{problem.socket}" if end and problem.socket else problem.node
+
+
+def allowed(graph: Graph, problem: Problem) -> str:
+    """The entry of `settings.allow` that says a warning is meant, or nothing."""
+    if problem.severity == "error":
+        return ""
+    names = (problem.rule.name, f"{problem.rule.name}:{where(problem)}")
+    return next((name for name in names if name in graph.settings.allow), "")
+
+
+def stale(
+    graph: Graph, used: Iterable[str], rules: Mapping[str, Rule], unsure: Iterable[str]
+) -> Iterator[Problem]:
+    """Entries that allow nothing; those of `unsure` rules depend on more than the file, so nothing is said of them."""
+    spent, silent = set(used), set(unsure)
+    for entry in graph.settings.allow:
+        name = entry.partition(":")[0]
+        if name not in rules:
+            fault = f"there is no rule '{name}'{did_you_mean(name, rules)}"
+        elif rules[name].severity == "error":
+            fault = "an error cannot be allowed"
+        elif entry in spent or name in silent:
+            continue
+        else:
+            fault = "nothing of that kind is left: remove it"
+        yield Problem("", "", f"settings.allow, '{entry}': {fault}", STALE_ALLOW, f"settings.allow.{entry}")

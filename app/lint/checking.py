@@ -1,0 +1,154 @@
+"""One graph file after another: everything there is to say of each, with its line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+
+from ...nodes import Node, catalogue
+from .. import document, graph
+from ..document.disk import read_text
+from ..document.positions import Positions
+from ..errors import DocumentError, GraphError
+from ..graph import Graph, Group, Problem
+from ..graph.rules import RULES as GRAPH_RULES
+from ..graph.rules import Rule
+from . import allowing, compiled, surroundings, texts
+from .rules import CHECKS
+from .sheet import Sheet, bodies
+
+RULES: Mapping[str, Rule] = {
+    rule.name: rule for rule in (
+        *texts.READING, *GRAPH_RULES, *compiled.RULES, *(check.rule for check in CHECKS), *surroundings.RULES,
+        texts.OLD_VERSION, texts.NOT_CANONICAL, *allowing.RULES,
+    )
+}
+"""Every rule by its name."""
+
+_OUTER = (*(rule.name for rule in (*surroundings.RULES, *compiled.RULES)), texts.OLD_VERSION.name)
+"""Rules whose findings depend on more than the file."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A problem of a file. `code` is the exit code that rendering would have, 0 for a warning."""
+
+    line: int
+    problem: Problem
+    code: int
+
+
+@dataclass(frozen=True)
+class Report:
+    """What was found in a file, by line."""
+
+    file: str
+    findings: tuple[Finding, ...]
+
+    @property
+    def code(self) -> int:
+        """The worst exit code."""
+        return max((finding.code for finding in self.findings), default=0)
+
+
+@dataclass
+class Checker:
+    """Checks files, without the rules that are `off`. What several files name is looked at once."""
+
+    off: frozenset[str] = frozenset()
+    world: compiled.World = field(default_factory=compiled.World)
+    around: surroundings.Surroundings = field(default_factory=surroundings.Surroundings)
+
+    @cached_property
+    def types(self) -> Mapping[str, type[Node]]:
+        """The installed node types."""
+        return catalogue()
+
+    def file(self, path: Path) -> Report:
+        """A graph file. Nothing is raised: what cannot be read is found too."""
+        try:
+            text = read_text(path)
+        except DocumentError as fault:
+            return self._report(str(path), "", None, self._unread(fault, ""))
+        return self.text(text, str(path), str(path.parent))
+
+    def text(self, text: str, file: str, folder: str) -> Report:
+        """The text of a graph. Relative paths in it start at `folder`."""
+        try:
+            made = document.loads(text, file, folder, self.types)
+        except DocumentError as fault:
+            return self._report(file, text, None, self._unread(fault, file, text))
+        return self._report(file, text, made, self._found(made, text))
+
+    def _unread(self, fault: DocumentError, file: str, text: str = "") -> Iterator[tuple[Problem, int, int]]:
+        problem, line = texts.unread(fault, text)
+        if file and fault.file != file:  # it is in the file of a group
+            problem = replace(problem, sentence=str(fault), at="")
+        yield problem, line if not file or fault.file == file else 0, fault.exit_code
+
+    def _found(self, made: Graph, text: str) -> Iterator[tuple[Problem, int, int]]:
+        """Problems with the line where the JSON path does not say it, and the exit code of each."""
+        found = graph.problems(made, self.types)
+        for problem in found:
+            yield problem, 0, GraphError.exit_code if problem.severity == "error" else 0
+        for problem, line in texts.problems(made, text, self.types):
+            yield problem, line, 0
+        if any(problem.severity == "error" for problem in found):
+            return
+        for body, inside, at in bodies(made):
+            sheet = Sheet(body)
+            for check in CHECKS:
+                for problem in check.find(sheet) if check.rule.name not in self.off else ():
+                    node = f"{inside}{problem.node}" if problem.node else inside.removesuffix("/")
+                    yield replace(problem, node=node, at=f"{at}{problem.at}" if problem.at else ""), 0, 0
+        for problem in self.around.problems(made):
+            yield problem, 0, 0
+        for code, problem in compiled.problems(made, self.world):
+            yield problem, 0, code
+
+    def _report(
+        self, file: str, text: str, made: Graph | None, found: Iterator[tuple[Problem, int, int]]
+    ) -> Report:
+        kept, used = list[tuple[Problem, int, int]](), set[str]()
+        for item in found:
+            if item[0].rule.name in self.off:
+                continue
+            if made is not None and (entry := allowing.allowed(made, item[0])):
+                used.add(entry)
+            else:
+                kept.append(item)
+        if made is not None and made.settings.allow and allowing.STALE_ALLOW.name not in self.off:
+            whole = not any(problem.severity == "error" for problem, _, _ in kept)
+            unsure = {*_OUTER, *self.off} if whole else RULES
+            kept += [(problem, 0, 0) for problem in allowing.stale(made, used, RULES, unsure)]
+        if not kept:
+            return Report(file, ())
+        lines = Positions(text)
+        findings = [Finding(line or _line(lines, made, problem), problem, code) for problem, line, code in kept]
+        return Report(file, tuple(sorted(findings, key=_order)))
+
+
+def _order(finding: Finding) -> tuple[int, str, str, str]:
+    problem = finding.problem
+    return finding.line, problem.severity, problem.rule.name, problem.sentence
+
+
+def _line(lines: Positions, made: Graph | None, problem: Problem) -> int:
+    """The line of a problem: that of its JSON path, else of whatever its node and socket name."""
+    if problem.at:
+        return lines.line(problem.at, last=problem.rule is texts.DOUBLE_KEY)
+    at, *rest = "", *problem.node.split("/")
+    for name in rest[:-1]:
+        item = made.nodes.get(name) if made else None
+        made = item.graph if isinstance(item, Group) else None
+        if isinstance(item, Group) and item.path:
+            return lines.line(f"{at}nodes.{name}.path")
+        at = f"{at}nodes.{name}.graph."
+    node = rest[-1]
+    places = (
+        f"{at}nodes.{node}.values.{problem.socket}", f"{at}links.{node}.{problem.socket}",
+        f"{at}{node}.{problem.socket}", f"{at}nodes.{node}", f"{at}{node}",
+    )
+    return lines.line(next((place for place in places if place in lines), ""))

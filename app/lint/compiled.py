@@ -1,0 +1,200 @@
+"""What only shows when a graph is compiled: the files that it reads, and what becomes of it as a whole."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path, PurePath
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from ...nodes import ColorChange, ColorSettings, Missing, Render, Scene
+from ..compiler import ColorProgram, Frame, Mesh, Picture, Probed, Request, Working, compile_graph, named_files
+from ..errors import DeviceError, HalationError, InputError, ShaderError, UsageError
+from ..graph import INPUTS, Graph, Group, Problem, keyed_range
+from ..graph.rules import Rule
+from .rules.paths import named_paths
+
+if TYPE_CHECKING:
+    from ..media.pictures import Pictures
+
+UNREADABLE_FILE = Rule(
+    "unreadable-file", "error",
+    "A file that the graph reads (a picture, a layer of it, a mesh, a table) is not there, or cannot be read.",
+    "Put it where the path leads, or correct path and layer.",
+)
+LFS_POINTER = Rule(
+    "lfs-pointer", "error", "A file is only the pointer that git LFS keeps in its place.",
+    "Fetch the file with git lfs pull; in a workflow, check out with lfs: true.",
+)
+UNBOUND_INPUT = Rule(
+    "unbound-input", "warning", "An input has neither a file nor a default, so that rendering needs -i NAME=FILE.",
+    "Bind it when rendering, or allow it where the graph is meant for that.",
+)
+CANNOT_COMPILE = Rule(
+    "cannot-compile", "error", "The graph as a whole makes no picture.", "Do what the sentence says."
+)
+BAD_SETTING = Rule(
+    "bad-setting", "error", "A value is a name that nobody knows, such as that of a color space.", "Correct it."
+)
+BROKEN_SHADER = Rule(
+    "broken-shader", "error", "The shader of a node and what the node declares do not agree.", "Correct the shader."
+)
+TOO_LARGE = Rule("too-large", "error", "A picture is larger than any device takes.", "Make it smaller.")
+RULES = (UNREADABLE_FILE, LFS_POINTER, UNBOUND_INPUT, CANNOT_COMPILE, BAD_SETTING, BROKEN_SHADER, TOO_LARGE)
+
+SIZE = (1920, 1080)
+"""What stands for a picture that is not there."""
+
+_POINTER = b"version https://git-lfs.github.com/spec/"
+_POINTER_SIZE = 1024
+
+T = TypeVar("T")
+
+
+@dataclass
+class World:
+    """Files as the compiler asks for them. Each is looked at once, and one that cannot be read is noted."""
+
+    faults: dict[str, str] = field(default_factory=dict[str, str])
+    """Sentences about files, and the path that the graph has for each."""
+    _known: dict[Any, Any] = field(default_factory=dict[Any, Any])
+    _asked: dict[str, str] = field(default_factory=dict[str, str])
+    """Paths as the graph has them, by the file of a frame."""
+    size: tuple[int, int] = SIZE
+
+    @cached_property
+    def pictures(self) -> Pictures:
+        """The real ones; what reads files is loaded when the first is asked for."""
+        from ..media.pictures import Pictures
+
+        return Pictures()
+
+    def frames(self, graph: Graph) -> tuple[int, int]:
+        """The first and last frame of a graph."""
+        if graph.settings.frames:
+            return graph.settings.frames
+        try:
+            return self.pictures.frames(graph, {}) if named_files(graph, {}) else keyed_range(graph)
+        except InputError as fault:
+            self.faults[str(fault)] = ""
+            return 1, 1
+
+    def check_frames(self, graph: Graph, frames: range) -> None:
+        """Note a file that is missing in a sequence."""
+        try:
+            if named_files(graph, {}):
+                self.pictures.check_frames(graph, frames)
+        except InputError as fault:
+            self.faults[str(fault)] = ""
+
+    def at(self, path: str, frame: int, missing: Missing) -> Frame:
+        """The file of a frame."""
+        found = self._once(path, ("at", path, frame, missing), lambda: self.pictures.at(path, frame, missing))
+        shown = found or Frame(path)
+        self._asked[shown.path] = path
+        return shown
+
+    def probe(self, picture: Picture) -> Probed:
+        """Size and precision of a picture, or something instead."""
+        key, path = (picture.path, picture.layer, picture.kind, picture.width), picture.path
+        found = None if picture.in_memory else self._once(path, key, lambda: self.pictures.probe(picture))
+        return found or Probed(self.size, False, path)
+
+    def recolor(self, change: ColorChange) -> ColorProgram:
+        """The program of a change of color."""
+        return self._known_or("recolor", change, lambda: self.pictures.recolor(change))
+
+    def working(self, color: ColorSettings) -> Working | None:
+        """What shaders know of the working space."""
+        return self._known_or("working", color, lambda: self.pictures.working(color))
+
+    def render(self, path: str, named: Mapping[str, str]) -> Render:
+        """What the file of a render holds."""
+        return self._known_or(path, tuple(sorted(named.items())), lambda: self.pictures.render(path, named))
+
+    def mesh(self, scene: Scene) -> Mesh:
+        """The triangles of a scene."""
+        return self._known_or("mesh", scene, lambda: self.pictures.mesh(scene))
+
+    def _once(self, path: str, key: object, ask: Callable[[], T]) -> T | None:
+        """An answer, or None after noting why there is none."""
+        try:
+            return self._known_or("once", key, ask)
+        except InputError as fault:
+            self.faults[str(fault)] = self._asked.get(path, path)
+        return None
+
+    def _known_or(self, kind: str, key: object, ask: Callable[[], T]) -> T:
+        """An answer, the same as before; a refusal is given again too."""
+        if (kind, key) not in self._known:
+            try:
+                self._known[kind, key] = ask()
+            except HalationError as fault:
+                self._known[kind, key] = fault
+        found = self._known[kind, key]
+        if isinstance(found, HalationError):
+            raise found
+        return found
+
+
+def problems(graph: Graph, world: World) -> Iterator[tuple[int, Problem]]:
+    """What there is to say of a graph that has no errors, each with the exit code that rendering would have."""
+    free = {name: item for name, item in graph.inputs.items() if not item.file and item.default is None}
+    read = {source.socket for source in graph.links.values() if source.node == INPUTS}
+    for name in free.keys() & read:
+        sentence = f"input '{name}' has no file and no default: rendering needs -i {name}=FILE"
+        yield 0, Problem(INPUTS, name, sentence, UNBOUND_INPUT, f"inputs.{name}")
+    if not graph.outputs:
+        return
+    world.faults.clear()
+    world.size = graph.settings.size or SIZE
+    first, last = world.frames(graph)
+    world.check_frames(graph, range(first, last + 1))
+    bindings = {
+        name: Picture(name, "", item.kind, item.socket().channels, in_memory=True) for name, item in free.items()
+    }
+    try:
+        compile_graph(graph, Request(bindings=bindings, frame=first), world)
+    except InputError as fault:
+        world.faults.setdefault(str(fault), "")
+    except HalationError as fault:
+        yield fault.exit_code, Problem(fault.node, "", str(fault), _rule(fault))
+    if world.faults:
+        places = _places(graph)
+        for sentence, path in world.faults.items():
+            yield InputError.exit_code, _unreadable(sentence, path, places)
+
+
+def _rule(fault: HalationError) -> Rule:
+    kinds = ((ShaderError, BROKEN_SHADER), (DeviceError, TOO_LARGE), (UsageError, BAD_SETTING))
+    return next((rule for kind, rule in kinds if isinstance(fault, kind)), CANNOT_COMPILE)
+
+
+def _unreadable(sentence: str, path: str, places: Mapping[str, tuple[str, str, str]]) -> Problem:
+    """The problem of a file, with whoever names it."""
+    path = path or next((known for known in sorted(places, key=len, reverse=True) if sentence.startswith(known)), "")
+    node, socket, at = places.get(path, ("", "", ""))
+    if path and _is_pointer(Path(path)):
+        words = f"{path}: this is a pointer of git LFS, not the file itself: run git lfs pull"
+        return Problem(node, socket, words, LFS_POINTER, at)
+    return Problem(node, socket, sentence, UNREADABLE_FILE, at)
+
+
+def _is_pointer(path: Path) -> bool:
+    try:
+        return path.stat().st_size <= _POINTER_SIZE and path.read_bytes().startswith(_POINTER)
+    except (OSError, ValueError):
+        return False
+
+
+def _places(graph: Graph, inside: str = "", at: str = "", fixed: str = "") -> dict[str, tuple[str, str, str]]:
+    """Who names a file first, by its path: node, socket and JSON path; `fixed` for what another file says."""
+    found: dict[str, tuple[str, str, str]] = {}
+    for node, socket, where, path in named_paths(graph):
+        found.setdefault(str(PurePath(graph.folder, path)), (f"{inside}{node}", socket, fixed or f"{at}{where}"))
+    for id, item in graph.nodes.items():
+        if isinstance(item, Group):
+            there = fixed or (f"{at}nodes.{id}.path" if item.path else "")
+            found = {**_places(item.graph, f"{inside}{id}/", f"{at}nodes.{id}.graph.", there), **found}
+    return found

@@ -1,0 +1,62 @@
+"""Which files are meant: names, folders and patterns."""
+
+from __future__ import annotations
+
+import glob
+import json
+import os
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from ..document.disk import read_text
+from ..errors import DocumentError
+
+_KEY = re.compile(r'"halation"\s*:')
+
+
+def graphs(given: Iterable[Path]) -> Iterator[Path]:
+    """Every file that is meant, once, in order.
+
+    A folder stands for all graphs in it and below, hidden folders aside; a pattern for what it matches, `**` included.
+    A name stands for itself, whether there is such a file or not.
+    """
+    seen = set[str]()
+    for path in given:
+        for found in _one(path):
+            key = os.path.realpath(found)
+            if key not in seen:
+                seen.add(key)
+                yield found
+
+
+def _one(path: Path) -> Iterator[Path]:
+    if path.is_dir():
+        yield from _inside(path)
+    elif path.exists() or not (matches := sorted(glob.glob(str(path), recursive=True))):  # noqa: PTH207
+        yield path
+    else:
+        for match in matches:
+            yield from _inside(Path(match)) if Path(match).is_dir() else (Path(match),)
+
+
+def _inside(folder: Path) -> Iterator[Path]:
+    """The graphs in a folder: JSON files that say they are one."""
+    for here, folders, names in os.walk(folder):
+        folders[:] = sorted(name for name in folders if not name.startswith("."))
+        for name in sorted(names):
+            if name.lower().endswith(".json") and not name.startswith(".") and _is_graph(path := Path(here, name)):
+                yield path
+
+
+def _is_graph(path: Path) -> bool:
+    """True for a text with the key that all graphs have, damaged or not."""
+    try:
+        text = read_text(path)
+        return _KEY.search(text) is not None and "halation" in json.loads(text)
+    except DocumentError:
+        return False
+    except (ValueError, RecursionError):
+        return True
+    except TypeError:
+        return False

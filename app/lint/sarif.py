@@ -1,0 +1,67 @@
+"""Findings as SARIF 2.1.0, the form in which code hosts show what checkers say."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from hashlib import blake2b
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from ..graph.rules import Rule
+from .allowing import where
+from .checking import Finding, Report
+
+SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
+
+
+def sarif(reports: Iterable[Report], rules: Mapping[str, Rule], root: Path, version: str) -> dict[str, Any]:
+    """A log of one run. Files are named from `root`, or whole where they lie outside of it."""
+    places = {name: place for place, name in enumerate(rules)}
+    results = [
+        _result(finding, _uri(report.file, root), places[finding.problem.rule.name])
+        for report in reports for finding in report.findings
+    ]
+    driver = {"name": "Halation", "version": version, "rules": [_rule(rule) for rule in rules.values()]}
+    return {"$schema": SCHEMA, "version": "2.1.0", "runs": [{"tool": {"driver": driver}, "results": results}]}
+
+
+def _rule(rule: Rule) -> dict[str, Any]:
+    help = f"{rule.doc} {rule.way_out}"
+    return {
+        "id": rule.name,
+        "shortDescription": {"text": rule.name.replace("-", " ").capitalize()},
+        "fullDescription": {"text": rule.doc},
+        "help": {"text": help, "markdown": help},
+        "defaultConfiguration": {"level": rule.severity},
+    }
+
+
+def _result(finding: Finding, uri: str, index: int) -> dict[str, Any]:
+    problem = finding.problem
+    file = {"artifactLocation": {"uri": uri}, "region": {"startLine": finding.line}}
+    location: dict[str, Any] = {"physicalLocation": file}
+    if place := where(problem):
+        location["logicalLocations"] = [{"fullyQualifiedName": place}]
+    return {
+        "ruleId": problem.rule.name, "ruleIndex": index, "level": problem.severity,
+        "message": {"text": problem.sentence}, "locations": [location],
+        # Lines are left out, so that what was known before is known again after an edit above it.
+        "partialFingerprints": {
+            "halation/v1": _hash(problem.rule.name, uri, place, problem.socket, problem.sentence)
+        },
+    }
+
+
+def _uri(file: str, root: Path) -> str:
+    """A path as a URI reference: relative to the root where it is below it."""
+    path = Path(file).absolute()
+    try:
+        # A folder that is only reached by a link counts as where it is named.
+        return quote(path.relative_to(root.absolute()).as_posix())
+    except ValueError:
+        return path.as_uri()
+
+
+def _hash(*parts: str) -> str:
+    return blake2b("\0".join(parts).encode("utf-8", "surrogateescape"), digest_size=16).hexdigest()

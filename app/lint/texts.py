@@ -1,0 +1,91 @@
+"""Rules about the text of a graph file."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from itertools import zip_longest
+from typing import Any, cast
+
+from ...nodes import Node
+from .. import document
+from ..document.syntax import member, parse
+from ..errors import DocumentError, GraphError
+from ..graph import Graph, Problem
+from ..graph.rules import Rule
+
+UNREADABLE_GRAPH = Rule(
+    "unreadable-graph", "error", "A graph file is not there, empty, far too large, or no text.", "Name another file."
+)
+CONFLICT_MARKERS = Rule(
+    "conflict-markers", "error", "A merge of git was left unfinished in the file.", "Resolve it, or merge it anew."
+)
+SYNTAX = Rule("syntax", "error", "The file is no JSON.", "Correct the line that is named.")
+DOUBLE_KEY = Rule(
+    "double-key", "error", "An object has a key twice, as after a merge by lines: one of them would be lost.",
+    "Remove one.",
+)
+SCHEMA = Rule(
+    "schema", "error", "Something in the file is not of the type that the format asks for.",
+    "Correct it; halation schema lets an editor of text show it while it is typed.",
+)
+NEWER_VERSION = Rule(
+    "newer-version", "error", "The file, or a node in it, was saved by a newer Halation.", "Update Halation."
+)
+MISSING_GROUP = Rule("missing-group", "error", "The file of a group is not there.", "Correct its path.")
+OLD_VERSION = Rule(
+    "old-version", "warning", "A node was saved by an older version of its type; it is brought up to date when read.",
+    "halation fmt writes the present version.",
+)
+NOT_CANONICAL = Rule(
+    "not-canonical", "warning",
+    "The file is not laid out in the one canonical way, or holds values that are the default anyway: the next save "
+    "changes lines that nobody edited.",
+    "halation fmt rewrites it.",
+)
+READING = (UNREADABLE_GRAPH, CONFLICT_MARKERS, SYNTAX, DOUBLE_KEY, SCHEMA, NEWER_VERSION, MISSING_GROUP)
+RULES = (*READING, OLD_VERSION, NOT_CANONICAL)
+
+_MARKER = re.compile(r"^(<{7}|>{7}|\|{7})( |$)", re.MULTILINE)
+
+
+def unread(fault: DocumentError, text: str) -> tuple[Problem, int]:
+    """Why a text is no graph, and the line that is known for it, or 0."""
+    if fault.rule == SYNTAX.name and (found := _MARKER.search(text)):
+        words = "a merge was left unfinished here: keep what is right, and remove the lines of <, = and >"
+        return Problem("", "", words, CONFLICT_MARKERS), text.count("\n", 0, found.start()) + 1
+    rule = next((rule for rule in READING if rule.name == fault.rule), SCHEMA)
+    words = ": ".join(part for part in (fault.path, fault.fault) if part)
+    return Problem("", "", words, rule, fault.path), fault.line
+
+
+def problems(graph: Graph, text: str, types: Mapping[str, type[Node]]) -> Iterator[tuple[Problem, int]]:
+    """What is wrong with the text of a graph, and the line of it, or 0 where the JSON path says it."""
+    try:
+        wanted = document.dumps(graph)
+    except GraphError:
+        return
+    # A checkout on Windows may have other ends of lines, which is for git to say.
+    lines = text.replace("\r\n", "\n")
+    if lines == wanted:
+        return
+    if any(kind.version > 1 for kind in types.values()):
+        yield from ((problem, 0) for problem in _old(parse(text, ""), types, ""))
+    pairs = enumerate(zip_longest(lines.split("\n"), wanted.split("\n")), 1)
+    line = next((number for number, (here, there) in pairs if here != there), 1)
+    words = "the layout is not the canonical one from here on: halation fmt rewrites it"
+    yield Problem("", "", words, NOT_CANONICAL), line
+
+
+def _old(raw: Mapping[str, Any], types: Mapping[str, type[Node]], at: str) -> Iterator[Problem]:
+    """Nodes of an older version, those of groups included. `raw` has been read before."""
+    nodes: Mapping[str, Mapping[str, Any]] = raw.get("nodes", {})
+    for id, node in nodes.items():
+        where = member(member(at, "nodes"), id)
+        kind, version = types.get(node["type"]), node.get("version", 1)
+        if kind and version < kind.version:
+            words = f"'{id}' is of version {version} of '{kind.id}', which is at {kind.version}: run halation fmt"
+            yield Problem(id, "", words, OLD_VERSION, where)
+        body = node.get("graph") if node["type"] == "group" else None
+        if isinstance(body, dict):
+            yield from _old(cast("Mapping[str, Any]", body), types, member(where, "graph"))

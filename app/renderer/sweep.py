@@ -1,0 +1,195 @@
+"""One graph many times: a picture for every combination of values that are swept."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+
+from ...nodes import Kind, Socket
+from ..errors import UsageError
+from ..graph import OUTPUTS, Graph, Port
+from ..media.sheet import data_shown, grid_sheet, grouped_sheet, shown_over_checker
+from .decoding import Array
+from .destinations import Writing
+from .engine import Renderer, Wanted
+from .job import run_job
+from .reel import Reel
+
+LETTERS = 16
+MOST_CELLS = 400
+FRAME = "frame"
+_WIDE = 1.7
+"""How much wider than high a sheet of one row of values becomes when it wraps, about."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """One setting of what is swept: as it was typed, and what makes a graph have it."""
+
+    text: str
+    apply: Callable[[Graph], Graph]
+    frame: int | None = None
+
+
+@dataclass(frozen=True)
+class Axis:
+    """What is swept: `blur.sigma`, a control, or the frame; `label` is what cells call it."""
+
+    name: str
+    label: str
+    steps: tuple[Step, ...]
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A picture: one step of every axis, the graph that they make, and the frame of it."""
+
+    steps: tuple[tuple[Axis, Step], ...]
+    graph: Graph
+    frame: int
+
+    @property
+    def label(self) -> str:
+        """As a person reads it: `sigma 4`."""
+        return "  ".join(f"{axis.label} {step.text}" for axis, step in self.steps)
+
+    @property
+    def file_stem(self) -> str:
+        """A name for a file of its own: `blur.sigma=4`, `blur.sigma=4,frame=0012`."""
+        return ",".join(f"{axis.name}={_plain(step.text, axis.name == FRAME)}" for axis, step in self.steps)
+
+
+@dataclass(frozen=True)
+class Swept:
+    """What to render of each graph, and how it is shown. `width` is that of a cell in pixels, 0 for the picture's."""
+
+    wanted: Wanted
+    output: str
+    view: str = ""
+    width: int = 480
+    columns: int = 0
+    written: Writing | None = None
+    """How pictures are written alone, their folder as its only file; None if they are not."""
+    ending: str = ".png"
+    title: str = ""
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Light of the display, what is in its cells, and the files that were written beside it."""
+
+    light: Array
+    cells: tuple[Cell, ...]
+    files: tuple[Path, ...] = field(default=())
+
+
+def cells(graph: Graph, axes: Sequence[Axis], frame: int) -> tuple[Cell, ...]:
+    """All combinations, the last axis fastest. Raises UsageError for more than a sheet can show."""
+    if not axes:
+        raise UsageError("nothing is swept: give several values, such as --set blur.sigma=1,2,4,8, or --frames")
+    if len(axes) > 2:
+        names = ", ".join(axis.name for axis in axes)
+        raise UsageError(f"{names}: a sheet has rows and columns, so two things can be swept; give the others one value")
+    count = int(np.prod([len(axis.steps) for axis in axes]))
+    if count > MOST_CELLS:
+        raise UsageError(f"{count} pictures are more than the {MOST_CELLS} that a sheet can hold: sweep fewer values")
+    return tuple(_combined(graph, axes, frame))
+
+
+def _combined(graph: Graph, axes: Sequence[Axis], frame: int) -> Iterator[Cell]:
+    for steps in product(*(axis.steps for axis in axes)):
+        changed, at = graph, frame
+        for step in steps:
+            changed, at = step.apply(changed), at if step.frame is None else step.frame
+        yield Cell(tuple(zip(axes, steps, strict=True)), changed, at)
+
+
+def sweep(
+    renderer: Renderer, graph: Graph, axes: Sequence[Axis], swept: Swept, frame: int,
+    step: Callable[[str], None] = lambda name: None,
+) -> Sheet:
+    """Render all cells and put them on a sheet; `step` hears the label of what comes next.
+
+    What several pictures share is computed once. Raises the errors of `app.errors`.
+    """
+    found = cells(graph, axes, frame)
+    pictures: list[Array] = []
+    files: list[Path] = []
+    for cell in found:
+        step(cell.label)
+        pictures.append(_small(_rendered(renderer, cell, swept), swept.width))
+        if swept.written is not None:
+            files += _alone(renderer, cell, swept)
+    light = _lights(graph, pictures, swept)
+    if len(axes) == 2:
+        heads = [[f"{axis.label} {step.text}" for step in axis.steps] for axis in axes]
+        across = len(heads[1])
+        rows = [light[start : start + across] for start in range(0, len(light), across)]
+        return Sheet(grid_sheet(rows, *heads, width=swept.width, title=swept.title), found, tuple(files))
+    named = dict(zip((cell.label for cell in found), light, strict=True))
+    columns = swept.columns or _columns(len(named), light[0])
+    sheet = grouped_sheet({swept.title: named}, columns, swept.width, letters=LETTERS)
+    return Sheet(sheet, found, tuple(files))
+
+
+def _rendered(renderer: Renderer, cell: Cell, swept: Swept) -> Array:
+    reel = Reel(renderer, cell.graph, swept.wanted)
+    try:
+        return reel.render(cell.frame)[swept.output]
+    finally:
+        reel.close()
+
+
+def _alone(renderer: Renderer, cell: Cell, swept: Swept) -> tuple[Path, ...]:
+    """Write a picture as `render` would; what was rendered for the sheet is not rendered again."""
+    assert swept.written is not None
+    ((_, folder),) = swept.written.files
+    file = folder / f"{cell.file_stem}{swept.ending}"
+    writing = replace(swept.written, files=((swept.output, file),))
+    return run_job(renderer, cell.graph, swept.wanted, writing, (cell.frame,)).written
+
+
+def _small(array: Array, width: int) -> Array:
+    """Every n-th pixel of a picture that is far larger than its cell: sheets are not kept in memory at full size."""
+    every = max(1, array.shape[1] // (4 * width)) if width else 1
+    return np.ascontiguousarray(array[::every, ::every])
+
+
+def _lights(graph: Graph, pictures: Sequence[Array], swept: Swept) -> list[Array]:
+    """Pictures as light of the display; data between the smallest and largest number of all of them."""
+    port = swept.wanted.targets.get(swept.output, Port(OUTPUTS, swept.output))
+    socket = graph.target(port) if port.node == OUTPUTS else graph.source(port)
+    kind = socket.kind if isinstance(socket, Socket) else Kind.IMAGE
+    if kind in (Kind.IMAGE, Kind.COLOR):
+        return [shown_over_checker(_wide(array), swept.view) for array in pictures]
+    finite = [array[np.isfinite(array)].astype(np.float64) for array in pictures]
+    low = min((float(part.min()) for part in finite if part.size), default=0.0)
+    high = max((float(part.max()) for part in finite if part.size), default=1.0)
+    return [data_shown(_wide(array), min(low, 0.0), high if high > low else low + 1.0) for array in pictures]
+
+
+def _wide(array: Array) -> Array:
+    """One value is shown as a field of it."""
+    return np.tile(array, (64, 64, 1)) if array.shape[:2] == (1, 1) else array
+
+
+def _columns(count: int, first: Array) -> int:
+    """How many go side by side: few in one row, many in about the shape of a screen."""
+    return count if count <= 4 else min(count, round((_WIDE * count * first.shape[0] / first.shape[1]) ** 0.5) or 1)
+
+
+def _plain(text: str, is_frame: bool) -> str:
+    """A value as a part of a file name."""
+    return f"{int(text):04d}" if is_frame else re.sub(r"[^\w.+-]+", "_", text)
+
+
+def used_labels(names: Sequence[str], labels: Mapping[str, str]) -> dict[str, str]:
+    """What cells call each name: its own label, the whole name where two labels would be the same."""
+    return {
+        name: labels[name] if sum(labels[other] == labels[name] for other in names) == 1 else name for name in names
+    }

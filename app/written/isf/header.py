@@ -1,0 +1,276 @@
+"""The head of a file in the Interactive Shader Format: a comment that holds JSON."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import PurePosixPath
+from typing import Any, NoReturn, cast
+
+from ...glsl import unified
+from ..code import CodeFault
+from .sizes import SizeError, SizeFormula, read_size
+
+MAX_INPUTS = 256
+MAX_PASSES = 64
+TYPES = ("event", "bool", "long", "float", "point2D", "color", "image", "audio", "audioFFT")
+PICTURES = ("image", "audio", "audioFFT")
+
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*|_[A-Za-z0-9][A-Za-z0-9_]*")
+_TAKEN = re.compile(
+    r"gl_\w*|isf_\w*|vv_\w*|halation_\w*|IMG_\w*|\w*__\w*|PASSINDEX|RENDERSIZE|TIME|TIMEDELTA|DATE|FRAMEINDEX|main"
+)
+
+Section = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One of the inputs. Numbers are lists: one for a float, two for a point, four for a color."""
+
+    name: str
+    type: str
+    label: str = ""
+    default: tuple[float, ...] = ()
+    low: tuple[float, ...] = ()
+    high: tuple[float, ...] = ()
+    choices: tuple[tuple[int, str], ...] = ()
+    """Of a long: what it may be, and what that is called."""
+
+
+@dataclass(frozen=True)
+class Buffer:
+    """What passes draw into and read by name."""
+
+    name: str
+    persistent: bool = False
+    floating: bool = False
+    width: SizeFormula | None = None
+    height: SizeFormula | None = None
+
+
+@dataclass(frozen=True)
+class Header:
+    """All that a head says. `passes` are names of buffers, empty for the picture itself; there is at least one."""
+
+    doc: str
+    inputs: tuple[Entry, ...]
+    passes: tuple[str, ...]
+    buffers: Mapping[str, Buffer]
+    imported: Mapping[str, str]
+    """Files beside the shader by the names of their samplers."""
+    categories: tuple[str, ...] = field(default=())
+
+
+def read_header(text: str) -> Header:
+    """Read the head of a shader. Raises CodeFault with the line where something is wrong."""
+    source = unified(text)
+    start = len(source) - len(source.lstrip())
+    end = source.find("*/", start)
+    if not source.startswith("/*", start) or end < 0:
+        raise CodeFault(1, "this is no Interactive Shader Format: the file begins with /* {JSON} */, which is missing")
+    return _Reading(source, start + 2, source[start + 2 : end]).header()
+
+
+class _Reading:
+    """The work in progress."""
+
+    def __init__(self, source: str, start: int, head: str) -> None:
+        self.source, self.end, self.first = source, start + len(head), source.count("\n", 0, start) + 1
+        try:
+            raw = json.loads(head, parse_constant=self._constant)
+        except json.JSONDecodeError as fault:
+            raise CodeFault(self.first + fault.lineno - 1, f"the head is no JSON: {_said(fault.msg)}") from None
+        except RecursionError:
+            raise CodeFault(self.first, "the head is nested too deep") from None
+        except ValueError:
+            raise CodeFault(self.first, "the head holds a number that is too long") from None
+        if not isinstance(raw, dict):
+            self._fail("the head is a JSON object, in braces")
+        self.raw = cast(Section, raw)
+
+    def header(self) -> Header:
+        inputs = self._inputs()
+        buffers: dict[str, Buffer] = {}
+        self._old_buffers(buffers)
+        passes = self._passes(buffers)
+        imported = self._imported()
+        seen: set[str] = set()
+        for name in (*(one.name for one in inputs), *buffers, *imported):
+            if name in seen:
+                self._fail(f"the name '{name}' is there twice", name)
+            seen.add(name)
+        known = {"WIDTH", "HEIGHT", *(one.name for one in inputs if one.type in ("float", "long", "bool", "event"))}
+        for buffer in buffers.values():
+            for formula in (buffer.width, buffer.height):
+                for name in sorted(formula.names - known) if formula else ():
+                    self._fail(f"the size '{formula.text}' of '{buffer.name}' reads '{name}', which is no number here",
+                               buffer.name)
+        credit = self._text(self.raw, "CREDIT")
+        parts = (self._text(self.raw, "DESCRIPTION"), f"By {credit.removeprefix('by ')}." if credit else "")
+        categories = tuple(part for part in self._list(self.raw, "CATEGORIES") if isinstance(part, str))
+        doc = "\n".join(part for part in parts if part) or "A shader in the Interactive Shader Format."
+        return Header(doc, inputs, passes, buffers, imported, categories)
+
+    # --- inputs ------------------------------------------------------------------------------------------------------
+
+    def _inputs(self) -> tuple[Entry, ...]:
+        items = self._list(self.raw, "INPUTS")
+        if len(items) > MAX_INPUTS:
+            self._fail(f"there are {len(items)} INPUTS: {MAX_INPUTS} are the most", "INPUTS")
+        return tuple(self._input(self._section(item, "INPUTS")) for item in items)
+
+    def _input(self, raw: Section) -> Entry:
+        name, kind = self._name(raw.get("NAME"), "an input"), raw.get("TYPE")
+        if kind not in TYPES:
+            self._fail(f"the input '{name}' has the TYPE {json.dumps(kind)[:40]}: known are {', '.join(TYPES)}", name)
+        label = self._text(raw, "LABEL")
+        if kind in PICTURES:
+            return Entry(name, kind, label)
+        length = {"point2D": 2, "color": 4}.get(kind, 1)
+        default, low, high = (self._numbers(raw, key, name, length) for key in ("DEFAULT", "MIN", "MAX"))
+        if low and high and any(a > b for a, b in zip(low, high, strict=True)):
+            self._fail(f"the input '{name}' has a MIN above its MAX", name)
+        return Entry(name, kind, label, default, low, high, self._choices(raw, name) if kind == "long" else ())
+
+    def _choices(self, raw: Section, name: str) -> tuple[tuple[int, str], ...]:
+        values, labels = self._list(raw, "VALUES"), self._list(raw, "LABELS")
+        if not values and labels:
+            values = list(range(len(labels)))
+        found: dict[str, int] = {}
+        for number, value in enumerate(values):
+            if not _is_number(value) or value != int(value) or abs(value) >= 2**31:
+                self._fail(f"the VALUES of the input '{name}' are whole numbers, not {json.dumps(value)[:40]}", name)
+            said = str(labels[number]).strip() if number < len(labels) else ""
+            said = label = said or str(int(value))
+            again = 1
+            while label in found:
+                again += 1
+                label = f"{said} ({again})"
+            found[label] = int(value)
+        return tuple((value, label) for label, value in found.items())
+
+    def _numbers(self, raw: Section, key: str, name: str, length: int) -> tuple[float, ...]:
+        """What is given as one number or a list of them; nothing where nothing is."""
+        given = raw.get(key)
+        if given is None:
+            return ()
+        parts = cast("list[Any]", given) if isinstance(given, list) else [given]
+        if length == 4 and len(parts) == 3:
+            parts = [*parts, 1.0]
+        if len(parts) != length or not all(_is_number(part) for part in parts):
+            wanted = "a number" if length == 1 else f"a list of {length} numbers"
+            self._fail(f"the {key} of the input '{name}' is {json.dumps(given)[:40]}: it is {wanted}", name)
+        return tuple(float(part) for part in parts)
+
+    # --- passes ------------------------------------------------------------------------------------------------------
+
+    def _passes(self, buffers: dict[str, Buffer]) -> tuple[str, ...]:
+        items = self._list(self.raw, "PASSES")
+        if len(items) > MAX_PASSES:
+            self._fail(f"there are {len(items)} PASSES: {MAX_PASSES} are the most", "PASSES")
+        found: list[str] = []
+        for item in items:
+            raw = self._section(item, "PASSES")
+            target = raw.get("TARGET")
+            found.append(self._name(target, "the TARGET of a pass") if target not in (None, "") else "")
+            if found[-1]:
+                self._buffer(buffers, found[-1], raw, bool(_flag(raw, "PERSISTENT")))
+        return tuple(found) or ("",)
+
+    def _buffer(self, buffers: dict[str, Buffer], name: str, raw: Section, persistent: bool) -> None:
+        """Several passes may draw into one buffer: what any of them says of it holds."""
+        before = buffers.get(name, Buffer(name))
+        buffers[name] = Buffer(
+            name, persistent or before.persistent, bool(_flag(raw, "FLOAT")) or before.floating,
+            self._size(raw, "WIDTH", name) or before.width, self._size(raw, "HEIGHT", name) or before.height,
+        )
+
+    def _old_buffers(self, buffers: dict[str, Buffer]) -> None:
+        """Version 1 names persistent buffers apart from passes."""
+        given = self.raw.get("PERSISTENT_BUFFERS") or []
+        if not isinstance(given, list | dict):
+            self._fail("PERSISTENT_BUFFERS is a list or an object", "PERSISTENT_BUFFERS")
+        for item in cast("list[Any] | Section", given):
+            inner = cast(Section, given).get(item) if isinstance(given, dict) else None
+            raw = cast(Section, inner) if isinstance(inner, dict) else {}
+            self._buffer(buffers, self._name(item, "a persistent buffer"), raw, True)
+
+    def _size(self, raw: Section, key: str, name: str) -> SizeFormula | None:
+        given = raw.get(key)
+        if given is None or given == "":
+            return None
+        if not isinstance(given, str) and not _is_number(given):
+            self._fail(f"the {key} of '{name}' is {json.dumps(given)[:40]}: it is a formula, such as \"$WIDTH/2.0\"", name)
+        try:
+            return read_size(str(given))
+        except SizeError as fault:
+            self._fail(f"the {key} of '{name}', '{str(given)[:60]}', cannot be read: {fault}", name)
+
+    def _imported(self) -> dict[str, str]:
+        given = self.raw.get("IMPORTED") or {}
+        if isinstance(given, list):
+            items = [(one.get("NAME"), one) for one in (self._section(item, "IMPORTED") for item in cast(Any, given))]
+        elif isinstance(given, dict):
+            items = [(name, self._section(item, "IMPORTED")) for name, item in cast(Section, given).items()]
+        else:
+            self._fail("IMPORTED is an object", "IMPORTED")
+        found: dict[str, str] = {}
+        for said, raw in items:
+            name, path = self._name(said, "an imported picture"), self._text(raw, "PATH")
+            parts = PurePosixPath(path).parts
+            if not parts or "\\" in path or ":" in path or path.startswith("/") or ".." in parts or "\0" in path:
+                self._fail(f"the imported picture '{name}' has the PATH '{path[:60]}': it is the name of a file in the "
+                           "folder of the shader or in one below", name)
+            found[name] = path
+        return found
+
+    # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _fail(self, sentence: str, near: str = "") -> NoReturn:
+        at = self.source.find(f'"{near}"', 0, self.end) if near else -1
+        raise CodeFault(self.source.count("\n", 0, at) + 1 if at >= 0 else self.first, sentence)
+
+    def _constant(self, word: str) -> NoReturn:
+        self._fail(f"the head is no JSON: {word} is no number there")
+
+    def _section(self, item: Any, key: str) -> Section:
+        if not isinstance(item, dict):
+            self._fail(f"{key} holds {json.dumps(item)[:40]}, which is no object", key)
+        return cast(Section, item)
+
+    def _list(self, raw: Section, key: str) -> list[Any]:
+        found = raw.get(key)
+        if found is None:
+            return []
+        if not isinstance(found, list):
+            self._fail(f"{key} is a list, in brackets", key)
+        return cast("list[Any]", found)
+
+    def _text(self, raw: Section, key: str) -> str:
+        found = raw.get(key)
+        return found.strip() if isinstance(found, str) else ""
+
+    def _name(self, name: Any, what: str) -> str:
+        if not isinstance(name, str) or not _NAME.fullmatch(name) or len(name) > 200:
+            self._fail(f"{what} has the name {json.dumps(name)[:60]}: GLSL has names of letters, digits and _",
+                       name if isinstance(name, str) else "")
+        if _TAKEN.fullmatch(name):
+            self._fail(f"{what} is called '{name}', which means something else: choose another name", name)
+        return name
+
+
+def _is_number(item: Any) -> bool:
+    return isinstance(item, int | float) and abs(item) < 3.4e38 and math.isfinite(item)
+
+
+def _flag(raw: Section, key: str) -> bool:
+    """True, 1, "1" and "true" are all found in files."""
+    return str(raw.get(key, raw.get(key.lower(), ""))).strip().lower() in ("true", "1", "1.0", "yes")
+
+
+def _said(message: str) -> str:
+    return message[:1].lower() + message[1:]

@@ -1,0 +1,161 @@
+"""Sizes of buffers: small formulas of `$WIDTH`, `$HEIGHT` and inputs, read and computed by ourselves."""
+
+from __future__ import annotations
+
+import math
+import operator
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+MAX_LENGTH = 1000
+MAX_DEPTH = 50
+
+Run = Callable[[Mapping[str, float]], float]
+
+_TOKENS = re.compile(r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)|(?P<name>\$?[A-Za-z_]\w*)|(?P<sign>.))")
+_OPERATORS: Mapping[str, Callable[[float, float], float]] = MappingProxyType({
+    "+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv, "%": math.fmod, "^": math.pow,
+})
+FUNCTIONS: Mapping[str, tuple[Callable[..., float], int]] = MappingProxyType({
+    "floor": (math.floor, 1), "ceil": (math.ceil, 1), "trunc": (math.trunc, 1), "abs": (abs, 1),
+    "round": (lambda x: math.floor(x + 0.5), 1), "sqrt": (math.sqrt, 1), "exp": (math.exp, 1), "log": (math.log, 1),
+    "sin": (math.sin, 1), "cos": (math.cos, 1), "tan": (math.tan, 1), "pow": (math.pow, 2), "mod": (math.fmod, 2),
+    "min": (min, 0), "max": (max, 0), "clamp": (lambda low, x, high: min(max(x, low), high), 3),
+})
+"""What they compute, and of how many numbers; 0 stands for any. `clamp(low, x, high)` is as exprtk has it."""
+
+
+class SizeError(Exception):
+    """A formula cannot be read, or has no value."""
+
+
+@dataclass(frozen=True)
+class SizeFormula:
+    """A formula such as `max(floor($WIDTH * 0.25), 1.0)`. `names` are those that it reads, without the `$`."""
+
+    text: str
+    names: frozenset[str] = field(compare=False)
+    _run: Run = field(compare=False, repr=False)
+
+    def pixels(self, values: Mapping[str, float]) -> int:
+        """The length, rounded down, at least 1. Raises SizeError where there is none."""
+        try:
+            found = float(self._run(values))
+        except ZeroDivisionError:
+            raise SizeError("it divides by 0") from None
+        except (ArithmeticError, ValueError):
+            raise SizeError("it has no value") from None
+        if not math.isfinite(found):
+            raise SizeError("it is not finite")
+        # What is whole but for rounding is meant to be whole.
+        return max(1, math.floor(found + 1e-9 * max(1.0, abs(found))))
+
+
+def read_size(text: str) -> SizeFormula:
+    """Read a formula. Raises SizeError."""
+    if len(text) > MAX_LENGTH:
+        raise SizeError(f"it has more than {MAX_LENGTH} characters")
+    return _Reading(text).whole()
+
+
+class _Reading:
+    """The work in progress: what is left of the tokens, last first."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+        found = [match for match in _TOKENS.finditer(text.strip()) if match[0].strip()]
+        self.left = [(str(match.lastgroup), str(match[match.lastgroup or 0])) for match in reversed(found)]
+        self.names: set[str] = set()
+        self.depth = 0
+
+    def whole(self) -> SizeFormula:
+        run = self._sum()
+        if self.left:
+            raise SizeError(f"'{self.left[-1][1]}' is not expected there")
+        return SizeFormula(self.text, frozenset(self.names), run)
+
+    def _sum(self) -> Run:
+        self.depth += 1
+        if self.depth > MAX_DEPTH:
+            raise SizeError(f"it nests deeper than {MAX_DEPTH}")
+        run = self._chain(("+", "-"), lambda: self._chain(("*", "/", "%"), self._signed))
+        self.depth -= 1
+        return run
+
+    def _chain(self, signs: tuple[str, ...], part: Callable[[], Run]) -> Run:
+        first = part()
+        rest: list[tuple[Callable[[float, float], float], Run]] = []
+        while self._next() in signs:
+            sign = self.left.pop()[1]
+            rest.append((_OPERATORS[sign], part()))
+        if not rest:
+            return first
+
+        def run(values: Mapping[str, float]) -> float:
+            made = first(values)
+            for call, other in rest:
+                made = call(made, other(values))
+            return made
+
+        return run
+
+    def _signed(self) -> Run:
+        minus = False
+        while self._next() in ("-", "+"):
+            minus ^= self.left.pop()[1] == "-"
+        base = self._atom()
+        if self._next() == "^":
+            self.left.pop()
+            self.depth += 1
+            if self.depth > MAX_DEPTH:
+                raise SizeError(f"it nests deeper than {MAX_DEPTH}")
+            root, power = base, self._signed()
+            self.depth -= 1
+
+            def base(values: Mapping[str, float]) -> float:
+                return math.pow(root(values), power(values))
+
+        return (lambda values: -base(values)) if minus else base
+
+    def _atom(self) -> Run:
+        if not self.left:
+            raise SizeError("it ends too early")
+        kind, word = self.left.pop()
+        if kind == "number":
+            number = float(word)
+            return lambda values: number
+        if word == "(":
+            run = self._sum()
+            self._expect(")")
+            return run
+        if kind == "name" and self._next() == "(":
+            return self._call(word)
+        if kind == "name":
+            name = word.removeprefix("$")
+            self.names.add(name)
+            return lambda values: values[name]
+        raise SizeError(f"'{word}' is not expected there")
+
+    def _call(self, word: str) -> Run:
+        if word not in FUNCTIONS:
+            raise SizeError(f"there is no function '{word}': use {', '.join(FUNCTIONS)}")
+        self.left.pop()
+        given = [self._sum()]
+        while self._next() == ",":
+            self.left.pop()
+            given.append(self._sum())
+        self._expect(")")
+        call, count = FUNCTIONS[word]
+        if count not in (0, len(given)):
+            raise SizeError(f"'{word}' takes {count} numbers, not {len(given)}")
+        return lambda values: call(*[one(values) for one in given]) if len(given) > 1 or count else given[0](values)
+
+    def _next(self) -> str:
+        return self.left[-1][1] if self.left else ""
+
+    def _expect(self, sign: str) -> None:
+        if self._next() != sign:
+            raise SizeError(f"a '{sign}' is missing")
+        self.left.pop()

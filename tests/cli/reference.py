@@ -1,0 +1,58 @@
+"""The tables of docs/command-line.md, made of what the commands declare."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from halation.app.cli.program import app
+from typer.main import get_command
+
+PAGE = Path(__file__).parents[2] / "docs" / "command-line.md"
+_BLOCK = re.compile(r"<!-- (?P<name>[\w-]+) -->\n.*?<!-- /(?P=name) -->", re.DOTALL)
+
+
+def commands() -> dict[str, Any]:
+    """Every command by name."""
+    return dict(get_command(app).commands)  # pyright: ignore[reportAttributeAccessIssue]
+
+
+def renewed(page: str) -> str:
+    """The page with every table as it should be."""
+    known = commands()
+    return _BLOCK.sub(lambda found: block(found["name"], known[found["name"]]), page)
+
+
+def block(name: str, command: Any) -> str:
+    """What the page says of a command between its marks: how to call it, and its arguments and flags."""
+    arguments = [item for item in command.params if item.param_type_name == "argument"]
+    options = [item for item in command.params if item.param_type_name == "option" and not item.hidden]
+    usage = " ".join(["halation", name, *(_usage(item) for item in arguments), *_required(options)])
+    rows = [(f"`{_usage(item)}`", item.help or "") for item in arguments]
+    rows += [(_flags(item), item.help or "") for item in options if item.name != "help"]
+    table = "\n".join(["| | |", "|---|---|", *(f"| {head} | {_cell(text)} |" for head, text in rows)])
+    return f"<!-- {name} -->\n```sh\n{usage}\n```\n\n{table}\n<!-- /{name} -->"
+
+
+def _usage(item: Any) -> str:
+    named = (item.metavar or item.name or "").upper().strip("[]")
+    named += "..." if item.nargs == -1 and not named.endswith("...") else ""
+    return named if item.required else f"[{named}]"
+
+
+def _required(options: list[Any]) -> Iterator[str]:
+    for item in options:
+        if item.required:
+            yield f"{min(item.opts, key=len)} {item.metavar or (item.name or '').upper()}"
+
+
+def _flags(item: Any) -> str:
+    flags = ", ".join(f"`{flag}`" for flag in sorted(item.opts, key=len))
+    taken = item.metavar or (item.name or "").upper()
+    return flags if item.is_flag else f"{flags} `{taken}`".replace("|", "\\|")
+
+
+def _cell(text: str) -> str:
+    return " ".join(text.split()).replace("|", "\\|")
