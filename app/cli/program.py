@@ -27,7 +27,7 @@ app = typer.Typer(
     name="halation", add_completion=False, rich_markup_mode=None, epilog=EXIT_CODES,
     help="A node-graph compositor for screen-space effects.",
 )
-for command in (edit, render, check, explain, info, nodes, fmt, demo, gallery, reproduce, test, schema):
+for command in (edit, render, check, explain, info, nodes, fmt, demo, gallery, reproduce, sweep, test, schema):
     app.command()(guarded(command))
 
 

@@ -21,7 +21,7 @@ from .plan import FIRST_TABLE, Pass, Plan, Shader, Surface, Upload
 from .raster import ATTRIBUTES, Mesh
 from .recolor import ColorProgram, Table
 from .request import Request
-from .schedule import schedule
+from .schedule import check_limits, schedule
 from .target import NULL, Form, Precision, Target
 from .upstream import Upstream
 from .working import Working, library_for
@@ -29,8 +29,8 @@ from .working import Working, library_for
 __all__ = [
     "ATTRIBUTES", "FIRST_TABLE", "MAX_WEIGHTS", "NULL", "ColorProgram", "Form", "Frame", "Library", "Memory", "Mesh",
     "Outside", "Pass", "Picture", "Plan", "Precision", "Probed", "Request", "Shader", "Surface", "Table", "Target",
-    "Upload", "Upstream", "Working", "as_json", "compile_graph", "dot", "explain", "installed", "library_for",
-    "named_files", "parse",
+    "Upload", "Upstream", "Working", "as_json", "compile_graph", "dot", "examine", "explain", "installed",
+    "library_for", "named_files", "parse",
 ]
 
 
@@ -43,8 +43,19 @@ def compile_graph(
     Raises GraphError for a graph that cannot be rendered, InputError (from `outside`) for a file that cannot
     be read, DeviceError for one that is too large, ShaderError for a node and its GLSL that do not agree.
     """
-    working = outside.working(color_settings(graph)) if graph.settings.color.working else None
-    library = library_for(library or installed(), working).including(written_texts(graph))
+    library = _library(graph, outside, library)
     program = lower(graph, request, library, outside)
     passes = fuse(program, target, enabled=fusion)
     return schedule(program, passes, library, target, precision or target.precision)
+
+
+def examine(graph: Graph, request: Request, outside: Outside, target: Target = NULL) -> None:
+    """Raise what `compile_graph` would raise, in half of the time: no program is written."""
+    program = lower(graph, request, _library(graph, outside), outside)
+    check_limits(program, fuse(program, target), target)
+
+
+def _library(graph: Graph, outside: Outside, library: Library | None = None) -> Library:
+    """The shaders that a graph can use: the installed ones for its working space, and its own."""
+    working = outside.working(color_settings(graph)) if graph.settings.color.working else None
+    return library_for(library or installed(), working).including(written_texts(graph))

@@ -20,12 +20,7 @@ def schedule(
     program: Program, passes: tuple[Fused, ...], library: Library, target: Target, precision: Precision
 ) -> Plan:
     """Write the program of every pass, and find a texture for everything it makes."""
-    needed = dict.fromkeys(ref for fused in passes for ref in (*fused.reads, *fused.writes))
-    needed |= dict.fromkeys(kept_refs(program))
-    for ref in needed:
-        _check_size(program.ops[ref.op].shapes[ref.output].size, program.ops[ref.op].owner, target)
-    for fused in passes:
-        _check_outputs(len(fused.writes), program.ops[fused.root], target)
+    needed = check_limits(program, passes, target)
     texels = {ref: _texel(program, ref, precision) for ref in needed}
     emitted = [emit(program, fused, library, target, texels) for fused in passes]
     keys = _keys(program, passes, emitted, needed)
@@ -51,6 +46,17 @@ def schedule(
         }),
         sizes,
     )
+
+
+def check_limits(program: Program, passes: tuple[Fused, ...], target: Target) -> dict[Ref, None]:
+    """Raise DeviceError for what the target cannot hold. Returns all that needs a texture."""
+    needed = dict.fromkeys(ref for fused in passes for ref in (*fused.reads, *fused.writes))
+    needed |= dict.fromkeys(kept_refs(program))
+    for ref in needed:
+        _check_size(program.ops[ref.op].shapes[ref.output].size, program.ops[ref.op].owner, target)
+    for fused in passes:
+        _check_outputs(len(fused.writes), program.ops[fused.root], target)
+    return needed
 
 
 def _shape(program: Program, ref: Ref) -> Shape:

@@ -17,6 +17,8 @@ WIDTH = 100
 _SPREAD = frozenset({"animation", "controls", "inputs", "links", "nodes", "outputs"})
 """Sections of a document that have a line for every entry, however short, so that a diff shows one entry."""
 
+_ENCODER = json.JSONEncoder(ensure_ascii=False)
+
 
 def pretty(document: Mapping[str, Any]) -> str:
     """Sorted keys, two spaces, one line for all that fits but code. Raises GraphError for what JSON cannot hold."""
@@ -53,5 +55,5 @@ def _scalar(item: Any, path: str) -> str:
     if isinstance(item, float) and not math.isfinite(item):
         raise GraphError(f"{path}: {item} cannot be saved; set a finite number")
     if item is None or isinstance(item, bool | int | float | str):
-        return json.dumps(item, ensure_ascii=False)
+        return _ENCODER.encode(item)
     raise GraphError(f"{path}: {item!r} cannot be saved; JSON has no {type(item).__name__}")

@@ -9,7 +9,7 @@ from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ...nodes import ColorChange, ColorSettings, Missing, Render, Scene
-from ..compiler import ColorProgram, Frame, Mesh, Picture, Probed, Request, Working, compile_graph, named_files
+from ..compiler import ColorProgram, Frame, Mesh, Picture, Probed, Request, Working, examine, named_files
 from ..errors import DeviceError, HalationError, InputError, ShaderError, UsageError
 from ..graph import INPUTS, Graph, Group, Problem, keyed_range
 from ..graph.rules import Rule
@@ -70,23 +70,29 @@ class World:
 
         return Pictures()
 
-    def frames(self, graph: Graph) -> tuple[int, int]:
-        """The first and last frame of a graph."""
-        if graph.settings.frames:
-            return graph.settings.frames
+    def first_frame(self, graph: Graph) -> int:
+        """The first frame of a graph. A file that is missing in a sequence is noted."""
+        if not any(self._is_sequence(path) for path, _, _ in named_files(graph, {})):
+            return (graph.settings.frames or keyed_range(graph))[0]
         try:
-            return self.pictures.frames(graph, {}) if named_files(graph, {}) else keyed_range(graph)
+            first, last = self.pictures.frames(graph, {})
+            self.pictures.check_frames(graph, range(first, last + 1))
         except InputError as fault:
             self.faults[str(fault)] = ""
-            return 1, 1
+            return (graph.settings.frames or (1, 1))[0]
+        return first
 
-    def check_frames(self, graph: Graph, frames: range) -> None:
-        """Note a file that is missing in a sequence."""
+    def _is_sequence(self, path: str) -> bool:
+        """False for one picture, whether it is there or not."""
+        def ask() -> bool:
+            from ..media.sequences import find_sequence
+
+            return find_sequence(path) is not None
+
         try:
-            if named_files(graph, {}):
-                self.pictures.check_frames(graph, frames)
-        except InputError as fault:
-            self.faults[str(fault)] = ""
+            return self._known_or("sequence", path, ask)
+        except HalationError:
+            return True
 
     def at(self, path: str, frame: int, missing: Missing) -> Frame:
         """The file of a frame."""
@@ -149,13 +155,11 @@ def problems(graph: Graph, world: World) -> Iterator[tuple[int, Problem]]:
         return
     world.faults.clear()
     world.size = graph.settings.size or SIZE
-    first, last = world.frames(graph)
-    world.check_frames(graph, range(first, last + 1))
     bindings = {
         name: Picture(name, "", item.kind, item.socket().channels, in_memory=True) for name, item in free.items()
     }
     try:
-        compile_graph(graph, Request(bindings=bindings, frame=first), world)
+        examine(graph, Request(bindings=bindings, frame=world.first_frame(graph)), world)
     except InputError as fault:
         world.faults.setdefault(str(fault), "")
     except HalationError as fault:

@@ -25,10 +25,10 @@ class Compared:
     """How far a picture is from the one that was expected.
 
     `max_abs` and `rms` are in the units of the pixels, over all channels; `max_rel` is the largest difference in
-    parts of the expected number where that is beyond 1, as the precision of floats goes. `psnr` is in dB, infinite for equal
-    pictures, its peak the largest number of both, at least 1. `ssim` is 1 for equal pictures, `flip` 0; both are NaN
-    where they were not asked for. `failing` is the fraction of pixels with a channel beyond the threshold. `worst` is
-    the pixel with the largest difference as x, y from the top left, with its numbers on both sides; None for equal
+    parts of the expected number where that is beyond 1, as the precision of floats goes. `psnr` is in dB, infinite for
+    equal pictures, its peak the largest number of both, at least 1. `ssim` is 1 for equal pictures, `flip` 0; both are
+    NaN where they were not asked for. `failing` is the fraction of pixels with a channel beyond the threshold. `worst`
+    is the pixel with the largest difference as x, y from the top left, with its numbers on both sides; None for equal
     pictures.
 
     A number that is not finite equals only the same on the other side; any other pair fails, with `max_abs` and
@@ -61,7 +61,7 @@ def compare(
 ) -> Compared:
     """Measure two pictures [h, w] or [h, w, c] of floats; integers fill 0..1.
 
-    With `relative` the threshold grows with the expected number where that is beyond 1, and the worst pixel is sought so.
+    With `relative` the threshold, and what is worst, grow with the expected number where that is beyond 1.
     `linear` light is encoded for the eye before SSIM; other numbers (encoded pictures, data) are taken as they are.
     `perceptual=False` leaves out SSIM and FLIP, which take most of the time. See `ssim` and `flip`.
 

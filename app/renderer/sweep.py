@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import product
+from math import ceil
 from pathlib import Path
 
 import numpy as np
@@ -180,7 +181,10 @@ def _wide(array: Array) -> Array:
 
 def _columns(count: int, first: Array) -> int:
     """How many go side by side: few in one row, many in about the shape of a screen."""
-    return count if count <= 4 else min(count, round((_WIDE * count * first.shape[0] / first.shape[1]) ** 0.5) or 1)
+    if count <= 4:
+        return count
+    wide = min(count, ceil((_WIDE * count * first.shape[0] / first.shape[1]) ** 0.5))
+    return ceil(count / ceil(count / wide))  # rows of about the same length
 
 
 def _plain(text: str, is_frame: bool) -> str:

@@ -48,11 +48,23 @@ def unusable(case: Case, parts: Parts) -> str:
     return ""
 
 
-def _measured(case: Case, fresh: Check, name: str, made: Stored, wanted: Stored) -> Check:
-    found = compare(
-        made.array, wanted.array, threshold=case.tolerance if case.metric in PER_PIXEL else CODE,
-        relative=case.metric != "max_abs", linear=made.linear and wanted.linear, perceptual=case.metric in ("ssim", "flip"),
+def in_full(case: Case, check: Check, made: Parts, wanted: Parts) -> Check:
+    """The same check with the measures that take long, for people."""
+    if check.compared is None or check.layer not in made or check.layer not in wanted:
+        return check
+    return replace(check, compared=_compared(case, made[check.layer], wanted[check.layer], perceptual=True))
+
+
+def _compared(case: Case, made: Stored, wanted: Stored, perceptual: bool) -> Compared:
+    threshold = case.tolerance if case.metric in PER_PIXEL else CODE
+    return compare(
+        made.array, wanted.array, threshold=threshold, relative=case.metric != "max_abs",
+        linear=made.linear and wanted.linear, perceptual=perceptual,
     )
+
+
+def _measured(case: Case, fresh: Check, name: str, made: Stored, wanted: Stored) -> Check:
+    found = _compared(case, made, wanted, perceptual=case.metric in ("ssim", "flip"))
     check = replace(fresh, layer=name, compared=found)
     if found.fault:
         return replace(check, sentence=f"{_of(check)}{found.fault}")

@@ -21,18 +21,21 @@ _UNSAFE = re.compile(r"[^\w.+-]+")
 
 
 def views_of(check: Check, made: Parts, wanted: Parts, view: str) -> Views:
-    """The worst layer to look at: both pictures, and what differs with the largest difference white."""
+    """The worst layer to look at: both pictures, and what differs, as bright as it can be shown."""
     name = check.layer if check.layer in made else next(iter(made))
     actual, expected = made[name], wanted.get(name)
     if expected is None:
         return Views(png(codes_of(actual, view, _span(actual))))
-    span = _span(expected)
-    light = amplified(actual.array, expected.array)
-    largest = check.compared.max_abs if check.compared and np.isfinite(check.compared.max_abs) else 0.0
-    return Views(
-        png(codes_of(actual, view, span)), png(codes_of(expected, view, span)), png(light ** (1.0 / 2.2)),
-        1.0 / largest if largest else 1.0,
-    )
+    span, gain = _span(expected), 1.0
+    first, second = actual.array, expected.array
+    if first.shape == second.shape:
+        # Bright lights, which differ by large numbers, would leave all else black.
+        size = np.maximum(1.0, np.abs(np.where(np.isfinite(second), second, 0.0)))
+        first, second = first / size, second / size
+        gain = _gain(np.abs(first - second))
+    light = amplified(first, second, gain)
+    views = (png(codes_of(actual, view, span)), png(codes_of(expected, view, span)))
+    return Views(*views, png(light ** (1.0 / 2.2)), gain)
 
 
 def left(check: Check, case: Case, actual: Path, made: Parts, wanted: Parts, folder: Path) -> Check:
@@ -68,6 +71,12 @@ def _difference(actual: Array, expected: Array) -> Array:
     """The absolute difference as numbers; where sizes differ, a picture of that."""
     same = actual.shape == expected.shape
     return np.abs(three(actual) - three(expected)) if same else amplified(actual, expected, 1.0)
+
+
+def _gain(difference: Array) -> float:
+    """What makes all but the few largest differences visible."""
+    there = difference[np.isfinite(difference) & (difference > 0.0)]
+    return 1.0 / float(np.percentile(there, 99.5)) if there.size else 1.0
 
 
 def _span(part: Stored) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""Suites as tests of pytest: every case of a `*.suite.toml` is one. Nothing else is loaded before there is such a file."""
+"""Suites as tests of pytest: every case of a `*.suite.toml` is one. Until there is such a file nothing is loaded."""
 
 from __future__ import annotations
 

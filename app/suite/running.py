@@ -21,7 +21,7 @@ from ..media.pictures import split_layer
 from ..renderer import Reel, Renderer, Wanted
 from ..renderer.job import Writing, run_job
 from .cases import Case, Golden
-from .judging import Parts, judged, unusable
+from .judging import Parts, in_full, judged, unusable
 from .pictures import left, views_of
 from .results import Check, Outcome
 
@@ -112,6 +112,7 @@ def _looked_at(case: Case, graph: Graph, golden: Golden, actual: Path, frame: in
 
 def _shown(check: Check, case: Case, graph: Graph, made: Parts, wanted: Parts) -> Check:
     outputs = list(graph.outputs.values())
+    check = in_full(case, check, made, wanted)
     return replace(check, views=views_of(check, made, wanted, case.view or (outputs[0].view if outputs else "")))
 
 

@@ -76,7 +76,7 @@ def _case(path: Path, name: str, graph: Path, own: Table, both: Table) -> Case:
     metric = both.choice("metric", tuple(METRICS), "max_rel")
     failing = both.number("failing", 0.0, 0.0, 100.0)
     if failing and metric not in PER_PIXEL:
-        raise both.fault("failing", f"a share of pixels may fail with the metrics max_rel and max_abs, not with {metric}")
+        raise both.fault("failing", f"pixels may fail with the metrics max_rel and max_abs, not with {metric}")
     error = both.text("error")
     if "error" in own.items and not error:
         raise both.fault("error", "give some words of the sentence that rendering must fail with")

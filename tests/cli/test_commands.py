@@ -1,4 +1,4 @@
-"""check, explain, nodes, fmt, demo, and what the program says of itself."""
+"""explain, nodes, fmt, demo, and what the program says of itself."""
 
 from __future__ import annotations
 
@@ -11,61 +11,6 @@ import numpy as np
 import pytest
 from exr_files import header, read
 from halation.nodes import catalogue
-
-# --- check --------------------------------------------------------------------------------------------------------
-
-
-def test_check_of_a_good_graph(cli, graphs):
-    path = graphs()
-    result = cli("check", path)
-    assert (result.code, result.out, result.err) == (0, f"{path}: ok\n", "")
-    assert cli("check", path, "--json").json == {"graphs": [{"graph": str(path), "exit_code": 0, "problems": []}]}
-
-
-def test_check_lists_every_problem_and_ends_with_the_worst(cli, graphs, tmp_path):
-    good = graphs("good.json")
-    files = {"inputs": {"beauty": {"type": "Image", "file": "no.exr"}}}
-    bad = graphs("bad.json", nodes={"a": {"type": "nonsense"}, "vig": {"type": "vignette", "values": {"amount": 7.0}}})
-    missing, broken = graphs("missing.json", **files), tmp_path / "broken.json"
-    broken.write_text("{")
-    result = cli("check", good, bad, missing, broken)
-    assert result.code == 4
-    lines = result.out.splitlines()
-    assert lines[0] == f"{good}: ok"
-    assert [line.split(": ")[:2] for line in lines[1:]] == [
-        [str(bad), "error"], [str(bad), "error"], [str(bad), "warning"],
-        [str(missing), "error"], [str(broken), "error"],
-    ]
-    found = cli("check", good, bad, missing, broken, "--json").json["graphs"]
-    assert [item["exit_code"] for item in found] == [0, 3, 4, 3]
-    problem = next(item for item in found[1]["problems"] if item["node"] == "vig" and item["socket"] == "amount")
-    assert problem["severity"] == "error" and "7.0" in problem["sentence"]
-
-
-def test_check_finds_every_missing_picture_and_layer(cli, graphs, shot, tmp_path):
-    path = graphs(
-        inputs={"beauty": {"type": "Image", "file": "no.exr"},
-                "depth": {"type": "Field", "file": "shot.exr", "layer": "Depht"}},
-        nodes={"read": {"type": "read_image", "values": {"path": "gone.png"}}},
-        outputs={"far": {"type": "Field"}, "more": {"type": "Image"}},
-        links={"outputs.far": "inputs.depth", "outputs.more": "read.out"},
-    )
-    result = cli("check", path)
-    assert result.code == 4
-    for words in (f"{tmp_path / 'no.exr'}: there is no such file", f"{tmp_path / 'gone.png'}: ", f"{shot}: "):
-        assert f"{path}: error: {words}" in result.out
-    assert result.out.count("error") == 3
-
-
-def test_check_warns_of_inputs_to_be_bound_and_still_compiles(cli, graphs):
-    path = graphs(inputs={"beauty": {"type": "Image"}, "mask": {"type": "Field", "file": "no.exr"}},
-                  nodes={"merge": {"type": "merge"}},
-                  links={"merge.a": "light.out", "merge.b": "inputs.beauty", "merge.mask": "inputs.mask",
-                         "outputs.image": "merge.out"})
-    result = cli("check", path)
-    assert result.code == 4 and f"{path}: warning: input 'beauty' has no file" in result.out
-    assert "no.exr: there is no such file" in result.out
-
 
 # --- explain ------------------------------------------------------------------------------------------------------
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from .aligning import Renamed
-from .conflicts import Conflict, Side, conflicts_of, resolved
+from .conflicts import SIDES, Conflict, Side, conflicts_of, resolved
 from .difference import Change, Difference, applied, difference
 from .merging import Merged, merged
-from .parts import ABSENT, At, path_of
+from .parts import ABSENT, At, path_of, plain
 from .telling import Line, facts, told
 
 __all__ = [
-    "ABSENT", "At", "Change", "Conflict", "Difference", "Line", "Merged", "Renamed", "Side", "applied",
-    "conflicts_of", "difference", "facts", "merged", "path_of", "resolved", "told",
+    "ABSENT", "SIDES", "At", "Change", "Conflict", "Difference", "Line", "Merged", "Renamed", "Side", "applied",
+    "conflicts_of", "difference", "facts", "merged", "path_of", "plain", "resolved",
+    "told",
 ]

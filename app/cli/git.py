@@ -1,0 +1,58 @@
+"""Git, as far as versions of graphs are in it."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+from ..errors import DocumentError, UsageError
+
+
+def git(*words: str, folder: Path | None = None) -> str:
+    """What git says, as text. Raises UsageError with its own reason."""
+    return _run(words, folder).decode(errors="surrogateescape")
+
+
+def top(folder: Path | None = None) -> Path:
+    """The root of the repository that a folder, by default this one, is in. Raises UsageError."""
+    return Path(git("rev-parse", "--show-toplevel", folder=folder).rstrip("\n"))
+
+
+def revision(source: str) -> tuple[str, str]:
+    """The text of `REV:path`, and the folder where its relative paths start.
+
+    The path starts at the root of the repository, or at this folder. Raises DocumentError, UsageError.
+    """
+    from ..document.limits import size_fault
+
+    before, path = source[: source.rindex(":")], source[source.rindex(":") + 1 :]
+    name, folder = source, top()
+    try:
+        size = int(_run(("cat-file", "-s", name)))
+    except UsageError as fault:
+        name, folder = f"{before}:./{path}", Path()
+        try:
+            size = int(_run(("cat-file", "-s", name)))
+        except UsageError:
+            said = str(fault).removeprefix("git: ")
+            raise DocumentError(source, "", f"there is no such file, nor such a version in git ({said})") from None
+    if fault := size_fault(max(size, 1)):
+        raise DocumentError(source, "", fault)
+    try:
+        text = _run(("cat-file", "blob", name)).decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise DocumentError(source, "", f"the text is not UTF-8 (byte {error.start})") from None
+    except UsageError:
+        raise DocumentError(source, "", "this is a folder, not a graph file") from None
+    return text, str((folder / path).parent)
+
+
+def _run(words: tuple[str, ...], folder: Path | None = None) -> bytes:
+    try:
+        done = subprocess.run(["git", *words], cwd=folder, capture_output=True, check=False)
+    except OSError:
+        raise UsageError("git is not installed, or cannot be run") from None
+    if done.returncode:
+        said = done.stderr.decode(errors="replace").strip().splitlines() or [f"it ended with {done.returncode}"]
+        raise UsageError(f"git: {said[0].removeprefix('fatal: ').rstrip('.')}")
+    return done.stdout

@@ -1,0 +1,61 @@
+"""Versions of graphs: files, standard input, revisions in git; and how what differs is printed."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .options import standard_input
+
+if TYPE_CHECKING:
+    from ..document.versions import Line
+    from ..graph import Graph
+
+_COLORS = {"+": "32", "-": "31", "~": "36", "@": "35"}
+
+
+def text_of(source: str) -> tuple[str, str]:
+    """The text of a file, of `REV:path` in git or of standard input (`-`), and where its relative paths start.
+
+    Raises DocumentError, UsageError.
+    """
+    from ..document.disk import read_text
+    from .git import revision
+
+    if source == "-":
+        return standard_input(), ""
+    path = Path(source)
+    if ":" in source and not path.drive and not os.path.lexists(path):
+        return revision(source)
+    return read_text(path), str(path.parent)
+
+
+def version(source: str, *, follow: bool = False, name: str = "") -> Graph:
+    """The graph there. With `follow` groups in files of their own are read too. Raises DocumentError, UsageError."""
+    from .. import document
+
+    text, folder = text_of(source)
+    return document.loads(text, name or source, folder, follow=follow)
+
+
+def is_colored() -> bool:
+    """True where people see standard output who did not ask for plain text (https://no-color.org)."""
+    seen = sys.stdout.isatty() or os.environ.get("GIT_PAGER_IN_USE") == "true"
+    return seen and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+
+
+def show(lines: Iterable[Line], colored: bool) -> None:
+    """Print what differs: a sign and a sentence for each, changed lines of code below."""
+    for line in lines:
+        print(painted(f"{line.sign} {line.words}", line.sign, colored))
+        for below in line.below:
+            print("    " + painted(below, below[:1], colored))
+
+
+def painted(text: str, sign: str, colored: bool) -> str:
+    """A line in the color of its sign, with nothing in it that a terminal would obey."""
+    plain = "".join(letter if letter.isprintable() or letter == "\t" else ascii(letter)[1:-1] for letter in text)
+    return f"\x1b[{_COLORS[sign]}m{plain}\x1b[0m" if colored and sign in _COLORS else plain

@@ -1,0 +1,203 @@
+"""Nodes made of code: another text for a node, texts of files, code moved between the graph and a file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, cast, get_args
+
+from ....nodes import Node, Plain
+from ...document.code import read_code, written_code
+from ...graph import Graph, Group, Item, Unknown
+from ...graph.values import coerced, value_fault
+from ...written import Code, CodeFault, Language, Written, node_type
+
+CODE = "glsl"
+"""The type of nodes whose code is GLSL, in documents and in the list of what can be added."""
+
+ENDINGS: Mapping[str, Language] = {".glsl": "glsl", ".fs": "isf"}
+"""Files of code by the ending of their name."""
+
+STARTER = """\
+// Mixes a color into the picture.
+vec4 tint(
+    vec4 image,
+    float amount,  // = 0.5, 0..1: How much of it.
+    vec3 shade     // = (1, 0.5, 0.2), color: What is mixed in.
+) {
+    return vec4(mix(image.rgb, image.rgb * shade, amount), image.a);
+}
+"""
+
+@dataclass(frozen=True)
+class Broken(Unknown):
+    """A node whose code says no node, with the `text` as it is here: that in the file may be another one."""
+
+    text: str = ""
+
+
+def starter() -> Node:
+    """A new node of code."""
+    return node_type(Code(CODE, STARTER))()
+
+
+def code_of(item: Item | None, folder: str) -> Code | None:
+    """The code of a node, even of one whose code says no node; None for all other nodes."""
+    if isinstance(item, Written):
+        return item.code
+    if not isinstance(item, Unknown) or item.type not in get_args(Language):
+        return None
+    language, file, lines = cast("Language", item.type), item.raw.get("file"), item.raw.get("code")
+    if isinstance(item, Broken):
+        return Code(language, item.text, file or "")
+    if isinstance(file, str):
+        try:
+            return read_code(language, None, file, folder)
+        except CodeFault:
+            return Code(language, "", file)
+    return Code(language, "\n".join(map(str, lines or ())))
+
+
+def item_of(code: Code, values: Mapping[str, Any] | None = None) -> Item:
+    """A node of that code, with those of the values that fit; if the code says none, what is to be mended."""
+    try:
+        kind = node_type(code)
+    except CodeFault as fault:
+        return _broken(code, fault, values or {})
+    return kind(**_fitting(kind, values or {}))
+
+
+def file_item(file: str, folder: str) -> Item:
+    """A node whose code is in a file."""
+    language = ENDINGS[Path(file).suffix.lower()]
+    try:
+        return item_of(read_code(language, None, file, folder))
+    except CodeFault as fault:
+        return _broken(Code(language, "", file), fault, {})
+
+
+def coded(graph: Graph, id: str, code: Code) -> Graph:
+    """A graph where a node has that code. Links, values and what animates them stay where names and types agree."""
+    return _replaced(graph, id, item_of(code, _values(graph.node(id))))
+
+
+def files(graph: Graph) -> tuple[Path, ...]:
+    """The files that code of the graph and of its groups is in, with the vertex shaders that may lie beside them."""
+    found: dict[Path, None] = {}
+    for body, item in _items(graph):
+        if file := _file(item, body.folder):
+            found[file] = None
+            if getattr(item, "id", getattr(item, "type", "")) == "isf":
+                found[file.with_suffix(".vs")] = None
+    return tuple(found)
+
+
+def texts(graph: Graph) -> dict[Path, str]:
+    """The text of every file of code as nodes have it."""
+    found: dict[Path, str] = {}
+    for body, item in _items(graph):
+        file = _file(item, body.folder)
+        if file is not None and (isinstance(item, Written | Broken)):
+            code = code_of(item, body.folder)
+            found[file] = code.text if code else ""
+    return found
+
+
+def refiled(graph: Graph, file: Path, text: str) -> Graph:
+    """The graph with another text in a file of code; the very same one if no node has its code in it."""
+    return _changed(graph, lambda body, id, item, code: (
+        coded(body, id, replace(code, text=text)) if _file(item, body.folder) == file and code.text != text else body
+    ))
+
+
+def reread(graph: Graph, file: Path) -> Graph:
+    """The graph with the code of a file as it is on the disk now; the very same one if nothing differs."""
+
+    def change(body: Graph, id: str, item: Item, code: Code) -> Graph:
+        if file not in (path := _file(item, body.folder), path and path.with_suffix(".vs")):
+            return body
+        try:
+            now = read_code(code.language, None, code.file, body.folder)
+        except CodeFault as fault:
+            return _replaced(body, id, _broken(code, fault, _values(item)))
+        return body if now == code and isinstance(item, Written | Broken) else coded(body, id, now)
+
+    return _changed(graph, change)
+
+
+def kept(graph: Graph, drafts: Mapping[Path, str]) -> Graph:
+    """The graph with code in it that differs from the file that it belongs to, so that it is not lost with the graph."""
+    return _changed(graph, lambda body, id, item, code: (
+        coded(body, id, replace(code, file="")) if _file(item, body.folder) in drafts else body
+    ))
+
+
+# --- inside ----------------------------------------------------------------------------------------------------------
+
+
+def _changed(graph: Graph, change: Callable[[Graph, str, Item, Code], Graph]) -> Graph:
+    """The graph with nodes of code changed, those of groups that are part of it included."""
+    after = graph
+    for id, item in graph.nodes.items():
+        if isinstance(item, Group):
+            inner = _changed(item.graph, change)
+            if inner is not item.graph:
+                after = replace(after, nodes={**after.nodes, id: replace(item, graph=inner)})
+        elif code := code_of(item, graph.folder):
+            after = change(after, id, item, code)
+    return after
+
+
+def _items(graph: Graph) -> Iterator[tuple[Graph, Item]]:
+    todo = [graph]
+    while todo:
+        body = todo.pop()
+        for item in body.nodes.values():
+            if isinstance(item, Group):
+                todo.append(item.graph)
+            else:
+                yield body, item
+
+
+def _file(item: Item, folder: str) -> Path | None:
+    """The file that the code of a node is in."""
+    if isinstance(item, Written):
+        file = item.code.file
+    else:
+        file = item.raw.get("file") if isinstance(item, Unknown) and item.type in get_args(Language) else ""
+    return Path(os.path.abspath(Path(folder, file))) if isinstance(file, str) and file else None  # noqa: PTH100
+
+
+def _values(item: Item) -> Mapping[str, Any]:
+    """What is set of a node: the values that are not at their default."""
+    if isinstance(item, Unknown):
+        raw = item.raw.get("values")
+        return cast("Mapping[str, Any]", raw) if isinstance(raw, Mapping) else {}
+    if isinstance(item, Group):
+        return {}
+    now = {name: (getattr(item, name), value.default) for name, value in item.values.items()}
+    return {name: plain for name, (plain, default) in now.items() if plain != default}
+
+
+def _fitting(kind: type[Node], values: Mapping[str, Any]) -> dict[str, Plain]:
+    found: dict[str, Plain] = {}
+    for name, value in kind.values.items():
+        plain = coerced(value, values[name]) if name in values else None
+        if plain is not None and value_fault(value, plain) is None:
+            found[name] = plain
+    return found
+
+
+def _broken(code: Code, fault: CodeFault, values: Mapping[str, Any]) -> Broken:
+    said = f"{code.name}, {fault}" if fault.line else str(fault)
+    raw = {**written_code(code), **({"values": dict(values)} if values else {})}
+    return Broken(code.language, raw, said, code.text)
+
+
+def _replaced(graph: Graph, id: str, item: Item) -> Graph:
+    """The graph with another node in that place; keys of the document that mean nothing here stay with it."""
+    extra = {key: kept for key, kept in graph.extra.items() if key == f"nodes.{id}"}
+    after = graph.replace(id, item)
+    return replace(after, extra={**after.extra, **extra}) if extra and extra.keys() - after.extra.keys() else after

@@ -1,0 +1,87 @@
+"""What a video can be written as: which container holds which codec, and how each is set up.
+
+Every encoder runs on one thread and leaves out dates and random numbers: the same pictures give the same bytes.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+
+from ....nodes import Size
+from ...errors import UsageError
+from .library import HOW_TO_INSTALL, library
+
+
+@dataclass(frozen=True)
+class Codec:
+    """An encoder. `pixels` are the format for 8 bits and for more; `alpha` says that transparency is kept."""
+
+    encoder: str
+    pixels: tuple[str, str]
+    options: Mapping[str, str]
+    alpha: bool = False
+    even: bool = False
+    """Chroma has half the size, so width and height must be even."""
+    tag: str = ""
+
+
+_LOSSLESS = MappingProxyType({"level": "3", "slicecrc": "1", "slices": "4", "g": "1"})
+CODECS: Mapping[str, Codec] = MappingProxyType({
+    "h264": Codec("libx264", ("yuv420p", "yuv420p"), MappingProxyType({"crf": "16", "preset": "medium"}), even=True),
+    "h265": Codec(
+        "libx265", ("yuv420p10le", "yuv420p10le"),
+        MappingProxyType({"crf": "18", "x265-params": "log-level=none:pools=none:frame-threads=1:info=0"}),
+        even=True, tag="hvc1",
+    ),
+    "prores": Codec("prores_ks", ("yuv422p10le", "yuv422p10le"), MappingProxyType({"profile": "3", "vendor": "apl0"})),
+    "prores4444": Codec(
+        "prores_ks", ("yuva444p10le", "yuva444p10le"), MappingProxyType({"profile": "4", "vendor": "apl0"}), alpha=True,
+    ),
+    "ffv1": Codec("ffv1", ("bgra", "gbrap16le"), _LOSSLESS, alpha=True),
+    "qtrle": Codec("qtrle", ("argb", "argb"), MappingProxyType({}), alpha=True),
+    "vp9": Codec(
+        "libvpx-vp9", ("yuv420p", "yuv420p"), MappingProxyType({"crf": "24", "b": "0", "cpu-used": "2"}),
+    ),
+})
+_HELD = MappingProxyType({
+    ".mp4": ("h264", "h265"), ".m4v": ("h264", "h265"), ".mov": ("prores", "prores4444", "h264", "h265", "qtrle"),
+    ".mkv": ("ffv1", "h264", "h265", "vp9"), ".webm": ("vp9",),
+})
+"""Ending -> the codecs that such a file holds, the usual one first."""
+
+WRITABLE = tuple(_HELD)
+
+
+def find_codec(path: str | Path, name: str, size: Size | None = None) -> Codec:
+    """How a video is to be written; without a name as is usual for its ending.
+
+    Raises:
+        UsageError: no such codec in such a file, a size that it cannot have, or PyAV is missing.
+    """
+    av = library()
+    if av is None:
+        raise UsageError(f"{path}: {HOW_TO_INSTALL}, or write numbered pictures")
+    known = _HELD.get(Path(path).suffix.casefold())
+    if known is None:
+        raise UsageError(f"{path}: videos are written as {', '.join(WRITABLE)}: choose one of these endings")
+    chosen = name or known[0]
+    if chosen not in known:
+        guess = difflib.get_close_matches(chosen.casefold(), known, 1, 0.5)
+        homes = [ending for ending, held in _HELD.items() if chosen in held]
+        hint = f"did you mean '{guess[0]}'? Choose" if guess else "choose"
+        rest = f", or write to {' or '.join(homes)}" if homes else ""
+        raise UsageError(f"{path}: such a file holds no codec '{chosen}': {hint} from {', '.join(known)}{rest}")
+    codec = CODECS[chosen]
+    if codec.encoder not in av.codecs_available:
+        raise UsageError(f"{path}: this PyAV has no encoder for {chosen}: choose from {', '.join(known)} with --codec")
+    if size and codec.even and (size[0] % 2 or size[1] % 2):
+        even = f"{size[0] // 2 * 2 or 2}x{size[1] // 2 * 2 or 2}"
+        raise UsageError(
+            f"{path}: {chosen} keeps color at half the size, so width and height must be even, not {size[0]}x{size[1]}: "
+            f"render with --size {even}, or write ffv1 to an .mkv file"
+        )
+    return codec
