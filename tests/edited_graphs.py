@@ -82,7 +82,8 @@ def _edit(rng: Random, graph: Graph) -> Graph:
                 return graph.remove_input(name)
             return graph.add_input(name, Input(rng.choice([Kind.IMAGE, Kind.FIELD]), doc=rng.choice("xy")))
         case "settings":
-            return dataclasses.replace(graph, settings=dataclasses.replace(graph.settings, frames=(1, rng.randint(1, 9))))
+            frames = (1, rng.randint(1, 9))
+            return dataclasses.replace(graph, settings=dataclasses.replace(graph.settings, frames=frames))
         case "replace":
             return graph.replace(id, random_node(rng))
     return graph

@@ -52,9 +52,6 @@ def batch(output: Path, total: int, budget: int = 0) -> Iterator[Batch]:
 
     Raises OutputError for a folder that cannot be made, DeviceError without usable OpenGL.
     """
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
-
     from ..errors import OutputError
     from ..renderer import Renderer, open_device
 
@@ -63,9 +60,19 @@ def batch(output: Path, total: int, budget: int = 0) -> Iterator[Batch]:
     except OSError as fault:
         raise OutputError(f"{output}: the folder cannot be made ({fault.strerror}); choose another with -o") from None
     renderer = Renderer(open_device(), budget=budget)
+    with shown(renderer, total) as work:
+        yield work
+    renderer.close()
+
+
+@contextmanager
+def shown(renderer: Renderer, total: int) -> Iterator[Batch]:
+    """Show the bar of what somebody else's device does."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+
     note(renderer.device.description)
     console = Console(stderr=True)
     columns = (TextColumn("{task.description:<24}", markup=False), BarColumn(), MofNCompleteColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
         yield Batch(renderer, progress, progress.add_task("", total=total))
-    renderer.close()

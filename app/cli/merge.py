@@ -80,15 +80,9 @@ def merged_versions(base: str, ours: str, theirs: str) -> Merged:
 
 def _side(source: str, side: str) -> Graph:
     from .. import document
-    from ..errors import DocumentError
     from ..graph import Graph
 
-    try:
-        text, folder = text_of(source)
-    except DocumentError as fault:
-        if side == "base" and fault.fault == "the file is empty":
-            return Graph()
-        raise
+    text, folder = text_of(source)
     if side == "base" and not text.strip():
         return Graph()
     return document.loads(text, f"{source} ({side})", folder, follow=False)

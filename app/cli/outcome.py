@@ -20,9 +20,9 @@ BUG = 70
 EXIT_CODES = """\b
 Exit codes:
 0    done
-1    rendering or writing failed; fmt --check found something to format
+1    rendering or writing failed; fmt --check, diff or merge found something
 2    the command line makes no sense
-3    the graph is at fault
+3    the graph is at fault; check --strict found something to warn of
 4    a picture cannot be read
 5    no usable OpenGL, a shader was refused, or the device is full
 130  interrupted"""

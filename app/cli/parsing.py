@@ -92,10 +92,10 @@ def frames(one: int | None, text: str | None) -> tuple[int, ...] | None:
 
 
 def numbered(files: Sequence[tuple[str, Path]]) -> bool:
-    """True if the name of a file has a place for the frame number."""
-    from ..graph.frames import Pattern
+    """True if the name of a file has a place for the frame number, or is that of a video, which holds all frames."""
+    from ..graph.frames import Pattern, is_video
 
-    return any(Pattern.parse(str(path)) for _, path in files)
+    return any(Pattern.parse(str(path)) or is_video(str(path)) for _, path in files)
 
 
 def _refused(word: str) -> Any:

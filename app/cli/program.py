@@ -8,27 +8,37 @@ from collections.abc import Sequence
 import typer
 from typer.main import get_command
 
+from .bench import bench
 from .check import check
 from .demo import demo
+from .diff import diff
 from .edit import edit
 from .explain import explain
 from .fmt import fmt
 from .gallery import gallery
+from .git_driver import git_driver
+from .git_setup import git_setup
 from .info import info
+from .merge import merge
 from .nodes import nodes
 from .outcome import EXIT_CODES, failed, guarded, settle
 from .render import render
-from .schema import schema
 from .reproduce import reproduce
+from .schema import schema
 from .sweep import sweep
 from .test import test
+from .watch import watch
 
 app = typer.Typer(
     name="halation", add_completion=False, rich_markup_mode=None, epilog=EXIT_CODES,
     help="A node-graph compositor for screen-space effects.",
 )
-for command in (edit, render, check, explain, info, nodes, fmt, demo, gallery, reproduce, sweep, test, schema):
+for command in (
+    edit, render, check, explain, info, nodes, fmt, diff, merge, git_setup, demo, gallery, test, schema,
+    reproduce, watch, sweep, bench,
+):
     app.command()(guarded(command))
+app.command(hidden=True)(guarded(git_driver))
 
 
 @app.callback(invoke_without_command=True)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..errors import UsageError
 from . import parsing
 from .options import AsJson, GraphFile, Inputs, Lazy, Node, Scale, Sets, SizeText, bound, opened, report_problems
 from .outcome import note, print_json
@@ -61,9 +62,15 @@ def render(
     compression: Annotated[
         str, typer.Option(help="EXR compression: none, rle, zips, zip, piz, pxr24, dwaa, ...")
     ] = "zip",
+    codec: Annotated[
+        str, typer.Option(help="Of videos: h264, h265, prores, prores4444, ffv1, qtrle, vp9; by default by the ending.")
+    ] = "",
     form: Annotated[
         str | None, typer.Option(metavar="fragment|compute", help="How passes run; by default what suits the device.")
     ] = None,
+    deterministic: Annotated[
+        bool, typer.Option("--deterministic", help="The same bytes on every machine: the software rasterizer, pinned.")
+    ] = False,
     progress: Annotated[
         str, typer.Option(metavar="bar|json", help="A bar, on a terminal only, or a JSON object per pass and frame.")
     ] = "bar",
@@ -78,6 +85,8 @@ def render(
     started = time.perf_counter()
     depth = parsing.precision(precision) if precision is not None else None
     passes = parsing.form(form) if form is not None else None
+    if deterministic and passes == "compute":
+        raise UsageError("--deterministic renders with fragment passes: leave out --form compute")
     told = parsing.progress(progress)
     destinations = parsing.paths(output)
     canvas, proxy = parsing.size(size), parsing.scale(scale)
@@ -87,26 +96,31 @@ def render(
     if (code := watched(context, opened_graph, timeout, piped(graph, opened_graph))) is not None:
         return code
     bindings, targets = bound(opened_graph, inputs or ()), parsing.targets(opened_graph, node)
-    from ..renderer import DEFAULT_BUDGET, Renderer, Wanted, open_device
+    from ..renderer import DEFAULT_BUDGET, Renderer, Wanted, open_device, open_pinned
     from ..renderer.job import Writing, run_job
 
     if chosen is None:
         first, last = Lazy().frames(opened_graph, inputs or ())
         chosen = tuple(range(first, last + 1)) if parsing.numbered(destinations) else (first,)
+    if jobs > 1 and (videos := Writing(destinations).videos):
+        note(f"one process renders all frames, since all are in {videos[0]}")
+        jobs = 1
     if min(jobs, len(chosen)) > 1 and independent(opened_graph, targets, inputs or (), chosen[0]):
         # What came from standard input goes on with its values set.
         rest = sets if str(graph) != "-" else ()
         words = _words(graph, output, inputs, rest, node, size, scale, resume, precision, compression, form)
         words += _flags({"--view": view, "--display": display, "--look": look, "--colorspace": colorspace})
+        words += ["--deterministic"] if deterministic else []
         with told_to(told, len(chosen)) as hears:
             reports = share(words, chosen, jobs, hears, piped(graph, opened_graph))
         return _told(_added(reports), time.perf_counter() - started, as_json)
     loaded = time.perf_counter()
-    renderer = Renderer(open_device(passes), budget=DEFAULT_BUDGET if len(chosen) > 1 else 0)
+    device = open_pinned() if deterministic else open_device(passes)
+    renderer = Renderer(device, budget=DEFAULT_BUDGET if len(chosen) > 1 else 0)
     note(renderer.device.description)
     ready = time.perf_counter()
-    wanted = Wanted(bindings, targets, canvas, proxy, precision=depth)
-    writing = Writing(destinations, view, compression, depth or "half", display, look, colorspace)
+    wanted = Wanted(bindings, targets, canvas, proxy, precision="float" if deterministic else depth)
+    writing = Writing(destinations, view, compression, depth or "half", display, look, colorspace, codec)
     with told_to(told, len(chosen)) as hears:
         report = run_job(renderer, opened_graph, wanted, writing, chosen, resume=resume, progress=hears)
     spent = {"load": loaded - started, "open": ready - loaded, **report.seconds}
@@ -150,8 +164,9 @@ def _told(report: dict[str, Any], total: float, as_json: bool) -> int:
     peak, passes, kept = size_text(report["peak_bytes"]), report["passes"], len(report["kept"])
     spent = f"{total:.2f} s, {passes} passes, {peak} of textures at the peak"
     if len(report["frames"]) > 1:
+        files = list(dict.fromkeys((report["written"][0], report["written"][-1])))
         rest = f", {kept} kept as they were" if kept else ""
-        note(f"{report['written'][0]} ... {report['written'][-1]}  {len(report['frames'])} frames{rest}, {spent}")
+        note(f"{' ... '.join(files)}  {len(report['frames'])} frames{rest}, {spent}")
         return 0
     for path in report["written"]:
         note(f"{path}  kept as it was" if kept else f"{path}  {spent}")

@@ -38,7 +38,9 @@ def sweep(
     frames: Annotated[str | None, typer.Option(metavar="1-24x8", help="Sweep these frames.")] = None,
     show: Annotated[str, typer.Option("--show", metavar="NAME", help="The output to show; by default the first.")] = "",
     view: Annotated[str, typer.Option(help="OpenColorIO view; 'none' for plain sRGB.")] = "",
-    cell: Annotated[int, typer.Option(metavar="PIXELS", min=16, max=4096, help="Width of a picture on the sheet.")] = 480,
+    cell: Annotated[
+        int, typer.Option(metavar="PIXELS", min=16, max=4096, help="Width of a picture on the sheet.")
+    ] = 480,
     columns: Annotated[int, typer.Option(min=0, help="Pictures side by side; by default what makes a good shape.")] = 0,
     cells: Annotated[
         Path | None, typer.Option("--cells", metavar="DIR", help="Write each picture alone into this folder too.")
@@ -55,10 +57,8 @@ def sweep(
 
     One value that is swept makes a row that wraps, two make a grid; a value that is given once is just set.
     """
-    from dataclasses import replace
-
-    from .. import media
     from ...nodes import Kind
+    from .. import media
     from ..errors import UsageError
     from ..renderer import DEFAULT_BUDGET, Wanted
     from ..renderer import sweep as sweeping
@@ -80,7 +80,7 @@ def sweep(
         raise UsageError(f"{output}: a sheet is for eyes: write it as .png, .jpg, .tif or .webp")
     written = Writing((("", cells),), view, precision=depth or "half") if cells is not None else None
     wanted = Wanted(bindings, targets, canvas, proxy, precision=depth)
-    title = f"{graph.stem if str(graph) != '-' else 'graph'}  {', '.join(axis.name for axis in swept)}"
+    title = f"{graph.stem if str(graph) != '-' else 'graph'}: {', '.join(axis.name for axis in swept)}"
     with batch(cells or output.parent, count, DEFAULT_BUDGET) as work:
         how = sweeping.Swept(wanted, name, look, cell, columns, written, _ending(ending), title)
         made = sweeping.sweep(work.renderer, whole, swept, how, at, work.step)

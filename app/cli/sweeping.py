@@ -50,7 +50,8 @@ def axes(graph: Graph, sets: Sequence[str], frames: Sequence[int]) -> tuple[Grap
         changed(graph, name, text)  # what cannot be set is refused before anything is rendered
         return Step(text, lambda graph: changed(graph, name, text))
 
-    return graph, tuple(Axis(name, said[name], tuple(step(name, text) for text in texts)) for name, texts in found.items())
+    made = (Axis(name, said[name], tuple(step(name, text) for text in texts)) for name, texts in found.items())
+    return graph, tuple(made)
 
 
 def _value(graph: Graph, name: str) -> Value | None:
@@ -128,4 +129,4 @@ def _range(name: str, match: re.Match[str], whole: bool) -> Iterator[str]:
     for place in range(count):
         part = place / (count - 1)
         number = first * (last / first) ** part if match["log"] else first + (last - first) * part
-        yield str(round(number)) if whole else f"{number:.6g}"
+        yield str(round(number)) if whole else f"{float(f'{number:.4g}'):g}"

@@ -193,7 +193,8 @@ def _included(text: Text, files: list[str], program: Program, fused: Fused) -> l
     """A shader file, with the macros of its node's choices around it and its own line numbers."""
     ops = [op for op in (program.ops[index] for index in fused.members) if isinstance(op, (Call, Gather))]
     choices = next((op.choices for op in ops if op.shader == text.name), ())
-    macros = [(macro(name, one), number) for name, all_ in choices for number, one in enumerate(all_)]
+    named = ((macro(name, one), number) for name, all_ in choices for number, one in enumerate(all_))
+    macros = [(name, number) for name, number in named if name in text.words]
     files.append(text.file)
     return [
         *(f"#define {name} {number}" for name, number in macros),

@@ -15,10 +15,13 @@ def foreign(root: Foreign, fused: Fused, rounding: list[str]) -> tuple[Shader, t
     `rounding` is the function `as_half`, where the result is stored in half floats.
     """
     fragment, vertex = root.text.fragment, root.text.vertex
-    stored = "as_half(halation_pixel())" if rounding else "halation_pixel()"
-    end = ["layout(location = 0) out vec4 halation_target;", *rounding, f"void main() {{ halation_target = {stored}; }}"]
+    made = "halation_half(halation_pixel())" if rounding else "halation_pixel()"
+    rounding = [line.replace("as_half", "halation_half") for line in rounding]
+    end = [
+        "layout(location = 0) out vec4 halation_target;", *rounding, f"void main() {{ halation_target = {made}; }}",
+    ]
     shader = Shader(
-        "\n".join([_text(fragment, 1), *(line.replace("as_half", "halation_half") for line in end)]) + "\n", "fragment",
+        "\n".join([_text(fragment, 1), *end]) + "\n", "fragment",
         ("generated", fragment.file, *([vertex.file] if vertex else [])), False,
         _text(vertex, 2) if vertex else "", foreign=True,
     )
@@ -28,5 +31,9 @@ def foreign(root: Foreign, fused: Fused, rounding: list[str]) -> tuple[Shader, t
 
 
 def _text(stage: Stage, file: int) -> str:
-    top = ("#version 410 core", "#extension GL_ARB_shading_language_packing : enable", stage.head)
+    # The second extension lets functions return whole numbers as floats, which older GLSL did everywhere.
+    top = (
+        "#version 410 core", "#extension GL_ARB_shading_language_packing : enable",
+        "#extension GL_ARB_shading_language_420pack : enable", stage.head,
+    )
     return "\n".join([*top, f"#line {LINES_PER_FILE * file + 1}", stage.text.rstrip("\n"), "#line 1", stage.tail])

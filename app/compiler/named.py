@@ -7,9 +7,13 @@ from dataclasses import replace
 from pathlib import PurePath
 
 from ...nodes import Kind, Missing, Reader, Source
-from ..graph import INPUTS, Graph, Input, Port
+from ..graph import INPUTS, Graph, Input, Port, color_settings
+from ..graph.color import BUILT_IN
 from .expand import Flat, expand
 from .ir import Picture
+
+CONFIG = "settings.config"
+"""Who names the file of color management."""
 
 
 class Named:
@@ -70,7 +74,8 @@ def named_files(graph: Graph, bindings: Mapping[str, Picture]) -> list[tuple[str
 def path_texts(graph: Graph) -> dict[str, tuple[str, str]]:
     """Every file that inputs and values of nodes name, by who names it: the text, and the path that it leads to.
 
-    Inputs are `inputs.beauty` or `glow/inputs.image`, values `read.path` or `glow/read.path`.
+    Inputs are `inputs.beauty` or `glow/inputs.image`, values `read.path` or `glow/read.path`; a file of color
+    management is `settings.config`.
     """
     flat = expand(graph)
     found = {
@@ -81,4 +86,7 @@ def path_texts(graph: Graph) -> dict[str, tuple[str, str]]:
         for value in node.values.values():
             if value.type == "path" and (text := getattr(node, value.name)):
                 found[f"{path}.{value.name}"] = text, str(PurePath(flat.folders[path], text))
+    config = graph.settings.color.config
+    if config and not config.startswith(BUILT_IN):
+        found[CONFIG] = config, color_settings(graph).config
     return found

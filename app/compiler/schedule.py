@@ -72,7 +72,8 @@ def _check_size(size: Size, owner: str, target: Target) -> None:
 
 
 def _check_outputs(count: int, op: Op, target: Target) -> None:
-    most = target.max_images if target.form == "compute" and not isinstance(op, Foreign | Raster) else target.max_targets
+    by_image = target.form == "compute" and not isinstance(op, Foreign | Raster)
+    most = target.max_images if by_image else target.max_targets
     if count > most:
         raise DeviceError(
             f"node '{op.owner}': {target.renderer} writes {most} pictures at once, not {count}; "

@@ -27,7 +27,7 @@ class _Twice(dict[str, Any]):
 def parse(text: str, file: str) -> dict[str, Any]:
     """The object that `text` holds. Raises DocumentError."""
     if fault := size_fault(len(text.strip())):
-        raise DocumentError(file, "", fault)
+        raise DocumentError(file, "", fault, rule="unreadable-graph")
     try:
         tree: Any = json.loads(text, object_pairs_hook=_object)
     except json.JSONDecodeError as error:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-Purpose = Literal["graph", "image", "table", "scene", "export"]
+Purpose = Literal["graph", "image", "table", "scene", "config", "code", "export"]
 """What kind of file is wanted: it decides what is listed and which folder is remembered."""
 
 

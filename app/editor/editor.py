@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Protocol, TypeVar
 
 from ..errors import HalationError
 from .canvas.view import CanvasView
+from .code.state import CodeState
 from .curves.state import CurvesState
 from .dialogs import Dialogs
 from .log import Log
@@ -61,6 +62,7 @@ class Editor:
     renders: Renders = field(default_factory=Renders)
     canvas: CanvasView = field(default_factory=CanvasView)
     viewer: ViewerState = field(default_factory=ViewerState)
+    code: CodeState = field(default_factory=CodeState)
     curves: CurvesState = field(default_factory=CurvesState)
     timeline: TimelineState = field(default_factory=TimelineState)
     dialogs: Dialogs = field(default_factory=Dialogs)

@@ -5,6 +5,8 @@ Three ways to write the number are known, in the last part of a path only:
     shot.####.exr   as many digits as there are # (as in Nuke and Blender); shot.#.exr has no padding
     shot.%04d.exr   as printf; shot.%d.exr has no padding
     shot.$F4.exr    as Houdini; shot.$F.exr has no padding
+
+A video (`shot.mov`) holds all its frames in one file.
 """
 
 from __future__ import annotations
@@ -23,6 +25,12 @@ _DIGITS = 9
 _WIDEST = 16
 _SHOWN = 40
 _EXAMPLE = "such as 1-24, 1-24x2 or 1-12,40"
+
+VIDEO_ENDINGS = frozenset({
+    ".mp4", ".m4v", ".mov", ".mkv", ".webm", ".avi", ".mxf", ".mpg", ".mpeg", ".m2v", ".ts", ".mts", ".m2ts", ".wmv",
+    ".flv", ".ogv", ".3gp", ".y4m", ".dv",
+})
+"""Endings of names of videos."""
 
 _RANGE = re.compile(r"(-?[0-9]+)\s*(?:-\s*(-?[0-9]+)\s*(?:[xX]\s*([0-9]+))?)?")
 _PLACE = re.compile(r"(?P<hashes>#+)|%(?:0(?P<printf>[1-9][0-9]*))?d|\$F(?![A-Za-z_])(?P<houdini>[0-9]*)")
@@ -135,6 +143,11 @@ class Pattern:
         return self.pieces[0] + "".join(rest)
 
 
+def is_video(path: str) -> bool:
+    """True for the name of a video, which holds all frames."""
+    return os.path.splitext(path)[1].casefold() in VIDEO_ENDINGS  # noqa: PTH122 - it may be no path at all
+
+
 def numbered(path: str) -> str:
     """A name of this kind with a place for the frame number: `out.exr` gives `out.####.exr`."""
     name = _last(path)
@@ -146,8 +159,11 @@ def numbered(path: str) -> str:
 
 
 def check_numbered(path: str, frames: Sequence[int]) -> None:
-    """Refuse to write several frames to one name. Raises UsageError."""
-    if len(frames) > 1 and Pattern.parse(path) is None:
+    """Refuse to write several frames to one name, unless that is a video. Raises UsageError."""
+    if is_video(path):
+        if Pattern.parse(path) is not None:
+            raise UsageError(f"{path}: a video holds all frames: leave the place for their number out of its name")
+    elif len(frames) > 1 and Pattern.parse(path) is None:
         raise UsageError(f"{path}: {len(frames)} frames cannot go into one file: write -o {numbered(path)}")
 
 

@@ -36,7 +36,10 @@ def repointed(graph: Graph, change: Change) -> Graph:
 
 
 def inlined(graph: Graph) -> Graph:
-    """The graph with the bodies of all groups in it, and their paths as seen from its own folder."""
+    """The graph with the bodies of all groups and all code in it, and their paths as seen from its own folder.
+
+    Shaders in the Interactive Shader Format that have files of their own beside them stay in their file.
+    """
     return replace(graph, nodes={id: _inlined(item, graph.folder) for id, item in graph.nodes.items()})
 
 
@@ -84,6 +87,9 @@ def _code(item: Node, change: Change) -> Node:
 
 
 def _inlined(item: Item, folder: str) -> Item:
+    if isinstance(item, Written) and item.code.file and not (item.code.vertex or "IMPORTED" in item.code.text):
+        kind = node_type(replace(item.code, file=""))
+        return kind(**{name: getattr(item, name) for name in item.values})
     if not isinstance(item, Group):
         return item
     # A path that a control sets belongs to the file that the control is in: it goes there before that file is left.

@@ -61,9 +61,7 @@ def rechecked(
 
     It costs nothing where only values of nodes differ that had no problem and have none now, as while one is dragged.
     """
-    parts = ("links", "inputs", "outputs", "controls", "animation", "settings", "extra")
-    same = all(getattr(graph, part) is getattr(before, part) for part in parts) and [*graph.nodes] == [*before.nodes]
-    if not same:
+    if not differ_in_nodes(graph, before):
         return problems(graph, known)
     changed = {id: item for id, item in graph.nodes.items() if item is not before.nodes[id]}
     faulty = {problem.node for problem in found}
@@ -72,6 +70,12 @@ def rechecked(
         if not like or id in faulty or any(_values(id, item)):
             return problems(graph, known)
     return found
+
+
+def differ_in_nodes(graph: Graph, before: Graph) -> bool:
+    """True if all that can have changed are nodes of the same ids, and the layout."""
+    parts = ("links", "inputs", "outputs", "controls", "animation", "settings", "extra")
+    return all(getattr(graph, part) is getattr(before, part) for part in parts) and [*graph.nodes] == [*before.nodes]
 
 
 def _inside(graph: Graph, known: Mapping[str, type[Node]], depth: int) -> Iterator[Problem]:

@@ -45,11 +45,11 @@ def _inside(folder: Path) -> Iterator[Path]:
     for here, folders, names in os.walk(folder):
         folders[:] = sorted(name for name in folders if not name.startswith("."))
         for name in sorted(names):
-            if name.lower().endswith(".json") and not name.startswith(".") and _is_graph(path := Path(here, name)):
+            if name.lower().endswith(".json") and not name.startswith(".") and is_graph(path := Path(here, name)):
                 yield path
 
 
-def _is_graph(path: Path) -> bool:
+def is_graph(path: Path) -> bool:
     """True for a text with the key that all graphs have, damaged or not."""
     try:
         text = read_text(path)

@@ -30,18 +30,26 @@ class Sheet:
         """What the shaders of nodes are."""
         return installed()
 
+    @cached_property
+    def moving(self) -> frozenset[str]:
+        """Nodes of which a value changes over time or is wired."""
+        nodes = self.graph.nodes
+        wired = (
+            port.node for port in self.graph.links
+            if port.node in nodes and port.socket not in getattr(nodes[port.node], "inputs", {port.socket})
+        )
+        return frozenset((*wired, *(port.node for port in self.graph.animation)))
+
     def works(self, id: str) -> Item | None:
         """The node of that id, unless there is none or it passes its picture through."""
-        item = self.graph.nodes.get(id)
-        if item is None or id in self.graph.muted:
-            return None
-        return None if isinstance(item, Node) and self._neutral(id, item) else item
+        return self._working.get(id)
 
-    def moves(self, id: str) -> bool:
-        """True if a value of the node changes over time or is wired."""
-        item = self.graph.nodes[id]
-        values = signature(item).values
-        return any(Port(id, name) in self.graph.animation or Port(id, name) in self.graph.links for name in values)
+    @cached_property
+    def _working(self) -> dict[str, Item]:
+        return {
+            id: item for id, item in self.graph.nodes.items()
+            if id not in self.graph.muted and not (isinstance(item, Node) and self._neutral(id, item))
+        }
 
     def source(self, target: Port) -> Port | None:
         """What feeds an input, past all nodes that pass their picture through."""
@@ -55,7 +63,7 @@ class Sheet:
         return next((self.source(Port(id, name)) for name in signature(self.graph.nodes[id]).inputs), None)
 
     def _neutral(self, id: str, item: Node) -> bool:
-        return not self.moves(id) and len(item.outputs) == 1 and item.identity() is not None
+        return id not in self.moving and len(item.outputs) == 1 and item.identity() is not None
 
 
 class Check(NamedTuple):

@@ -10,8 +10,9 @@ from typing import Any
 
 import OpenImageIO as oiio
 
+from ..graph.frames import is_video
 from .info import ImageInfo, described, described_video, opened, space, text, video_facts
-from .video import Facts, is_video, said_of
+from .video import Facts, passed_on, said_of
 
 Value = int | float | str | tuple[Any, ...]
 Window = tuple[int, int, int, int]
@@ -48,7 +49,7 @@ def read_header(path: str | Path) -> Header:
     Raises:
         InputError: as `info`.
     """
-    if is_video(path):
+    if is_video(str(path)):
         return _video_header(video_facts(path))
     with opened(path) as handle:
         info = described(handle, str(path))
@@ -64,10 +65,9 @@ def read_header(path: str | Path) -> Header:
 def _video_header(facts: Facts) -> Header:
     info, window = described_video(facts), (0, 0, *facts.size)
     layer = info.layers[0]
-    part = PartHeader(
-        0, "", "", facts.container, facts.codec, window, window, layer.channels, (layer.format,) * len(layer.channels), "",
-    )
-    return Header(info, (part,), MappingProxyType({**facts.tags, **said_of(facts)}))
+    formats = (layer.format,) * len(layer.channels)
+    part = PartHeader(0, "", "", facts.container, facts.codec, window, window, layer.channels, formats, "")
+    return Header(info, (part,), MappingProxyType({**passed_on(facts), **said_of(facts)}))
 
 
 def _part(index: int, spec: oiio.ImageSpec) -> PartHeader:

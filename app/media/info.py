@@ -14,8 +14,9 @@ import OpenImageIO as oiio
 
 from ...nodes import Size
 from ..errors import InputError
+from ..graph.frames import is_video
 from .layers import Layer, Part, layers_of, pick
-from .video import Facts, facts_of, is_video
+from .video import Facts, facts_of
 
 TAG = "halation:colorspace"
 """Names the color space in formats that have no word for it."""
@@ -50,7 +51,7 @@ def info(path: str | Path) -> ImageInfo:
     Raises:
         InputError: missing, empty, damaged, deep or not a picture.
     """
-    if is_video(path):
+    if is_video(str(path)):
         return described_video(video_facts(path))
     with opened(path) as handle:
         return described(handle, str(path))

@@ -168,7 +168,7 @@ class Managed:
             return None
         try:
             name = ocio().Config.IdentifyBuiltinColorSpace(self.spaces, studio(), known.getName())
-        except ocio().Exception:
+        except faults():
             return None
         return Space(name, True) if name else None
 
@@ -176,7 +176,7 @@ class Managed:
         names = self.names()
         try:
             self._between(space, Space(names[0], True))
-        except (ocio().Exception, IndexError):
+        except (*faults(), IndexError):
             raise self._fault(
                 f"{self.where}: has neither '{space.name}' nor the role aces_interchange that would lead to it: set "
                 f"settings.color.working to a space or role of this config, such as {_few(names)}"
@@ -185,7 +185,7 @@ class Managed:
     def _made(self, make: Any) -> Any:
         try:
             return make()
-        except ocio().Exception as error:
+        except faults() as error:
             raise self._fault(f"{self.where}: {_first_line(error)}") from error
 
     def _read(self, source: str) -> Any:
@@ -195,7 +195,7 @@ class Managed:
             raise self._fault(f"{self._said(source)}: there is no such color config{_suggested(near)}")
         try:
             return builtin(source) if source.startswith("ocio://") else ocio().Config.CreateFromFile(source)
-        except ocio().Exception as error:
+        except faults() as error:
             said = f"is no color config that can be read: {_first_line(error)}"
             if source.startswith("ocio://"):
                 near = difflib.get_close_matches(source, builtin_configs(), 1, 0.3)
@@ -248,11 +248,19 @@ def _version(source: str) -> str:
     return f"{status.st_mtime_ns}:{status.st_size}"
 
 
+@cache
 def ocio() -> Any:
-    """OpenColorIO, which comes without types."""
+    """OpenColorIO, which comes without types. It is quiet: what is wrong is said in sentences of ours."""
     import PyOpenColorIO
 
+    if not os.environ.get("OCIO_LOGGING_LEVEL"):
+        PyOpenColorIO.SetLoggingLevel(PyOpenColorIO.LOGGING_LEVEL_NONE)
     return PyOpenColorIO
+
+
+def faults() -> tuple[type[Exception], ...]:
+    """What OpenColorIO raises."""
+    return ocio().Exception, ocio().ExceptionMissingFile
 
 
 @cache

@@ -11,8 +11,9 @@ from typing import Any
 
 import OpenImageIO as oiio
 
+from ..graph.frames import is_video
 from .info import opened, video_facts
-from .video import is_video, passed_on
+from .video import passed_on
 
 _STRUCTURAL = re.compile(
     r"(oiio|openexr|png|jpeg|tiff|targa|bmp|gif|hdr|webp|jpegxl|ICCProfile|dwa):.*|Exif:(ColorSpace|Pixel.Dimension|ImageHistory)"
@@ -44,7 +45,7 @@ def read_metadata(path: str | Path) -> dict[str, int | float | str | Attribute]:
     Raises:
         InputError: the file cannot be read.
     """
-    if is_video(path):
+    if is_video(str(path)):
         return {**passed_on(video_facts(path))}
     with opened(path) as handle:
         found: dict[str, int | float | str | Attribute] = {}

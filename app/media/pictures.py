@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from hashlib import blake2b
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -12,6 +13,7 @@ from ...nodes import Kind
 from ..compiler import Picture, Probed, named_files
 from ..errors import InputError, UsageError
 from ..graph import INPUTS, OUTPUTS, Graph, Input, keyed_range
+from ..graph.frames import is_video
 
 if TYPE_CHECKING:
     import numpy as np
@@ -56,6 +58,16 @@ class Pictures:
                 return found.frames[0], found.frames[-1]
         return keyed_range(graph)
 
+    def rate(self, graph: Graph, bound: Mapping[str, Picture]) -> Fraction | float:
+        """Frames per second: as the graph says, else those of the first video it reads, else the usual ones."""
+        from .sequences import find_sequence
+
+        usual = type(graph.settings)().rate
+        for path, _, _ in named_files(graph, bound) if graph.settings.rate == usual else ():
+            if is_video(path) and (found := find_sequence(path)) and found.rate:
+                return found.rate
+        return graph.settings.rate
+
     def check_frames(self, graph: Graph, frames: range) -> None:
         """Raise InputError for the first file that is missing in a sequence which the graph's outputs need."""
         needed = graph.upstream(OUTPUTS)
@@ -78,6 +90,8 @@ class Pictures:
             return Probed((width, height), array.dtype.name == "float16", self._marks[picture.path])
         from .info import find_layer
 
+        if picture.within:
+            _check_within(picture.path, picture.within)
         header = self.info(picture.path)
         layer = find_layer(header, picture.layer)
         color = picture.kind in (Kind.IMAGE, Kind.COLOR) and not layer.data
@@ -209,6 +223,16 @@ def _content(array: Array) -> str:
 
     digest = blake2b(np.ascontiguousarray(array).data, digest_size=16).hexdigest()
     return f"array {array.shape} {array.dtype} {digest}"
+
+
+def _check_within(path: str, folder: str) -> None:
+    """Raise InputError for a file that lies elsewhere once links are followed."""
+    try:
+        inside = Path(path).resolve().is_relative_to(Path(folder).resolve())
+    except (OSError, RuntimeError, ValueError):
+        inside = False
+    if not inside:
+        raise InputError(f"{path}: it does not lie in the folder '{folder}', which it may not leave")
 
 
 def split_layer(text: str) -> tuple[str, str]:

@@ -11,13 +11,14 @@ import OpenImageIO as oiio
 
 from ...nodes import ColorSettings, Kind
 from ..errors import InputError
+from ..graph.frames import is_video
 from .color import Array, as_float, available_cores, is_working, to_working
-from .file_space import space_of
+from .file_space import AUTO, space_of
 from .hints import hints_of
 from .info import ImageInfo, check_file, described, described_video, fault, find_layer, fingerprint, opened
 from .layers import Layer
 from .managed import DEFAULT_COLOR, managed
-from .video import facts_of, is_video, signal_at
+from .video import facts_of, signal_at
 
 _READ_AS = {"float16": "half", "uint8": "uint8", "uint16": "uint16", "uint32": "uint"}
 _ALPHA = ("a", "alpha")
@@ -59,8 +60,8 @@ def read(
 ) -> Pixels:
     """Read one layer over the whole display window; what the file has no data for is 0.
 
-    IMAGE is RGBA in the working space, premultiplied, alpha 1 where the file has none. FIELD is the first channel, VECTOR
-    the first `width` ones, missing ones 0: both are the numbers of the file, without any color conversion.
+    IMAGE is RGBA in the working space, premultiplied, alpha 1 where the file has none. FIELD is the first channel,
+    VECTOR the first `width` ones, missing ones 0: both are the numbers of the file, without any color conversion.
     Non-finite color becomes the mean of its finite neighbors (OpenImageIO, fixNonFinite BOX3); in data a NaN
     becomes 0 and infinity, the background of many depth passes, stays. Of a video it is the frame of that number.
 
@@ -77,7 +78,7 @@ def read_many(path: str | Path, wants: Sequence[Want], frame: int = 1) -> list[P
     Raises:
         InputError: as `read`.
     """
-    if is_video(path):
+    if is_video(str(path)):
         return _read_video(str(check_file(path)), wants, frame)
     with opened(path) as handle:
         header = described(handle, str(path))
@@ -99,7 +100,8 @@ def _read_video(path: str, wants: Sequence[Want], frame: int) -> list[Pixels]:
     for want in wants:
         layer = find_layer(header, want.layer)
         color = want.kind in (Kind.IMAGE, Kind.COLOR) and not layer.data
-        block, encoding = signal.light if color else (signal.numbers, "data")
+        as_it_is = not color or want.space not in AUTO
+        block, encoding = (signal.numbers, "") if as_it_is else signal.light
         spec = oiio.ImageSpec(block.shape[1], block.shape[0], block.shape[2], "float")
         spec.attribute("oiio:ColorSpace", encoding)
         spec.attribute("oiio:UnassociatedAlpha", 1)

@@ -14,7 +14,7 @@ from ..compiler import ColorProgram, Table, parse
 from ..errors import InputError, UsageError
 from .color import display_processor
 from .info import fingerprint
-from .managed import DEFAULT_COLOR, Space, color_mark, managed, ocio
+from .managed import DEFAULT_COLOR, Space, color_mark, faults, managed, ocio
 
 
 def recolor(change: ColorChange) -> ColorProgram:
@@ -92,6 +92,6 @@ def _of_file(change: LookupFile) -> Any:
     transform = api.FileTransform(change.path, interpolation=api.INTERP_BEST, direction=way)
     try:
         return api.Config.CreateRaw().getProcessor(transform)
-    except api.Exception as error:
+    except faults() as error:
         reason = str(error).strip().splitlines()[0]
         raise InputError(f"{change.path}: is no color table that can be read: {reason}") from error

@@ -1,8 +1,9 @@
 """Numbered pictures: which frames there are, and the file of each.
 
 A path is a pattern (`shot.####.exr`), a folder that holds numbered pictures, a video, or one picture. A file whose name
-happens to look like a pattern is one picture or video, whose frames count from 1. Of a folder the name with the most frames counts; of several with as many, that
-whose number comes last in the name, then the first by alphabet. Only the one folder is ever listed.
+happens to look like a pattern is one picture or video. The frames of a video count from 1. Of a folder the name with
+the most frames counts; of several with as many, that whose number comes last in the name, then the first by alphabet.
+Only the one folder is ever listed.
 """
 
 from __future__ import annotations
@@ -24,10 +25,9 @@ from types import MappingProxyType
 from ...nodes import Missing
 from ..compiler import Frame
 from ..errors import InputError, UsageError
-from ..graph.frames import Pattern, format_frames
+from ..graph.frames import Pattern, format_frames, is_video
 from .info import video_facts
 from .thumbnail import readable
-from .video import is_video
 
 _UNSETTLED = 2_000_000_000
 """Nanoseconds: how coarse the clocks of file systems are. A folder that changed just now may change again unseen."""

@@ -119,18 +119,19 @@ def grid_sheet(
     left, top = _MARGIN + room, head + _GAP // 2
     size = (left + len(across) * (cell[0] + _GAP) - _GAP + _MARGIN, top + len(down) * (cell[1] + _GAP) - _GAP + _MARGIN)
     made = np.full((*size[::-1], 3), _BACK, np.float32)
-    places = [[(left + x * (cell[0] + _GAP), top + y * (cell[1] + _GAP)) for x in range(len(across))] for y in range(len(down))]
-    for row, spots in zip(rows, places, strict=True):
-        for picture, (x, y) in zip(row, spots, strict=True):
+    x_at = [left + column * (cell[0] + _GAP) for column in range(len(across))]
+    y_at = [top + row * (cell[1] + _GAP) for row in range(len(down))]
+    for y, row in zip(y_at, rows, strict=True):
+        for x, picture in zip(x_at, row, strict=True):
             _paste(made, _fitted(picture, cell, width / first.shape[1]), x, y, cell)
     if title:
         made[_MARGIN + 2 * letters : _MARGIN + 2 * letters + _RULE, _MARGIN : size[0] - _MARGIN] = _DIM
     paper, draw = oiio.ImageBuf(made), oiio.ImageBufAlgo.render_text
     if title:
         draw(paper, _MARGIN, _MARGIN + round(1.3 * letters), _words(title), letters + 3, _BOLD, _TEXT)
-    for text, (x, _) in zip(across, places[0], strict=True):
+    for text, x in zip(across, x_at, strict=True):
         _label(paper, text, x, head - letters // 3, cell[0], letters)
-    for text, ((_, y), *_) in zip(down, places, strict=True):
+    for text, y in zip(down, y_at, strict=True):
         draw(paper, left - _GAP, y + cell[1] // 2, _words(text), letters, "", _DIM, "right", "center")
     return decode_srgb(_pixels(paper)).astype(np.float32)
 

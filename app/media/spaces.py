@@ -7,11 +7,11 @@ from pathlib import Path
 
 from ...nodes import ColorSettings
 from ..errors import HalationError
+from ..graph.frames import is_video
 from .file_space import FileSpace, space_of
 from .hints import hints_of
 from .info import described, opened
 from .managed import DEFAULT_COLOR, managed
-from .video import is_video
 
 
 def layer_spaces(
@@ -23,7 +23,7 @@ def layer_spaces(
         InputError: the file cannot be read, or names a space that nobody knows.
         GraphError, UsageError: `wanted` is unknown, or there is no config.
     """
-    if is_video(path):
+    if is_video(str(path)):
         return {}
     found: dict[str, FileSpace] = {}
     with opened(path) as handle:

@@ -40,7 +40,7 @@ def store(path: str | Path, encode: Callable[[str], None], room: int) -> None:
     Raises:
         OutputError: the folder is missing or read-only, or the disk is full.
     """
-    with _part(path) as (part, target):
+    with unfinished(path) as (part, target):
         _fill(part, encode, room)
         part.replace(target)
 
@@ -60,13 +60,13 @@ def sweep(folder: str | Path) -> None:
 
 def check_room(path: str | Path) -> None:
     """Find out whether the folder may be written, by making a name in it and taking that away. Raises OutputError."""
-    with _part(path):
+    with unfinished(path):
         pass
 
 
 @contextmanager
-def _part(path: str | Path) -> Iterator[tuple[Path, Path]]:
-    """A new file that is gone afterwards, and the one that it may replace."""
+def unfinished(path: str | Path) -> Iterator[tuple[Path, Path]]:
+    """A new file that is gone afterwards, and the one that it may replace. Raises OutputError."""
     target = Path(os.path.realpath(path))
     part = target.with_name(f"{part_prefix(os.getpid())}{secrets.token_hex(6)}{target.suffix[:8]}")
     try:
@@ -78,8 +78,13 @@ def _part(path: str | Path) -> Iterator[tuple[Path, Path]]:
         finally:
             part.unlink(missing_ok=True)
     except OSError as error:
-        reason = _FAULTS.get(error.errno or 0, error.strerror or str(error))
-        raise OutputError(f"{path}: cannot be written: {reason}") from error
+        raise OutputError(f"{path}: cannot be written: {reason_of(error)}") from error
+
+
+def reason_of(error: Exception) -> str:
+    """Why something cannot be written, as the rest of a sentence."""
+    said = getattr(error, "strerror", None) or str(error) or "the encoder gave no reason"
+    return _FAULTS.get(getattr(error, "errno", None) or 0, said)
 
 
 def _fill(part: Path, encode: Callable[[str], None], room: int) -> None:

@@ -69,9 +69,10 @@ def write(
     if format == "openexr":
         parts = _exr_parts(layers, kinds, precision, compression, encoding)
     else:
-        shown = _shown(path, {name: kinds[name] for name in layers})
+        shown = shown_layer(path, {name: kinds[name] for name in layers})
         parts = [_picture(layers[shown], format, precision, compression, encoding)]
-    add_metadata(parts[0].spec, metadata, format)
+    for part in parts:
+        add_metadata(part.spec, metadata if part is parts[0] else {}, format)
     room = sum(part.array.nbytes for part in parts) + sum(len(str(value)) for value in metadata.values())
     store(path, _encoder(path, format, parts), room)
 
@@ -99,7 +100,7 @@ def _checked(
         hint = f"did you mean '{guess[0]}'? Choose" if guess else "choose"
         raise UsageError(f"{path}: there is no compression '{compression}': {hint} from {', '.join(choices)}")
     if format != "openexr":
-        _shown(path, kinds)
+        shown_layer(path, kinds)
     elif len(set(sizes.values())) > 1:
         said = ", ".join(f"'{name}' {width}x{height}" for name, (width, height) in sizes.items())
         raise UsageError(f"{path}: one EXR holds layers of one size, but there are {said}: write them to several files")
@@ -156,7 +157,7 @@ def _letters(name: str, kind: Kind, count: int) -> str:
     return "Z" if is_depth(name) else "Y"
 
 
-def _shown(path: str | Path, kinds: Mapping[str, Kind]) -> str:
+def shown_layer(path: str | Path, kinds: Mapping[str, Kind]) -> str:
     """Which layer a format without layers shows: the first of color, else the first field."""
     shown = [name for name in kinds if kinds[name] in (Kind.IMAGE, Kind.COLOR)]
     shown = shown or [name for name in kinds if kinds[name] is not Kind.VECTOR]

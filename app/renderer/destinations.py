@@ -12,7 +12,7 @@ from .. import media
 from ..compiler import Picture, Plan, Precision
 from ..errors import UsageError
 from ..graph import OUTPUTS, Graph, Port, color_settings, did_you_mean
-from ..graph.frames import Pattern, check_numbered
+from ..graph.frames import Pattern, check_numbered, is_video
 from .engine import Wanted
 
 
@@ -31,6 +31,13 @@ class Writing:
     display: str = ""
     look: str = ""
     space: str = ""
+    codec: str = ""
+    """Of videos; "" for what is usual."""
+
+    @property
+    def videos(self) -> tuple[Path, ...]:
+        """The files that hold all frames."""
+        return tuple(path for _, path in self.files if is_video(str(path)))
 
 
 @dataclass(frozen=True)
@@ -89,7 +96,7 @@ def _files(graph: Graph, wanted: Wanted, writing: Writing) -> tuple[Destination,
     return tuple(_destination(graph, wanted, writing, path, files[path]) for path in files)
 
 
-def check(found: Sequence[Destination], plan: Plan, sources: Mapping[str, Picture], compression: str) -> None:
+def check(found: Sequence[Destination], plan: Plan, sources: Mapping[str, Picture], writing: Writing) -> None:
     """Refuse what could not be written, or would destroy a picture that `sources` read. Raises UsageError, OutputError.
 
     `sources` are pictures by the input or node that reads them.
@@ -99,7 +106,10 @@ def check(found: Sequence[Destination], plan: Plan, sources: Mapping[str, Pictur
         if node := reading.get(os.path.realpath(file.path)):
             raise UsageError(f"{file.path}: this file is read by '{node.removeprefix('inputs.')}'; write to another")
         sizes = {layer: plan.surfaces[plan.outputs[name]].size for layer, name in file.layers.items()}
-        media.check_destination(file.path, file.kinds, sizes, compression=compression, encoding=file.encoding)
+        if is_video(str(file.path)):
+            media.check_video(file.path, file.kinds, sizes, codec=writing.codec, encoding=file.encoding)
+            continue
+        media.check_destination(file.path, file.kinds, sizes, compression=writing.compression, encoding=file.encoding)
 
 
 def _destination(graph: Graph, wanted: Wanted, writing: Writing, path: Path, names: Sequence[str]) -> Destination:

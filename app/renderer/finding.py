@@ -9,13 +9,16 @@ from pathlib import Path
 from typing import Literal
 
 from ...presets import paths as presets
-from ..compiler.named import path_texts
+from ..compiler.named import CONFIG, path_texts
 from ..errors import InputError, UsageError
 from ..graph import INPUTS, Graph, did_you_mean
 from ..graph.frames import Pattern
-from ..graph.paths import repointed
-from .recipe import Recipe, Used
+from ..graph.paths import relocated, repointed
+from .recipe import Recipe, Used, read_recipe
 from .sources import Hashes
+
+_FAR = "../../../"
+"""Where the spelling of a path begins that leads too far away to be better than an absolute one."""
 
 State = Literal["same", "changed", "missing"]
 
@@ -52,6 +55,14 @@ class Finder:
             return tuple(self._found(used) for used in self._recipe.used)
         finally:
             self._hashes.close()
+
+    def likely(self) -> tuple[Found, ...]:
+        """The files that have the right names at the likeliest places, without a look into them, which takes long."""
+        return tuple(
+            Found(used, "same", path)
+            for used in self._recipe.used
+            if (path := next((path for path in self._candidates(used) if _is_there(used, path)), ""))
+        )
 
     def _owner(self, name: str) -> str:
         known = {used.owner.removeprefix(f"{INPUTS}."): used.owner for used in self._recipe.used}
@@ -125,10 +136,19 @@ def text_of(texts: Mapping[str, str], owner: str) -> str:
     return texts.get(owner) or next((text for name, text in texts.items() if name.rpartition(".")[0] == owner), "")
 
 
+def made_by(path: Path) -> Graph:
+    """The graph that made a picture, with the files it was made of where they are easy to find.
+
+    Raises InputError, DocumentError: see `read_recipe`.
+    """
+    recipe = read_recipe(path)
+    return pointed(recipe.graph, Finder(recipe, {}, ()).likely())
+
+
 def pointed(graph: Graph, found: Sequence[Found]) -> Graph:
-    """The graph with what was found in place of what it names."""
+    """The graph with what was found in place of what it names, seen from its own folder."""
     texts = {owner: text for owner, (text, _) in path_texts(graph).items()}
-    here = {item.used.owner: os.path.abspath(item.path) for item in found if item.path}  # noqa: PTH100
+    here = {item.used.owner: _spelled(item.path, graph.folder) for item in found if item.path}
     moved = {text: path for owner, path in here.items() if (text := text_of(texts, owner))}
     graph = repointed(graph, lambda text: moved.get(text, text))
     ends = dict(graph.inputs)
@@ -136,7 +156,26 @@ def pointed(graph: Graph, found: Sequence[Found]) -> Graph:
         node, _, name = item.used.owner.partition(".")
         if node == INPUTS and name in ends and item.path:
             ends[name] = replace(ends[name], file=here[item.used.owner], layer=item.used.layer)
-    return replace(graph, inputs=ends)
+    color = graph.settings.color
+    if config := here.get(CONFIG):
+        color = replace(color, config=config)
+    return replace(graph, inputs=ends, settings=replace(graph.settings, color=color))
+
+
+def _spelled(path: str, folder: str) -> str:
+    """How a graph in a folder names a file: relative if it is near."""
+    full = os.path.abspath(path)  # noqa: PTH100
+    near = relocated(os.path.relpath(full), "", folder) if _same_drive(full, folder) else full
+    return full if near.startswith(_FAR) else near
+
+
+def _same_drive(full: str, folder: str) -> bool:
+    return Path(full).drive == Path(folder).absolute().drive == Path().absolute().drive
+
+
+def _is_there(used: Used, path: str) -> bool:
+    pattern = Pattern.parse(path) if used.frames else None
+    return Path(pattern.name(used.frames[0]) if pattern else path).is_file()
 
 
 def missing(found: Sequence[Found], path: Path) -> InputError | None:

@@ -37,6 +37,8 @@ def header(
     found["halation:version"] = metadata.version("halation")
     found["halation:renderer"] = target.renderer
     found["halation:settings"] = settings(wanted, target, writing, file, frames if plan.memories else None)
+    if color := media.color_digest(file.encoding.color):
+        found["halation:color"] = color
     for source in sources:
         found |= said(source, hashes)
     found[_KEY] = frame_key(graph, wanted, plan, file, writing, sources, hashes)
@@ -111,7 +113,8 @@ def _content_keys(plan: Plan, contents: Mapping[str, str], before: str) -> dict[
         picture, surface = item.picture, plan.surfaces[item.surface]
         content = surface.key if picture.in_memory else contents[picture.path]
         keys[item.surface] = _digest(
-            content, picture.layer, picture.kind, picture.width, picture.space, surface.texel, surface.size
+            content, picture.frame, picture.layer, picture.kind, picture.width, picture.space, surface.texel,
+            surface.size,
         )
     for one in plan.passes:
         made = _digest(*_work(one), [keys.get(number, before) for number in one.textures])

@@ -11,12 +11,13 @@ from collections import deque
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from pathlib import Path
 from typing import Protocol
 
 from .. import media
 from ..compiler import Pass, Plan
-from ..errors import HalationError
+from ..errors import HalationError, UsageError
 from ..graph import Graph
 from .decoding import Array
 from .destinations import Destination, Writing, check, destinations
@@ -25,6 +26,7 @@ from .header import frame_key, header, is_marked, is_written
 from .reel import Reel
 from .sources import Hashes, Source, Sources
 from .textures import Lease
+from .videos import Videos
 
 __all__ = ["FrameReport", "Progress", "Report", "Writing", "run_job"]
 
@@ -34,7 +36,10 @@ BEHIND = 2
 
 @dataclass(frozen=True)
 class FrameReport:
-    """What became of a frame. `passes` were executed for it; none where its files were `kept` as they were."""
+    """What became of a frame. `passes` were executed for it; none where its files were `kept` as they were.
+
+    A video is not among the files `written`: it is there when all frames are.
+    """
 
     frame: int
     written: tuple[Path, ...]
@@ -63,12 +68,13 @@ class Report:
     programs: int
     peak_bytes: int
     repaired: Mapping[str, int]
+    videos: tuple[Path, ...] = ()
     seconds: Mapping[str, float] = field(default_factory=dict[str, float])
 
     @property
     def written(self) -> tuple[Path, ...]:
-        """All files, in the order of the frames."""
-        return tuple(path for frame in self.frames for path in frame.written)
+        """All files, in the order of the frames, then the videos, which hold all of them."""
+        return (*(path for frame in self.frames for path in frame.written), *self.videos)
 
 
 def run_job(
@@ -79,7 +85,7 @@ def run_job(
 
     Whatever can be known to be wrong with a destination is known before anything is rendered. With `resume`, frames
     whose files are there and would come out the same are kept. Raises the errors of `app.errors`; the frames that were
-    finished stay, no partial file is left behind.
+    finished stay, no partial file and no video is left behind.
     """
     counters, programs = renderer.runner.counters.passes, renderer.runner.programs.compiled
     job = _Job(renderer, graph, wanted, writing, resume, progress, tuple(frames or (wanted.frame,)))
@@ -89,7 +95,7 @@ def run_job(
         job.close()
     return Report(
         tuple(reports), renderer.runner.counters.passes - counters, renderer.runner.programs.compiled - programs,
-        renderer.runner.textures.peak, dict(renderer.pictures.repaired), job.seconds,
+        renderer.runner.textures.peak, dict(renderer.pictures.repaired), job.videos, job.seconds,
     )
 
 
@@ -116,10 +122,17 @@ class _Job:
         self._writer = ThreadPoolExecutor(1, thread_name_prefix="write")
         self._writes: deque[Future[FrameReport]] = deque()
         self._reports: list[FrameReport] = []
+        self._films = Videos(writing, self._rate)
+        self.videos: tuple[Path, ...] = ()
         self.seconds = {"compile": 0.0, "render": 0.0, "write": 0.0}
 
     def run(self) -> list[FrameReport]:
         self._files = destinations(self._graph, self._wanted, self._writing, self._frames)
+        if self._resume and self._writing.videos:
+            raise UsageError(
+                f"{self._writing.videos[0]}: a video is written anew as a whole: leave out --resume, or render "
+                "numbered pictures, which can be kept"
+            )
         if self._resume:
             for folder in {file.path.parent for files in self._files.values() for file in files}:
                 media.sweep(folder)
@@ -142,11 +155,15 @@ class _Job:
             self._settle()
         if fault is not None:
             raise fault
+        started = time.perf_counter()
+        self.videos = self._films.finish()
+        self.seconds["write"] += time.perf_counter() - started
         return sorted(self._reports, key=lambda report: self._frames.index(report.frame))
 
     def close(self) -> None:
         """Let what is being written come to its end."""
         self._writer.shutdown(cancel_futures=True)
+        self._films.abort()
         self._hashes.close()
         self._reel.close()
 
@@ -158,7 +175,7 @@ class _Job:
             frame, started = todo.popleft(), time.perf_counter()
             plan, files = self._reel.plan(frame), self._files[frame]
             reading = {item.node: item.picture for item in plan.uploads if not item.picture.in_memory}
-            check(files, plan, reading, self._writing.compression)
+            check(files, plan, reading, self._writing)
             task = _Task(frame, files, plan, self._sources.of(plan, frame, self._reel.begin(frame)))
             self.seconds["compile"] += time.perf_counter() - started
             if self._resume and self._is_done(task):
@@ -213,16 +230,25 @@ class _Job:
                 )
                 said["halation:driver"] = driver
                 layers = {layer: outputs[name] for layer, name in file.layers.items()}
+                if file.path in self._writing.videos:
+                    self._films.add(file, layers, said)
+                    continue
                 media.write(
                     file.path, layers, kinds=file.kinds, precision=self._writing.precision,
                     compression=self._writing.compression, metadata=said, encoding=file.encoding,
                 )
             self.seconds["write"] += time.perf_counter() - started
-            return FrameReport(task.frame, tuple(file.path for file in task.files), passes)
+            pictures = (file.path for file in task.files if file.path not in self._writing.videos)
+            return FrameReport(task.frame, tuple(pictures), passes)
 
         self._writes.append(self._writer.submit(write))
         while len(self._writes) > BEHIND or (self._writes and self._writes[0].done()):
             self._settle()
+
+    def _rate(self) -> float | Fraction:
+        """Frames per second of what is written."""
+        pictures = self._renderer.pictures
+        return pictures.rate(self._graph, pictures.bind(self._graph, self._wanted.bound))
 
     def _settle(self) -> None:
         self._finished(self._writes.popleft().result())

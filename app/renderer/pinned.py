@@ -1,8 +1,8 @@
 """The same bytes everywhere: what Mesa's software rasterizer may do differently from machine to machine is pinned.
 
 Passes are fragment shaders, intermediates have 32 bits (`Wanted.precision`), and the processor's instructions stop at
-SSE 4.1: a multiplication and an addition that newer ones do at once are rounded once instead of twice. Neither the
-number of threads nor the width of vectors changes a bit.
+SSE 4.1: a multiplication and an addition that newer ones do at once are rounded once instead of twice. The number
+of threads changes no bit; the width of vectors changes what the renderer calls itself.
 """
 
 from __future__ import annotations
@@ -14,7 +14,10 @@ from pathlib import Path
 
 from .device import Device, open_device
 
-_SET = {"LIBGL_ALWAYS_SOFTWARE": "1", "GALLIUM_DRIVER": "llvmpipe", "GALLIUM_OVERRIDE_CPU_CAPS": "sse4.1"}
+_SET = {
+    "LIBGL_ALWAYS_SOFTWARE": "1", "GALLIUM_DRIVER": "llvmpipe", "GALLIUM_OVERRIDE_CPU_CAPS": "sse4.1",
+    "LP_NATIVE_VECTOR_WIDTH": "128",
+}
 _UNSET = (
     "MESA_LOADER_DRIVER_OVERRIDE", "MESA_GL_VERSION_OVERRIDE", "MESA_GLSL_VERSION_OVERRIDE", "MESA_EXTENSION_OVERRIDE",
     "MESA_NO_ERROR", "GALLIUM_NOSSE", "LP_DEBUG", "LP_PERF", "GALLIVM_DEBUG", "GALLIVM_PERF", "DRI_PRIME",

@@ -59,6 +59,8 @@ class Recipe:
     look: str = ""
     colorspace: str = ""
     compression: str = "zip"
+    color: str = ""
+    """What tells one management of color from another, "" for the usual one."""
 
 
 def read_recipe(path: str | Path) -> Recipe:
@@ -83,7 +85,7 @@ def read_recipe(path: str | Path) -> Recipe:
         raise InputError(f"{path}: its header is damaged ({fault}): render the picture again") from None
     return Recipe(
         Path(path), graph, said.get("halation:version", ""), said.get("halation:renderer", ""),
-        said.get("halation:driver", ""), used, **settings,
+        said.get("halation:driver", ""), used, color=said.get("halation:color", ""), **settings,
     )
 
 

@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import DeviceError, UsageError
-from ..graph import Graph, node_output
+from ..graph import Graph, color_settings, node_output
+from ..media import color_digest
 from ..media.compare import CODE, Compared, compare
 from ..media.stored import stored
 from .decoding import Array
@@ -20,10 +21,15 @@ from .device import Device, open_device
 from .engine import Renderer, Wanted
 from .finding import Found, pointed
 from .job import run_job
+from .pinned import open_pinned
 from .recipe import Recipe
 
 ELSEWHERE = CODE
 """How far pictures of different renderers may be apart: one step of 8 bits, of the light itself where it is over 1."""
+
+_PINNED = "128 bits)"
+"""How the software rasterizer calls itself where it is pinned."""
+_USUAL = "linear Rec.709, built in"
 
 
 @dataclass(frozen=True)
@@ -61,6 +67,8 @@ class Reproduction:
 
 def open_alike(recipe: Recipe) -> Device:
     """A device that runs passes as they were run, if there is one. Raises DeviceError without usable OpenGL."""
+    if recipe.form == "fragment" and recipe.renderer.endswith(_PINNED):
+        return open_pinned()
     try:
         return open_device(recipe.form)
     except DeviceError:
@@ -92,7 +100,7 @@ def reproduce(
         )
         run_job(renderer, graph, wanted, writing, (recipe.frame,))
         layers = compared(stored(again), stored(recipe.path))
-    differences = tuple(_differences(recipe, renderer.device))
+    differences = tuple(_differences(recipe, renderer.device, color_digest(color_settings(graph))))
     elsewhere = any(item.what in ("renderer", "driver", "passes") for item in differences)
     allowed = (ELSEWHERE if elsewhere else 0.0) if tolerance is None else tolerance
     return Reproduction(differences, layers, allowed, tuple(files))
@@ -133,7 +141,7 @@ def _graph(recipe: Recipe, found: Sequence[Found]) -> Graph:
     return graph
 
 
-def _differences(recipe: Recipe, device: Device) -> list[Difference]:
+def _differences(recipe: Recipe, device: Device, color: str) -> list[Difference]:
     """What is not as it was, of what says so."""
     now = {
         "version": (recipe.version, metadata.version("halation")),
@@ -141,4 +149,7 @@ def _differences(recipe: Recipe, device: Device) -> list[Difference]:
         "driver": (recipe.driver, device.driver),
         "passes": (recipe.form or "", device.target.form),
     }
-    return [Difference(what, then, here) for what, (then, here) in now.items() if then and then != here]
+    found = [Difference(what, then, here) for what, (then, here) in now.items() if then and then != here]
+    if color != recipe.color:
+        found.append(Difference("color", recipe.color or _USUAL, color or _USUAL))
+    return found

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from .. import media
 from ..compiler import Picture, Plan, named_files
-from ..compiler.named import path_texts
+from ..compiler.named import CONFIG, path_texts
 from ..errors import HalationError
 from ..graph import INPUTS, OUTPUTS, Graph
 from ..graph.frames import format_frames
@@ -138,7 +138,8 @@ class Sources:
         named = {owner: path for owner, (_, path) in path_texts(self._graph).items()}
         return {
             owner: path for owner, path in named.items()
-            if not owner.rpartition(".")[0].endswith(INPUTS) and owner.split(".")[0].split("/")[0] in used
+            if owner == CONFIG
+            or (not owner.rpartition(".")[0].endswith(INPUTS) and owner.split(".")[0].split("/")[0] in used)
         }
 
 

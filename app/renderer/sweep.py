@@ -95,7 +95,7 @@ def cells(graph: Graph, axes: Sequence[Axis], frame: int) -> tuple[Cell, ...]:
         raise UsageError("nothing is swept: give several values, such as --set blur.sigma=1,2,4,8, or --frames")
     if len(axes) > 2:
         names = ", ".join(axis.name for axis in axes)
-        raise UsageError(f"{names}: a sheet has rows and columns, so two things can be swept; give the others one value")
+        raise UsageError(f"{names}: a sheet has rows and columns, no more: give all but two of them one value")
     count = int(np.prod([len(axis.steps) for axis in axes]))
     if count > MOST_CELLS:
         raise UsageError(f"{count} pictures are more than the {MOST_CELLS} that a sheet can hold: sweep fewer values")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from .code import Code, CodeFault, Language, Written
 from .glsl import glsl_node, unprefixed
+from .isf import isf_node
 
 __all__ = ["Code", "CodeFault", "Language", "Written", "node_type", "unprefixed"]
 
@@ -11,5 +12,5 @@ __all__ = ["Code", "CodeFault", "Language", "Written", "node_type", "unprefixed"
 def node_type(code: Code) -> type[Written]:
     """The class of the nodes that this code describes; the same class for equal code. Raises CodeFault."""
     if code.language == "isf":
-        raise CodeFault(1, "shaders in the Interactive Shader Format are not understood yet")
+        return isf_node(code)
     return glsl_node(code)

@@ -203,5 +203,5 @@ class Draw(Protocol):
         ...
 
     def asset(self, path: str, folder: str) -> Drawn:
-        """A picture that belongs to the node itself, at its own size always. It must lie in `folder`, links followed."""
+        """A picture that belongs to the node itself, never fit to a size. It must lie in `folder`, links followed."""
         ...

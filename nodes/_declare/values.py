@@ -70,6 +70,11 @@ class OfLayer:
 
 
 @dataclass(frozen=True)
+class OfSpace:
+    """The value names a color space of the graph's config."""
+
+
+@dataclass(frozen=True)
 class Picks:
     """The value is a list of names of a cryptomatte, as `picked` reads it; `layer` is the value that says of which."""
 
@@ -162,6 +167,8 @@ class Value:
     """What the layer is that it is about."""
     matte: str = ""
     """The value that says of which cryptomatte it lists names."""
+    space: bool = False
+    """True for the name of a color space."""
 
     @property
     def glsl(self) -> str | None:
@@ -210,6 +217,8 @@ def read_value(name: str, hint: Any, default: Any) -> Value:
             found |= {"type": "path", "layer_by": note.layer, "holds": note.holds}
         elif isinstance(note, OfLayer):
             found |= {"file": note.path, "role": note.role}
+        elif isinstance(note, OfSpace):
+            found["space"] = True
         elif isinstance(note, Picks):
             found |= {"file": note.path, "matte": note.layer}
         elif isinstance(note, Handle):

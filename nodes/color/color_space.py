@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Filter, Image, SpaceChange
+from .._declare import Doc, Draw, Drawn, Filter, Image, OfSpace, SpaceChange
 from ._spaces import WORKING, Space, named
 
 
@@ -16,8 +16,12 @@ class ColorSpace(Filter):
     image = Image()
     source: Annotated[Space, Doc("What the numbers are in.")] = WORKING
     target: Annotated[Space, Doc("What they come out in.")] = "acescg"
-    source_name: Annotated[str, Doc("A space or role of the graph's color config, in place of the source.")] = ""
-    target_name: Annotated[str, Doc("A space or role of the graph's color config, in place of the target.")] = ""
+    source_name: Annotated[
+        str, OfSpace(), Doc("A space or role of the graph's color config, in place of the source.")
+    ] = ""
+    target_name: Annotated[
+        str, OfSpace(), Doc("A space or role of the graph's color config, in place of the target.")
+    ] = ""
 
     def identity(self) -> str | None:
         return "image" if self._names[0] == self._names[1] else None

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Field, File, Output, Reader, Vector
+from .._declare import Doc, Draw, Drawn, Field, File, OfSpace, Output, Reader, Vector
 
 
 class ReadImage(Reader):
@@ -14,9 +14,9 @@ class ReadImage(Reader):
 
     path: Annotated[str, File(layer="layer"), Doc("Image file, relative to the graph's folder.")] = ""
     layer: Annotated[str, Doc("Name of the layer; empty for the file's first color layer.")] = ""
-    color_space: Annotated[str, Doc(
-        "What the color of `out` is in, by a name or role of the color config, such as ACEScg or sRGB; empty finds out. "
-        "Data is never converted."
+    color_space: Annotated[str, OfSpace(), Doc(
+        "What the color of `out` is in, by a name or role of the color config, such as ACEScg; empty finds out. Data is "
+        "never converted."
     )] = ""
 
     out = Output()

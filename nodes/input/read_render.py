@@ -10,6 +10,7 @@ from .._declare import (
     Image,
     Meaning,
     OfLayer,
+    OfSpace,
     Output,
     Reader,
     Render,
@@ -62,6 +63,9 @@ class ReadRender(Reader):
     object_id_layer: Annotated[str, OfLayer("object_id"), Doc(f"The layer of object numbers; {_FOUND}.")] = ""
     material_id_layer: Annotated[str, OfLayer("material_id"), Doc(f"The layer of material numbers; {_FOUND}.")] = ""
     uv_layer: Annotated[str, OfLayer("uv"), Doc(f"The layer of texture coordinates; {_FOUND}.")] = ""
+    color_space: Annotated[str, OfSpace(), Doc(
+        "What its color is in, by a name or role of the color config, such as ACEScg; empty finds out."
+    )] = ""
 
     color = Output(Image())
     albedo = Output(Image())
@@ -81,7 +85,7 @@ class ReadRender(Reader):
         found: dict[str, Drawn | Camera] = {}
         for name, role in _PLAIN.items():
             if (layer := render.layers.get(role)) is not None:
-                found[name] = draw.read(self.path, layer, self.outputs[name].socket)
+                found[name] = draw.read(self.path, layer, self.outputs[name].socket, self.color_space)
         if render.camera:
             found["camera"] = render.camera
         for name, made in (("depth", self._depth), ("normal", self._normal), ("velocity", self._velocity)):
@@ -93,7 +97,7 @@ class ReadRender(Reader):
     def _named(self) -> dict[str, str]:
         """The layers that somebody chose, by role."""
         chosen = {value.role: str(getattr(self, value.name)) for value in self.values.values() if value.type == "text"}
-        return {role: layer for role, layer in chosen.items() if layer}
+        return {role: layer for role, layer in chosen.items() if role and layer}
 
     def _depth(self, draw: Draw, render: Render, stored: Drawn, meaning: Meaning) -> Drawn:
         if self.depth_is != "found":

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
 from random import Random
 from typing import Any
@@ -12,9 +11,10 @@ from edited_graphs import edited, read, some_graph
 from halation.app.document import dumps
 from halation.app.document.versions import At, Merged, Side, conflicts_of, difference, merged, resolved
 from halation.app.document.versions.aligning import align_three
+from halation.app.document.versions.lines import merged_lines
 from halation.app.document.versions.parts import at_part, is_tree, parts_of, same
 from halation.app.errors import UsageError
-from halation.app.graph import Graph
+from halation.app.graph import Graph, problems
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -61,7 +61,7 @@ def test_nothing_that_a_side_did_is_lost(seed: int) -> None:
     for side, changes in ((ours, difference(base, ours).changes), (theirs, difference(base, theirs).changes)):
         for change in changes:
             found = at_part(parts, change.at)
-            there = is_tree(found) and is_tree(change.after) or same(found, change.after)
+            there = (is_tree(found) and is_tree(change.after)) or same(found, change.after)
             assert there or is_open(change.at), change
             assert side is theirs or not is_open(change.at) or same(found, at_part(parts_of(ours), change.at)), change
     for conflict in made.conflicts:
@@ -84,5 +84,162 @@ def test_a_side_can_be_chosen(seed: int, side: Side) -> None:
     assert not conflicts_of(json.loads(dumps(done)))
     for conflict in made.conflicts:
         wanted = {"ours": conflict.ours, "theirs": conflict.theirs, "base": conflict.base}[side]
-        below = [one.at for one in made.conflicts if one.at != conflict.at and one.at[: len(conflict.at)] == conflict.at]
-        assert below or same(at_part(parts_of(done), conflict.at), wanted)
+        assert same(at_part(parts_of(done), conflict.at), wanted)
+
+
+def made(document: dict[str, Any], **changes: Any) -> Graph:
+    """A small graph with some parts changed; None removes one. Names are paths with slashes."""
+    tree = json.loads(json.dumps(document))
+    for path, part in changes.items():
+        *above, last = path.split("/")
+        place = tree
+        for key in above:
+            place = place.setdefault(key, {})
+        if part is None:
+            del place[last]
+        else:
+            place[last] = part
+    return read(json.dumps(tree))
+
+
+BASE = {
+    "halation": 1,
+    "inputs": {"beauty": {"type": "Image"}},
+    "outputs": {"image": {"type": "Image"}},
+    "nodes": {
+        "blur": {"type": "gaussian_blur", "values": {"sigma": 2.0}},
+        "light": {"type": "exposure", "values": {"stops": 1.0}},
+    },
+    "links": {"blur.image": "inputs.beauty", "light.image": "blur.out", "outputs.image": "light.out"},
+    "animation": {"light.stops": {"keys": [{"frame": 1, "value": 0.0}, {"frame": 9, "value": 1.0}]}},
+    "ui": {"nodes": {"blur": {"x": 0, "y": 0}, "light": {"x": 9, "y": 0}}},
+}
+NEW = {"type": "saturation", "version": 1}
+
+
+def key(frame: float, value: float) -> dict[str, float]:
+    return {"frame": frame, "value": value}
+
+
+@pytest.mark.parametrize(
+    ("ours", "theirs"),
+    [
+        ({"nodes/a": NEW}, {"nodes/b": {"type": "exposure"}}),
+        ({"nodes/blur/values": {"sigma": 3.0}}, {"nodes/blur/values": {"sigma": 2.0, "edge": "mirror"}}),
+        ({"nodes/blur/values": {"sigma": 3.0}}, {"nodes/blur/muted": True}),
+        ({"nodes/blur/values": {"sigma": 3.0}}, {"links/light.image": "inputs.beauty"}),
+        ({"ui/nodes/blur": {"x": 5, "y": 5}}, {"ui/nodes/light": {"x": 7, "y": 7}, "nodes/light/muted": True}),
+        ({"animation/light.stops/keys": [key(1, 0.5), key(9, 1.0)]},
+         {"animation/light.stops/keys": [key(1, 0.0), key(4, 2.0), key(9, 1.0)]}),
+        ({"settings": {"size": [64, 32]}}, {"settings": {"frames": [1, 9]}}),
+        ({"nodes/a": NEW, "links/a.image": "blur.out"},
+         {"outputs/more": {"type": "Image"}, "links/outputs.more": "blur.out"}),
+        ({"later": {"one": 1}}, {"later": {"two": [2]}}),
+        ({"nodes/light": None, "links/light.image": None, "links/outputs.image": "blur.out", "animation": None},
+         {"ui/nodes/light": {"x": 5, "y": 5}}),
+    ],
+)
+def test_what_two_people_may_do_at_once(ours: dict[str, Any], theirs: dict[str, Any]) -> None:
+    """The result is what one would have made of what the other left, and no one is asked."""
+    sides = made(BASE), made(BASE, **ours), made(BASE, **theirs)
+    found, other = merged(*sides), merged(sides[0], sides[2], sides[1])
+    assert found == other and not found.conflicts
+    logic = [json.loads(text) for text in (found.text, dumps(made(BASE, **ours)), dumps(made(BASE, **theirs)))]
+    for section in ("nodes", "links", "outputs"):
+        base = json.loads(dumps(sides[0]))[section]
+        for side in logic[1:]:
+            changed = {name: entry for name, entry in side[section].items() if base.get(name) != entry}
+            for name in changed:
+                assert name in logic[0][section]
+            assert not {name for name in base if name not in side[section]} & logic[0][section].keys()
+    assert set(logic[0].get("ui", {}).get("nodes", {})) <= {*logic[0]["nodes"]}
+
+
+def test_keys_of_both_sides() -> None:
+    ours = made(BASE, **{"animation/light.stops/keys": [key(1, 0.5), key(9, 1.0)]})
+    theirs = made(BASE, **{"animation/light.stops/keys": [key(1, 0.0), key(4, 2.0), key(9, 1.0)]})
+    found = json.loads(merged(made(BASE), ours, theirs).text)
+    assert found["animation"]["light.stops"]["keys"] == [key(1, 0.5), key(4, 2.0), key(9, 1.0)]
+
+
+def test_a_renamed_node_takes_what_the_other_changed() -> None:
+    renamed = made(BASE).rename("blur", "soft")
+    theirs = made(BASE, **{"nodes/blur/values": {"sigma": 7.0}})
+    for sides in ((renamed, theirs), (theirs, renamed)):
+        found = merged(made(BASE), *sides)
+        assert not found.conflicts and read(found.text) == theirs.rename("blur", "soft")
+
+
+REMOVED = {"nodes/blur": None, "links/blur.image": None, "links/light.image": "inputs.beauty"}
+LOOPING = {"nodes/c": {"type": "merge"}, "links/c.a": "inputs.beauty", "links/c.b": "inputs.beauty"}
+
+
+@pytest.mark.parametrize(
+    ("ours", "theirs", "paths"),
+    [
+        ({"nodes/blur/values": {"sigma": 3.0}}, {"nodes/blur/values": {"sigma": 4.5}}, {"nodes.blur.values.sigma"}),
+        (REMOVED, {"nodes/blur/values": {"sigma": 4.5}}, {"nodes.blur", "links.blur.image", "links.light.image"}),
+        (REMOVED, {"nodes/a": NEW, "links/a.image": "blur.out"},
+         {"nodes.blur", "links.blur.image", "links.light.image", "links.a.image"}),
+        ({"links/light.image": "inputs.beauty"}, {"nodes/a": NEW, "links/light.image": "a.out"}, {"links.light.image"}),
+        ({"nodes/a": NEW}, {"nodes/a": {"type": "exposure"}}, {"nodes.a"}),
+        ({"nodes/blur": {"type": "box_blur"}}, {"nodes/blur/values": {"sigma": 4.5}}, {"nodes.blur"}),
+        ({"animation/light.stops/keys": [key(9, 1.0)]}, {"animation/light.stops/keys": [key(1, 0.0)]},
+         {"animation.light.stops"}),
+        ({"animation/light.stops": {"expression": "frame"}}, {"animation/light.stops/keys": [key(1, 0.0)]},
+         {"animation.light.stops"}),
+        ({"settings": {"size": [1, 2]}}, {"settings": {"size": [3, 4]}}, {"settings.size"}),
+        ({"inputs": None, "links/blur.image": None}, {"nodes/a": NEW, "links/a.image": "inputs.beauty"},
+         {"inputs.beauty", "links.blur.image", "links.a.image"}),
+    ],
+)
+def test_true_conflicts(ours: dict[str, Any], theirs: dict[str, Any], paths: set[str]) -> None:
+    """Ours stays in place, the graph loads, and every conflict is a problem on the node that it is about."""
+    sides = made(BASE), made(BASE, **ours), made(BASE, **theirs)
+    found = merged(*sides)
+    assert {conflict.path for conflict in found.conflicts} == paths
+    graph, document = read(found.text), json.loads(found.text)
+    named = [problem for problem in problems(graph) if problem.rule.name == "unmerged"]
+    assert {problem.sentence.partition(" was")[0] for problem in named} == paths
+    assert {problem.severity for problem in named} == {"error"}
+    assert read(json.dumps(resolved(document, {"": "ours"}))).nodes.items() >= sides[1].nodes.items()
+    done = read(json.dumps(resolved(document, {"": "theirs"})))
+    assert done.nodes.items() >= sides[2].nodes.items() and done.links.items() >= sides[2].links.items()
+
+
+def test_links_that_only_together_make_a_loop() -> None:
+    base = {**BASE, "nodes": {**BASE["nodes"], "a": {"type": "merge"}, "b": {"type": "merge"}}}
+    ours, theirs = made(base, **{"links/a.a": "b.out"}), made(base, **{"links/b.a": "a.out"})
+    found = merged(made(base), ours, theirs)
+    assert [conflict.path for conflict in found.conflicts] == ["links.b.a"]
+    read(found.text).order()
+    assert read(json.dumps(resolved(json.loads(found.text), {"links.b.a": "ours"}))) == ours
+
+
+def test_code_goes_together_line_by_line() -> None:
+    def coded(*code: str) -> Graph:
+        return read(json.dumps({"halation": 1, "nodes": {"wave": {"type": "later", "code": code}}}))
+
+    base = coded("a", "b", "c", "d", "e")
+    found = merged(base, coded("A", "b", "c", "d", "e"), coded("a", "b", "c", "d", "E", "f"))
+    assert json.loads(found.text)["nodes"]["wave"]["code"] == ["A", "b", "c", "d", "E", "f"] and not found.conflicts
+    found = merged(base, coded("a", "x", "c", "d", "e"), coded("a", "y", "c", "d", "e"))
+    assert [conflict.path for conflict in found.conflicts] == ["nodes.wave.code"]
+
+
+@settings(max_examples=80, deadline=None)
+@given(*[st.lists(st.sampled_from("abcd"), max_size=8)] * 3)
+def test_the_laws_of_lines(base: list[str], ours: list[str], theirs: list[str]) -> None:
+    """Laws of diff3: what is the same on two sides is taken from the third, and the sides are alike."""
+    assert merged_lines(base, ours, base) == merged_lines(base, base, ours) == merged_lines(base, ours, ours) == ours
+    assert merged_lines(base, ours, theirs) == merged_lines(base, theirs, ours)
+
+
+@pytest.mark.parametrize(
+    "marker", [3, [], [3], [{}], [{"at": []}], [{"at": [None, {}]}], [{"at": ["nodes"], "ours": {}}]]
+)
+def test_a_damaged_marker_is_a_problem_and_not_a_crash(marker: Any) -> None:
+    graph = made(BASE, conflicts=marker)
+    named = [problem for problem in problems(graph) if problem.rule.name == "unmerged"]
+    assert len(named) == (1 if marker else 0)
+    assert json.loads(merged(graph, graph, made(BASE, conflicts=marker, later=1)).text)["conflicts"] == marker

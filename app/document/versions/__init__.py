@@ -11,6 +11,5 @@ from .telling import Line, facts, told
 
 __all__ = [
     "ABSENT", "SIDES", "At", "Change", "Conflict", "Difference", "Line", "Merged", "Renamed", "Side", "applied",
-    "conflicts_of", "difference", "facts", "merged", "path_of", "plain", "resolved",
-    "told",
+    "conflicts_of", "difference", "facts", "merged", "path_of", "plain", "resolved", "told",
 ]

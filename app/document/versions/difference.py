@@ -8,7 +8,7 @@ from typing import Any
 
 from ...graph import Graph, Group
 from .aligning import Renamed, align, rename_all, with_items
-from .parts import ABSENT, At, Tree, is_tree, is_whole, local, names_of, parts_of, put_part, same
+from .parts import ABSENT, At, Tree, is_section, is_tree, is_whole, local, names_of, parts_of, put_part, same
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ def applied(before: Graph, wanted: Difference) -> Tree:
 def _changes(at: At, before: Any, after: Any, layout: bool) -> Iterator[Change]:
     if same(before, after) or (local(at) == ("ui",) and not layout):
         return
-    if is_whole(at, before, after) or (before is ABSENT and after is ABSENT):
+    if is_whole(at, before, after) or (ABSENT in (before, after) and not is_section(at)):
         yield Change(at, before, after)
         return
     one, other = _tree(before), _tree(after)

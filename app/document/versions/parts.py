@@ -24,9 +24,7 @@ Tree = dict[Any, Any]
 CONFLICTS = "conflicts"
 """The key of a document whose merge left something to be decided."""
 
-SECTIONS: Final = (
-    "settings", "inputs", "outputs", "controls", "nodes", "links", "animation", "ui", CONFLICTS,
-)
+_SECTIONS: Final = ("settings", "inputs", "outputs", "controls", "nodes", "links", "animation", CONFLICTS)
 _BODIES: Final = ("graph", "path", "code", "file")
 
 
@@ -112,12 +110,18 @@ def local(at: At) -> At:
     return at
 
 
-def is_container(at: At) -> bool:
-    """True for an object that is nothing by itself, so that having none is the same as having an empty one."""
+def is_section(at: At) -> bool:
+    """True for an object that is nothing by itself: to have none is the same as to have an empty one."""
     here = local(at)
-    if not here or here[0] == "ui":
-        return True
-    return (len(here) == 1 and here[0] in SECTIONS) or (len(here) == 3 and here[0] == "nodes" and here[2] == "values")
+    return not here or (len(here) == 1 and here[0] in _SECTIONS) or (
+        len(here) == 3 and here[0] == "nodes" and here[2] == "values"
+    )
+
+
+def is_container(at: At) -> bool:
+    """True for an object whose entries go together with those of another version that began it on its own."""
+    here = local(at)
+    return len(here) <= 1 or here[0] == "ui" or is_section(at)
 
 
 def is_whole(at: At, *versions: Any) -> bool:

@@ -9,7 +9,7 @@ from typing import Any, Final, Literal
 
 from ...graph import Graph
 from .difference import Difference, difference
-from .parts import ABSENT, At, Tree, is_list, is_tree, local, names_of, path_of, same
+from .parts import ABSENT, CONFLICTS, At, Tree, is_list, is_tree, local, names_of, path_of, same
 from .wording import animation_text, end_text, item_text, key_text, pair, text, value_at
 
 Sign = Literal["+", "-", "~"]
@@ -43,7 +43,7 @@ def facts(graph: Graph) -> tuple[str, ...]:
     """A graph without its layout, as lines of one fact each, so that those who compare lines compare facts."""
     found: list[str] = []
     for change in difference(Graph(), graph).changes:
-        for line in _Telling(change.at, (graph, graph)).whole(change.after):
+        for line in _Telling(change.at, (graph, graph), exact=True).whole(change.after):
             found += [line.words, *(f"    {one}" for one in line.below)]
     return tuple(found)
 
@@ -54,6 +54,7 @@ class _Telling:
 
     at: At
     graphs: tuple[Graph, ...]
+    exact: bool = False
 
     @property
     def name(self) -> str:
@@ -84,6 +85,9 @@ class _Telling:
         elif here[0] == "animation" and is_tree(before) and is_tree(after) and len(here) == 2:
             one, other = (animation_text(item, self.value) for item in (before, after))
             yield Line("~", f"animation of {self.name}: {one} -> {other}")
+        elif here[0] == "animation" and len(here) == 5:
+            what = "" if here[4] == "value" else f" {here[4]}"
+            yield Line("~", f"{self._up().name} at {here[3]:g}{what}: {pair(before, after, self.value)}")
         elif ABSENT in (before, after) and (said := self._entry(after if before is ABSENT else before)):
             yield Line("-" if after is ABSENT else "+", said)
         else:
@@ -93,7 +97,7 @@ class _Telling:
         """Everything that there is to say of a part that is there."""
         here = local(self.at)
         if len(here) != 2 or here[0] != "nodes":
-            yield Line("+", self._entry(part) or f"{self._kind()}{self.name}: {text(part, self.value)}")
+            yield Line("+", self._entry(part) or f"{self._kind()}{self.name}: {text(part, self.value, self.exact)}")
             return
         yield Line("+", f"node {self.name}: {item_text(part)}")
         yield from self._parts(part, lambda inner, item: inner.whole(item))
@@ -143,12 +147,14 @@ class _Telling:
             return f"link {self.name} <- {part}"
         if here[0] == "animation":
             if len(here) == 2 and is_tree(part):
-                return f"animation of {self.name}: {animation_text(part, self.value)}"
+                return f"animation of {self.name}: {animation_text(part, self.value, self.exact)}"
             if len(here) == 4 and is_tree(part):
-                return f"key of {self._up().name} at {here[3]:g}: {key_text(part, self.value)}"
+                return f"key of {self._up().name} at {here[3]:g}: {key_text(part, self.value, self.exact)}"
             return ""
         if not is_tree(part) or len(here) != 2:
             return ""
+        if here[0] == CONFLICTS:
+            return f"conflict: {path_of(tuple(part['at']))}"
         if here[0] == "nodes":
             set_values = part.get("values")
             values = [
@@ -156,7 +162,7 @@ class _Telling:
                 for name, plain in sorted(set_values.items())
             ] if is_tree(set_values) else []
             return f"node {self.name}: {', '.join([item_text(part), *values])}"
-        return f"{_WORD[str(here[0])]} {self._named()}: {end_text(part)}" if here[0] in _WORD else ""
+        return f"{_WORD[str(here[0])]} {self._named()}: {end_text(part, self.exact)}" if here[0] in _WORD else ""
 
     def _named(self) -> str:
         section, name = (str(part) for part in local(self.at)[:2])
@@ -169,11 +175,13 @@ class _Telling:
         return "layout " if here[0] == "ui" else ""
 
     def _down(self, *keys: str) -> _Telling:
-        return _Telling((*self.at, *keys), self.graphs)
+        return _Telling((*self.at, *keys), self.graphs, self.exact)
 
     def _up(self) -> _Telling:
         """The part that holds this one; what holds a key is the animation."""
-        return _Telling(self.at[:-2] if local(self.at)[0] == "animation" else self.at[:-1], self.graphs)
+        here = local(self.at)
+        beyond = len(here) - 2 if here[0] == "animation" else 1
+        return _Telling(self.at[:-beyond], self.graphs)
 
 
 def _goes_with(at: At, gone: set[At]) -> bool:

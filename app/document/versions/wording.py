@@ -30,25 +30,26 @@ def item_text(node: Tree) -> str:
     return f"group of {count} node{'' if count == 1 else 's'}{muted}"
 
 
-def end_text(end: Tree) -> str:
+def end_text(end: Tree, exact: bool = False) -> str:
     """An input, output or control: its type or target, and what else is set."""
-    rest = [f"{name} {text(part)}" for name, part in sorted(end.items()) if name not in ("type", "target")]
+    rest = [f"{name} {text(part, None, exact)}" for name, part in sorted(end.items()) if name not in ("type", "target")]
     return ", ".join([str(end.get("type") or end.get("target")), *rest])
 
 
-def animation_text(item: Tree, value: Value | None) -> str:
+def animation_text(item: Tree, value: Value | None, exact: bool = False) -> str:
     """Keys as `value at frame`, or an expression."""
     if "expression" in item:
         return f"= {item['expression']}"
-    keys = [f"{key_text(key, value)} at {frame:g}" for frame, key in sorted(item.get("keys", {}).items())]
+    keys = [f"{key_text(key, value, exact)} at {frame:g}" for frame, key in sorted(item.get("keys", {}).items())]
     outside = [f"outside {item['outside']}"] if "outside" in item else []
-    return _cut(", ".join([*keys, *outside]))
+    return _cut(", ".join([*keys, *outside]), exact)
 
 
-def key_text(key: Tree, value: Value | None) -> str:
+def key_text(key: Tree, value: Value | None, exact: bool = False) -> str:
     """The value of a key and how it goes on."""
     way = key.get("interpolation", "smooth")
-    return text(key.get("value"), value) + ("" if way == "smooth" else f" {way}")
+    handles = [f" {side} {text(key[side], None, exact)}" for side in ("left", "right") if side in key]
+    return text(key.get("value"), value, exact) + ("" if way == "smooth" else f" {way}") + "".join(handles)
 
 
 def pair(before: Any, after: Any, value: Value | None = None, exact: bool = False) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ..action import Action
 from .animation import ANIMATION
+from .code import CODE
 from .documents import DOCUMENTS
 from .edits import EDITS
 from .flipbook import FLIPBOOK
@@ -20,4 +21,4 @@ MENUS = ("File", "Edit", "Graph", "Viewer", "Time", "View", "Help")
 
 def table() -> tuple[Action, ...]:
     """Every action, in the order of the menus."""
-    return (*DOCUMENTS, *EDITS, *GRAPH, *VIEWER, *FLIPBOOK, *HANDLES, *PLAYBACK, *ANIMATION, *VIEW)
+    return (*DOCUMENTS, *EDITS, *GRAPH, *CODE, *VIEWER, *FLIPBOOK, *HANDLES, *PLAYBACK, *ANIMATION, *VIEW)

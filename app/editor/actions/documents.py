@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from ..action import Action
 from ..dialogs import Browse, Question
+from .code import save_drafts
 
 if TYPE_CHECKING:
     from ..editor import Editor
@@ -91,6 +92,7 @@ def _save(editor: Editor, then: Callable[[], object] = _nothing) -> None:
         return
 
     def act() -> None:
+        save_drafts(editor)
         editor.session.save()
         editor.watcher.expect(path)
         editor.say(f"saved {path.name}")
@@ -110,6 +112,7 @@ def _save_as(editor: Editor, then: Callable[[], object] = _nothing) -> None:
         named = path if path.suffix else path.with_suffix(".json")
 
         def act() -> None:
+            save_drafts(editor)
             editor.session.save_as(named)
             editor.watcher.expect(named)
             editor.store.opened(named)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ....nodes import Kind, Node
+from ..edits.coding import CODE, starter
 from ..panels.fuzzy import match
 from .layout import words
 
@@ -34,6 +35,12 @@ def node_entries(types: Mapping[str, type[Node]]) -> tuple[Entry, ...]:
         Entry(id, words(id), kind.category, (kind.__doc__ or "").strip().partition("\n")[0])
         for id, kind in types.items()
     )
+
+
+def code_entries() -> tuple[Entry, ...]:
+    """What is made by writing it."""
+    doc = "GLSL of your own: the function's signature declares sockets and values."
+    return (Entry(CODE, "code", starter().category, doc),)
 
 
 def preset_entries(files: Iterable[Path]) -> tuple[Entry, ...]:

@@ -10,6 +10,8 @@ from typing import Literal
 from ....nodes import Kind, Node, Plain, Socket, Value
 from ...errors import GraphError
 from ...graph import Graph, Group, Item, Port, Unknown, signature
+from ...written import Written
+from ..edits.coding import LANGUAGES
 from ..inspector.lights import counted
 from ..inspector.numbers import SUFFIX, bar, shown
 from .geometry import Rect
@@ -142,11 +144,11 @@ def node_layout(id: str, item: Item, graph: Graph, facts: Facts) -> Layout:
     """The layout of a node of a graph."""
     face = signature(item)
     what: What = "group" if isinstance(item, Group) else "unknown" if isinstance(item, Unknown) else "node"
-    subtitle = item.id if isinstance(item, Node) else item.type if isinstance(item, Unknown) else ""
-    category = item.category if isinstance(item, Node) else what
+    subtitle = subtitle_of(item)
+    category = item.category if isinstance(item, Node) else "code" if subtitle in LANGUAGES.values() else what
     doc = (item.__doc__ or "").partition("\n")[0] if isinstance(item, Node) else ""
     if subtitle == id:
-        subtitle = ""
+        subtitle = LANGUAGES[item.id] if isinstance(item, Written) else ""
 
     inputs = dict(face.inputs)
     left = [Pin(name, one.kind, 0.0, 0.0, one.optional) for name, one in inputs.items()]
@@ -187,6 +189,15 @@ def node_layout(id: str, item: Item, graph: Graph, facts: Facts) -> Layout:
         {row.left.name: row.left for row in rows if row.left}, {row.right.name: row.right for row in rows if row.right},
         picture, foot, hidden, is_open,
     )
+
+
+def subtitle_of(item: Item) -> str:
+    """What stands beside the id of a node: its type, of code what that calls itself."""
+    if isinstance(item, Written):
+        return item.title
+    if isinstance(item, Unknown):
+        return LANGUAGES.get(item.type, item.type)
+    return item.id if isinstance(item, Node) else ""
 
 
 def _value_rows(id: str, item: Item, graph: Graph, facts: Facts, values: Mapping[str, Value]) -> list[Row]:

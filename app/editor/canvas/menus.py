@@ -69,6 +69,9 @@ class Menus:
         if isinstance(editor.session.graph.nodes.get(hit.key), Group):
             for action in editor.actions.context("group"):
                 _action(editor, action)
+        if editor.session.code(hit.key) is not None:
+            for action in editor.actions.context("code"):
+                _action(editor, action)
         imgui.end_popup()
 
     def _pin(self, editor: Editor, port: Port, output: bool) -> None:

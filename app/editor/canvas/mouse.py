@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from imgui_bundle import imgui
 
 from ...graph import Group, Port
+from ..actions.code import show_code
 from ..editor import Editor
 from .frame import Frame, pan_at_border, turn_wheel
 from .geometry import Point, holds
@@ -159,6 +160,9 @@ class Mouse:
             self.asked.rename = hit.key
         elif hit.part in ("title", "body") and not hit.key.startswith("dots."):
             item = session.graph.nodes.get(hit.key)
+            if session.code(hit.key) is not None:
+                show_code(editor)
+                return
             editor.attempt(lambda: session.enter(hit.key) if isinstance(item, Group) else session.view_node(hit.key))
         elif hit.part == "empty":
             editor.canvas.searching = True

@@ -15,7 +15,18 @@ from ...graph.names import fresh_name
 from ..editor import Editor
 from ..theme.style import mix, u32, ui_scale, vec4
 from ..toolkit.places import record
-from .entries import GRAPH, GROUP, Entry, Section, found, graph_entries, narrowed, node_entries, preset_entries
+from .entries import (
+    GRAPH,
+    GROUP,
+    Entry,
+    Section,
+    code_entries,
+    found,
+    graph_entries,
+    narrowed,
+    node_entries,
+    preset_entries,
+)
 from .geometry import Point
 
 _POPUP = "add to the graph"
@@ -41,7 +52,7 @@ class Search:
 
     @cached_property
     def _fixed(self) -> tuple[Entry, ...]:
-        return (*preset_entries(presets.paths()), *graph_entries())
+        return (*code_entries(), *preset_entries(presets.paths()), *graph_entries())
 
     def begin(self, editor: Editor, at: Point, port: Port | None = None, output: bool = True) -> None:
         """Open it for something at a canvas position; with a port, for what can be linked with it."""
@@ -62,7 +73,7 @@ class Search:
         now = editor.session.graph.nodes.get(id)
         others = [type for type in editor.session.types if not isinstance(now, editor.session.types[type])]
         self._link, self._replaced = None, id
-        self._entries = narrowed(node_entries(editor.session.types), others)
+        self._entries = (*narrowed(node_entries(editor.session.types), others), *code_entries())
         self._query, self._marked, self._opening = "", 0, True
 
     def draw(self, editor: Editor) -> None:

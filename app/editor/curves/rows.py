@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from ...errors import GraphError
 from ...graph import Animation, Graph, Keys, Port
 from ...graph.graph import declared
+from ..edits.naming import called
 
 Spot = tuple[Port, float, int]
 """A channel of a key: the value, its frame, and which number of it."""
@@ -55,7 +56,7 @@ def rows(
         found.append(Row(node, None, node, None, ports))
         if node not in folded:
             found.extend(
-                Row(node, port, port.socket.replace("_", " "), graph.animation[port], (port,), channels(graph, port))
+                Row(node, port, called(graph, port), graph.animation[port], (port,), channels(graph, port))
                 for port in ports
             )
     return tuple(found)

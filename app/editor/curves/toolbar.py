@@ -11,6 +11,7 @@ from imgui_bundle import imgui
 
 from ...graph import Interpolation
 from ..editor import Editor
+from ..edits.naming import called
 from ..theme.style import u32, ui_scale, vec4
 from ..toolkit.buttons import dropdown, entry, quiet, room_for, tip_of, tool
 from ..toolkit.words import tip
@@ -165,7 +166,7 @@ def offered(editor: Editor) -> None:
         if port.node != node:
             node = port.node
             imgui.separator_text(node)
-        if imgui.menu_item(f"{port.socket.replace('_', ' ')}##{port}", "", False)[0]:
+        if imgui.menu_item(f"{called(editor.session.graph, port)}##{port}", "", False)[0]:
             editor.attempt(lambda port=port: editor.session.key(port))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,9 +12,13 @@ from ...document.code import read_code, written_code
 from ...graph import Graph, Group, Item, Unknown
 from ...graph.values import coerced, value_fault
 from ...written import Code, CodeFault, Language, Written, node_type
+from .paths import full
 
 CODE = "glsl"
 """The type of nodes whose code is GLSL, in documents and in the list of what can be added."""
+
+LANGUAGES: Mapping[str, str] = {"glsl": "GLSL", "isf": "ISF"}
+"""What the types of nodes that are made of code are called."""
 
 ENDINGS: Mapping[str, Language] = {".glsl": "glsl", ".fs": "isf"}
 """Files of code by the ending of their name."""
@@ -33,9 +36,9 @@ vec4 tint(
 
 @dataclass(frozen=True)
 class Broken(Unknown):
-    """A node whose code says no node, with the `text` as it is here: that in the file may be another one."""
+    """A node whose code says no node, with the `code` as it is here: that in the file may be another one."""
 
-    text: str = ""
+    code: Code | None = None
 
 
 def starter() -> Node:
@@ -50,8 +53,8 @@ def code_of(item: Item | None, folder: str) -> Code | None:
     if not isinstance(item, Unknown) or item.type not in get_args(Language):
         return None
     language, file, lines = cast("Language", item.type), item.raw.get("file"), item.raw.get("code")
-    if isinstance(item, Broken):
-        return Code(language, item.text, file or "")
+    if isinstance(item, Broken) and item.code is not None:
+        return replace(item.code, file=file or "")
     if isinstance(file, str):
         try:
             return read_code(language, None, file, folder)
@@ -95,9 +98,9 @@ def files(graph: Graph) -> tuple[Path, ...]:
 
 
 def texts(graph: Graph) -> dict[Path, str]:
-    """The text of every file of code as nodes have it."""
+    """The text of every file of code as nodes of the graph have it, and of groups that are part of it."""
     found: dict[Path, str] = {}
-    for body, item in _items(graph):
+    for body, item in _items(graph, borrowed=False):
         file = _file(item, body.folder)
         if file is not None and (isinstance(item, Written | Broken)):
             code = code_of(item, body.folder)
@@ -124,11 +127,11 @@ def reread(graph: Graph, file: Path) -> Graph:
             return _replaced(body, id, _broken(code, fault, _values(item)))
         return body if now == code and isinstance(item, Written | Broken) else coded(body, id, now)
 
-    return _changed(graph, change)
+    return _changed(graph, change, borrowed=True)
 
 
 def kept(graph: Graph, drafts: Mapping[Path, str]) -> Graph:
-    """The graph with code in it that differs from the file that it belongs to, so that it is not lost with the graph."""
+    """The graph with code in it that differs from the file it belongs to, so that it is not lost with the graph."""
     return _changed(graph, lambda body, id, item, code: (
         coded(body, id, replace(code, file="")) if _file(item, body.folder) in drafts else body
     ))
@@ -137,12 +140,12 @@ def kept(graph: Graph, drafts: Mapping[Path, str]) -> Graph:
 # --- inside ----------------------------------------------------------------------------------------------------------
 
 
-def _changed(graph: Graph, change: Callable[[Graph, str, Item, Code], Graph]) -> Graph:
-    """The graph with nodes of code changed, those of groups that are part of it included."""
+def _changed(graph: Graph, change: Callable[[Graph, str, Item, Code], Graph], borrowed: bool = False) -> Graph:
+    """The graph with nodes of code changed, those of groups included; if `borrowed`, of groups from files too."""
     after = graph
     for id, item in graph.nodes.items():
         if isinstance(item, Group):
-            inner = _changed(item.graph, change)
+            inner = _changed(item.graph, change, borrowed) if borrowed or not item.path else item.graph
             if inner is not item.graph:
                 after = replace(after, nodes={**after.nodes, id: replace(item, graph=inner)})
         elif code := code_of(item, graph.folder):
@@ -150,15 +153,15 @@ def _changed(graph: Graph, change: Callable[[Graph, str, Item, Code], Graph]) ->
     return after
 
 
-def _items(graph: Graph) -> Iterator[tuple[Graph, Item]]:
+def _items(graph: Graph, borrowed: bool = True) -> Iterator[tuple[Graph, Item]]:
     todo = [graph]
     while todo:
         body = todo.pop()
         for item in body.nodes.values():
-            if isinstance(item, Group):
-                todo.append(item.graph)
-            else:
+            if not isinstance(item, Group):
                 yield body, item
+            elif borrowed or not item.path:
+                todo.append(item.graph)
 
 
 def _file(item: Item, folder: str) -> Path | None:
@@ -167,7 +170,7 @@ def _file(item: Item, folder: str) -> Path | None:
         file = item.code.file
     else:
         file = item.raw.get("file") if isinstance(item, Unknown) and item.type in get_args(Language) else ""
-    return Path(os.path.abspath(Path(folder, file))) if isinstance(file, str) and file else None  # noqa: PTH100
+    return full(file, folder) if isinstance(file, str) and file else None
 
 
 def _values(item: Item) -> Mapping[str, Any]:
@@ -193,7 +196,7 @@ def _fitting(kind: type[Node], values: Mapping[str, Any]) -> dict[str, Plain]:
 def _broken(code: Code, fault: CodeFault, values: Mapping[str, Any]) -> Broken:
     said = f"{code.name}, {fault}" if fault.line else str(fault)
     raw = {**written_code(code), **({"values": dict(values)} if values else {})}
-    return Broken(code.language, raw, said, code.text)
+    return Broken(code.language, raw, said, code)
 
 
 def _replaced(graph: Graph, id: str, item: Item) -> Graph:

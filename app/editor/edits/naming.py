@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Container
 from pathlib import Path
 
+from ...graph import Graph, Port, Unknown, signature
 from ...graph.names import name_fault
 
 
@@ -25,6 +26,13 @@ def copy_of(name: str, taken: Container[str], kind: str = "") -> str:
     while f"{head}{number}" in taken:
         number += 1
     return f"{head}{number}"
+
+
+def called(graph: Graph, port: Port) -> str:
+    """A value as people read it: as it is labelled, else by its name."""
+    item = graph.nodes.get(port.node)
+    value = None if item is None or isinstance(item, Unknown) else signature(item).values.get(port.socket)
+    return (value.label if value else "") or port.socket.replace("_", " ")
 
 
 def spoken(keys: Collection[str]) -> str:

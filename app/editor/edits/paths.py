@@ -20,6 +20,11 @@ def relative(path: str | Path, folder: str) -> str:
     return full.relative_to(base).as_posix() if folder and full.is_relative_to(base) else full.as_posix()
 
 
+def full(path: str, folder: str) -> Path:
+    """The file that a graph in `folder` names, always written in the same way; links stay as they are."""
+    return Path(os.path.abspath(Path(folder, path)))  # noqa: PTH100
+
+
 def group_files(graph: Graph) -> Iterator[Path]:
     """The files that groups are read from, at any depth."""
     todo = [graph]

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import lru_cache
 
+from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ....nodes import ColorSettings, Value
 from ...media import color_mark
-from ...media.managed import BUILT_IN, LINEAR_REC709, builtin_configs, managed
+from ...media.managed import builtin_configs, managed, ocio
 from ..dialogs import Browse
 from ..viewer.coloring import coloring
 from .choice_field import choose
-from .fields import Fields
+from .fields import Edit, Fields
 from .rows import Rows
 from .text_field import text_field
 
@@ -37,8 +37,6 @@ def space_names(color: ColorSettings, mark: str) -> tuple[str, ...]:
 def _linear(color: ColorSettings, mark: str) -> tuple[str, ...]:
     """The spaces that can be worked in."""
     manager = managed(color)
-    from ...media.managed import ocio
-
     kind = ocio().REFERENCE_SPACE_SCENE
     return tuple(
         name for name in ("scene_linear", *manager.names())
@@ -60,17 +58,18 @@ def color_rows(rows: Rows, fields: Fields) -> None:
         if edit:
             rows.act(lambda: session.set_color(config=str(edit.value)))
         imgui.same_line(0.0, 0.0)
-        if rows.icon("\uf00d", "no color config", "What $OCIO names, else the built-in one"):
+        if rows.icon(icons.ICON_FA_XMARK, "no color config", "What $OCIO names, else the built-in one"):
             rows.act(lambda: session.set_color(config=""))
     else:
         index = choose(fields, "color config", color.config or _ENVIRONMENT, choices, rows.field())
         rows.record("color config")
         if index == 1:
-            editor.dialogs.browse = Browse("Choose a Color Config", "any", lambda path: editor.attempt(
+            editor.dialogs.browse = Browse("Choose a Color Config", "config", lambda path: editor.attempt(
                 lambda: session.set_color(config=session.relative(path))
             ))
         elif index is not None:
-            rows.act(lambda: session.set_color(config="" if index == 0 else choices[index]))
+            config = "" if index == 0 else choices[index]
+            rows.act(lambda: session.set_color(config=config))
     usable = coloring(editor)
     if fault := editor.viewer.coloring.fault:
         rows.field_note(fault, rows.palette.error)
@@ -80,18 +79,17 @@ def color_rows(rows: Rows, fields: Fields) -> None:
     index = choose(fields, "working space", color.working or _REC709, known, rows.field())
     rows.record("working space")
     if index is not None:
-        rows.act(lambda: session.set_color(working="" if index == 0 else known[index]))
+        working = "" if index == 0 else known[index]
+        rows.act(lambda: session.set_color(working=working))
 
 
-def space_field(rows: Rows, fields: Fields, key: str, now: str, width: float, then: Callable[[str], object]) -> None:
-    """Which color space something is in, from those of the config."""
+def space_field(rows: Rows, fields: Fields, key: str, now: str, width: float) -> Edit | None:
+    """Which color space something is in, from those of the config; empty stands for finding out."""
     color = coloring(rows.editor)
     known = (FOUND, *space_names(color, color_mark(color)))
     shown = FOUND if now in ("", "auto") else now
-    index = choose(fields, key, shown, known if shown in known else (shown, *known), width)
-    if index is not None:
-        chosen = (known if shown in known else (shown, *known))[index]
-        then("" if chosen == FOUND else chosen)
-
-
-__all__ = ["BUILT_IN", "FOUND", "LINEAR_REC709", "color_rows", "space_field", "space_names"]
+    choices = known if shown in known else (shown, *known)
+    index = choose(fields, key, shown, choices, width)
+    if index is None:
+        return None
+    return Edit("" if choices[index] == FOUND else choices[index])

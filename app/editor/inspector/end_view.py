@@ -13,8 +13,10 @@ from ...graph import INPUTS, Input, Output, Port
 from ...graph.frames import Pattern
 from ...media import views
 from ..toolkit.words import tip
+from ..viewer.coloring import coloring
 from .choice_field import choose
 from .color_field import color_field
+from .color_rows import space_field
 from .fields import Edit, Fields
 from .file_field import PICTURE, FileField
 from .heading import faults, heading, name_field
@@ -87,6 +89,14 @@ class EndView:
         layer = self._files.layer(rows, f"{key} layer", end.file, end.layer, rows.field())
         if layer:
             rows.act(lambda: session.set_input(name, layer=str(layer.value)))
+        if end.kind in (Kind.IMAGE, Kind.COLOR):
+            rows.name(f"{key} space", "color space", doc="What the color of the file is in")
+            space = space_field(rows, self._fields, f"{key} space", end.color_space, rows.field())
+            rows.record(f"{key} space")
+            if space:
+                rows.act(lambda: session.set_input(name, color_space=str(space.value)))
+            if not bound:
+                self._files.space(rows, end.file, end.layer, end.color_space)
         if Pattern.parse(end.file):
             rows.name(f"{key} missing", "missing", doc="What a frame shows that has no file")
             index = choose(self._fields, f"{key} missing", end.missing, MISSING, rows.field())
@@ -141,7 +151,7 @@ class EndView:
         )
         if end.kind is Kind.IMAGE:
             rows.name(f"{key} view", "view", doc="How to show it unless someone chooses")
-            known = ("", *views())
+            known = ("", *views(color=coloring(editor)))
             index = choose(
                 self._fields, f"{key} view", end.view or DEFAULT_VIEW, (DEFAULT_VIEW, *known[1:]), rows.field()
             )

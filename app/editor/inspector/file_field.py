@@ -19,6 +19,7 @@ from ..toolkit.fields import draw_arrow
 from ..toolkit.places import item_rect, place, union
 from ..toolkit.textures import Textures
 from ..toolkit.words import tip, write
+from ..viewer.coloring import coloring
 from .fields import Edit, Fields
 from .layers import HEIGHT, WIDTH, Layers, described
 from .text_field import text_field
@@ -89,6 +90,15 @@ class FileField:
             header = self.known.header(self._file(rows, value))
             frames = _frames(self._full(rows, value))
             rows.field_note(frames + described(header, layer) if isinstance(header, ImageInfo) else "reading…")
+
+    def space(self, rows: Rows, value: str, layer: str, wanted: str) -> None:
+        """One line on the color space of a layer, which is `wanted` or found out; nothing for data."""
+        said, wrong = ("", False) if not value else self.known.space(
+            self._file(rows, value), layer, coloring(rows.editor), wanted
+        )
+        if said:
+            shown = said.removeprefix(f"{self._file(rows, value)}: ")
+            rows.field_note(shown, rows.palette.error if wrong else rows.palette.dim)
 
     def layer(
         self, rows: Rows, key: str, file: str, value: str, width: float, first: str = FIRST, fault: bool = False

@@ -11,11 +11,13 @@ from ....nodes import Kind, Value
 from ...graph import Port, Unknown, signature
 from ...graph.names import fresh_name
 from ..edits.elements import entry
+from ..edits.naming import called
 from ..theme.palette import RGB
 from ..theme.style import ui_scale
 from ..toolkit.places import item_rect
 from ..toolkit.words import tip
 from .color_field import color_field
+from .color_rows import color_rows
 from .colors import decode, encode
 from .end_view import bound_to, draw_text
 from .fields import Fields
@@ -53,6 +55,7 @@ class GraphView:
         if not inside:
             self._size(rows)
             self._time(rows)
+            color_rows(rows, self._fields)
         self._ends(rows, "inputs")
         self._ends(rows, "outputs")
         self._controls(rows)
@@ -216,7 +219,7 @@ class GraphView:
             known = {} if item is None or isinstance(item, Unknown) else signature(item).values
             declaration = known.get(target.socket)
             if declaration:
-                self._values.draw(rows, (target,), declaration, name)
+                self._values.draw(rows, (target,), declaration, control.label or name)
             else:
                 rows.name(key, name)
                 rows.field()
@@ -261,7 +264,7 @@ class GraphView:
                 continue
             found = True
             for port in ports:
-                if imgui.menu_item(port.socket, "", False)[0]:
+                if imgui.menu_item(f"{called(session.graph, port)}##{port}", "", False)[0]:
                     rows.act(lambda port=port: session.expose(port))
             imgui.end_menu()
         if not found:

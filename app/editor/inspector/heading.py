@@ -11,6 +11,8 @@ from imgui_bundle import imgui
 
 from ....nodes import Node, Value
 from ...graph import Group, Item
+from ...written import Written
+from ..edits.coding import LANGUAGES
 from ..theme.palette import RGB
 from ..theme.style import EM, u32, ui_scale
 from ..toolkit.places import item_rect, place
@@ -84,8 +86,9 @@ def faults(rows: Rows, key: str) -> None:
 def title_of(item: Item) -> str:
     """What kind of node it is, in words."""
     if isinstance(item, Node):
-        return " ".join(word[:1].upper() + word[1:] for word in item.id.split("_"))
-    return "Group" if isinstance(item, Group) else item.type
+        words = item.title if isinstance(item, Written) else item.id.replace("_", " ")
+        return " ".join(word[:1].upper() + word[1:] for word in words.split())
+    return "Group" if isinstance(item, Group) else LANGUAGES.get(item.type, item.type)
 
 
 def doc_of(item: Item) -> str:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
-from ....nodes import Kind
+from ....nodes import ColorSettings, Kind
 from ...errors import HalationError
-from ...media import ImageInfo, find_layer, info, read, to_display
+from ...media import ImageInfo, color_mark, find_layer, info, read, to_display
 from ...media.color import NO_VIEW, Array
+from ...media.file_space import FileSpace
+from ...media.spaces import layer_spaces
 from ..services.background import Background
 from ..services.versions import Versions
 
@@ -20,6 +23,8 @@ _NOTHING = 1e9
 
 Key = tuple[str, str, str | None]
 """Path, version of the file, layer; a layer of None stands for the header."""
+SpaceKey = tuple[str, str, ColorSettings, str, str]
+"""Path, version of the file, how colors are managed, the version of the config, what the color is said to be."""
 
 
 class Layers:
@@ -27,6 +32,7 @@ class Layers:
 
     def __init__(self) -> None:
         self._made: Background[Key, ImageInfo | Array | str] = Background("layers", _made, _KEPT)
+        self._spaces: Background[SpaceKey, Mapping[str, FileSpace] | str] = Background("spaces", _spaces, _KEPT)
         self._versions = Versions()
 
     def header(self, path: Path) -> ImageInfo | str | None:
@@ -45,6 +51,19 @@ class Layers:
         found = None if fault else self._made.get((str(path), version, layer))
         return found if isinstance(found, np.ndarray) else None
 
+    def space(self, path: Path, layer: str, color: ColorSettings, wanted: str) -> tuple[str, bool]:
+        """What the color of a layer is in and how that is known, and whether that is a fault; "" while nobody knows."""
+        version, fault = self._versions.of(path)
+        found = None if fault else self._spaces.get((str(path), version, color, color_mark(color), wanted))
+        header = self.header(path)
+        if found is None or isinstance(found, str) or not isinstance(header, ImageInfo):
+            return (found, True) if isinstance(found, str) else ("", False)
+        try:
+            known = found.get(find_layer(header, layer).full)
+        except HalationError:
+            return "", False
+        return (f"{known.name}: {known.reason}", False) if known else ("", False)
+
     def version(self, path: Path) -> str:
         """Changes when the file does."""
         return self._versions.of(path)[0]
@@ -52,11 +71,12 @@ class Layers:
     @property
     def busy(self) -> bool:
         """True while something is being read."""
-        return self._made.busy
+        return self._made.busy or self._spaces.busy
 
     def close(self) -> None:
-        """End the thread."""
+        """End the threads."""
         self._made.close()
+        self._spaces.close()
 
 
 def _made(key: Key) -> ImageInfo | Array | str:
@@ -68,6 +88,16 @@ def _made(key: Key) -> ImageInfo | Array | str:
         return str(fault)
     except Exception as fault:
         return f"{path}: cannot be shown ({fault})"
+
+
+def _spaces(key: SpaceKey) -> Mapping[str, FileSpace] | str:
+    path, _, color, _, wanted = key
+    try:
+        return layer_spaces(path, color, wanted)
+    except HalationError as fault:
+        return str(fault)
+    except Exception as fault:
+        return f"{path}: cannot be read ({fault})"
 
 
 def small_picture(path: str, layer: str, header: ImageInfo) -> Array:
@@ -94,5 +124,5 @@ def described(header: ImageInfo, layer: str) -> str:
     except HalationError as fault:
         return str(fault).removeprefix(f"{header.path}: ")
     channels = "".join(found.channels) if all(len(name) == 1 for name in found.channels) else ", ".join(found.channels)
-    kind = "data" if found.data else "linear color" if found.format.startswith("float") else "sRGB color"
+    kind = "data" if found.data else "color"
     return f"{header.size[0]} x {header.size[1]}, {channels}, {found.format}, {kind}"

@@ -10,6 +10,9 @@ from imgui_bundle import imgui
 
 from ....nodes import Node, Socket
 from ...graph import Group, Item, Port, Unknown, signature
+from ...written import Code
+from ..edits import paths
+from ..edits.coding import LANGUAGES
 from ..toolkit.places import item_rect
 from ..toolkit.words import tip
 from .applying import common
@@ -43,6 +46,10 @@ class NodeView:
         faults(rows, id)
         if isinstance(item, Group):
             self._group(rows, id, item)
+        if code := session.code(id):
+            self._code(rows, id, code)
+            if isinstance(item, Unknown):
+                return
         if isinstance(item, Unknown):
             rows.note("This type of node is not installed. It does nothing, and is saved back as it was.")
             return
@@ -100,6 +107,16 @@ class NodeView:
         if rows.icon(glyph, f"mute {ids[0]}", doc, lit=muted):
             rows.act(session.mute)
 
+    def _code(self, rows: Rows, id: str, code: Code) -> None:
+        editor = rows.editor
+        if code.file:
+            rows.name(f"{id} file", "file", doc="The file that the code of this node is in")
+            draft = " *" if paths.full(code.file, editor.session.graph.folder) in editor.session.drafts else ""
+            rows.chip(PurePath(code.file).name + draft, f"{id} file", rows.field(), rows.palette.good, code.file)
+        label = f"{icons.ICON_FA_CODE}  Edit Code"
+        if rows.wide_button(label, f"code {id}", f"Show the {LANGUAGES[code.language]} of this node"):
+            rows.act(lambda: editor.actions.run("code.edit", editor))
+
     def _group(self, rows: Rows, id: str, item: Group) -> None:
         editor, half = rows.editor, (rows.width - rows.gap) / 2
         if item.path:
@@ -146,4 +163,6 @@ def _default(socket: Socket) -> str:
 
 
 def _category(item: Item) -> str:
+    if isinstance(item, Unknown) and item.type in LANGUAGES:
+        return "code"
     return "group" if isinstance(item, Group) else getattr(item, "category", "")

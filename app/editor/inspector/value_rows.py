@@ -16,6 +16,7 @@ from ..theme.style import ui_scale
 from ..toolkit.places import item_rect
 from .applying import Ports, apply, as_text, default_of, from_text, reset
 from .choice_field import choose
+from .color_rows import space_field
 from .fields import Edit, Fields
 from .file_field import FileField
 from .keying import WIDTH, Keying, spoken, value_now
@@ -55,8 +56,8 @@ class ValueRows:
         value = value_now(session, port)[0] if moves else graph.value(port)
         changed = any(one in graph.animation or graph.value(one) != default_of(graph, one) for one in ports)
         control = session.control_of(port) if len(ports) == 1 else None
-        rows.name(key, label or declaration.label or port.socket, doc=_tip(declaration, control), changed=changed, color=color,
-                  spare=WIDTH * ui_scale())
+        rows.name(key, label or declaration.label or port.socket, doc=_tip(declaration, control), changed=changed,
+                  color=color, spare=WIDTH * ui_scale())
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left):
             rows.act(lambda: reset(session, ports))
         menu = imgui.is_item_hovered() and imgui.is_mouse_released(imgui.MouseButton_.right)
@@ -89,6 +90,8 @@ class ValueRows:
                 self._mark(rows, port, control)
             if declaration.type == "path" and isinstance(value, str):
                 self.files.about(rows, value, declaration, _layer_of(graph, port, declaration))
+            if declaration.space and isinstance(value, str):
+                self._about_space(rows, port, value)
             if declaration.type == "lights" and isinstance(value, tuple):
                 light_rows(rows, key, value, lambda edit: apply(session, ports, declaration, edit))
         if self.fields.eyedropper == key:
@@ -136,10 +139,19 @@ class ValueRows:
             ))
         if declaration.role and isinstance(value, str):
             return self._of_layer(rows, port, declaration, value, width, mixed)
+        if declaration.space and isinstance(value, str):
+            return space_field(rows, self.fields, str(port), value, width)
         file = _file_of(graph, port)
         if file is not None and isinstance(value, str):
             return self.files.layer(rows, str(port), file, value, width)
         return value_field(self.fields, str(port), value, declaration, width, mixed=mixed)
+
+    def _about_space(self, rows: Rows, port: Port, value: str) -> None:
+        """The color space of what a reader reads."""
+        item = rows.editor.session.graph.nodes.get(port.node)
+        file, layer = (getattr(item, name, None) for name in ("path", "layer"))
+        if isinstance(file, str):
+            self.files.space(rows, file, layer if isinstance(layer, str) else "", value)
 
     def _of_layer(
         self, rows: Rows, port: Port, declaration: Value, value: str, width: float, mixed: bool

@@ -111,6 +111,8 @@ def endings(browse: Browse) -> frozenset[str]:
         return table_endings()
     if browse.purpose == "scene":
         return MESH_ENDINGS
+    if browse.purpose == "config":
+        return frozenset({".ocio", ".ocioz"})
     return frozenset({".json" if browse.purpose == "graph" else Path(browse.name).suffix.lower() or ".exr"})
 
 

@@ -11,6 +11,7 @@ from ....presets import paths
 from ...graph import Group
 from ..action import Action
 from ..actions.documents import open_preset
+from ..canvas.entries import code_entries
 from ..canvas.layout import words
 from ..editor import Editor
 from .fuzzy import Match, match
@@ -74,6 +75,8 @@ def _all(editor: Editor) -> Iterator[Command]:
         doc = (type.__doc__ or "").strip().splitlines()
         yield Command(f"add {id}", f"Add {words(id).title()}", words(type.category).capitalize(),
                       partial(_add, editor, id), doc=doc[0] if doc else "")
+    for entry in code_entries():
+        yield Command(f"add {entry.id}", "Add Code", "Code", partial(_add, editor, entry.id), doc=entry.doc)
     for path in paths():
         name = words(path.stem).title()
         opens, adds = partial(open_preset, editor, path), partial(_add_preset, editor, path)

@@ -18,6 +18,7 @@ from ..toolkit.buttons import main_button, quiet, room_for
 from ..toolkit.fields import combo, label
 from ..toolkit.places import record
 from ..toolkit.words import SMALL, dim, elided, fitted, font, tip, wrapped
+from ..viewer.coloring import coloring
 from .export_form import DEPTHS, FORMATS, VIEWED, Aim, Extent, Form, Sizing
 from .export_words import aim_text, exist_text
 
@@ -147,7 +148,7 @@ def _options(editor: Editor, form: Form) -> None:
         form.precision = next(name for name, text in DEPTHS if text == chosen)
     if now in VIEWED or now == "mixed":
         own = "as the output says"
-        if chosen := choice(editor, "View", form.view or own, (own, *views())):
+        if chosen := choice(editor, "View", form.view or own, (own, *views(color=coloring(editor)))):
             form.view = "" if chosen == own else chosen
     label("", _LABELS)
     form.resume = imgui.checkbox("Resume", form.resume)[1]

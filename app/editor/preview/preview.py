@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from ....nodes import Camera, Size
 from ...compiler import Library, Plan
 from ...errors import HalationError
-from ...graph import Graph, Port
+from ...graph import Graph, Port, color_settings
 from ...renderer import Display, Handle, Renderer
 from ..services.renders import Pending
 from .jobs import Job
@@ -41,7 +41,7 @@ class _Round:
     passes: int = 0
     skimmed: bool = False
     """True if its pictures were there, and nothing else was looked at."""
-    faults: dict[str, str] = field(default_factory=dict[str, str])
+    faults: dict[str, HalationError] = field(default_factory=dict[str, HalationError])
     pending: Pending | None = None
     """The render that the first of the queue waits for."""
     broken: dict[str, str] = field(default_factory=dict[str, str])
@@ -71,6 +71,8 @@ class Preview:
         self._cameras: dict[Port, Camera] = {}
         self.faults: Mapping[str, str] = MappingProxyType({})
         """What is wrong, by path of the node or input (`glow/bloom`, `inputs.beauty`); "" where no node is at fault."""
+        self.errors: Mapping[str, HalationError] = MappingProxyType({})
+        """The same as it was raised: a ShaderError knows the line."""
         self.paused = False
         self.timed = False
         self.thumbnailing = True
@@ -361,13 +363,13 @@ class Preview:
             now.queue = [{name: port} for name, port in ports.items()] + now.queue
             return
         now.broken |= dict.fromkeys(ports, str(error))
-        now.faults |= {node: str(error) for node in error.node.split(", ")}
+        now.faults |= dict.fromkeys(error.node.split(", "), error)
         self._settle(now)
 
     def _settle(self, now: _Round) -> None:
         """What was wrong before is known to be over only when all has been tried."""
-        known = self.faults if now.queue else {}
-        self.faults = MappingProxyType({**known, **now.faults})
+        self.errors = MappingProxyType({**(self.errors if now.queue else {}), **now.faults})
+        self.faults = MappingProxyType({path: str(error) for path, error in self.errors.items()})
 
     def _finished(self, now: _Round, job: Job, plan: Plan) -> None:
         wish, faces = job.wish, dict[str, Face]()
@@ -392,4 +394,4 @@ class Preview:
             path, surface = path_of(port), plan.surfaces[number]
             kind = kind_of(now.wish.graph, port, surface.channels)
             subjects.setdefault(path, Subject(path, surface.key, kind, surface.channels, now.wish.mark(path)))
-        self._thumbnails.offer(subjects)
+        self._thumbnails.offer(subjects, color_settings(now.wish.graph))

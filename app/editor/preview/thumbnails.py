@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from ....nodes import Kind
+from ....nodes import ColorSettings, Kind
+from ...media.managed import DEFAULT_COLOR
 from ...renderer import Display, Handle, Look, Probe, Renderer
+from ..services.coloring import Coloring
 from .data import are_normals, balanced, data_range
 
 LARGEST = (160, 90)
@@ -50,6 +52,7 @@ class Thumbnails:
         self._probe = Probe(renderer.device)
         self._drawn: dict[str, _Drawn] = {}
         self._waiting: dict[str, Subject] = {}
+        self._coloring, self._color = Coloring(), DEFAULT_COLOR
         self.paths: frozenset[str] = frozenset()
         """Who has a picture; the same object until that changes."""
 
@@ -58,8 +61,9 @@ class Thumbnails:
         """True while there are some to be drawn."""
         return bool(self._waiting)
 
-    def offer(self, subjects: Mapping[str, Subject]) -> None:
-        """These results are there now, by path."""
+    def offer(self, subjects: Mapping[str, Subject], color: ColorSettings = DEFAULT_COLOR) -> None:
+        """These results are there now, by path; their colors are managed that way."""
+        self._color = self._coloring.of(color)
         for path, subject in subjects.items():
             drawn = self._drawn.get(path)
             self._waiting.pop(path, None)
@@ -104,7 +108,7 @@ class Thumbnails:
 
     def _look(self, subject: Subject, texture: Handle, zoom: float) -> Look:
         if subject.kind is Kind.IMAGE:
-            return Look(zoom=zoom, view="none")
+            return Look(zoom=zoom, view="none", color=self._color)
         pixels = self._probe.small(texture, RANGE_WIDTH)[..., : subject.channels]
         if are_normals(pixels):
             return Look(zoom=zoom, meaning="normal")

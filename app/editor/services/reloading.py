@@ -18,6 +18,7 @@ from ....nodes import Node, catalogue
 from ... import document
 from ...errors import DocumentError, GraphError
 from ...graph import Graph, Group, Item, Unknown
+from ...written import Written
 
 Types = Mapping[str, type[Node]]
 
@@ -136,6 +137,8 @@ def _migrated(graph: Graph, id: str, item: Item, known: Types) -> Graph | None:
     if isinstance(item, Group):
         inner = migrated(item.graph, known)
         return None if inner is item.graph else Graph({id: replace(item, graph=inner)}, extra=mine)
+    if isinstance(item, Written):
+        return None
     now = known.get(item.type if isinstance(item, Unknown) else item.id)
     if (now is None and isinstance(item, Unknown)) or type(item) is now:
         return None

@@ -21,7 +21,7 @@ from ....nodes import Node
 from ...graph import Graph, Group, Port
 from ...media.pictures import split_layer
 
-Kind = Literal["graph", "group", "picture", "shader", "node"]
+Kind = Literal["graph", "group", "picture", "code", "shader", "node"]
 _Key = tuple[Kind, Path]
 
 _ENDINGS: Mapping[Kind, str] = {"shader": ".glsl", "node": ".py"}
@@ -88,10 +88,13 @@ class Watcher:
 
     def watch(
         self, graph: Path | None = None, groups: Iterable[Path] = (), pictures: Iterable[Path] = (),
-        shaders: Iterable[Path] = (), nodes: Iterable[Path] = (),
+        shaders: Iterable[Path] = (), nodes: Iterable[Path] = (), code: Iterable[Path] = (),
     ) -> None:
         """Watch these from now on, and nothing else. Files may be missing; of shaders and nodes, give the folders."""
-        files = (*_keys("graph", [graph] if graph else ()), *_keys("group", groups), *_keys("picture", pictures))
+        files = (
+            *_keys("graph", [graph] if graph else ()), *_keys("group", groups), *_keys("picture", pictures),
+            *_keys("code", code),
+        )
         wanted = _Watched(files, (*_keys("shader", shaders), *_keys("node", nodes)))
         if wanted == self._watched:
             return

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ....nodes import Plain
+from ....nodes import ColorSettings, Plain
 from ...errors import GraphError, HalationError
 from ...graph import (
     ANIMATED,
@@ -99,6 +99,12 @@ class Animating(State):
         if preroll is not None and not 0 <= preroll <= MOST:
             raise GraphError(f"a pre-roll of {preroll} frames: give 0 or more")
         self._set_settings("Set pre-roll", replace(self.settings, preroll=preroll), merge)
+
+    def set_color(self, *, config: str | None = None, working: str | None = None, merge: str = "") -> None:
+        """Set where color spaces come from, or the one to work in; what is not given stays."""
+        now = self.settings.color
+        color = ColorSettings(now.config if config is None else config, now.working if working is None else working)
+        self._set_settings("Set color", replace(self.settings, color=color), merge)
 
     # --- values ------------------------------------------------------------------------------------------------------
 

@@ -49,12 +49,12 @@ class Ends(State):
 
     def set_input(
         self, name: str, *, file: str | None = None, layer: str | None = None, default: Plain | Keep | None = KEEP,
-        doc: str | None = None, missing: Missing | None = None, merge: str = "",
+        doc: str | None = None, missing: Missing | None = None, color_space: str | None = None, merge: str = "",
     ) -> None:
         """Change an input; what is not given stays. A default of None means that there is none."""
         if name not in self.graph.inputs:
             raise GraphError(f"the graph has no input '{name}'")
-        facts = _given(file=file, layer=layer, doc=doc, missing=missing)
+        facts = _given(file=file, layer=layer, doc=doc, missing=missing, color_space=color_space)
         if not isinstance(default, Keep):
             facts["default"] = default
         changed = replace(self.graph.inputs[name], **facts)

@@ -35,6 +35,11 @@ class Files(State):
         root = load(path, self.types)
         self._restart(root, None, root)
 
+    def open_made(self, path: str | Path) -> None:
+        """Open the graph that made a picture, as a new document that is called like it. Raises HalationError."""
+        root = migrated(made_by(Path(path)), self.types)
+        self._restart(root, None, root, Path(path).stem)
+
     def open_text(self, text: str) -> None:
         """Open the text of a graph file as a document without a file."""
         self._restart(loads(text, "text", catalogue=self.types), None, None)

@@ -73,12 +73,19 @@ class History:
             self._steps = [*self._steps, step][-MOST:]
         self.position = len(self._steps)
 
-    def abandon(self, merge: str) -> Snapshot | None:
-        """Forget the last step if it is that unfinished one; returns the document before it."""
+    def begun(self, merge: str) -> Snapshot | None:
+        """The document before the last step, if that is one of this `merge` to which more can be added."""
         if not merge or not self.can_undo or self.can_redo or self._steps[-1].merge != merge:
             return None
-        self.position -= 1
-        return self._steps.pop().before
+        return self._steps[-1].before
+
+    def abandon(self, merge: str) -> Snapshot | None:
+        """Forget the last step if it is that unfinished one; returns the document before it."""
+        before = self.begun(merge)
+        if before is not None:
+            self.position -= 1
+            self._steps.pop()
+        return before
 
     def seal(self) -> None:
         """End merging; a step that came back to where it began is forgotten."""

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 from ....nodes import Node
 from .clipboard import Clipboard
+from .coding import Coding
 from .decor import Decor
 from .ends import Ends
 from .files import Files
@@ -17,7 +18,7 @@ from .viewing import Viewing
 from .wiring import Wiring
 
 
-class Session(Viewing, Files, Selecting, Wiring, Values, Decor, Layout, Grouping, Ends, Clipboard):
+class Session(Viewing, Files, Selecting, Wiring, Values, Decor, Layout, Grouping, Ends, Clipboard, Coding):
     """A document that is open in the editor; a new one at first.
 
     Every method that makes no sense raises HalationError with one sentence and changes nothing.

@@ -8,8 +8,8 @@ from typing import Any, TypeVar
 
 from ....nodes import Node, catalogue
 from ...errors import GraphError
-from ...graph import INPUTS, OUTPUTS, Graph, Group, Problem, problems
-from ...graph.problems import rechecked
+from ...graph import INPUTS, OUTPUTS, Graph, Group, Problem
+from ...lint.live import again, remarks
 from ..edits import elements, folding, layout, routes
 from ..edits.elements import Place
 from .history import History, Snapshot, Step
@@ -85,7 +85,7 @@ class State:
     @property
     def name(self) -> str:
         """What the document is called."""
-        return self.path.stem if self.path else "untitled"
+        return self.path.stem if self.path else self._title or "untitled"
 
     @property
     def dirty(self) -> bool:
@@ -187,10 +187,10 @@ class State:
         if (frozenset(chosen), now) != (self.selection, self.active):
             self._set(Snapshot(self.root, self.place, frozenset(chosen), now))
 
-    def _restart(self, root: Graph, path: Path | None, saved: Graph | None) -> None:
-        """Another document, with no past."""
+    def _restart(self, root: Graph, path: Path | None, saved: Graph | None, title: str = "") -> None:
+        """Another document, with no past; `title` is what it is called as long as it has no file."""
         self.history = History()
-        self.path, self._saved = path, saved
+        self.path, self._saved, self._title = path, saved, title
         self._bound, self._cache = {}, {}
         self._set(Snapshot(root))
 
@@ -237,8 +237,8 @@ class State:
         """The problems of a graph, starting from those that were found last under that name."""
         (before, types), found = self._cache.get(name, ((None, None), ()))
         return self._kept(name, (graph, self.types), lambda: (
-            rechecked(graph, before, found, self.types) if isinstance(before, Graph) and types is self.types
-            else problems(graph, self.types)
+            again(graph, before, found, self.types) if isinstance(before, Graph) and types is self.types
+            else remarks(graph, self.types)
         ))
 
     def _ordered_selection(self) -> list[str]:

@@ -62,7 +62,9 @@ class Values(Animating):
         if known := self.control_of(port):
             raise GraphError(f"'{port}' is the control '{known}' already")
         name = name or fresh_name(port.socket, {*self.graph.controls, *self.graph.inputs})
-        self.edit(f"Expose {port}", self.graph.add_control(name, Control(port)))
+        item = self.graph.node(port.node)
+        label = signature(item).values[port.socket].label if port.socket in signature(item).values else ""
+        self.edit(f"Expose {port}", self.graph.add_control(name, Control(port, label)))
         return name
 
     def hide(self, name: str) -> None:

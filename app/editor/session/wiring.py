@@ -11,7 +11,7 @@ from ...document import load
 from ...errors import GraphError
 from ...graph import Graph, Group, Item, Port, did_you_mean
 from ...media.renders import is_render
-from ..edits import deleting, elements, naming, paths, room, routes, wiring
+from ..edits import coding, deleting, elements, naming, paths, room, routes, wiring
 from ..edits.elements import Place, Sizes
 from ..edits.ends import without_samples
 from ..services.sequences import standing
@@ -31,7 +31,7 @@ class Wiring(State):
 
         With `link`, a source if `output` else a target, it is linked by the first socket that fits.
         """
-        return self._add(type_id, self._new(type_id), at, link, output)
+        return self._add(_stem(type_id), self._new(type_id), at, link, output)
 
     def add_group(self, path: str | Path, at: Place = (0.0, 0.0), link: Port | None = None, output: bool = True) -> str:
         """A graph file as a node; returns its id."""
@@ -47,7 +47,7 @@ class Wiring(State):
             if at is not None:
                 graph = elements.with_places(graph, {id: at})
         else:
-            id = self.graph.fresh_id(node)
+            id = self.graph.fresh_id(_stem(node))
             graph = elements.with_places(self.graph.add(id, self._new(node)), {id: at or self._middle(target)})
         self.edit(f"Insert {id}", room.roomy(wiring.inserted(graph, id, target), (id,), target, sizes), (id,))
         return id
@@ -68,7 +68,7 @@ class Wiring(State):
 
     def fitting(self, port: Port, is_output: bool) -> tuple[str, ...]:
         """Ids of the node types that could be linked with `port`, a source if `is_output`."""
-        return wiring.fitting(self.graph, port, is_output, self.types)
+        return wiring.fitting(self.graph, port, is_output, {**self.types, coding.CODE: type(coding.starter())})
 
     def fitting_files(self, files: Sequence[Path], port: Port, is_output: bool) -> tuple[Path, ...]:
         """Those of some graph files that could, as groups, be linked with `port`, a source if `is_output`."""
@@ -150,7 +150,7 @@ class Wiring(State):
         self.edit(label, elements.with_entries(self.graph, facts))
 
     def drop_files(self, paths: Sequence[str | Path], at: Place = (0.0, 0.0)) -> tuple[str, ...]:
-        """Files from outside as nodes: graphs become groups, renders `read_render`, all others `read_image`.
+        """Files from outside as nodes: graphs become groups, shaders code, renders `read_render`, others `read_image`.
 
         Returns their ids.
         """
@@ -189,6 +189,8 @@ class Wiring(State):
         return id
 
     def _new(self, type_id: str) -> Node:
+        if type_id == coding.CODE:
+            return coding.starter()
         if type_id not in self.types:
             raise GraphError(f"there is no node type '{type_id}'{did_you_mean(type_id, self.types)}")
         return self.types[type_id]()
@@ -209,6 +211,8 @@ class Wiring(State):
     def _dropped(self, path: str | Path) -> Item:
         if Path(path).suffix.lower() == ".json":
             return self._group(path)
+        if Path(path).suffix.lower() in coding.ENDINGS:
+            return coding.file_item(self.relative(path), self.root.folder)
         type_id = "read_render" if "read_render" in self.types and is_render(standing(Path(path))) else "read_image"
         return self._new(type_id).changed(path=self.relative(path))
 
@@ -222,3 +226,8 @@ class Wiring(State):
         if ids := self._chosen_nodes():
             return ids
         raise GraphError(f"no node is selected: select what to {verb}")
+
+
+def _stem(type_id: str) -> str:
+    """What a new node of a type is called."""
+    return "code" if type_id == coding.CODE else type_id

@@ -79,6 +79,7 @@ DARK = Palette(
         "distort": _hex("4a6b4a"), "edge": _hex("2f6b6b"), "geometry": _hex("3d5378"), "merge": _hex("5a4a7a"),
         "channel": _hex("4f5560"), "measure": _hex("2f6258"),
         "time": _hex("6b4a5a"), "noise": _hex("6b3f5f"), "stylize": _hex("6b3f5f"), "group": _hex("3a6a48"),
+        "code": _hex("3e4a8a"),
     }),
 )
 
@@ -95,6 +96,7 @@ LIGHT = Palette(
         "distort": _hex("b9d9b9"), "edge": _hex("a3d6d6"), "geometry": _hex("b4c3ec"), "merge": _hex("c9bce6"),
         "channel": _hex("c6ccd6"), "measure": _hex("a8d6cb"),
         "time": _hex("e3bccb"), "noise": _hex("e0b9d3"), "stylize": _hex("e0b9d3"), "group": _hex("aed9ba"),
+        "code": _hex("b9c0f2"),
     }),
 )
 

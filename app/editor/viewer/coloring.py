@@ -1,45 +1,16 @@
-"""How the colors of what is open are managed, as far as its config can be read."""
+"""How the colors of what is open are managed."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from ....nodes import ColorSettings
-from ...errors import HalationError
 from ...graph import color_settings
-from ...media import color_mark
-from ...media.managed import BUILT_IN, managed
 
 if TYPE_CHECKING:
     from ..editor import Editor
 
-_BUILT_IN = ColorSettings(BUILT_IN)
-
-
-@dataclass
-class Coloring:
-    """The last answer: a config that cannot be read is not tried again before it changes."""
-
-    asked: tuple[ColorSettings, str] | None = None
-    settings: ColorSettings = _BUILT_IN
-    fault: str = ""
-    """Why the built-in config stands in."""
-
-    def of(self, color: ColorSettings) -> ColorSettings:
-        """These settings, or those that stand in for them."""
-        key = color, color_mark(color)
-        if key != self.asked:
-            self.asked, self.settings, self.fault = key, color, ""
-            manager = managed(color)
-            try:
-                if not manager.plain:
-                    _ = manager.config, manager.working
-            except HalationError as fault:
-                self.settings, self.fault = _BUILT_IN, str(fault)
-        return self.settings
-
 
 def coloring(editor: Editor) -> ColorSettings:
-    """How the colors of the open document are managed."""
+    """The settings of the open document, or of the built-in config where its own cannot be read."""
     return editor.viewer.coloring.of(color_settings(editor.session.root))

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ....nodes import Kind
+from ....nodes import ColorSettings, Kind
 from ...graph import OUTPUTS, Graph, Port
 from ...media import to_display
+from ...media.managed import DEFAULT_COLOR
 from ...renderer.look import Look
 from ..preview.data import Array, are_normals, balanced, data_range
 from .geometry import Sight, ordered
@@ -56,9 +57,13 @@ def asked_view(graph: Graph, port: Port) -> str:
 
 
 def look_of(
-    state: ViewerState, sight: Sight, meaning: Meaning, span: tuple[float, float], view: str, surround: RGB
+    state: ViewerState, sight: Sight, meaning: Meaning, span: tuple[float, float], view: str, surround: RGB,
+    color: ColorSettings = DEFAULT_COLOR,
 ) -> Look:
-    """What the display needs to know. `span` is the range of data, `view` what the picture asks for."""
+    """What the display needs to know.
+
+    `span` is the range of data, `view` what the picture asks for, `color` how its colors are managed.
+    """
     region = None
     if state.region is not None:
         left, top, right, bottom = ordered(state.region)
@@ -70,7 +75,7 @@ def look_of(
     return Look(
         zoom=sight.zoom, pan=sight.pan, channels=state.channels, meaning="image" if meaning == "auto" else meaning,
         low=span[0], high=span[1], exposure=state.exposure, gamma=state.gamma, view=state.view or view,
-        display=state.display, compare=compare, wipe=state.wipe, angle=state.wipe_angle,
+        display=state.display, look=state.look, color=color, compare=compare, wipe=state.wipe, angle=state.wipe_angle,
         checker=state.background == "checker", background=(gray, gray, gray), clipping=state.warn_clipping,
         nonfinite=state.warn_nonfinite, region=region, surround=surround,
     )
@@ -88,7 +93,7 @@ def displayed(pixels: Array, look: Look) -> Array:
     if look.meaning != "image":
         return np.clip((rgb_of(pixels) - look.low) / max(look.high - look.low, 1e-6), 0.0, 1.0)
     lit = np.concatenate([rgb_of(pixels) * np.float32(2.0**look.exposure), _alpha(pixels)], axis=2)
-    shown = to_display(lit, look.view, bits=32, display=look.display)[..., :3]
+    shown = to_display(lit, look.view, bits=32, display=look.display, look=look.look, color=look.color)[..., :3]
     cover = np.where(lit[..., 3:] > 0.0, np.minimum(lit[..., 3:], 1.0), 1.0)  # color without alpha is light
     return np.clip(shown, 0.0, 1.0) ** np.float32(1.0 / look.gamma) * cover
 

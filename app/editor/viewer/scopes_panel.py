@@ -15,6 +15,7 @@ from ..theme.style import u32, ui_scale
 from ..toolkit.buttons import quiet, room_for, tool
 from ..toolkit.words import nothing_here
 from . import graticules, scope_images
+from .coloring import coloring
 from .geometry import Box, Sight, texels
 from .looking import asked_view, displayed, look_of, meaning_of, range_of
 from .reading import Reader
@@ -134,7 +135,9 @@ class Scopes:
         view = asked_view(editor.session.graph, port) if port else ""
         sight = Sight((0.0, 0.0), (1, 1), shown.full_size)
         span = range_of(viewer, meaning, lambda: whole)
-        return displayed(part, look_of(viewer, sight, meaning, span, view, editor.palette.surround))
+        return displayed(
+            part, look_of(viewer, sight, meaning, span, view, editor.palette.surround, coloring(editor))
+        )
 
     def _image(self, name: str, rgb: np.ndarray, logarithmic: bool, dark: bool) -> np.ndarray:
         low, high = self._range

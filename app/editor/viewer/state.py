@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
+from ..services.coloring import Coloring
 from .pacing import Pace
 from .reading import Reader
 
@@ -40,6 +41,9 @@ class ViewerState:
     display: str = ""
     view: str = ""
     """OpenColorIO display and view; empty takes what the shown output asks for, else the default."""
+    look: str = ""
+    """A look in place of those of the view; "none" for none at all."""
+    coloring: Coloring = field(default_factory=Coloring)
     compare: Compare = "off"
     wipe: tuple[float, float] = (0.5, 0.5)
     """A point on the wipe line, as a fraction of the picture."""

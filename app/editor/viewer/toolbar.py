@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ...media import displays, views
+from ...media import displays, looks, views
+from ...media.color import NO_LOOK
 from ..theme.style import ui_scale
 from ..toolkit.buttons import dropdown, entries, entry, room_for, tool
 from ..toolkit.fields import number
+from .coloring import coloring
 from .focus import focused
 from .picking import list_ports, pick_port
 from .state import MEANINGS
@@ -216,18 +218,27 @@ def _range(editor: Editor) -> list[_Tool]:
 
 
 def _view(editor: Editor, asked: str) -> _Tool:
-    viewer = editor.viewer
+    viewer, color = editor.viewer, coloring(editor)
 
     def menu() -> None:
+        if viewer.coloring.fault:
+            imgui.text_disabled("The color config cannot be read: these are the built-in views")
         if imgui.menu_item(f"As the output asks ({asked or 'default'})", "", not viewer.view)[0]:
             viewer.view = viewer.display = ""
         imgui.separator()
-        for display in displays():
+        for display in displays(color):
             if imgui.begin_menu(display):
-                for view in views(display):
+                for view in views(display, color):
                     chosen = viewer.view == view and viewer.display in (display, "")
                     if imgui.menu_item(view, "", chosen)[0]:
                         viewer.view, viewer.display = view, display
+                imgui.end_menu()
+        if known := looks(color):
+            imgui.separator()
+            if imgui.begin_menu("Look"):
+                for look, title in (("", "As the view says"), (NO_LOOK, "None"), *((name, name) for name in known)):
+                    if imgui.menu_item(title, "", viewer.look == look)[0]:
+                        viewer.look = look
                 imgui.end_menu()
 
     now = viewer.view or asked or "Default"

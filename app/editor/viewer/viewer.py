@@ -14,6 +14,7 @@ from ...renderer.look import Look
 from ..theme.style import u32, ui_scale
 from . import infobar
 from .banner import draw_banner
+from .coloring import coloring
 from .finding import Finder
 from .focus import is_distance
 from .geometry import Sight
@@ -159,10 +160,10 @@ class Viewer:
 
             meaning = meaning_of(viewer, shown.kind, samples)
             viewer.span = range_of(viewer, meaning, samples) if shown.kind is not Kind.NUMBER else (0.0, 1.0)
-            look = look_of(viewer, sight, meaning, viewer.span, now.view, palette.surround)
+            look = look_of(viewer, sight, meaning, viewer.span, now.view, palette.surround, coloring(editor))
         texture = editor.attempt(lambda: editor.display.draw("viewer", sight.panel, now.a, now.b, look))
         if texture is None:  # a view that there is not
-            viewer.view = viewer.display = ""
+            viewer.view = viewer.display = viewer.look = ""
             return look
         lines, (x, y) = imgui.get_window_draw_list(), sight.origin
         corner = x + sight.panel[0] / sight.density, y + sight.panel[1] / sight.density
@@ -187,7 +188,7 @@ class Viewer:
     def _draw_messages(self, editor: Editor, now: _Now, sight: Sight) -> None:
         preview, palette, viewer = editor.preview, editor.palette, editor.viewer
         fault = preview.fault(A) or (preview.fault(B) if viewer.compares else None)
-        if fault:
+        if fault and (now.a is None or preview.faults.get(editor.code.told) != fault):
             draw_message(editor, sight, fault, palette.error, dim=now.a is not None)
         elif now.a is None and not preview.busy:
             draw_message(editor, sight, self._hint(editor), palette.dim)

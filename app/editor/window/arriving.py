@@ -9,11 +9,12 @@ from ...media.sequences import find_sequence
 from ..actions.documents import open_graph
 from ..dialogs import Question
 from ..editor import Editor
+from ..edits.coding import ENDINGS
 from ..services.sequences import patterns
 
 
 def arrived(editor: Editor, paths: Sequence[Path]) -> None:
-    """Pictures become nodes; a graph is opened, or becomes a group if it falls on the canvas.
+    """Pictures and code become nodes; a graph is opened, or becomes a group if it falls on the canvas.
 
     Several frames of a sequence are one node; for a single one the person says whether it stands for all.
     """
@@ -21,7 +22,9 @@ def arrived(editor: Editor, paths: Sequence[Path]) -> None:
     if len(paths) == len(graphs) == 1 and editor.scope != "graph":
         open_graph(editor, graphs[0])
         return
-    files, frames = patterns(paths)
+    codes = tuple(path for path in paths if path.suffix.lower() in ENDINGS)
+    files, frames = patterns([path for path in paths if path not in codes])
+    files = (*codes, *files)
     at = editor.canvas.pointer
     editor.dialogs.open.discard("start")
 

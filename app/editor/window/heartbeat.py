@@ -8,9 +8,11 @@ from pathlib import Path
 
 from ...compiler import installed
 from ...graph import Port
+from ..actions.code import code_changed
 from ..actions.flipbook import follow_flipbook
 from ..dialogs import Question
 from ..editor import Editor
+from ..edits import coding
 from ..services.reloading import NodeFiles, migrated, shader_folder
 from ..services.sequences import all_files
 from ..services.watching import Change, groups_of, pictures_of
@@ -34,10 +36,11 @@ class Heartbeat:
 
     def beat(self, editor: Editor) -> None:
         """One frame."""
+        editor.code.turn()
         self._watch(editor)
         for change in editor.watcher.poll():
             editor.attempt(lambda change=change: self._changed(editor, change))
-        editor.recovery.note(editor.session.root, editor.session.path, editor.session.dirty)
+        editor.recovery.note(editor.session.recoverable, editor.session.path, editor.session.dirty)
         if time.monotonic() - self._flushed > 1.0:
             self._flushed = time.monotonic()
             editor.store.flush()
@@ -89,8 +92,9 @@ class Heartbeat:
         self._watched = now
         editor.watcher.watch(
             session.path, groups_of(session.root), all_files(pictures_of(session.root, session.bindings)),
-            [shader_folder()], [self.nodes.folder],
+            [shader_folder()], [self.nodes.folder], coding.files(session.root),
         )
+        session.note_code_files()
 
     def _changed(self, editor: Editor, change: Change) -> None:
         match change.kind:
@@ -102,6 +106,8 @@ class Heartbeat:
                 editor.preview.refresh()
                 editor.session.look_again()
                 editor.say(f"{change.path.name} changed on disk and was read again")
+            case "code":
+                code_changed(editor, change.path)
             case "shader":
                 installed.cache_clear()
                 editor.preview.reload(installed())

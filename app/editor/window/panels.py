@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from ..canvas.canvas import Canvas
+from ..code.panel import CodePanel
 from ..curves.panel import Animation
 from ..editor import Editor
 from ..inspector.inspector import Inspector
@@ -46,6 +47,7 @@ DOCKED = (
     Docked("Viewer", "MainDockSpace", Viewer, bare=True),
     Docked("Graph", "Lower", Canvas, bare=True),
     Docked("Animation", "Lower", Animation, bare=True),
+    Docked("Code", "Lower", CodePanel),
     Docked("Problems", "Lower", Problems),
     Docked("Renders", "Lower", Renders),
     Docked("Log", "Lower", LogPanel),

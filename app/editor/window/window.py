@@ -51,6 +51,7 @@ class Window:
         self._heartbeat = Heartbeat()
         self._dropped: list[str] = []
         self._title = ""
+        self._fronted: set[str] = set()
         self._styled: tuple[Palette, float] | None = None
         self.params = self._make_params(version, size)
         self.frames = 0
@@ -186,6 +187,9 @@ class Window:
         host = self.params.docking_params.dockable_window_of_name(docked.title)
         if docked.bare:
             imgui.push_style_var(imgui.StyleVar_.window_padding, (0.0, 0.0))
+        if docked.title in self._fronted:  # the library only does so for windows that it begins itself
+            self._fronted.discard(docked.title)
+            imgui.set_next_window_focus()
         seen, stays = imgui.begin(docked.title, host.is_visible, _BARE if docked.bare else 0)
         host.is_visible = bool(stays)
         if docked.bare:
@@ -238,8 +242,8 @@ class Window:
             self._screenshot()
         for docked in DOCKED:
             if f"show {docked.title}" in requests:
-                window = self.params.docking_params.dockable_window_of_name(docked.title)
-                window.is_visible = window.focus_window_at_next_frame = True
+                self.params.docking_params.dockable_window_of_name(docked.title).is_visible = True
+                self._fronted.add(docked.title)
 
     def _screenshot(self) -> None:
         """Save the window as it was shown last."""

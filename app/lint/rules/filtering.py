@@ -23,12 +23,13 @@ FILTERING_TWICE = Rule(
 _PLACES = frozenset({"pixel", "extent"})
 """What a shader says whose result depends on where a pixel is."""
 
+FILTERS = (Transform, Resize, GaussianBlur)
+
 
 def find(sheet: Sheet) -> Iterator[Problem]:
     """Nodes that filter what has just been filtered."""
     for id in sheet.graph.nodes:
-        item = sheet.works(id)
-        if isinstance(item, Transform | Resize | GaussianBlur):
+        if isinstance(sheet.works(id), FILTERS):
             before, between = _filtered(sheet, id)
             if before and (way_out := _way_out(sheet, before, between, id)):
                 sentence = f"'{before}' and '{id}' filter the picture twice: {way_out}"
@@ -41,7 +42,7 @@ def _filtered(sheet: Sheet, id: str) -> tuple[str, list[str]]:
     port = sheet.source(Port(id, "image"))
     while port and sheet.readers[port] == 1:
         item = sheet.works(port.node)
-        if isinstance(item, Transform | Resize | GaussianBlur):
+        if isinstance(item, FILTERS):
             return port.node, between
         if not isinstance(item, Pointwise) or not (name := _picture(sheet, port.node, item)):
             break
@@ -60,7 +61,7 @@ def _picture(sheet: Sheet, id: str, item: Pointwise) -> str:
 def _way_out(sheet: Sheet, before: str, between: list[str], id: str) -> str:
     """What to do about two nodes that filter, or nothing where both are needed."""
     first, second = sheet.graph.nodes[before], sheet.graph.nodes[id]
-    still = not sheet.moves(before) and not sheet.moves(id)
+    still = sheet.moving.isdisjoint((before, id))
     match first, second:
         case Transform(), Transform() if between and first.edge == second.edge and not _hard(first, second):
             return f"put {_listed(between)} behind '{id}', so that the two transforms act as one"

@@ -81,7 +81,7 @@ def find_codec(path: str | Path, name: str, size: Size | None = None) -> Codec:
     if size and codec.even and (size[0] % 2 or size[1] % 2):
         even = f"{size[0] // 2 * 2 or 2}x{size[1] // 2 * 2 or 2}"
         raise UsageError(
-            f"{path}: {chosen} keeps color at half the size, so width and height must be even, not {size[0]}x{size[1]}: "
-            f"render with --size {even}, or write ffv1 to an .mkv file"
+            f"{path}: {chosen} keeps color at half the size, so width and height must be even, not "
+            f"{size[0]}x{size[1]}: render with --size {even}, or write ffv1 to an .mkv file"
         )
     return codec

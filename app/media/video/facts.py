@@ -15,8 +15,7 @@ _TRANSFERS = {
 }
 _PRIMARIES = {1: "BT.709", 5: "BT.601, 625 lines", 6: "BT.601, 525 lines", 9: "BT.2020", 11: "DCI P3", 12: "Display P3"}
 _STORED = frozenset({
-    "major_brand", "minor_version", "compatible_brands", "encoder", "handler_name", "vendor_id", "language", "duration",
-    "alpha_mode", "creation_time",
+    "major_brand", "minor_version", "compatible_brands", "encoder", "duration", "creation_time",
 })
 """Tags that say how a file is stored."""
 

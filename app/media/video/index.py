@@ -2,8 +2,8 @@
 
 Frame 1 is the first that a player shows. What a file says of its length and rate is often wrong, so frames are counted:
 every packet has a time of presentation, and the frames are these times in order, without what an edit list cuts off.
-Where packets cannot be trusted (no times, or equal ones, pictures before the first key frame, VP8's hidden frames, or
-first frames that come out otherwise), the whole video is decoded once and its frames are counted as they come.
+Where packets cannot be trusted (no times, equal or guessed ones, pictures before the first key frame, VP8's hidden
+frames, or first frames that come out otherwise), the whole video is decoded once and its frames are counted.
 """
 
 from __future__ import annotations
@@ -22,10 +22,13 @@ from ....nodes import Size
 from ...errors import InputError
 from .library import HOW_TO_INSTALL, library
 
-_TRIED = 4
+_TRIED = 8
 """Frames that are decoded to see whether packets tell the truth."""
 
 _HIDING = ("vp8",)
+_TIMELESS = ("avi",)
+"""Containers that know the order of decoding only; times of presentation are guessed."""
+
 _ALPHA_DECODERS = {"vp8": "libvpx", "vp9": "libvpx-vp9"}
 _USUAL_RATE = Fraction(24)
 _ATTACHED_PICTURE = 1024
@@ -154,6 +157,9 @@ def surveyed(path: str, mark: str) -> tuple[Facts, Index]:
 
 def _packet_index(container: Any, stream: Any) -> Index | None:
     """What the packets tell, or None where that may not be what comes out."""
+    context = stream.codec_context
+    if context.name in _HIDING or (container.format.name in _TIMELESS and not context.codec.intra_only):
+        return None
     times: list[int] = []
     places: dict[tuple[int | None, int | None], int] = {}
     keys: list[Key] = []
@@ -167,7 +173,7 @@ def _packet_index(container: Any, stream: Any) -> Index | None:
             times.append(packet.pts)
     if not keys or keys[0].place or min(times, default=0) < keys[0].time:
         return None
-    if len(set(times)) < len(times) or len(places) <= max(places.values()) or stream.codec_context.name in _HIDING:
+    if len(set(times)) < len(times) or len(places) <= max(places.values()):
         return None
     return Index(len(times), tuple(sorted(times)), places, tuple(keys))
 
@@ -182,15 +188,21 @@ def _facts(path: str, container: Any, stream: Any, frame: Any, count: int) -> Fa
         frame.format.name, max(part.bits for part in parts),
         any(part.is_alpha for part in parts) or frame.format.has_palette,
         int(frame.colorspace), int(frame.color_range), int(frame.color_trc), int(frame.color_primaries),
-        MappingProxyType({**container.metadata, **stream.metadata}),
+        MappingProxyType({_tag(name): text for name, text in container.metadata.items()}),
     )
+
+
+def _tag(name: str) -> str:
+    """Matroska knows capitals only."""
+    return name.lower() if name.startswith("HALATION:") else name
 
 
 def _decoder(av: Any, stream: Any) -> Any:
     """The stream's own, or one that knows of the transparency that a VP8 or VP9 stream says it has."""
     context = stream.codec_context
     name = _ALPHA_DECODERS.get(context.name, "")
-    if name and stream.metadata.get("alpha_mode") == "1" and name in av.codecs_available:
+    said = {key.casefold(): text for key, text in stream.metadata.items()}
+    if name and said.get("alpha_mode") == "1" and name in av.codecs_available:
         return av.CodecContext.create(name, "r")
     context.thread_type = "AUTO"
     return context

@@ -6,7 +6,7 @@ range holds beyond these stays.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 import numpy as np
@@ -69,7 +69,8 @@ def from_rgb(rgb: Array, matrix: int) -> tuple[Array, Array, Array]:
     """Y' and the color differences to blue and red of R'G'B' [h, w, 3]."""
     kr, kb = LUMA[matrix]
     luma = rgb @ np.array([kr, 1.0 - kr - kb, kb], np.float32)
-    return luma, (rgb[..., 2] - luma) / np.float32(2.0 * (1.0 - kb)), (rgb[..., 0] - luma) / np.float32(2.0 * (1.0 - kr))
+    blue, red = np.float32(2.0 * (1.0 - kb)), np.float32(2.0 * (1.0 - kr))
+    return luma, (rgb[..., 2] - luma) / blue, (rgb[..., 0] - luma) / red
 
 
 def enlarged(plane: Array, axis: int, length: int, factor: int, offset: float) -> Array:
@@ -126,7 +127,6 @@ def _from_hlg(signal: Array) -> Array:
     return np.where(signal <= 0.5, signal**2 / 3.0, (np.exp((signal - c) / a) + b) / 12.0)
 
 
-def _mirrored(encoded: Array, curve: object) -> Array:
+def _mirrored(encoded: Array, curve: Callable[[Array], Array]) -> Array:
     """A curve for 0 and above, turned around for numbers below."""
-    assert callable(curve)
     return np.copysign(curve(np.abs(encoded)), encoded).astype(np.float32)

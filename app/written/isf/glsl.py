@@ -1,7 +1,7 @@
 """From a shader of the Interactive Shader Format to GLSL 4.10.
 
-Rows of the format run from the bottom, ours from the top. Nothing is turned over for that: positions are, where pictures
-are read and where a pixel asks which one it is.
+Rows of the format run from the bottom, ours from the top. No picture is turned over for that: positions are, where
+pictures are read and where a pixel asks which one it is.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 
 from ....nodes import ShaderText, Stage
-from ...glsl import blanked, words
+from ...glsl import COUNTER, MOST_ROUNDS, blanked, guarded, words
 from ..code import Code, CodeFault
 from .header import PICTURES, Header
 
@@ -30,11 +30,12 @@ CALLS: Mapping[str, str] = MappingProxyType({
 })
 """Functions that see where rows begin."""
 
-LATER = frozenset(
-    "sample patch precise subroutine buffer shared coherent restrict readonly writeonly resource common partition active "
-    "filter input output using namespace half fixed superp external interface long short union enum template this "
-    "unsigned cast class public static extern goto asm inline noinline sizeof typedef".split()
-)
+LATER = frozenset({
+    "active", "asm", "buffer", "cast", "class", "coherent", "common", "enum", "extern", "external", "filter", "fixed",
+    "goto", "half", "inline", "input", "interface", "long", "namespace", "noinline", "output", "partition", "patch",
+    "precise", "public", "readonly", "resource", "restrict", "sample", "shared", "short", "sizeof", "static",
+    "subroutine", "superp", "template", "this", "typedef", "union", "unsigned", "using", "writeonly",
+})
 """Words that became keywords after the GLSL that shaders are written in."""
 
 QUALIFIERS = frozenset({"smooth", "flat", "noperspective", "centroid"})
@@ -67,8 +68,11 @@ float isf_held(float x) { return isf_is_finite(x) ? clamp(x, isf_range.x, isf_ra
 vec4 halation_pixel() {
     isf_main();
     vec4 c = isf_FragColor;
-    return vec4(isf_held(c.r), isf_held(c.g), isf_held(c.b), isf_held(c.a));
+    return %s vec4(isf_held(c.r), isf_held(c.g), isf_held(c.b), isf_held(c.a));
 }"""
+_SPOILT = f"{COUNTER} > {MOST_ROUNDS} ? vec4(uintBitsToFloat(0x7fc00000u)) :"
+"""What a pixel is whose loops had to be left: a wrong number would be taken for a right one."""
+
 _VERTEX_START = """out vec2 isf_FragNormCoord;
 void isf_vertShaderInit() {
     isf_FragNormCoord = vec2(gl_VertexID & 1, gl_VertexID >> 1);
@@ -93,7 +97,7 @@ _TYPES: Mapping[str, str] = MappingProxyType({
 
 def shader_text(code: Code, header: Header) -> ShaderText:
     """The program of a shader. Raises CodeFault."""
-    fragment, vertex = (_translated(text, stage) for text, stage in ((code.text, "in"), (code.vertex, "out")))
+    fragment, vertex = (guarded(_translated(text, way)) for text, way in ((code.text, "in"), (code.vertex, "out")))
     for text, file in ((fragment, code.name), (vertex, "its vertex shader")):
         if text.strip() and "isf_main" not in words(text):
             raise CodeFault(0, f"there is no void main() in {file}")
@@ -101,14 +105,17 @@ def shader_text(code: Code, header: Header) -> ShaderText:
         raise CodeFault(0, "there is no GLSL after the head: write a void main() that sets gl_FragColor")
     used = words(fragment, vertex)
     declared = [*_uniforms(header, used), *(f"uniform sampler2D {renamed(name)};" for name in samplers(header, used))]
-    declared += _rectangles(header, used)
-    where = "in vec2 isf_FragNormCoord;" if vertex.strip() else "#define isf_FragNormCoord (isf_FragCoord.xy / RENDERSIZE)"
+    declared += [*_rectangles(header, used), f"int {COUNTER} = 0;"]
+    where = "#define isf_FragNormCoord (isf_FragCoord.xy / RENDERSIZE)"
+    where = "in vec2 isf_FragNormCoord;" if vertex.strip() else where
     top = [
         *declared, "uniform vec2 isf_range;", "vec4 isf_FragColor = vec4(0.0);",
         "#define isf_FragCoord vec4(gl_FragCoord.x, RENDERSIZE.y - gl_FragCoord.y, gl_FragCoord.zw)", where,
         _READING + (_DERIVATIVES if "isf_dFdy" in used else ""),
     ]
-    painted = Stage("\n".join(top), fragment, _FRAGMENT_END, code.file or "its code")
+    painted = Stage(
+        "\n".join(top), fragment, _FRAGMENT_END % (_SPOILT if COUNTER in used else ""), code.file or "its code"
+    )
     if not vertex.strip():
         return ShaderText(painted)
     file = code.file.rpartition(".")[0] + ".vs"

@@ -105,10 +105,10 @@ class _Reading:
             seen.add(name)
         known = {"WIDTH", "HEIGHT", *(one.name for one in inputs if one.type in ("float", "long", "bool", "event"))}
         for buffer in buffers.values():
-            for formula in (buffer.width, buffer.height):
-                for name in sorted(formula.names - known) if formula else ():
-                    self._fail(f"the size '{formula.text}' of '{buffer.name}' reads '{name}', which is no number here",
-                               buffer.name)
+            for formula in filter(None, (buffer.width, buffer.height)):
+                for name in sorted(formula.names - known):
+                    fault = f"the size '{formula.text}' of '{buffer.name}' reads '{name}', which is no number here"
+                    self._fail(fault, buffer.name)
         credit = self._text(self.raw, "CREDIT")
         parts = (self._text(self.raw, "DESCRIPTION"), f"By {credit.removeprefix('by ')}." if credit else "")
         categories = tuple(part for part in self._list(self.raw, "CATEGORIES") if isinstance(part, str))
@@ -132,8 +132,8 @@ class _Reading:
             return Entry(name, kind, label)
         length = {"point2D": 2, "color": 4}.get(kind, 1)
         default, low, high = (self._numbers(raw, key, name, length) for key in ("DEFAULT", "MIN", "MAX"))
-        if low and high and any(a > b for a, b in zip(low, high, strict=True)):
-            self._fail(f"the input '{name}' has a MIN above its MAX", name)
+        if low and high:
+            low, high = (tuple(pick(a, b) for a, b in zip(low, high, strict=True)) for pick in (min, max))
         return Entry(name, kind, label, default, low, high, self._choices(raw, name) if kind == "long" else ())
 
     def _choices(self, raw: Section, name: str) -> tuple[tuple[int, str], ...]:
@@ -204,7 +204,8 @@ class _Reading:
         if given is None or given == "":
             return None
         if not isinstance(given, str) and not _is_number(given):
-            self._fail(f"the {key} of '{name}' is {json.dumps(given)[:40]}: it is a formula, such as \"$WIDTH/2.0\"", name)
+            fault = f"the {key} of '{name}' is {json.dumps(given)[:40]}: it is a formula, such as \"$WIDTH/2.0\""
+            self._fail(fault, name)
         try:
             return read_size(str(given))
         except SizeError as fault:

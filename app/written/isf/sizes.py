@@ -111,12 +111,8 @@ class _Reading:
             self.depth += 1
             if self.depth > MAX_DEPTH:
                 raise SizeError(f"it nests deeper than {MAX_DEPTH}")
-            root, power = base, self._signed()
+            base = _raised(base, self._signed())
             self.depth -= 1
-
-            def base(values: Mapping[str, float]) -> float:
-                return math.pow(root(values), power(values))
-
         return (lambda values: -base(values)) if minus else base
 
     def _atom(self) -> Run:
@@ -159,3 +155,7 @@ class _Reading:
         if self._next() != sign:
             raise SizeError(f"a '{sign}' is missing")
         self.left.pop()
+
+
+def _raised(base: Run, power: Run) -> Run:
+    return lambda values: math.pow(base(values), power(values))

@@ -73,6 +73,6 @@ def test_another_file_under_the_same_name_is_read_again(layers, picture, monkeyp
 
 def test_the_line_about_a_file(picture):
     header = info(picture)
-    assert described(header, "") == "200 x 40, RGBA, float16, linear color"
+    assert described(header, "") == "200 x 40, RGBA, float16, color"
     assert described(header, "depth") == "200 x 40, Z, float32, data"
     assert described(header, "Deep").startswith("has no layer 'Deep'")

@@ -159,6 +159,7 @@ ACTS: dict[str, Act] = {
     "set_frames": lambda s, r: s.set_frames(r.choice([None, 1, 9]), r.choice([None, 5, 24])),
     "set_rate": lambda s, r: s.set_rate(r.choice([0.0, 24.0, 25.0])),
     "set_preroll": lambda s, r: s.set_preroll(r.choice([None, -1, 0, 6])),
+    "set_color": lambda s, r: s.set_color(working=r.choice([None, "", "ACEScg"]), config=r.choice([None, "no.ocio"])),
     "key": lambda s, r: s.key(any_value(s, r), r.choice([None, None, 0.5]), r.choice(["", "drag"])),
     "unkey": lambda s, r: s.unkey(some_animated(s, r)),
     "toggle_key": lambda s, r: s.toggle_key(some_animated(s, r)),

@@ -1,0 +1,204 @@
+"""`halation bench`: where the time goes."""
+
+from __future__ import annotations
+
+import math
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from . import parsing
+from .batch import shown
+from .options import AsJson, GraphFile, Inputs, Lazy, Node, Scale, Sets, SizeText, bound, opened, report_problems
+from .outcome import print_json
+
+if TYPE_CHECKING:
+    from ..renderer.baseline import Against, Ratio
+    from ..renderer.bench import Bench, Share
+
+_BAR = 24
+
+
+def bench(
+    graph: GraphFile,
+    inputs: Inputs = None,
+    sets: Sets = None,
+    node: Node = "",
+    size: SizeText = None,
+    scale: Scale = 1.0,
+    frame: Annotated[int | None, typer.Option(help="The frame to measure; by default the first of the graph.")] = None,
+    frames: Annotated[str | None, typer.Option(metavar="1-24x8", help="Measure these frames together.")] = None,
+    repeats: Annotated[int, typer.Option("-n", "--repeats", min=1, max=10_000, help="How often to measure.")] = 15,
+    warm_up: Annotated[int, typer.Option("--warm-up", min=0, max=10_000, help="How often to render before that.")] = 3,
+    passes: Annotated[bool, typer.Option("--passes", help="A line for every pass instead of every node.")] = False,
+    compare: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Compare with what --json printed before.")
+    ] = None,
+    fail_over: Annotated[
+        str | None, typer.Option(metavar="1.2", help="Exit with 1 if something takes more times as long as that.")
+    ] = None,
+    precision: Annotated[str | None, typer.Option(metavar="half|float", help="Precision of intermediates.")] = None,
+    form: Annotated[
+        str | None, typer.Option(metavar="fragment|compute", help="How passes run; by default what suits the device.")
+    ] = None,
+    as_json: AsJson = False,
+) -> int:
+    """Measure what each node and pass takes on this device: the median of several runs after warming up.
+
+    Nodes that were fused into one pass have one time together.
+    """
+    from ..errors import UsageError
+    from ..renderer import Renderer, Wanted, open_device
+    from ..renderer.baseline import against
+    from ..renderer.bench import bench as measured
+
+    limit = _limit(fail_over)
+    if limit is not None and compare is None:
+        raise UsageError("--fail-over: say what to compare with: --compare baseline.json")
+    depth = parsing.precision(precision) if precision is not None else None
+    way = parsing.form(form) if form is not None else None
+    canvas, proxy, chosen = parsing.size(size), parsing.scale(scale), parsing.frames(frame, frames)
+    whole = opened(graph, sets or ())
+    report_problems(graph, whole)
+    bindings, targets = bound(whole, inputs or ()), parsing.targets(whole, node)
+    at = chosen or (Lazy().frames(whole, inputs or ())[0],)
+    renderer = Renderer(open_device(way), budget=0)
+    wanted = Wanted(bindings, targets, canvas, proxy, precision=depth)
+    with shown(renderer, len(at) + warm_up + repeats) as work:
+        found = measured(renderer, whole, wanted, at, repeats, warm_up, work.step)
+    if not found.passes:
+        raise UsageError(f"{graph}: there is nothing to measure: its outputs are made without a single pass")
+    compared = against(found, compare) if compare else None
+    slower = compared.slower(limit) if compared and limit is not None else ()
+    if as_json:
+        print_json(_as_json(graph, found, renderer.device.description, at, compared, slower))
+    else:
+        _print(found, passes, renderer.device.target.software, repeats)
+        if compared:
+            _print_compared(compared, slower, limit, renderer.device.description)
+    return 1 if slower else 0
+
+
+def _limit(text: str | None) -> float | None:
+    """`1.2` or `1.2x`. Raises UsageError."""
+    from ..errors import UsageError
+
+    if text is None:
+        return None
+    try:
+        found = float(text.removesuffix("x"))
+    except ValueError:
+        found = math.nan
+    if not 0.0 < found < math.inf:
+        raise UsageError(f"--fail-over {text}: write how many times as long is too long, such as 1.2")
+    return found
+
+
+def _print(found: Bench, by_pass: bool, software: bool, repeats: int) -> None:
+    from ..compiler.explain import size_text
+    from ..renderer.bench import shares
+
+    if by_pass:
+        rows = [
+            (" + ".join(one.functions) + f"  [{', '.join(one.nodes)}]", one.median, one.read, one.written)
+            for one in sorted(found.passes, key=lambda one: -one.median)
+        ]
+    else:
+        rows = [(_together(one), one.median, one.read, one.written) for one in shares(found.passes)]
+    block, wide = _block(), min(60, max(len(row[0]) for row in rows))
+    most = max(row[1] for row in rows)
+    for label, seconds, read, written in rows:
+        bar = block * max(1, round(_BAR * seconds / most))
+        text = label if len(label) <= wide else f"{label[: wide - 3]}..."
+        print(
+            f"{text:<{wide}}  {seconds * 1e3:9.3f} ms  {seconds / found.median:6.1%}  {bar:<{_BAR}}  "
+            f"reads {size_text(read):>9}, writes {size_text(written):>9}"
+        )
+    how = "the clock around each pass" if software else "timer queries of the GPU"
+    width, height = found.size
+    lead = f", {found.lead} frames led up to it" if found.lead else ""
+    print(
+        f"{'total':<{wide}}  {found.median * 1e3:9.3f} ms  at {width}x{height}; median of {repeats} by {how}, "
+        f"fastest {found.fastest * 1e3:.3f} ms{lead}"
+    )
+    print(
+        f"{'once':<{wide}}  plan {found.planning * 1e3:.1f} ms, {found.programs} programs "
+        f"{found.compiling * 1e3:.1f} ms, first run with files {found.loading * 1e3:.1f} ms; "
+        f"{size_text(found.peak_bytes)} of textures at the peak"
+    )
+
+
+def _together(share: Share) -> str:
+    """The nodes of some passes, and how many these are."""
+    return ", ".join(share.nodes) + (f"  {share.count} passes" if share.count > 1 else "")
+
+
+def _print_compared(compared: Against, slower: tuple[Ratio, ...], limit: float | None, device: str) -> None:
+    if compared.device != device:
+        print(f"the baseline was measured on another device: {compared.device}")
+    if compared.gone or compared.new:
+        print(f"{compared.new} passes are new, {compared.gone} are gone")
+    for one in slower or sorted(compared.ratios[1:], key=lambda one: -one.judged)[:5]:
+        print(f"  {_ratio(one)}")
+    whole = compared.ratios[0]
+    if not slower or whole not in slower:
+        print(f"  {_ratio(whole)}")
+    if limit is not None:
+        verdict = f"{len(slower)} are slower than {limit:g}x" if slower else f"nothing is slower than {limit:g}x"
+        print(f"{verdict}; judged by the smaller ratio of median and fastest time, passes from 2 % of the whole on")
+
+
+def _ratio(one: Ratio) -> str:
+    name = ", ".join(one.nodes) if one.nodes else "total"
+    what = f" ({' + '.join(one.functions)})" if one.functions else ""
+    return (
+        f"{one.judged:5.2f}x  {name}{what}: {one.then * 1e3:.3f} -> {one.now * 1e3:.3f} ms "
+        f"(median {one.median:.2f}x, fastest {one.fastest:.2f}x)"
+    )
+
+
+def _block() -> str:
+    """What bars are made of, as far as the terminal can show it."""
+    return "\N{FULL BLOCK}" if (sys.stdout.encoding or "").lower().startswith("utf") else "#"
+
+
+def _as_json(
+    graph: Path, found: Bench, device: str, frames: tuple[int, ...], compared: Against | None, slower: tuple[Ratio, ...]
+) -> dict[str, Any]:
+    from ..renderer.bench import names, shares
+
+    made: dict[str, Any] = {
+        "graph": str(graph), "device": device, "size": list(found.size), "frames": list(frames),
+        "repeats": len(found.totals), "median": found.median, "fastest": found.fastest,
+        "planning": found.planning, "compiling": found.compiling, "programs": found.programs,
+        "loading": found.loading, "peak_bytes": found.peak_bytes, "lead": found.lead,
+        "nodes": [
+            {
+                "nodes": list(one.nodes), "passes": one.count, "median": one.median, "fastest": one.fastest,
+                "share": one.median / found.median, "read_bytes": one.read, "written_bytes": one.written,
+            }
+            for one in shares(found.passes)
+        ],
+        "passes": [
+            {
+                "nodes": list(one.nodes), "functions": list(one.functions), "number": name[2], "median": one.median,
+                "fastest": one.fastest, "read_bytes": one.read, "written_bytes": one.written,
+            }
+            for name, one in zip(names(found.passes), found.passes, strict=True)
+        ],
+    }
+    if compared:
+        made["compared"] = {
+            "device": compared.device, "new": compared.new, "gone": compared.gone,
+            "ratios": [_told(one) for one in compared.ratios], "slower": [_told(one) for one in slower],
+        }
+    return made
+
+
+def _told(one: Ratio) -> dict[str, Any]:
+    return {
+        "nodes": list(one.nodes), "functions": list(one.functions), "median": one.median, "fastest": one.fastest,
+        "ratio": one.judged,
+    }

@@ -1,0 +1,108 @@
+"""`halation git-driver`: what git calls, once `halation git-setup` told it to. Other JSON is treated as text."""
+
+from __future__ import annotations
+
+import difflib
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from .outcome import note
+from .versions import is_colored, painted, show
+
+if TYPE_CHECKING:
+    from ..graph import Graph
+
+CONFLICTS = 1
+"""What git takes for a merge that left something to be decided; ours is in place."""
+
+
+def git_driver(
+    task: Annotated[str, typer.Argument(metavar="diff|text|merge", help="What git wants.")],
+    words: Annotated[list[str], typer.Argument(help="What git says about it.")],
+) -> int:
+    """What git calls for graphs; see git-setup."""
+    from ..errors import UsageError
+
+    if task == "diff" and len(words) in (1, 7, 8, 9):
+        return _diff(words)
+    if task == "text" and len(words) == 1:
+        return _text(words[0])
+    if task == "merge" and len(words) == 4:
+        return _merge(*words)
+    raise UsageError(f"git-driver {task}: git calls this as git-setup tells it to; see halation git-setup --help")
+
+
+def _diff(words: Sequence[str]) -> int:
+    """`git diff`: path, then file, hash and mode of both sides; the new path of one that moved. Git wants a 0."""
+    from ..document.versions import difference, told
+    from ..graph import Graph
+
+    path, colored = words[7] if len(words) > 7 else words[0], is_colored()
+    if len(words) == 1:
+        print(painted(f"graph {path}: the merge is unfinished", "@", colored))
+        return 0
+    before, after = _read(words[1]), _read(words[4])
+    graphs = [_graph(text, path) if text else Graph() for text in (before, after)]
+    moved = f"{words[0]} -> {path}" if path != words[0] else path
+    state = ", new" if words[2] == "." else ", deleted" if words[5] == "." else ""
+    one, other = graphs
+    if one is None or other is None:
+        for line in difflib.unified_diff(before.splitlines(), after.splitlines(), f"a/{words[0]}", f"b/{path}",
+                                         lineterm=""):
+            print(painted(line, line[:1], colored))
+        return 0
+    lines = told(difference(one, other), one, other)
+    print(painted(f"graph {moved}{state}", "@", colored))
+    if not lines:
+        print("  only the layout, or how the file is written")
+    show(lines, colored)
+    return 0
+
+
+def _text(file: str) -> int:
+    """`git log -p`, `git show`: a fact on each line, which git compares."""
+    from ..document.versions import facts
+
+    text = _read(file)
+    graph = _graph(text, file)
+    sys.stdout.write(text if graph is None else "".join(f"{line}\n" for line in facts(graph)))
+    return 0
+
+
+def _merge(base: str, ours: str, theirs: str, path: str) -> int:
+    """`git merge` and all that merges: the result goes where ours was."""
+    from ..document.disk import write_text
+    from ..errors import DocumentError
+    from .merge import merged_versions, tell
+
+    if not any('"halation"' in _read(file) for file in (ours, theirs)):
+        return subprocess.run(["git", "merge-file", "-L", "ours", "-L", "base", "-L", "theirs", ours, base, theirs],
+                              check=False).returncode
+    try:
+        made = merged_versions(base, ours, theirs)
+    except DocumentError as fault:
+        note(f"halation: {path}: it cannot be merged, ours is left as it was: {fault}")
+        return CONFLICTS
+    write_text(Path(ours), made.text)
+    tell(made, path)
+    return CONFLICTS if made.conflicts else 0
+
+
+def _graph(text: str, name: str) -> Graph | None:
+    """The graph in a text, if there is one."""
+    from .. import document
+    from ..errors import DocumentError
+
+    try:
+        return document.loads(text, name, follow=False)
+    except DocumentError:
+        return None
+
+
+def _read(file: str) -> str:
+    return Path(file).read_text(encoding="utf-8-sig", errors="replace")

@@ -1,0 +1,136 @@
+"""Two graphs, rendered and compared picture by picture."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .options import bound, report_problems
+from .outcome import note
+from .versions import version
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from ..graph import Graph
+    from ..media.compare import Compared
+
+    Pictures = Mapping[str, np.ndarray]
+
+How = tuple[Sequence[str], tuple[int, int] | None, float, int | None]
+"""Inputs as typed, size, scale and frame, of which the last may be left open."""
+
+COLUMNS = 3
+
+
+def compared(a: str, b: str, how: How, output: Path | None) -> list[dict[str, Any]]:
+    """How far every output of two graphs is apart; with `output` they are shown there side by side.
+
+    Raises the errors of `app.errors`.
+    """
+    from ..media.compare import compare
+    from ..renderer import Renderer, open_device
+
+    inputs, size, scale, frame = how
+    graphs = [version(source, follow=True) for source in (a, b)]
+    for source, graph in zip((a, b), graphs, strict=True):
+        report_problems(Path(source), graph)
+    bindings = _bindings(graphs, inputs)
+    renderer = Renderer(open_device())
+    note(renderer.device.description)
+    made: list[Pictures] = []
+    try:
+        for graph, bound_inputs in zip(graphs, bindings, strict=True):
+            pictures, frame = _rendered(renderer, graph, bound_inputs, (size, scale), frame)
+            made.append(pictures)
+    finally:
+        renderer.close()
+    before, after = made
+    found: list[dict[str, Any]] = []
+    for name in dict.fromkeys((*before, *after)):
+        if name in before and name in after:
+            found.append(_told(name, compare(after[name], before[name], linear=_is_color(graphs, name))))
+        else:
+            found.append({"output": name, "same": False, "words": f"only {a if name in before else b} has it"})
+    if output:
+        _show(output, (a, b), graphs, before, after)
+    return found
+
+
+def _bindings(graphs: Sequence[Graph], inputs: Sequence[str]) -> list[dict[str, str]]:
+    """What is bound to the inputs of both: an input that only one of them has is bound there."""
+    names = {item.partition("=")[0] for item in inputs if "=" in item}
+    known = set[str]().union(*(graph.inputs for graph in graphs))
+    if names - known:
+        bound(graphs[0], inputs)
+    fitting = ([item for item in inputs if "=" not in item or item.partition("=")[0] in graph.inputs]
+               for graph in graphs)
+    return [bound(graph, items) for graph, items in zip(graphs, fitting, strict=True)]
+
+
+def _rendered(
+    renderer: Any, graph: Graph, inputs: Mapping[str, str], canvas: tuple[tuple[int, int] | None, float],
+    frame: int | None,
+) -> tuple[Pictures, int]:
+    """The outputs of a graph, and which frame it was."""
+    from ..renderer import Reel, Wanted
+
+    reel = Reel(renderer, graph, Wanted(inputs, size=canvas[0], scale=canvas[1]))
+    try:
+        chosen = reel.frames[0] if frame is None else frame
+        return reel.render(chosen), chosen
+    finally:
+        reel.close()
+
+
+def _told(name: str, far: Compared) -> dict[str, Any]:
+    """The measures of two pictures, and in words; what is not finite is null for machines."""
+    if far.fault:
+        return {"output": name, "same": False, "words": far.fault.replace("is expected", "before").replace(
+            "are expected", "before")}
+    measures = {"max_abs": far.max_abs, "rms": far.rms, "psnr": far.psnr, "ssim": far.ssim, "flip": far.flip}
+    finite = {key: number if math.isfinite(number) else None for key, number in measures.items()}
+    if far.equal:
+        return {"output": name, "same": True, "words": "the same", **finite}
+    worst = f" at {far.worst[0]},{far.worst[1]}" if far.worst else ""
+    words = (
+        f"max abs {far.max_abs:.3g}{worst}, RMS {far.rms:.3g}, PSNR {far.psnr:.1f} dB, SSIM {far.ssim:.4f}, "
+        f"FLIP {far.flip:.4f}"
+    )
+    return {"output": name, "same": False, "words": words, **finite, "worst": far.worst}
+
+
+def _is_color(graphs: Sequence[Graph], name: str) -> bool:
+    from ...nodes import Kind
+
+    return all(graph.outputs[name].kind is Kind.IMAGE for graph in graphs if name in graph.outputs)
+
+
+def _show(output: Path, names: tuple[str, str], graphs: Sequence[Graph], before: Pictures, after: Pictures) -> None:
+    """A row for each output: before, after, and the difference, its largest as white."""
+    import numpy as np
+
+    from ...nodes import Kind
+    from .. import media
+    from ..media.compare import amplified
+    from ..media.sheet import data_shown, sheet, shown
+
+    cells: dict[str, np.ndarray] = {}
+    for name in dict.fromkeys((*before, *after)):
+        pair = [pictures.get(name) for pictures in (before, after)]
+        there = [picture for picture in pair if picture is not None]
+        numbers = np.concatenate([picture[np.isfinite(picture)].ravel() for picture in there])
+        low, high = (float(numbers.min()), float(numbers.max())) if numbers.size else (0.0, 1.0)
+        for title, graph, picture in zip(names, graphs, pair, strict=True):
+            if picture is None:
+                cells[f"{name}: not in {title}"] = np.zeros((*there[0].shape[:2], 3), np.float32)
+            elif graph.outputs[name].kind is Kind.IMAGE:
+                cells[f"{name}: {title}"] = shown(picture, graph.outputs[name].view)
+            else:
+                cells[f"{name}: {title}"] = data_shown(picture, low, high if high > low else low + 1.0)
+        first, second = there[0], there[-1] if len(there) == len(names) else np.zeros_like(there[0])
+        cells[f"{name}: difference"] = amplified(second, first)
+    media.write(output, {"image": sheet(cells, COLUMNS)}, kinds={"image": Kind.IMAGE}, view="none")
+    note(f"{output}")

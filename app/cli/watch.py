@@ -1,0 +1,117 @@
+"""`halation watch`: rendered again whenever something changes."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ..errors import HalationError, UsageError
+from . import parsing
+from .options import GraphFile, Inputs, Lazy, Node, Scale, Sets, SizeText, bound, opened, report_problems
+from .outcome import note
+
+if TYPE_CHECKING:
+    from ..editor.services.rerendering import Turn
+    from ..graph import Graph
+    from ..renderer.job import Progress, Report
+
+_LISTED = 3
+
+
+def watch(
+    graph: GraphFile,
+    output: Annotated[
+        list[str], typer.Option("-o", "--output", metavar="[NAME=]FILE", help="Where to write, as for render.")
+    ],
+    inputs: Inputs = None,
+    sets: Sets = None,
+    node: Node = "",
+    size: SizeText = None,
+    scale: Scale = 1.0,
+    frame: Annotated[
+        int | None, typer.Option(help="The one frame to render; by default the first of the graph.")
+    ] = None,
+    frames: Annotated[
+        str | None,
+        typer.Option(metavar="1-24x2,40", help="The frames to render; the file's name has #### for the number."),
+    ] = None,
+    precision: Annotated[
+        str | None, typer.Option(metavar="half|float", help="Precision of intermediates and of EXR files.")
+    ] = None,
+    view: Annotated[str, typer.Option(help="OpenColorIO view for pictures that are not EXR.")] = "",
+    compression: Annotated[str, typer.Option(help="EXR compression.")] = "zip",
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON object per line for every render.")] = False,
+) -> int:
+    """Render, and render again whenever the graph, its groups, code, pictures or shaders change, until Ctrl-C.
+
+    What is broken is said in a sentence, and waited for.
+    """
+    from ..editor.services.rerendering import Rerendering
+    from ..renderer import Renderer, Wanted, open_device
+    from ..renderer.job import Writing, run_job
+
+    if str(graph) == "-":
+        raise UsageError("-: standard input cannot be watched: name the file of a graph")
+    depth = parsing.precision(precision) if precision is not None else None
+    canvas, proxy = parsing.size(size), parsing.scale(scale)
+    files, chosen = parsing.paths(output), parsing.frames(frame, frames)
+    renderer = Renderer(open_device())
+    note(renderer.device.description)
+
+    def load() -> Graph:
+        found = opened(graph, sets or ())
+        report_problems(graph, found)
+        return found
+
+    def render(found: Graph, progress: Progress) -> Report:
+        bindings, targets = bound(found, inputs or ()), parsing.targets(found, node)
+        first, last = (0, 0) if chosen else Lazy().frames(found, inputs or ())
+        every = chosen or (tuple(range(first, last + 1)) if parsing.numbered(files) else (first,))
+        wanted = Wanted(bindings, targets, canvas, proxy, precision=depth)
+        return run_job(
+            renderer, found, wanted, Writing(files, view, compression, depth or "half"), every, progress=progress
+        )
+
+    turns = Rerendering(graph, lambda found: bound(found, inputs or ()), load, render)
+    begun = False
+    try:
+        for turn in turns:
+            if isinstance(turn.fault, UsageError) and not begun:
+                raise turn.fault  # what was typed will not change
+            begun = True
+            _tell_json(turn) if as_json else _tell(turn)
+    finally:
+        turns.close()
+    return 0
+
+
+def _tell(turn: Turn) -> None:
+    """One line."""
+    now = time.strftime("%H:%M:%S")
+    if turn.report is None:
+        note(f"{now}  {turn.fault}")
+        return
+    files = [str(path) for path in turn.report.written]
+    what = files[0] if len(files) == 1 else f"{files[0]} and {len(files) - 1} more"
+    names = [path.name for path in turn.changed]
+    more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
+    why = f"  ({', '.join(names[:_LISTED])}{more} changed)" if names else ""
+    note(f"{now}  {what}  {turn.seconds:.2f} s, {turn.report.passes} passes{why}")
+
+
+def _tell_json(turn: Turn) -> None:
+    said: dict[str, object] = {"changed": [str(path) for path in turn.changed], "seconds": round(turn.seconds, 4)}
+    if turn.report is None:
+        fault = turn.fault or HalationError()
+        error = {"kind": type(fault).__name__, "message": str(fault), "exit_code": fault.exit_code}
+        said["error"] = error
+    else:
+        said["written"] = [str(path) for path in turn.report.written]
+        said["frames"] = [item.frame for item in turn.report.frames]
+        said["passes"] = turn.report.passes
+    print(json.dumps(said, ensure_ascii=False))
+    sys.stdout.flush()

@@ -1,0 +1,110 @@
+"""What can be written: names that are there, notes beside parameters, files to include."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import imgui
+from imgui_bundle.imgui_color_text_edit import TextEditor
+
+from ...compiler import installed
+from ...written import Code
+from ...written.notes import EDGES, UNITS
+from ..theme.style import ui_scale, vec4
+from ..toolkit.buttons import quiet
+from ..toolkit.places import record
+from ..toolkit.words import dim, font, tip
+
+if TYPE_CHECKING:
+    from ..editor import Editor
+    from .page import Page
+
+_POPUP = "help for code"
+
+NAMES = (
+    ("vec4 f(vec4 image)", "the last function is the node: pictures in, a picture out"),
+    ("vec4 vec3 vec2 float", "a parameter without a default is a picture: color, vector or field"),
+    ("out vec4 a, out float b", "several outputs, in a function that returns void; they come last"),
+    ("ivec2 pixel, extent", "where the pixel is, from the top left corner, and the size of the picture"),
+    ("image_at(ivec2 p)", "exactly that pixel of the input 'image'"),
+    ("image_near(vec2 p)", "filtered, at a place in pixels; pixel centers are at .5"),
+    ("ivec2 image_size", "the size of the input 'image'"),
+    ("int frame", "the frame that is rendered"),
+    ("float proxy", "the scale of the picture: multiply sizes in pixels by it"),
+    ("MODE_ADD", "the choice 'add' of the value 'mode', for comparing"),
+)
+NOTES = (
+    ("= 0.5", "makes a parameter a value, with that default"),
+    ("0..1", "the range of its slider"),
+    (">= 0, <= 10", "limits that no number may leave"),
+    ('"Amount"', "what it is called"),
+    (" ".join(UNITS), "its unit: px shrinks with a proxy, deg arrives in radians"),
+    ("color", "a swatch, for vec3 and vec4"),
+    ("handle", "a point that is dragged in the viewer, for vec2"),
+    ("= add, one of add | max", "choices, for an int"),
+    ("optional 0", "a picture that need not be linked, and what it is then"),
+    (" ".join(EDGES), "how pictures go on beyond their edges"),
+    (": a sentence", "what it does; it comes last"),
+)
+
+
+class Help:
+    """The question mark, and the list that it opens."""
+
+    def draw(self, editor: Editor, page: Page, code: Code) -> None:
+        """Draw the button, and the list if it is open."""
+        if quiet(editor, icons.ICON_FA_CIRCLE_QUESTION, "button code help", "What can be written"):
+            imgui.open_popup(_POPUP)
+        scale = ui_scale()
+        imgui.set_next_window_size_constraints((420 * scale, 60 * scale), (620 * scale, 560 * scale))
+        if imgui.begin_popup(_POPUP):
+            if code.language == "isf":
+                dim(editor, "Shaders in the Interactive Shader Format: isf.video describes it.")
+            else:
+                _table(editor, "Names", NAMES)
+                _table(editor, "// after a parameter", NOTES)
+                _includes(editor, page)
+            imgui.end_popup()
+
+
+def includes() -> Iterator[tuple[str, str]]:
+    """The files that code can include, and the signatures of their functions."""
+    for name, text in sorted(installed().texts.items()):
+        if name.startswith("lib/"):
+            yield name, "\n".join(
+                f"{one.result} {one.name}({', '.join(f'{glsl} {called}' for glsl, called in one.parameters)})"
+                for one in text.all_functions
+            )
+
+
+def _table(editor: Editor, title: str, lines: tuple[tuple[str, str], ...]) -> None:
+    _title(editor, title)
+    if imgui.begin_table(title, 2, int(imgui.TableFlags_.sizing_fixed_fit)):
+        for name, does in lines:
+            imgui.table_next_row()
+            imgui.table_next_column()
+            with font(editor, "mono", 14.0):
+                imgui.text_unformatted(name)
+            imgui.table_next_column()
+            dim(editor, does)
+        imgui.end_table()
+
+
+def _includes(editor: Editor, page: Page) -> None:
+    """Files to include; a click writes the line."""
+    _title(editor, "#include")
+    for name, functions in includes():
+        with font(editor, "mono", 14.0):
+            chosen = imgui.selectable(f"{name}.glsl", False)[0]
+        record(editor, f"include {name}")
+        tip(functions)
+        if chosen:
+            start = TextEditor.DocPos(0, 0)
+            page.widget.replace_section_text(start, start, f'#include "{name}.glsl"\n')
+
+
+def _title(editor: Editor, title: str) -> None:
+    with font(editor, "bold"):
+        imgui.text_colored(vec4(editor.palette.accent), title)

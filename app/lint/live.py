@@ -1,0 +1,60 @@
+"""What is worth a hint while a graph is being edited: what costs quality, not what is merely unfinished."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+from ...nodes import Node
+from ..graph import Graph, Problem, problems
+from ..graph.problems import differ_in_nodes, rechecked
+from .allowing import allowed
+from .rules import data, filtering, light
+from .sheet import Sheet, bodies
+
+_CHECKS = (*filtering.CHECKS, *light.CHECKS, *data.CHECKS)
+
+
+def remarks(graph: Graph, types: Mapping[str, type[Node]]) -> tuple[Problem, ...]:
+    """The problems of a graph; of one that has no errors hints too, groups in its file included."""
+    found = problems(graph, types)
+    if any(problem.severity == "error" for problem in found):
+        return found
+    return (*found, *sorted(_hints(graph), key=lambda item: (item.node, item.socket, item.sentence)))
+
+
+def again(
+    graph: Graph, before: Graph, found: tuple[Problem, ...], types: Mapping[str, type[Node]]
+) -> tuple[Problem, ...]:
+    """The same as `remarks(graph)`, given what that found in a graph of `before`; quick while a value is dragged."""
+    if differ_in_nodes(graph, before) and _same_roles(graph, before):
+        now = rechecked(graph, before, found, types)
+        if now is found:
+            return found
+    return remarks(graph, types)
+
+
+def _hints(graph: Graph) -> Iterator[Problem]:
+    for body, inside, _ in bodies(graph):
+        sheet = Sheet(body)
+        for check in _CHECKS:
+            for problem in check.find(sheet):
+                made = replace(problem, node=f"{inside}{problem.node}")
+                if not allowed(graph, made):
+                    yield made
+
+
+def _same_roles(graph: Graph, before: Graph) -> bool:
+    """True if every node does something as before, and reads what it read."""
+    changed = ((item, before.nodes[id]) for id, item in graph.nodes.items() if item is not before.nodes[id])
+    return graph.muted == before.muted and all(
+        isinstance(new, Node) and isinstance(old, Node) and _same_role(new, old) for new, old in changed
+    )
+
+
+def _same_role(new: Node, old: Node) -> bool:
+    if isinstance(new, filtering.FILTERS):  # hints name their numbers
+        return False
+    texts = (name for name, value in new.values.items() if value.type in ("path", "text", "choice"))
+    same = type(new) is type(old) and all(getattr(new, name) == getattr(old, name) for name in texts)
+    return same and (new.identity() is None) == (old.identity() is None)

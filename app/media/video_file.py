@@ -1,0 +1,215 @@
+"""A video that is written frame by frame, and is there when it is whole or not at all."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from contextlib import ExitStack
+from fractions import Fraction
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from ...nodes import Kind, Size
+from ..errors import OutputError
+from .encoding import Encoding
+from .store import check_room, reason_of, unfinished
+from .video.codecs import find_codec
+from .video.library import library
+from .video.signals import Array, from_rgb, scales
+from .write import shown_layer
+
+_RGB, _UNKNOWN = 0, 2
+_LIMITED, _FULL = 1, 2
+_TAGS = MappingProxyType({
+    "srgb_rec709_scene": (1, 13), "srgb_p3d65_scene": (12, 13), "g24_rec709_scene": (1, 1), "g22_rec709_scene": (1, 4),
+    "lin_rec709_scene": (1, 8), "pq_rec2020_scene": (9, 16), "hlg_rec2020_scene": (9, 18), "g24_rec2020_scene": (9, 14),
+})
+"""Spaces of pictures for people -> primaries and transfer characteristics by the numbers of ITU-T H.273."""
+
+_NTSC = 1001
+
+
+def check_video(
+    path: str | Path, kinds: Mapping[str, Kind], sizes: Mapping[str, Size], *, codec: str, encoding: Encoding
+) -> None:
+    """Refuse, before there are pixels, what a `VideoFile` would refuse. Raises UsageError, OutputError."""
+    encoding.check()
+    find_codec(path, codec, sizes[shown_layer(path, kinds)])
+    check_room(path)
+
+
+class VideoFile:
+    """Takes pictures one after the other. Until `close`, and after `abort`, an older file is as it was.
+
+    Pictures are encoded as PNG files are, and tagged so: for the usual display BT.709 primaries with the curve of sRGB,
+    and where there is chroma the BT.709 matrix and the limited range. Without alpha pictures are shown over black.
+    `rate` is frames per second; `deep` asks for more than 8 bits where the codec can.
+    """
+
+    def __init__(
+        self, path: str | Path, size: Size, rate: float | Fraction, *, codec: str = "", deep: bool = False,
+        encoding: Encoding | None = None, metadata: Mapping[str, Any] | None = None,
+    ) -> None:
+        """Open it. Raises UsageError for what cannot be, OutputError where nothing can be written."""
+        self.path, self.size, self._rate = Path(path), size, exact_rate(rate)
+        self._codec, self._encoding = find_codec(path, codec, size), encoding or Encoding()
+        self._format, self._count = self._codec.pixels[deep], 0
+        self._av, self._open = library(), ExitStack()
+        self._part, self._target = self._open.enter_context(unfinished(path))
+        try:
+            self._container, self._stream = self._opened(_tags(metadata or {}))
+        except BaseException:
+            self.abort()
+            raise
+
+    def add(self, layers: Mapping[str, Array], kinds: Mapping[str, Kind]) -> None:
+        """Write one more frame: the first picture among the layers, [h, w, c]. Raises OutputError."""
+        picture = layers[shown_layer(self.path, kinds)]
+        height, width = picture.shape[:2]
+        if (width, height) != self.size:
+            here, there = f"{width}x{height}", f"{self.size[0]}x{self.size[1]}"
+            raise OutputError(f"{self.path}: frame {self._count + 1} is {here}, those before it {there}: give --size")
+        frame = self._frame(picture)
+        frame.pts, frame.time_base = self._count, 1 / self._rate
+        self._count += 1
+        self._put(frame)
+
+    def close(self) -> None:
+        """Finish it and give it its name. Raises OutputError; the file is not there then."""
+        try:
+            self._put(None)
+            self._try(self._container.close)
+            with self._part.open("r+b") as file:
+                os.fsync(file.fileno())
+            self._part.replace(self._target)
+        except OSError as error:
+            raise OutputError(f"{self.path}: cannot be written: {reason_of(error)}") from error
+        finally:
+            self.abort()
+
+    def abort(self) -> None:
+        """Leave nothing behind, unless it was closed."""
+        self._open.close()
+
+    # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _opened(self, tags: Mapping[str, str]) -> tuple[Any, Any]:
+        options = {"fflags": "+bitexact"}
+        suffix = self._part.suffix.casefold()
+        if suffix in (".mp4", ".m4v", ".mov"):
+            options["movflags"] = "+faststart+use_metadata_tags+write_colr"
+        container = self._try(lambda: self._av.open(str(self._part), "w", options=options))
+        self._open.callback(lambda: self._quietly(container))
+        stream = self._try(lambda: container.add_stream(self._codec.encoder, rate=self._rate))
+        context = stream.codec_context
+        stream.width, stream.height, stream.pix_fmt = *self.size, self._format
+        stream.options = dict(self._codec.options)
+        context.thread_count = 1
+        context.flags |= self._av.codec.context.Flags.bitexact
+        context.time_base = 1 / self._rate
+        primaries, transfer = _TAGS.get(self._encoding.shown_as, (_UNKNOWN, _UNKNOWN))
+        chroma = self._format.startswith("yuv")
+        context.colorspace, context.color_range = (self._matrix, _LIMITED) if chroma else (_RGB, _FULL)
+        context.color_primaries, context.color_trc = primaries, transfer
+        self._color = context.colorspace, context.color_range, primaries, transfer
+        if self._codec.tag and suffix != ".mkv":
+            context.codec_tag = self._codec.tag
+        container.metadata.update(tags)
+        return container, stream
+
+    @property
+    def _matrix(self) -> int:
+        return 9 if _TAGS.get(self._encoding.shown_as, (1, 0))[0] == 9 else 1
+
+    def _put(self, frame: Any) -> None:
+        for packet in self._try(lambda: self._stream.encode(frame)):
+            self._try(lambda packet=packet: self._container.mux(packet))
+
+    def _try(self, act: Any) -> Any:
+        try:
+            return act()
+        except (self._av.FFmpegError, OSError, MemoryError) as error:
+            raise OutputError(f"{self.path}: cannot be written: {reason_of(error)}") from error
+
+    def _quietly(self, container: Any) -> None:
+        try:
+            container.close()
+        except self._av.FFmpegError:
+            return
+
+    def _frame(self, picture: Array) -> Any:
+        """The planes of a picture."""
+        if picture.shape[2] < 3:
+            picture = picture[..., :1].repeat(3, axis=2)
+        if not self._codec.alpha:
+            picture = picture[..., :3]
+        form = self._av.VideoFormat(self._format)
+        bits = max(part.bits for part in form.components)
+        if self._format.startswith("yuv"):
+            shown = self._encoding.codes(picture, 16) / np.float32(65535.0)
+            planes = _chroma_planes(shown, self._matrix, self._format, bits)
+        else:
+            planes = _rgb_planes(self._encoding.codes(picture, 16 if bits == 16 else 8), self._format)
+        frame = self._av.VideoFrame(*self.size, self._format)
+        frame.colorspace, frame.color_range, frame.color_primaries, frame.color_trc = self._color
+        for plane, numbers in zip(frame.planes, planes, strict=True):
+            rows = np.zeros((plane.height, plane.line_size // numbers.dtype.itemsize), numbers.dtype)
+            rows[:, : numbers.shape[1]] = numbers
+            plane.update(rows)
+        return frame
+
+
+def _tags(metadata: Mapping[str, Any]) -> dict[str, str]:
+    """How the video was made; what its pictures say of themselves is that of one frame."""
+    said = {name: text for name, text in metadata.items() if name.startswith("halation:") and isinstance(text, str)}
+    return {name: text for name, text in said.items() if name != "halation:key"}
+
+
+def exact_rate(rate: float | Fraction) -> Fraction:
+    """Frames per second as a fraction: 23.976, 29.97 and 59.94 are those of NTSC, 24000/1001 and so on."""
+    if isinstance(rate, Fraction):
+        return rate
+    whole = round(rate * _NTSC / 1000)
+    if rate != round(rate) and abs(rate * _NTSC / 1000 - whole) < 0.005:
+        return Fraction(whole * 1000, _NTSC)
+    return Fraction(rate).limit_denominator(100_000)
+
+
+def _rgb_planes(shown: Array, format: str) -> list[Array]:
+    """Red, green, blue and alpha in the order of a format."""
+    height, width, channels = shown.shape
+    if channels == 3:
+        opaque = np.full((height, width, 1), np.iinfo(shown.dtype).max, shown.dtype)
+        shown = np.concatenate([shown, opaque], axis=2)
+    if format.startswith("gbr"):
+        return [shown[..., index] for index in (1, 2, 0, 3)]
+    order = ["rgba".index(letter) for letter in format]
+    return [shown[..., order].reshape(height, width * 4)]
+
+
+def _chroma_planes(shown: Array, matrix: int, format: str, bits: int) -> list[Array]:
+    """Luma, both color differences and alpha, rounded to the limited range."""
+    black, white, none, all = scales(bits, True)
+    luma, blue, red = from_rgb(shown[..., :3], matrix)
+    across, down = ("420" in format or "422" in format), "420" in format
+    planes: list[Array] = [luma * white + black, *(_halved(one, across, down) * all + none for one in (blue, red))]
+    if format.startswith("yuva"):
+        alpha = shown[..., 3] if shown.shape[2] == 4 else np.ones_like(shown[..., 0])
+        planes.append(alpha * np.float32((1 << bits) - 1))
+    top = (1 << bits) - 1
+    return [np.clip(plane + 0.5, 0.0, top).astype(np.uint16 if bits > 8 else np.uint8) for plane in planes]
+
+
+def _halved(plane: Array, across: bool, down: bool) -> Array:
+    """Chroma at half the size: over the left samples of luma, and in the middle between its rows."""
+    if across:
+        wide = np.pad(plane, ((0, 0), (1, 2)), mode="edge")
+        count = (plane.shape[1] + 1) // 2 * 2
+        plane = 0.25 * wide[:, 0:count:2] + 0.5 * wide[:, 1 : count + 1 : 2] + 0.25 * wide[:, 2 : count + 2 : 2]
+    if down:
+        tall = np.pad(plane, ((0, plane.shape[0] % 2), (0, 0)), mode="edge")
+        plane = 0.5 * (tall[0::2] + tall[1::2])
+    return plane

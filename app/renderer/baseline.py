@@ -1,0 +1,90 @@
+"""A measurement against an older one: what became slower, and by how much."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ..errors import UsageError
+from .bench import Bench, names
+
+JUDGED = 0.02
+"""The part of the whole that a pass must take to be judged: what takes less is lost in the noise."""
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """How many times as long something took as before: by its median, and by its fastest time.
+
+    `nodes` are those of a pass; none for the whole. A moment of noise makes one of both large, rarely both: so what is
+    judged is the smaller one.
+    """
+
+    nodes: tuple[str, ...]
+    functions: tuple[str, ...]
+    median: float
+    fastest: float
+    then: float
+    now: float
+
+    @property
+    def judged(self) -> float:
+        """The smaller of both."""
+        return min(self.median, self.fastest)
+
+
+@dataclass(frozen=True)
+class Against:
+    """A baseline: the whole first, then passes that both have and that matter; `gone` and `new` are passes of one."""
+
+    ratios: tuple[Ratio, ...]
+    gone: int
+    new: int
+    device: str
+
+    def slower(self, limit: float) -> tuple[Ratio, ...]:
+        """What took more than so many times as long, the worst first."""
+        return tuple(sorted((one for one in self.ratios if one.judged > limit), key=lambda one: -one.judged))
+
+
+def against(bench: Bench, path: Path) -> Against:
+    """Compare with what `halation bench --json` printed before. Raises UsageError for a file that is none of these."""
+    found = _read(path)
+    size = tuple(found["size"])
+    if size != bench.size:
+        then, now = ("x".join(map(str, sides)) for sides in (size, bench.size))
+        raise UsageError(f"{path}: it was measured at {then} pixels, this is {now}: use the same --size and --scale")
+    before = {(tuple(one["nodes"]), tuple(one["functions"]), one["number"]): one for one in found["passes"]}
+    ratios = [_ratio((), (), bench.median, bench.fastest, found)]
+    here = dict(zip(names(bench.passes), bench.passes, strict=True))
+    for name, one in here.items():
+        then = before.get(name)
+        if then and max(one.median / bench.median, then["median"] / found["median"]) >= JUDGED:
+            ratios.append(_ratio(one.nodes, one.functions, one.median, one.fastest, then))
+    return Against(tuple(ratios), len(before.keys() - here.keys()), len(here.keys() - before.keys()), found["device"])
+
+
+def _ratio(
+    nodes: tuple[str, ...], functions: tuple[str, ...], middle: float, fastest: float, then: Mapping[str, Any]
+) -> Ratio:
+    return Ratio(nodes, functions, middle / then["median"], fastest / then["fastest"], then["median"], middle)
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        found: Any = json.loads(path.read_bytes())
+        whole = [one[key] for one in (found, *found["passes"]) for key in ("median", "fastest")]
+        for one in found["passes"]:
+            _ = tuple(one["nodes"]), tuple(one["functions"]), int(one["number"])
+        if not all(isinstance(item, int | float) and item > 0.0 for item in whole) or len(found["size"]) != 2:
+            raise ValueError
+        return {**found, "device": str(found["device"])}
+    except OSError as fault:
+        raise UsageError(f"--compare {path}: it cannot be read ({fault.strerror})") from None
+    except (ValueError, KeyError, TypeError, RecursionError):
+        raise UsageError(
+            f"--compare {path}: it is no measurement: make one with halation bench GRAPH --json > {path.name}"
+        ) from None

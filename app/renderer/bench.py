@@ -1,0 +1,210 @@
+"""How long a graph takes on this device, pass by pass.
+
+Every pass is waited for: on a GPU a timer query says what it took there, on a software rasterizer, whose queries leave
+most of the work out, the clock does. All passes are gone through in turn and then all again, so that a moment in which
+the machine is busy with something else falls on all of them alike.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from statistics import median
+
+from ..compiler import Pass, Plan
+from ..graph import Graph
+from .engine import Renderer, Wanted
+from .reel import Reel
+from .run import Timings
+from .textures import Lease
+
+Name = tuple[tuple[str, ...], tuple[str, ...], int]
+"""What stands for a pass in every frame and every run: its nodes, its functions, and a count of such passes before."""
+
+
+@dataclass(frozen=True)
+class Timed:
+    """What a pass took, in seconds, every time; and the bytes of the textures that it reads and writes."""
+
+    nodes: tuple[str, ...]
+    functions: tuple[str, ...]
+    seconds: tuple[float, ...]
+    read: int
+    written: int
+
+    @property
+    def median(self) -> float:
+        """Half of the times were shorter."""
+        return median(self.seconds)
+
+    @property
+    def fastest(self) -> float:
+        """The time with the least disturbance."""
+        return min(self.seconds)
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Times of all passes in their order, of the whole (the sum of passes, for each time), and what came first.
+
+    `planning` is graph to plan, `compiling` is programs by the driver, `loading` is the first run with all that is read
+    from files; `lead` says how many frames were gone through before, for what nodes remember.
+    """
+
+    passes: tuple[Timed, ...]
+    totals: tuple[float, ...]
+    size: tuple[int, int]
+    planning: float
+    compiling: float
+    programs: int
+    loading: float
+    peak_bytes: int
+    lead: int
+
+    @property
+    def median(self) -> float:
+        """Of the whole."""
+        return median(self.totals)
+
+    @property
+    def fastest(self) -> float:
+        """Of the whole."""
+        return min(self.totals)
+
+
+@dataclass(frozen=True)
+class Share:
+    """Passes of the same nodes together: what is fused cannot be told apart, and has one time."""
+
+    nodes: tuple[str, ...]
+    count: int
+    median: float
+    fastest: float
+    read: int
+    written: int
+
+
+def bench(
+    renderer: Renderer, graph: Graph, wanted: Wanted, frames: Sequence[int], repeats: int, warm_up: int,
+    step: Callable[[str], None] = lambda name: None,
+) -> Bench:
+    """Measure frames of a graph: each is rendered `warm_up` times unmeasured, then `repeats` times.
+
+    `renderer` has a budget of 0, since what is kept takes no time. Raises the errors of `app.errors`.
+    """
+    compiled = renderer.runner.programs.compiled
+    started = time.perf_counter()
+    reels = {frame: Reel(renderer, graph, wanted) for frame in frames}
+    plans = {frame: reel.plan(frame) for frame, reel in reels.items()}
+    planned = time.perf_counter()
+    with renderer.device.current():
+        for plan in plans.values():
+            for one in plan.passes:
+                renderer.runner.programs.get(one)
+    programmed = time.perf_counter()
+    held: list[Lease] = []
+    timings: dict[int, list[Timings]] = {frame: [] for frame in frames}
+    try:
+        for frame, reel in reels.items():
+            step(f"frame {frame}")
+            held.append(_held(renderer, reel, frame))
+        loaded = time.perf_counter()
+        for turn in range(warm_up + repeats):
+            step(f"{turn + 1} of {warm_up + repeats}")
+            for frame, plan in plans.items():
+                taken = _once(renderer, plan)
+                if turn >= warm_up:
+                    timings[frame].append(taken)
+    finally:
+        for lease in held:
+            lease.close()
+        for reel in reels.values():
+            reel.close()
+    first = plans[frames[0]]
+    outputs = [first.surfaces[number].size for number in first.outputs.values()]
+    lead = sum(frame - reel.begin(frame) for frame, reel in reels.items() if plans[frame].memories)
+    return Bench(
+        _merged(plans, timings), tuple(_totals(timings)), outputs[0] if outputs else (0, 0), planned - started,
+        programmed - planned, renderer.runner.programs.compiled - compiled, loaded - programmed,
+        renderer.runner.textures.peak, lead,
+    )
+
+
+def shares(passes: Iterable[Timed]) -> tuple[Share, ...]:
+    """The passes by their nodes, what takes longest first."""
+    found: dict[tuple[str, ...], list[Timed]] = {}
+    for one in passes:
+        found.setdefault(one.nodes, []).append(one)
+    made = (
+        Share(
+            nodes, len(several), median(map(sum, zip(*(one.seconds for one in several), strict=True))),
+            min(map(sum, zip(*(one.seconds for one in several), strict=True))),
+            sum(one.read for one in several), sum(one.written for one in several),
+        )
+        for nodes, several in found.items()
+    )
+    return tuple(sorted(made, key=lambda share: -share.median))
+
+
+def names(passes: Iterable[Pass | Timed]) -> list[Name]:
+    """What to know passes by, in their order."""
+    seen: dict[tuple[tuple[str, ...], tuple[str, ...]], int] = {}
+    found: list[Name] = []
+    for one in passes:
+        key = (one.nodes, one.functions)
+        seen[key] = seen.get(key, -1) + 1
+        found.append((*key, seen[key]))
+    return found
+
+
+def _held(renderer: Renderer, reel: Reel, frame: int) -> Lease:
+    """What a frame is made of, on the device: pixels of files, and what was remembered before it."""
+    plan, runner = reel.plan(frame), renderer.runner
+    lease, kept = runner.lease(), runner.lease()
+    made = {number for one in plan.passes for number in one.targets}
+    given = [number for one in plan.passes for number in one.textures if number not in made]
+    uploads = {item.surface for item in plan.uploads}
+    try:
+        for run in reel.steps(frame, kept):
+            with run:
+                if run.plan is plan:
+                    for number in set(given) - uploads:
+                        lease.take(plan.surfaces[number].key)
+                for _ in run:
+                    pass
+        with runner.steps(plan, lease, uploads & set(given)) as run:
+            for _ in run:
+                pass
+    finally:
+        kept.close()
+    return lease
+
+
+def _once(renderer: Renderer, plan: Plan) -> Timings:
+    kept, taken = renderer.runner.lease(), Timings()
+    try:
+        with renderer.runner.steps(plan, kept, timings=taken) as run:
+            for _ in run:
+                pass
+    finally:
+        kept.close()
+    return taken
+
+
+def _merged(plans: Mapping[int, Plan], timings: Mapping[int, Sequence[Timings]]) -> tuple[Timed, ...]:
+    """The passes of all frames; the same pass of several is one, with the times of all."""
+    found: dict[Name, Timed] = {}
+    for frame, turns in timings.items():
+        plan = plans[frame]
+        for taken in turns:
+            for name, (one, seconds) in zip(names(one for one, _ in taken), taken, strict=True):
+                before = found[name].seconds if name in found else ()
+                read = sum(plan.surfaces[number].nbytes for number in one.textures)
+                written = sum(plan.surfaces[number].nbytes for number in one.targets)
+                found[name] = Timed(one.nodes, one.functions, (*before, seconds), read, written)
+    return tuple(found.values())
+
+
+def _totals(timings: Mapping[int, Sequence[Timings]]) -> list[float]:
+    return [sum(seconds for _, seconds in taken) for turns in timings.values() for taken in turns]

@@ -1,0 +1,44 @@
+"""The videos that a job writes: all its frames go into one file each, in their order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from .. import media
+from .decoding import Array
+from .destinations import Destination, Writing
+
+
+class Videos:
+    """Opened when their first frame comes; what is not finished leaves nothing behind."""
+
+    def __init__(self, writing: Writing, rate: Callable[[], float | Fraction]) -> None:
+        self._writing, self._rate = writing, rate
+        self._open: dict[Path, media.VideoFile] = {}
+
+    def add(self, file: Destination, layers: Mapping[str, Array], said: Mapping[str, Any]) -> None:
+        """Write one more frame; what the first one says of itself is said of all. Raises OutputError."""
+        if file.path not in self._open:
+            height, width = next(iter(layers.values())).shape[:2]
+            self._open[file.path] = media.VideoFile(
+                file.path, (width, height), self._rate(), codec=self._writing.codec,
+                deep=self._writing.precision == "float", encoding=file.encoding, metadata=said,
+            )
+        self._open[file.path].add(layers, file.kinds)
+
+    def finish(self) -> tuple[Path, ...]:
+        """Give all of them their names. Raises OutputError."""
+        for video in self._open.values():
+            video.close()
+        done = tuple(self._open)
+        self._open.clear()
+        return done
+
+    def abort(self) -> None:
+        """Remove what is not finished."""
+        for video in self._open.values():
+            video.abort()
+        self._open.clear()

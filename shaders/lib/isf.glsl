@@ -1,0 +1,16 @@
+// What stands around shaders that compute with straight display values.
+#include "lib/alpha.glsl"
+#include "lib/color.glsl"
+
+vec4 display_straight(vec4 c) {
+    c = straight(c);
+    return vec4(srgb_encode(c.rgb), c.a);
+}
+
+// Such shaders may leave color where nothing covers: memory of a display keeps it, light that is added would show it.
+vec4 from_straight(vec4 c) {
+    float alpha = clamp(c.a, 0.0, 1.0);
+    return vec4(c.rgb * alpha, alpha);
+}
+
+vec4 from_display(vec4 c) { return from_straight(vec4(srgb_decode(c.rgb), c.a)); }

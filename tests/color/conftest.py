@@ -1,0 +1,41 @@
+"""A house config in a folder, and no config from the environment."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import PyOpenColorIO as ocio
+import pytest
+from halation.nodes import ColorSettings
+from house_config import write_house
+
+
+@pytest.fixture(autouse=True)
+def no_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("OCIO", raising=False)
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Path:
+    """The file of the house config."""
+    return write_house(tmp_path)
+
+
+@pytest.fixture
+def reference(house: Path):
+    """The house config as OpenColorIO reads it."""
+    return ocio.Config.CreateFromFile(str(house))
+
+
+@pytest.fixture
+def color(house: Path) -> ColorSettings:
+    """Settings of a graph that works in ACEScg by the role of the house config."""
+    return ColorSettings(str(house), "scene_linear")
+
+
+@pytest.fixture
+def light() -> np.ndarray:
+    """Colors [24, 32, 3] over sixteen stops."""
+    random = np.random.default_rng(5)
+    return np.exp2(random.uniform(-10.0, 6.0, (24, 32, 3))).astype(np.float32)

@@ -1,0 +1,141 @@
+"""Which config counts, and what is said of one that cannot be read."""
+
+from __future__ import annotations
+
+import json
+
+import halation.app as hal
+import numpy as np
+import pytest
+from halation.app import document
+from halation.app.errors import GraphError, UsageError
+from halation.app.graph import color_settings
+from halation.app.graph.paths import rebased
+from halation.app.media import displays, looks, views, working_of
+from halation.app.media.managed import color_digest, managed
+from halation.app.media.primaries import xyz_of
+from halation.nodes import ColorSettings
+from house_config import AP1_LUMINANCE, AP1_TO_REC709, HOUSE, studio, write_house
+
+AP1 = (0.713, 0.293, 0.165, 0.830, 0.128, 0.044, 0.32168, 0.33767)
+
+
+def graph_of(**color: str):
+    return document.loads(json.dumps({"halation": 1, "settings": {"color": color}}), folder="/shots/a")
+
+
+def test_a_graph_comes_before_the_environment_and_that_before_the_built_in_one(house, tmp_path, monkeypatch):
+    assert displays()[0] == "sRGB - Display" and managed().plain
+    monkeypatch.setenv("OCIO", str(house))
+    assert displays() == ("Screen", "Projector") and not managed().plain
+    other = write_house(tmp_path, "other.ocio", HOUSE.replace("Screen", "Wall"))
+    assert displays(ColorSettings(str(other))) == ("Wall", "Projector")
+    assert displays(ColorSettings("ocio://default"))[0] == "sRGB - Display"
+    assert views("Screen") == ("Plain", "Warm", "none") and views("proj") == ("Dim", "none") and looks() == ("warm",)
+
+
+def test_a_config_that_changes_is_read_again(house):
+    color = ColorSettings(str(house))
+    digest = color_digest(color)
+    house.write_text(HOUSE.replace("Projector", "Laser projector"))
+    assert displays(color) == ("Screen", "Laser projector") and color_digest(color) != digest
+
+
+def test_paths_start_at_the_folder_of_the_graph():
+    graph = graph_of(config="../house.ocio")
+    assert color_settings(graph).config == "/shots/a/../house.ocio"
+    assert rebased(graph, "/shots/b/c").settings.color.config == "../../house.ocio"
+    built_in = graph_of(config="ocio://default")
+    assert color_settings(built_in).config == rebased(built_in, "/x").settings.color.config == "ocio://default"
+
+
+def test_only_what_differs_is_saved_and_the_rest_is_kept():
+    plain = document.loads('{"halation": 1}')
+    assert "color" not in document.dumps(plain) and plain.settings.color == ColorSettings()
+    text = '{"halation": 1, "settings": {"color": {"working": "ACEScg", "new": [1]}}}'
+    again = json.loads(document.dumps(document.loads(text)))
+    assert again["settings"] == {"color": {"new": [1], "working": "ACEScg"}}
+    with pytest.raises(GraphError, match=r"settings\.color\.config"):
+        document.loads('{"halation": 1, "settings": {"color": {"config": 3}}}')
+
+
+@pytest.mark.parametrize(("config", "said"), [
+    ("hause.ocio", r"settings\.color\.config: .*hause\.ocio: there is no such color config; did you mean 'house\.ocio'"),
+    ("broken.ocio", r"settings\.color\.config: .*broken\.ocio: is no color config that can be read"),
+    ("ocio://studio-config-latst", r"no such built-in config; did you mean 'ocio://studio-config-latest'"),
+])
+def test_a_config_that_is_not_there(house, tmp_path, config, said):
+    (tmp_path / "broken.ocio").write_text("hello: [")
+    path = config if config.startswith("ocio:") else str(tmp_path / config)
+    with pytest.raises(GraphError, match=said) as fault:
+        displays(ColorSettings(path))
+    assert "\n" not in str(fault.value)
+
+
+def test_a_broken_environment_is_one_of_usage(monkeypatch, tmp_path):
+    monkeypatch.setenv("OCIO", str(tmp_path / "gone.ocio"))
+    with pytest.raises(UsageError, match=r"^\$OCIO: .*gone\.ocio: there is no such color config"):
+        displays()
+    assert displays(ColorSettings("ocio://default"))
+
+
+@pytest.mark.parametrize("name", ["ACEScg", "acescg", "lin_ap1", "scene_linear", "lin_ap1_scene"])
+def test_acescg_by_its_names(name):
+    made = working_of(ColorSettings("", name))
+    assert made is not None
+    np.testing.assert_allclose(np.reshape(made.to_rec709, (3, 3)), AP1_TO_REC709, atol=1e-6)
+    np.testing.assert_allclose(np.reshape(made.from_rec709, (3, 3)), np.linalg.inv(AP1_TO_REC709), atol=1e-6)
+    assert made.luminance == pytest.approx(AP1_LUMINANCE, abs=1e-9)
+    np.testing.assert_allclose(xyz_of(AP1)[1], AP1_LUMINANCE, atol=1e-9)
+
+
+@pytest.mark.parametrize("name", ["", "linear rec709", "lin_rec709_scene", "Linear Rec.709 (sRGB)", "lin_srgb"])
+def test_linear_rec709_needs_no_other_shaders(name, house):
+    assert working_of(ColorSettings("", name)) is None and working_of(ColorSettings(str(house), name)) is None
+
+
+def test_a_house_may_call_it_otherwise(house):
+    manager = managed(ColorSettings(str(house)))
+    assert manager.working.name == "house seven"  # found by what it computes
+    assert managed(ColorSettings(str(house), "acescg")).working.name == "house linear"
+    made = working_of(ColorSettings(str(house), "scene_linear"))
+    assert made is not None and made.luminance == pytest.approx(AP1_LUMINANCE, abs=1e-9)
+
+
+def test_what_a_config_lacks_comes_over_the_interchange_space(house, light):
+    manager = managed(ColorSettings(str(house)))
+    found = manager.find("arri logc4")
+    assert found is not None and not found.own
+    made = light.reshape(-1, 3).copy()
+    manager.processor(manager.working, found).getDefaultCPUProcessor().applyRGB(made)
+    expected = light.reshape(-1, 3).copy()
+    studio().getProcessor("lin_rec709_scene", "arri_logc4").getDefaultCPUProcessor().applyRGB(expected)
+    np.testing.assert_allclose(made, expected, atol=2e-5)
+
+
+@pytest.mark.parametrize(("working", "said"), [
+    ("ACESgc", "'ACESgc' is unknown: did you mean 'ACEScg'"), ("house log", "'house log' is not scene-linear"),
+    ("numbers", "'numbers' holds numbers, not color"),
+])
+def test_a_working_space_that_makes_no_sense(house, working, said):
+    config = "" if working == "ACESgc" else str(house)
+    with pytest.raises(GraphError, match=rf"^settings\.color\.working: {said}") as fault:
+        working_of(ColorSettings(config, working))
+    assert "\n" not in str(fault.value)
+
+
+def test_a_config_without_a_way_to_rec709_says_what_to_do(tmp_path):
+    text = HOUSE.replace("aces_interchange: exchange, ", "").replace("0.055", "0.2")
+    start = text.index("  - !<ColorSpace>\n    name: house seven")
+    end = text.index("  - !<ColorSpace>\n    name: house texture")
+    alone = write_house(tmp_path, "alone.ocio", text[:start] + text[end:])
+    with pytest.raises(GraphError, match="set settings.color.working to a space or role of this config"):
+        _ = managed(ColorSettings(str(alone))).working
+    assert managed(ColorSettings(str(alone), "scene_linear")).working.name == "house linear"
+
+
+def test_a_graph_without_files_minds_no_environment(monkeypatch):
+    monkeypatch.setenv("OCIO", "/gone.ocio")
+    text = """{"halation": 1, "settings": {"size": [8, 8]}, "outputs": {"o": {"type": "Image"}},
+        "nodes": {"c": {"type": "checker"}}, "links": {"outputs.o": "c.out"}}"""
+    assert np.isfinite(hal.render(document.loads(text))["o"]).all()

@@ -1,0 +1,196 @@
+"""Frames of videos by number, against decoding them one after the other."""
+
+from __future__ import annotations
+
+import random
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+av: Any = pytest.importorskip("av", reason="PyAV is not installed: pip install halation[video]")
+
+from halation.app import media  # noqa: E402
+from halation.app.errors import InputError  # noqa: E402
+from halation.app.media.video.index import surveyed  # noqa: E402
+from halation.app.media.video.reader import Reader, raw_frame  # noqa: E402
+from halation.nodes import Kind  # noqa: E402
+from videos import bars, decoded, number_in, write_frames, write_numbers  # noqa: E402
+
+COUNT = 45
+LATE = [sum(1 + 7 * n * n % 97 for n in range(at)) for at in range(COUNT)]
+"""Times in milliseconds that lie at uneven distances."""
+
+KINDS: dict[str, tuple[str, str, dict[str, Any]]] = {
+    "long.mp4": ("libx264", "yuv420p", {"options": {"g": "250", "bf": "3"}}),
+    "open.mp4": ("libx264", "yuv420p", {"options": {"g": "9", "bf": "3", "x264-params": "open-gop=1"}}),
+    "uneven.mkv": ("libx264", "yuv420p", {"options": {"g": "12", "bf": "2"}, "times": LATE}),
+    "refresh.mp4": ("libx264", "yuv420p", {"options": {"intra-refresh": "1", "g": "15", "bf": "0"}}),
+    "open.mov": ("libx265", "yuv420p10le", {"options": {"x265-params": "open-gop=1:keyint=12:log-level=none"}}),
+    "tape.mpg": ("mpeg2video", "yuv420p", {"options": {"g": "12", "bf": "2"}}),
+    "stream.ts": ("libx264", "yuv420p", {"options": {"g": "10", "bf": "3"}}),
+    "web.webm": ("libvpx-vp9", "yuv420p", {"options": {"g": "20", "crf": "20", "b": "0", "cpu-used": "8"}}),
+    "hidden.webm": ("libvpx", "yuv420p", {"options": {"auto-alt-ref": "1", "lag-in-frames": "12", "g": "20"}}),
+    "old.avi": ("mpeg4", "yuv420p", {"options": {"g": "12", "bf": "2", "q": "2"}}),
+    "no_times.avi": ("libx264", "yuv420p", {"options": {"g": "12", "bf": "2"}}),
+    "intra.mov": ("prores_ks", "yuv422p10le", {}),
+    "runs.mov": ("qtrle", "rgb24", {}),
+    "lossless.mkv": ("ffv1", "bgr0", {}),
+}
+
+
+@pytest.fixture(scope="module", params=KINDS)
+def video(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    codec, pixels, rest = KINDS[request.param]
+    if codec not in av.codecs_available:
+        pytest.skip(f"this PyAV has no encoder {codec}")
+    return write_numbers(tmp_path_factory.mktemp("videos") / request.param, codec, pixels, COUNT, **rest)
+
+
+def shown(frame: Any) -> np.ndarray:
+    return frame.to_ndarray(format="rgb24")
+
+
+def test_frames_are_those_of_decoding_from_the_start_in_any_order(video: Path) -> None:
+    expected, mark = decoded(video), media.fingerprint(video)
+    assert surveyed(str(video), mark)[0].count == len(expected) == COUNT
+    order = [*range(1, COUNT + 1)] * 2
+    random.Random(7).shuffle(order)
+    forgetful = Reader(str(video), mark)
+    for place, number in enumerate([1, 2, 3, *order]):
+        if place % 3:
+            forgetful._kept.clear()  # so that it must look for it
+            forgetful._bytes = 0
+        assert np.array_equal(shown(forgetful.frame(number)), expected[number - 1]), number
+        assert np.array_equal(shown(raw_frame(str(video), mark, number)), expected[number - 1]), number
+
+
+def test_frame_n_shows_n(video: Path) -> None:
+    for number in (1, 2, 13, 30, COUNT):
+        assert number_in(media.read(video, "", Kind.VECTOR, 3, number).array) == number
+
+
+def test_a_video_stands_where_a_sequence_does(video: Path) -> None:
+    found = media.find_sequence(str(video))
+    assert found is not None and found.frames == tuple(range(1, COUNT + 1)) and not found.gaps
+    assert found.path(5) == str(video)
+    assert media.frame_file(str(video), 7).number == 7
+    assert [media.frame_file(str(video), at, "hold").number for at in (-3, COUNT + 9)] == [1, COUNT]
+    assert media.frame_file(str(video), COUNT + 1, "black").black
+    with pytest.raises(InputError, match=f"has no frame {COUNT + 1}, only 1-{COUNT}"):
+        media.frame_file(str(video), COUNT + 1)
+    with pytest.raises(InputError, match="has no frame 0"):
+        media.read(video, "", Kind.IMAGE, frame=0)
+
+
+def test_reading_in_order_decodes_every_frame_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = write_numbers(tmp_path / "a.mp4", "libx264", "yuv420p", COUNT, options={"g": "10", "bf": "2"})
+    reader, fed = Reader(str(path), media.fingerprint(path)), 0
+    surveyed(str(path), media.fingerprint(path))
+    real = reader._from
+
+    def counting(index: Any, key: Any) -> Any:
+        nonlocal fed
+        fed += 1
+        return real(index, key)
+
+    monkeypatch.setattr(reader, "_from", counting)
+    for number in range(1, COUNT + 1):
+        reader.frame(number)
+    assert fed == 1
+
+
+def test_what_an_edit_list_cuts_off_is_no_frame(tmp_path: Path) -> None:
+    whole = write_numbers(tmp_path / "whole.mp4", "libx264", "yuv420p", COUNT, options={"g": "30", "bf": "0"})
+    cut = tmp_path / "cut.mp4"
+    with av.open(str(whole)) as source, av.open(str(cut), "w", options={"avoid_negative_ts": "disabled"}) as target:
+        stream = target.add_stream_from_template(source.streams.video[0])
+        step = round(1 / (24 * source.streams.video[0].time_base))
+        for packet in source.demux(video=0):
+            if packet.dts is not None:
+                packet.pts, packet.dts, packet.stream = packet.pts - 7 * step, packet.dts - 7 * step, stream
+                target.mux(packet)
+    expected = decoded(cut)
+    assert len(expected) < COUNT
+    facts, index = surveyed(str(cut), media.fingerprint(cut))
+    assert facts.count == len(expected) and index.times
+    for number in (len(expected), 1, 20, 2):
+        assert np.array_equal(shown(raw_frame(str(cut), media.fingerprint(cut), number)), expected[number - 1])
+    assert number_in(expected[0]) == 8
+
+
+def test_facts_are_those_of_the_file(tmp_path: Path) -> None:
+    color = {"colorspace": 9, "color_range": 1, "color_primaries": 9, "color_trc": 16}
+    path = write_numbers(tmp_path / "a.mkv", "ffv1", "yuv420p10le", 10, rate=25, color=color)
+    facts, _ = surveyed(str(path), media.fingerprint(path))
+    assert (facts.size, facts.count, facts.rate, facts.seconds) == ((80, 32), 10, Fraction(25), 0.4)
+    assert (facts.codec, facts.pixels, facts.bits, facts.alpha) == ("ffv1", "yuv420p10le", 10, False)
+    assert (facts.matrix, facts.range, facts.primaries, facts.transfer) == (9, 1, 9, 16)
+    info = media.info(path)
+    assert info.size == (80, 32) and info.layers[0].channels == ("R", "G", "B")
+
+
+@pytest.mark.parametrize("turn", [90, 180, 270])
+def test_a_picture_that_was_filmed_upright_is_upright(tmp_path: Path, turn: int) -> None:
+    import cv2
+
+    path = write_numbers(tmp_path / "phone.mp4", "libx264", "yuv420p", 3, rotation=turn, options={"crf": "1"})
+    other = cv2.VideoCapture(str(path))
+    other.set(cv2.CAP_PROP_ORIENTATION_AUTO, 1)
+    _, expected = other.read()
+    found = media.read(path, "", Kind.VECTOR, 3, 1).array
+    assert media.info(path).size == found.shape[1::-1]
+    assert found.shape == expected.shape
+    assert np.abs(found - expected[..., ::-1] / 255.0).max() < 0.05
+
+
+@pytest.mark.parametrize(("name", "codec", "pixels"), [
+    ("a.mov", "prores_ks", "yuva444p10le"), ("a.mov", "qtrle", "argb"), ("a.mkv", "ffv1", "bgra"),
+    ("a.webm", "libvpx-vp9", "yuva420p"),
+])
+def test_transparency_is_kept(tmp_path: Path, name: str, codec: str, pixels: str) -> None:
+    straight = np.full((32, 64, 4), 200, np.uint8)
+    straight[..., 3] = np.linspace(0, 255, 64).astype(np.uint8)
+    frame = av.VideoFrame.from_ndarray(straight, "rgba").reformat(format=pixels)
+    tags = {"alpha_mode": "1"} if name.endswith("webm") else {}
+    options = {"profile": "4"} if codec == "prores_ks" else {"crf": "4", "b": "0"} if "vp9" in codec else {}
+    path = write_frames(tmp_path / name, [frame, frame], codec, options=options, tags=tags)
+    assert media.info(path).layers[0].channels == ("R", "G", "B", "A")
+    found = media.read(path, "", Kind.IMAGE, frame=2).array
+    assert np.abs(found[..., 3] - straight[..., 3] / 255.0).max() < 0.02
+    solid = found[:, 32:]
+    light = ((200 / 255 + 0.055) / 1.055) ** 2.4
+    assert np.abs(solid[..., :3] / solid[..., 3:] - light).max() < 0.02  # premultiplied in here, straight in there
+
+
+def test_what_is_no_video_says_so(tmp_path: Path) -> None:
+    path = tmp_path / "a.mp4"
+    with pytest.raises(InputError, match="there is no such file"):
+        media.info(path)
+    path.write_bytes(b"")
+    with pytest.raises(InputError, match="is empty"):
+        media.info(path)
+    path.write_bytes(random.Random(1).randbytes(3000))
+    with pytest.raises(InputError, match="is no video, or is cut short"):
+        media.info(path)
+    good = write_numbers(tmp_path / "good.mp4", "libx264", "yuv420p", 20)
+    path.write_bytes(good.read_bytes()[: good.stat().st_size // 2])
+    with pytest.raises(InputError, match="is no video, or is cut short"):
+        media.find_sequence(str(path))
+
+
+def test_without_pyav_there_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from halation.app.media.video import index
+
+    path = write_numbers(tmp_path / "a.mkv", "ffv1", "bgr0", 2)
+    monkeypatch.setattr(index, "library", lambda: None)
+    with pytest.raises(InputError, match=r"a\.mkv: videos need PyAV: pip install halation\[video\]"):
+        media.info(path)
+
+
+def test_pictures_are_what_was_drawn(tmp_path: Path) -> None:
+    path = write_numbers(tmp_path / "a.mkv", "ffv1", "bgr0", 3)
+    read = media.read(path, "", Kind.VECTOR, 3, 3).array
+    assert np.array_equal(np.rint(read * 255.0), bars(3))
