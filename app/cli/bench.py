@@ -13,6 +13,8 @@ from . import parsing
 from .batch import shown
 from .options import AsJson, GraphFile, Inputs, Lazy, Node, Scale, Sets, SizeText, bound, opened, report_problems
 from .outcome import print_json
+from .sharing import piped
+from .watchdog import PATIENCE, Timeout, watched
 
 if TYPE_CHECKING:
     from ..renderer.baseline import Against, Ratio
@@ -22,6 +24,7 @@ _BAR = 24
 
 
 def bench(
+    context: typer.Context,
     graph: GraphFile,
     inputs: Inputs = None,
     sets: Sets = None,
@@ -43,6 +46,7 @@ def bench(
     form: Annotated[
         str | None, typer.Option(metavar="fragment|compute", help="How passes run; by default what suits the device.")
     ] = None,
+    timeout: Timeout = PATIENCE,
     as_json: AsJson = False,
 ) -> int:
     """Measure what each node and pass takes on this device: the median of several runs after warming up.
@@ -62,11 +66,13 @@ def bench(
     canvas, proxy, chosen = parsing.size(size), parsing.scale(scale), parsing.frames(frame, frames)
     whole = opened(graph, sets or ())
     report_problems(graph, whole)
+    if (code := watched(context, whole, timeout, piped(graph, whole))) is not None:
+        return code
     bindings, targets = bound(whole, inputs or ()), parsing.targets(whole, node)
     at = chosen or (Lazy().frames(whole, inputs or ())[0],)
     renderer = Renderer(open_device(way), budget=0)
     wanted = Wanted(bindings, targets, canvas, proxy, precision=depth)
-    with shown(renderer, len(at) + warm_up + repeats) as work:
+    with shown(renderer, len(at)) as work:
         found = measured(renderer, whole, wanted, at, repeats, warm_up, work.step)
     if not found.passes:
         raise UsageError(f"{graph}: there is nothing to measure: its outputs are made without a single pass")

@@ -66,7 +66,8 @@ def _reports(checker: Checker, graphs: Sequence[Path], quiet: bool) -> list[Repo
         reports.append(report)
         for finding in () if quiet else report.findings:
             problem = finding.problem
-            print(f"{path}:{finding.line}: {problem.severity}: {problem.sentence} [{problem.rule.name}]")
+            sentence, *picture = problem.sentence.split("\n")  # of an expression, where in it the fault is
+            print(f"{path}:{finding.line}: {problem.severity}: {sentence} [{problem.rule.name}]", *picture, sep="\n")
         if not quiet and not report.findings and path in graphs:
             print(f"{path}: ok")
     if not reports:

@@ -26,7 +26,10 @@ def revision(source: str) -> tuple[str, str]:
     from ..document.limits import size_fault
 
     before, path = source[: source.rindex(":")], source[source.rindex(":") + 1 :]
-    name, folder = source, top()
+    try:
+        name, folder = source, top()
+    except UsageError as fault:
+        raise DocumentError(source, "", f"there is no such file ({str(fault).removeprefix('git: ')})") from None
     try:
         size = int(_run(("cat-file", "-s", name)))
     except UsageError as fault:

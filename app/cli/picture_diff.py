@@ -12,18 +12,14 @@ from .outcome import note
 from .versions import version
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from ..graph import Graph
     from ..media.compare import Compared
 
-    Pictures = Mapping[str, np.ndarray]
+Pictures = Mapping[str, Any]
+"""Arrays [h, w, c] by output."""
 
 How = tuple[Sequence[str], tuple[int, int] | None, float, int | None]
 """Inputs as typed, size, scale and frame, of which the last may be left open."""
-
-COLUMNS = 3
-
 
 def compared(a: str, b: str, how: How, output: Path | None) -> list[dict[str, Any]]:
     """How far every output of two graphs is apart; with `output` they are shown there side by side.
@@ -109,28 +105,12 @@ def _is_color(graphs: Sequence[Graph], name: str) -> bool:
 
 
 def _show(output: Path, names: tuple[str, str], graphs: Sequence[Graph], before: Pictures, after: Pictures) -> None:
-    """A row for each output: before, after, and the difference, its largest as white."""
-    import numpy as np
+    """A row for each output."""
+    from ..media.beside import Pair, write_beside
 
-    from ...nodes import Kind
-    from .. import media
-    from ..media.compare import amplified
-    from ..media.sheet import data_shown, sheet, shown
-
-    cells: dict[str, np.ndarray] = {}
+    pairs: dict[str, Pair] = {}
     for name in dict.fromkeys((*before, *after)):
-        pair = [pictures.get(name) for pictures in (before, after)]
-        there = [picture for picture in pair if picture is not None]
-        numbers = np.concatenate([picture[np.isfinite(picture)].ravel() for picture in there])
-        low, high = (float(numbers.min()), float(numbers.max())) if numbers.size else (0.0, 1.0)
-        for title, graph, picture in zip(names, graphs, pair, strict=True):
-            if picture is None:
-                cells[f"{name}: not in {title}"] = np.zeros((*there[0].shape[:2], 3), np.float32)
-            elif graph.outputs[name].kind is Kind.IMAGE:
-                cells[f"{name}: {title}"] = shown(picture, graph.outputs[name].view)
-            else:
-                cells[f"{name}: {title}"] = data_shown(picture, low, high if high > low else low + 1.0)
-        first, second = there[0], there[-1] if len(there) == len(names) else np.zeros_like(there[0])
-        cells[f"{name}: difference"] = amplified(second, first)
-    media.write(output, {"image": sheet(cells, COLUMNS)}, kinds={"image": Kind.IMAGE}, view="none")
-    note(f"{output}")
+        view = next(graph.outputs[name].view for graph in graphs if name in graph.outputs)
+        pairs[name] = Pair(before.get(name), after.get(name), _is_color(graphs, name), view)
+    write_beside(output, pairs, names)
+    note(str(output))

@@ -102,7 +102,10 @@ def render(
     if chosen is None:
         first, last = Lazy().frames(opened_graph, inputs or ())
         chosen = tuple(range(first, last + 1)) if parsing.numbered(destinations) else (first,)
-    if jobs > 1 and (videos := Writing(destinations).videos):
+    videos = Writing(destinations).videos
+    if codec and not videos:
+        raise UsageError(f"--codec {codec}: that is for videos: write -o NAME.mp4, .mov, .mkv or .webm")
+    if jobs > 1 and videos:
         note(f"one process renders all frames, since all are in {videos[0]}")
         jobs = 1
     if min(jobs, len(chosen)) > 1 and independent(opened_graph, targets, inputs or (), chosen[0]):

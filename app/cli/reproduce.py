@@ -10,6 +10,7 @@ import typer
 from . import parsing
 from .options import AsJson, report_problems
 from .outcome import note, print_json
+from .watchdog import PATIENCE, Timeout, watched
 
 if TYPE_CHECKING:
     from ..renderer.finding import Found
@@ -20,6 +21,7 @@ _SHORT = 12
 
 
 def reproduce(
+    context: typer.Context,
     picture: Annotated[Path, typer.Argument(help="A picture that Halation rendered: EXR, PNG, TIFF or JPEG.")],
     output: Annotated[
         list[Path] | None, typer.Option("-o", "--output", metavar="FILE", help="Keep the rebuilt picture too.")
@@ -40,6 +42,7 @@ def reproduce(
         float | None,
         typer.Option(metavar="X", min=0.0, help="How far numbers may be apart; by default 0 on the same renderer."),
     ] = None,
+    timeout: Timeout = PATIENCE,
     as_json: AsJson = False,
 ) -> int:
     """Rebuild a picture from its own header, and say what differs: 0 if the pixels are the same, 1 if not."""
@@ -57,6 +60,8 @@ def reproduce(
     if fault := missing(found, picture):
         raise fault
     report_problems(picture, recipe.graph)
+    if (code := watched(context, recipe.graph, timeout)) is not None:
+        return code
     from ..renderer import Renderer
     from ..renderer.reproduction import open_alike, reproduce
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from ...nodes import Kind, Matte, Missing, Node, Render, Size, Socket, Source, catalogue
+from ...nodes import ColorSettings, Kind, Matte, Missing, Node, Render, Size, Socket, Source, catalogue
 from ..compiler import Frame, Picture, Plan, Probed, Request, compile_graph
 from ..graph import Graph, Input, Output, Port, Settings
 from .options import Lazy
@@ -16,6 +16,9 @@ NODE = "node"
 """The id that the node has in these graphs."""
 
 FULL_HD = (1920, 1080)
+
+BUILT_IN = ColorSettings("ocio://default")
+"""What a node compiles to is the same whatever $OCIO names."""
 
 CANVAS = (480, 270)
 """As large as the sample."""
@@ -60,7 +63,7 @@ def planned(node: type[Node], size: Size) -> Plan:
 
     Raises GraphError for a node that draws nothing.
     """
-    graph = Graph(settings=Settings(size)).add(NODE, node(**_reading(node, "picture.exr")))
+    graph = Graph(settings=Settings(size, color=BUILT_IN)).add(NODE, node(**_reading(node, "picture.exr")))
     pictures: dict[str, Picture] = {}
     for name, socket in node.inputs.items():
         if socket.optional:

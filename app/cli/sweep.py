@@ -12,13 +12,16 @@ from . import parsing
 from .batch import batch
 from .options import AsJson, GraphFile, Inputs, Lazy, Node, Scale, SizeText, bound, opened, report_problems
 from .outcome import note, print_json
+from .sharing import piped
 from .sweeping import axes
+from .watchdog import PATIENCE, Timeout, watched
 
 if TYPE_CHECKING:
     from ..graph import Graph
 
 
 def sweep(
+    context: typer.Context,
     graph: GraphFile,
     output: Annotated[Path, typer.Option("-o", "--output", metavar="FILE", help="The sheet: .png, .jpg, .tif, .webp.")],
     sets: Annotated[
@@ -51,6 +54,7 @@ def sweep(
     precision: Annotated[
         str | None, typer.Option(metavar="half|float", help="Precision of intermediates and of EXR files.")
     ] = None,
+    timeout: Timeout = PATIENCE,
     as_json: AsJson = False,
 ) -> int:
     """Render a graph at many values, onto one sheet with labels.
@@ -70,6 +74,8 @@ def sweep(
     canvas, proxy = parsing.size(size), parsing.scale(scale)
     whole, swept = axes(opened(graph, ()), sets or (), chosen)
     report_problems(graph, whole)
+    if (code := watched(context, whole, timeout, piped(graph, whole))) is not None:
+        return code
     bindings, targets = bound(whole, inputs or ()), parsing.targets(whole, node)
     at = chosen[0] if chosen else Lazy().frames(whole, inputs or ())[0]
     name = _output(whole, show, node)

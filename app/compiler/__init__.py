@@ -43,7 +43,7 @@ def compile_graph(
     Raises GraphError for a graph that cannot be rendered, InputError (from `outside`) for a file that cannot
     be read, DeviceError for one that is too large, ShaderError for a node and its GLSL that do not agree.
     """
-    library = _library(graph, outside, library)
+    library = graph_library(graph, outside, library)
     program = lower(graph, request, library, outside)
     passes = fuse(program, target, enabled=fusion)
     return schedule(program, passes, library, target, precision or target.precision)
@@ -51,11 +51,11 @@ def compile_graph(
 
 def examine(graph: Graph, request: Request, outside: Outside, target: Target = NULL) -> None:
     """Raise what `compile_graph` would raise, in half of the time: no program is written."""
-    program = lower(graph, request, _library(graph, outside), outside)
+    program = lower(graph, request, graph_library(graph, outside), outside)
     check_limits(program, fuse(program, target), target)
 
 
-def _library(graph: Graph, outside: Outside, library: Library | None = None) -> Library:
+def graph_library(graph: Graph, outside: Outside, library: Library | None = None) -> Library:
     """The shaders that a graph can use: the installed ones for its working space, and its own."""
     working = outside.working(color_settings(graph)) if graph.settings.color.working else None
     return library_for(library or installed(), working).including(written_texts(graph))

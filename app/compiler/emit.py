@@ -50,8 +50,8 @@ def emit(program: Program, fused: Fused, library: Library, target: Target, texel
     names = Names(program, {ref: number for number, ref in enumerate(fused.reads)}, target.form, by_image)
     halves = [texels[ref].endswith("16f") for ref in fused.writes]
     sliding = isinstance(root, Convolve) and root.stride == 1 and target.form == "compute"
-    parts = _parts(program, fused, names, library)
-    texts = _texts(program, fused, parts, library)
+    parts = parts_of(program, fused, names, library)
+    texts = texts_of(program, fused, parts, library)
     used = frozenset[str]().union(*(text.words for text in texts))
     names.uniform("ivec2", root.size, "grid")
     if "proxy" in used:
@@ -71,13 +71,9 @@ def emit(program: Program, fused: Fused, library: Library, target: Target, texel
         *_textures(names, fused, target, texels), *_targets(names, fused, target, texels),
         "ivec2 pixel = ivec2(0), extent = ivec2(0);", *_half_rounding(target, halves),
     ]
-    # What reads through the accessors, which are functions of the pass, follows them; so does what calls it.
-    late: list[Text] = []
-    for text in texts:
-        if text.words & parts.accessors.union(*(item.functions for item in late)):
-            late.append(text)
-        else:
-            lines += _included(text, files, program, fused)
+    early, late = around(texts, parts)
+    for text in early:
+        lines += _included(text, files, program, fused)
     lines += parts.functions
     for text in late:
         lines += _included(text, files, program, fused)
@@ -112,7 +108,7 @@ def _preamble(target: Target) -> list[str]:
 
 
 @dataclass(frozen=True)
-class _Parts:
+class Parts:
     """Text of a pass: shader files; functions, of which `accessors` read pictures; statements of main; results."""
 
     shaders: list[str]
@@ -122,24 +118,24 @@ class _Parts:
     accessors: frozenset[str] = frozenset()
 
 
-def _parts(program: Program, fused: Fused, names: Names, library: Library) -> _Parts:
+def parts_of(program: Program, fused: Fused, names: Names, library: Library) -> Parts:
     root = program.ops[fused.root]
     ops = [program.ops[index] for index in fused.members]
     shaders = [op.shader for op in ops if isinstance(op, Call) and not op.program]
-    if len(fused.members) > 1:
+    if len(fused.members) > 1 and names.seams:
         shaders.insert(0, "primitive/settled")
     if isinstance(root, Call):
         body, values = _calls(program, fused, names)
-        return _Parts(shaders, [], body, [values[ref] for ref in fused.writes])
+        return Parts(shaders, [], body, [values[ref] for ref in fused.writes])
     if isinstance(root, Reduce):
         body, values = _calls(program, fused, names)
         functions = bodies.source(names, root, body, values[root.image]) + bodies.reduction(names, root)
-        return _Parts(shaders, functions, [], ["reduced(pixel)"])
+        return Parts(shaders, functions, [], ["reduced(pixel)"])
     if isinstance(root, Convolve):
         functions = bodies.convolved_accessor(names, root)
         if root.stride != 1 or names.form == "fragment":
             functions += bodies.convolution(names, root)
-        return _Parts(["primitive/edges"], functions, [], ["convolved()"])
+        return Parts(["primitive/edges"], functions, [], ["convolved()"])
     assert isinstance(root, Gather)
     functions = [line for item in root.accessors for line in bodies.accessor(names, item, root.edge)]
     arguments = ", ".join(names.argument(item, {}) for item in root.parameters)
@@ -147,10 +143,10 @@ def _parts(program: Program, fused: Fused, names: Names, library: Library) -> _P
     returned = library.function(root.shader, root.function, root.owner).result
     result = convert(call, glsl_channels(returned), glsl_type(root.shapes[0].channels))
     accessors = frozenset(f"{item.name}_{way}" for item in root.accessors for way in ("raw", "at", "near", "size"))
-    return _Parts(["primitive/edges", root.shader], functions, [], [result], accessors)
+    return Parts(["primitive/edges", root.shader], functions, [], [result], accessors)
 
 
-def _texts(program: Program, fused: Fused, parts: _Parts, library: Library) -> tuple[Text, ...]:
+def texts_of(program: Program, fused: Fused, parts: Parts, library: Library) -> tuple[Text, ...]:
     """The shader files of a pass, includes first, with only the functions that it needs."""
     found: list[Text] = []
     needed = words(*parts.functions, *parts.body, *parts.results)
@@ -162,6 +158,15 @@ def _texts(program: Program, fused: Fused, parts: _Parts, library: Library) -> t
         needed |= kept.words
         found.append(kept)
     return tuple(reversed(found))
+
+
+def around(texts: tuple[Text, ...], parts: Parts) -> tuple[list[Text], list[Text]]:
+    """The files that come before the functions of a pass, and those that read through its accessors and follow them."""
+    early, late = list[Text](), list[Text]()
+    for text in texts:
+        reads = text.words & parts.accessors.union(*(item.functions for item in late))
+        (late if reads else early).append(text)
+    return early, late
 
 
 def _calls(program: Program, fused: Fused, names: Names) -> tuple[list[str], dict[Ref, str]]:
@@ -183,7 +188,7 @@ def _calls(program: Program, fused: Fused, names: Names) -> tuple[list[str], dic
         else:
             lines += [f"{glsl} {name};" for glsl, name in zip(types, outputs, strict=True)]
             lines.append(f"{op.function}({', '.join([*arguments, *outputs])});")
-        if index != fused.root:
+        if index != fused.root and names.seams:
             lines += [f"{name} = settled({name}, {names.uniform('uvec4', NO_SEAM)});" for name in outputs]
         values |= {Ref(index, output): name for output, name in enumerate(outputs)}
     return lines, values
@@ -191,16 +196,21 @@ def _calls(program: Program, fused: Fused, names: Names) -> tuple[list[str], dic
 
 def _included(text: Text, files: list[str], program: Program, fused: Fused) -> list[str]:
     """A shader file, with the macros of its node's choices around it and its own line numbers."""
-    ops = [op for op in (program.ops[index] for index in fused.members) if isinstance(op, (Call, Gather))]
-    choices = next((op.choices for op in ops if op.shader == text.name), ())
-    named = ((macro(name, one), number) for name, all_ in choices for number, one in enumerate(all_))
-    macros = [(name, number) for name, number in named if name in text.words]
+    macros = macros_of(text, program, fused)
     files.append(text.file)
     return [
         *(f"#define {name} {number}" for name, number in macros),
         f"#line {LINES_PER_FILE * (len(files) - 1) + 1}", text.body.rstrip("\n"), "#line 1",
         *(f"#undef {name}" for name, _ in macros),
     ]
+
+
+def macros_of(text: Text, program: Program, fused: Fused) -> list[tuple[str, int]]:
+    """The macros of a node's choices that its file asks for."""
+    ops = [op for op in (program.ops[index] for index in fused.members) if isinstance(op, (Call, Gather))]
+    choices = next((op.choices for op in ops if op.shader == text.name), ())
+    named = ((macro(name, one), number) for name, all_ in choices for number, one in enumerate(all_))
+    return [(name, number) for name, number in named if name in text.words]
 
 
 def macro(value: str, choice: str) -> str:
@@ -236,7 +246,7 @@ def _half_rounding(target: Target, halves: list[bool]) -> list[str]:
     return [f"vec4 as_half(vec4 c) {{ c = clamp(c, -65504.0, 65504.0); return {rounded if exact else 'c'}; }}"]
 
 
-def _main(names: Names, fused: Fused, parts: _Parts, target: Target, halves: list[bool]) -> list[str]:
+def _main(names: Names, fused: Fused, parts: Parts, target: Target, halves: list[bool]) -> list[str]:
     """A main that makes one pixel per invocation."""
     if target.form == "compute":
         start = [

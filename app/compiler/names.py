@@ -23,6 +23,8 @@ class Names:
     form: Form
     by_image: bool
     uniforms: list[tuple[str, str, Uniform]] = field(default_factory=list[tuple[str, str, Uniform]])
+    seams: bool = True
+    """Whether fused functions are kept apart: see primitive/settled.glsl."""
 
     def uniform(self, glsl: str, value: Uniform, name: str = "") -> str:
         """A uniform of this type set to `value`; booleans travel as integers."""

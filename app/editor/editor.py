@@ -14,6 +14,7 @@ from .curves.state import CurvesState
 from .dialogs import Dialogs
 from .log import Log
 from .services.renders import Renders
+from .services.shader_files import ShaderFiles
 from .theme.palette import PALETTES, Palette
 from .timeline.state import TimelineState
 from .viewer.state import ViewerState
@@ -60,6 +61,7 @@ class Editor:
     probe: Probe
     fonts: Fonts | None = None
     renders: Renders = field(default_factory=Renders)
+    shaders: ShaderFiles = field(default_factory=ShaderFiles)
     canvas: CanvasView = field(default_factory=CanvasView)
     viewer: ViewerState = field(default_factory=ViewerState)
     code: CodeState = field(default_factory=CodeState)

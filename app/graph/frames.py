@@ -158,6 +158,18 @@ def numbered(path: str) -> str:
     return f"{folder}{stem}.####.{ending}" if stem else f"{folder}{dot}{ending}.####"
 
 
+def unnumbered(path: str) -> str:
+    """A name without its place for the frame number: `out.####.exr` gives `out.exr`."""
+    try:
+        pattern = Pattern.parse(path)
+    except UsageError:
+        return path
+    if pattern is None:
+        return path
+    before, after = pattern.pieces[0].rstrip("._-"), "".join(pattern.pieces[1:])
+    return f"{pattern.folder}{before}{after}"
+
+
 def check_numbered(path: str, frames: Sequence[int]) -> None:
     """Refuse to write several frames to one name, unless that is a video. Raises UsageError."""
     if is_video(path):

@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from ...nodes import ColorChange, ColorSettings, Missing, Render, Scene
 from ..compiler import ColorProgram, Frame, Mesh, Picture, Probed, Request, Working, examine, named_files
 from ..errors import DeviceError, HalationError, InputError, ShaderError, UsageError
-from ..graph import INPUTS, Graph, Group, Problem, keyed_range
+from ..graph import INPUTS, OUTPUTS, Graph, Group, Problem, keyed_range
 from ..graph.rules import Rule
 from .rules.paths import named_paths
 
 if TYPE_CHECKING:
+    from ..media.color_faults import ColorFault
     from ..media.pictures import Pictures
 
 UNREADABLE_FILE = Rule(
@@ -103,7 +104,8 @@ class World:
 
     def probe(self, picture: Picture) -> Probed:
         """Size and precision of a picture, or something instead."""
-        key, path = (picture.path, picture.layer, picture.kind, picture.width), picture.path
+        how = (picture.kind, picture.width, picture.space, picture.color)
+        key, path = (picture.path, picture.layer, *how), picture.path
         found = None if picture.in_memory else self._once(path, key, lambda: self.pictures.probe(picture))
         return found or Probed(self.size, False, path)
 
@@ -151,7 +153,11 @@ def problems(graph: Graph, world: World) -> Iterator[tuple[int, Problem]]:
     for name in free.keys() & read:
         sentence = f"input '{name}' has no file and no default: rendering needs -i {name}=FILE"
         yield 0, Problem(INPUTS, name, sentence, UNBOUND_INPUT, f"inputs.{name}")
-    if not graph.outputs:
+    colors = list(_color_faults(graph))
+    for fault in colors:
+        problem = Problem(fault.node, fault.name, str(fault.error), BAD_SETTING, fault.at)
+        yield fault.error.exit_code, problem
+    if not graph.outputs or any(fault.node != OUTPUTS for fault in colors):
         return
     world.faults.clear()
     world.size = graph.settings.size or SIZE
@@ -168,6 +174,15 @@ def problems(graph: Graph, world: World) -> Iterator[tuple[int, Problem]]:
         places = _places(graph)
         for sentence, path in world.faults.items():
             yield InputError.exit_code, _unreadable(sentence, path, places)
+
+
+def _color_faults(graph: Graph) -> Iterator[ColorFault]:
+    """What is wrong with names of color management; what knows them is loaded only for a graph that has some."""
+    named = (*(end.view for end in graph.outputs.values()), *(end.color_space for end in graph.inputs.values()))
+    if graph.settings.color != ColorSettings() or any(name not in ("", "none") for name in named):
+        from ..media.color_faults import color_faults
+
+        yield from color_faults(graph)
 
 
 def _rule(fault: HalationError) -> Rule:

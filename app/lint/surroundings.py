@@ -12,7 +12,7 @@ from ..errors import UsageError
 from ..graph import Graph, Problem
 from ..graph.frames import Pattern
 from ..graph.rules import Rule
-from .rules.paths import is_absolute, named_paths
+from .rules.paths import is_absolute, named_paths, who
 from .sheet import bodies
 
 PATH_CASE = Rule(
@@ -43,13 +43,14 @@ class Surroundings:
             for node, socket, at, path in named_paths(body):
                 if is_absolute(path):
                     continue
-                who = f"{inside}{node}.{socket}".removesuffix(".")
+                asker = f"{inside}{who(node, socket)}"
                 problem = Problem(f"{inside}{node}", socket, "", PATH_CASE, f"{above}{at}")
                 if right := self._spelled(folder, path):
-                    yield replace(problem, sentence=f"{who}: '{path}' is called '{right}' on disk: spell it like that")
+                    sentence = f"{asker}: '{path}' is called '{right}' on disk: spell it like that"
+                    yield replace(problem, sentence=sentence)
                 whole = Path(os.path.normpath(Path(folder, path)))
                 if root and root not in whole.parents:
-                    sentence = f"{who}: '{path}' leads out of the repository, where a fresh clone has nothing"
+                    sentence = f"{asker}: '{path}' leads out of the repository, where a fresh clone has nothing"
                     yield replace(problem, sentence=sentence, rule=OUTSIDE_REPOSITORY)
 
     def root(self, folder: Path) -> Path | None:

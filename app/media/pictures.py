@@ -95,7 +95,9 @@ class Pictures:
         header = self.info(picture.path)
         layer = find_layer(header, picture.layer)
         color = picture.kind in (Kind.IMAGE, Kind.COLOR) and not layer.data
-        return Probed(header.size, layer.half, header.fingerprint + (_converted(picture) if color else ""))
+        mark = _converted(picture) if color else ""
+        half = layer.half and not (mark and _changes(picture, layer.full))
+        return Probed(header.size, half, header.fingerprint + mark)
 
     def load(self, picture: Picture) -> Array:
         """Its pixels as [height, width, channels] of float16 or float32."""
@@ -215,6 +217,19 @@ def _converted(picture: Picture) -> str:
     if not manager.plain:
         _ = manager.config, manager.working  # what is wrong with them is to be said before anything is read
     return "" if manager.plain and not picture.space else f" {picture.space} {color_mark(picture.color)}"
+
+
+def _changes(picture: Picture, layer: str) -> bool:
+    """True if the numbers of a layer do not stay as they are in the file: half floats are not enough for others."""
+    from .color import is_working
+    from .managed import managed
+    from .spaces import layer_spaces
+
+    try:
+        found = layer_spaces(picture.path, picture.color, picture.space).get(layer)
+    except InputError:  # said again when it is read
+        return True
+    return found is not None and not is_working(found, managed(picture.color))
 
 
 def _content(array: Array) -> str:

@@ -135,9 +135,15 @@ def frame_file(path: str, frame: int, missing: Missing = "error") -> Frame:
 
 def _video(path: str) -> Sequence:
     """A video as a sequence of frames that are all in one file."""
-    facts, name = video_facts(path), Path(path).name
+    facts = video_facts(path)
+    return _filmed(path, facts.count, facts.rate)
+
+
+@lru_cache(maxsize=16)
+def _filmed(path: str, count: int, rate: Fraction) -> Sequence:
+    name = Path(path).name
     pattern = Pattern(path, path[: len(path) - len(name)], (name,), ())
-    return Sequence(pattern, MappingProxyType(dict.fromkeys(range(1, facts.count + 1), name)), facts.rate)
+    return Sequence(pattern, MappingProxyType(dict.fromkeys(range(1, count + 1), name)), rate)
 
 
 def _video_frame(path: str, frame: int, missing: Missing) -> Frame:

@@ -22,6 +22,7 @@ _FAULTS = {
     errno.EROFS: "the disk is read-only: choose another",
     errno.ENOENT: "there is no such folder: create it first",
     errno.ENOTDIR: "part of the path is a file, not a folder",
+    errno.EFBIG: "the file would be larger than may be written here: make it smaller or write elsewhere",
     errno.ENAMETOOLONG: "the name is too long",
 }
 _MARGIN = 1 << 20

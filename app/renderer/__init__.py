@@ -16,6 +16,6 @@ from .textures import Lease
 
 __all__ = [
     "DEFAULT_BUDGET", "Counters", "Device", "Display", "Drawable", "Handle", "Lease", "Look", "Nonfinite", "Probe",
-    "Reel", "Renderer", "Run", "Runner", "Wanted", "describe", "first_nonfinite", "fitted", "open_device", "open_pinned",
-    "pinned", "to_panel", "to_picture",
+    "Reel", "Renderer", "Run", "Runner", "Wanted", "describe", "first_nonfinite", "fitted", "open_device",
+    "open_pinned", "pinned", "to_panel", "to_picture",
 ]

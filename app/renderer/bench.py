@@ -97,37 +97,31 @@ def bench(
     started = time.perf_counter()
     reels = {frame: Reel(renderer, graph, wanted) for frame in frames}
     plans = {frame: reel.plan(frame) for frame, reel in reels.items()}
-    planned = time.perf_counter()
+    planning, started = time.perf_counter() - started, time.perf_counter()
     with renderer.device.current():
         for plan in plans.values():
             for one in plan.passes:
                 renderer.runner.programs.get(one)
-    programmed = time.perf_counter()
-    held: list[Lease] = []
-    timings: dict[int, list[Timings]] = {frame: [] for frame in frames}
-    try:
-        for frame, reel in reels.items():
-            step(f"frame {frame}")
-            held.append(_held(renderer, reel, frame))
-        loaded = time.perf_counter()
-        for turn in range(warm_up + repeats):
-            step(f"{turn + 1} of {warm_up + repeats}")
-            for frame, plan in plans.items():
-                taken = _once(renderer, plan)
-                if turn >= warm_up:
-                    timings[frame].append(taken)
-    finally:
-        for lease in held:
-            lease.close()
-        for reel in reels.values():
-            reel.close()
+    compiling = time.perf_counter() - started
+    timings: dict[int, list[Timings]] = {}
+    loading = 0.0
+    for frame, reel in reels.items():  # one after the other: what one remembers is what the next one makes
+        started = time.perf_counter()
+        step(f"frame {frame}")
+        held = _held(renderer, reel, frame)
+        reel.close()
+        loading += time.perf_counter() - started
+        try:
+            turns = [_once(renderer, plans[frame]) for _ in range(warm_up + repeats)]
+        finally:
+            held.close()
+        timings[frame] = turns[warm_up:]
     first = plans[frames[0]]
     outputs = [first.surfaces[number].size for number in first.outputs.values()]
     lead = sum(frame - reel.begin(frame) for frame, reel in reels.items() if plans[frame].memories)
     return Bench(
-        _merged(plans, timings), tuple(_totals(timings)), outputs[0] if outputs else (0, 0), planned - started,
-        programmed - planned, renderer.runner.programs.compiled - compiled, loaded - programmed,
-        renderer.runner.textures.peak, lead,
+        _merged(plans, timings), tuple(_totals(timings)), outputs[0] if outputs else (0, 0), planning, compiling,
+        renderer.runner.programs.compiled - compiled, loading, renderer.runner.textures.peak, lead,
     )
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
+from ...nodes import Node
 from ...presets import paths as presets
 from ..compiler.named import CONFIG, path_texts
 from ..errors import InputError, UsageError
@@ -136,12 +137,12 @@ def text_of(texts: Mapping[str, str], owner: str) -> str:
     return texts.get(owner) or next((text for name, text in texts.items() if name.rpartition(".")[0] == owner), "")
 
 
-def made_by(path: Path) -> Graph:
+def made_by(path: Path, catalogue: Mapping[str, type[Node]] | None = None) -> Graph:
     """The graph that made a picture, with the files it was made of where they are easy to find.
 
     Raises InputError, DocumentError: see `read_recipe`.
     """
-    recipe = read_recipe(path)
+    recipe = read_recipe(path, catalogue)
     return pointed(recipe.graph, Finder(recipe, {}, ()).likely())
 
 

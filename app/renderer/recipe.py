@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePath
 from typing import Any, cast
 
-from ...nodes import Size
+from ...nodes import Node, Size
 from .. import document, media
 from ..compiler import Form, Precision
 from ..errors import InputError
@@ -63,8 +63,10 @@ class Recipe:
     """What tells one management of color from another, "" for the usual one."""
 
 
-def read_recipe(path: str | Path) -> Recipe:
+def read_recipe(path: str | Path, catalogue: Mapping[str, type[Node]] | None = None) -> Recipe:
     """Read it. Relative paths in the graph start at the picture's folder, for want of a better one.
+
+    `catalogue` are the node types by id, by default all that are installed.
 
     Raises:
         InputError: the file cannot be read, or says nothing of the kind.
@@ -77,7 +79,7 @@ def read_recipe(path: str | Path) -> Recipe:
             f"{path}: its header holds no graph: Halation did not write it, its format cannot hold one ({_HOLDS}), or "
             "another program saved it since"
         )
-    graph = document.loads(text, f"{path}, halation:graph", str(Path(path).parent))
+    graph = document.loads(text, f"{path}, halation:graph", str(Path(path).parent), catalogue)
     try:
         settings = _settings(said.get("halation:settings", ""))
         used = _used(said)

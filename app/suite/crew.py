@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import os
+import signal
 import time
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from contextlib import closing
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from functools import cache
 from importlib import metadata
 from multiprocessing import get_context
+from threading import current_thread, main_thread
 
 from .. import renderer as engine
+from ..errors import RenderError
 from .cases import Case
 from .results import Outcome, Session
 from .running import How, run_case
@@ -66,9 +70,12 @@ def _shared(cases: Sequence[Case], how: How, jobs: int) -> Generator[_Done, None
     threads = str(max(1, (os.cpu_count() or 1) // jobs))
     pool = ProcessPoolExecutor(jobs, get_context("spawn"), _begin, (threads,))
     try:
-        waiting: list[Future[_Done]] = [pool.submit(_work, case, how) for case in cases]
+        with _deaf():
+            waiting: list[Future[_Done]] = [pool.submit(_work, case, how) for case in cases]
         for done in as_completed(waiting):
             yield done.result()
+    except BrokenProcessPool:
+        raise RenderError("a process was ended from outside, perhaps for want of memory: use fewer, -j 1") from None
     finally:
         pool.shutdown(cancel_futures=True)
 
@@ -76,6 +83,19 @@ def _shared(cases: Sequence[Case], how: How, jobs: int) -> Generator[_Done, None
 def in_this_process(case: Case, how: How) -> Outcome:
     """What becomes of a case; the device stays open for the next one."""
     return run_case(case, _renderer(how.deterministic), how)
+
+
+@contextmanager
+def _deaf() -> Iterator[None]:
+    """Processes that are started inside do not hear Ctrl-C, of which the one that started them takes care."""
+    if current_thread() is not main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _begin(threads: str) -> None:

@@ -1,10 +1,11 @@
 // What stands around shaders that compute with straight display values.
 #include "lib/alpha.glsl"
 #include "lib/color.glsl"
+#include "lib/working.glsl"
 
 vec4 display_straight(vec4 c) {
     c = straight(c);
-    return vec4(srgb_encode(c.rgb), c.a);
+    return vec4(srgb_encode(to_rec709(c.rgb)), c.a);
 }
 
 // Such shaders may leave color where nothing covers: memory of a display keeps it, light that is added would show it.
@@ -13,4 +14,4 @@ vec4 from_straight(vec4 c) {
     return vec4(c.rgb * alpha, alpha);
 }
 
-vec4 from_display(vec4 c) { return from_straight(vec4(srgb_decode(c.rgb), c.a)); }
+vec4 from_display(vec4 c) { return from_straight(vec4(from_rec709(srgb_decode(c.rgb)), c.a)); }

@@ -2,7 +2,7 @@
 
     .venv/bin/python tests/bench/isf_collection.py FOLDER [--size 192] [--frames 2] [--sheet OUT.png]
 
-Every `.fs` file below the folder becomes a node; its pictures are linked to a test picture, its values are the defaults.
+Every `.fs` file below the folder becomes a node; its pictures are linked to test pictures, its values are the defaults.
 Of Vidvox/ISF-Files (commit 3d39996, 321 files) at least 318 are to compile, and 308 to be finite and not black.
 """
 
@@ -43,7 +43,7 @@ def graph_of(path: Path, size: int, frames: int) -> Graph:
     graph = graph.add("shader", kind()).add_output("out", Output(Kind.IMAGE, 4))
     graph = graph.connect(Port("shader", "out"), Port("outputs", "out"))
     pictures = [name for name, socket in kind.inputs.items() if socket.kind is Kind.IMAGE]
-    for number, name in enumerate(pictures[:2]):
+    for number in range(min(len(pictures), 2)):
         graph = graph.add_input(f"image{number}", Input(Kind.IMAGE, 4))
     for number, name in enumerate(pictures):
         graph = graph.connect(Port("inputs", f"image{min(number, 1)}"), Port("shader", name))

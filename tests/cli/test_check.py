@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import importlib
+import io
 import json
 import os
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -270,11 +273,35 @@ def test_sarif(cli, tidy, tmp_path, monkeypatch):
 
 def test_standard_input(cli, tidy, monkeypatch):
     path = tidy()
-    text = path.read_text().replace("exposure", "exposrue").encode()
-    result = subprocess.run([ROOT / ".venv" / "bin" / "halation", "check", "-"], input=text, capture_output=True) if (
-        ROOT / ".venv" / "bin" / "halation").exists() else None
-    if result:
-        assert result.returncode == 3 and b"-:" in result.stdout and b"unknown-type" in result.stdout
+    text = path.read_text().replace('"exposure"', '"exposrue"')
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(text.encode())))
+    result = cli("check", "-")
+    assert result.code == 3 and lines(result) == [("-", line_of(path, '"exposure"'), "error", "unknown-type")]
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(b"\xff")))
+    assert cli("check", "-").code == 3
+
+
+def test_a_picture_is_looked_at_once_however_many_graphs_name_it(cli, tidy, shot, monkeypatch):
+    headers, looked = importlib.import_module("halation.app.media.info"), []
+    real = headers.info
+    monkeypatch.setattr(headers, "info", lambda path: looked.append(path) or real(path))
+    paths = [tidy(f"{number}.json", nodes={"light": {"type": "exposure", "values": {"stops": float(number)}}})
+             for number in range(1, 6)]
+    assert cli("check", *paths).code == 0 and looked == [str(shot)]
+    shot.unlink()
+    result = cli("check", *paths)
+    assert result.code == 4 and [rule for *_, rule in lines(result)] == ["unreadable-file"] * 5
+
+
+def test_libraries_for_pictures_are_left_alone_where_there_is_none(tidy):
+    """A pattern makes its own picture; what a whole folder costs is then reading and compiling."""
+    path = tidy(inputs={"beauty": {"type": "Image", "default": [1.0, 1.0, 1.0, 1.0]}})
+    code = (
+        "import sys; from halation.app.cli.program import run; code = run(['check', sys.argv[1]]); "
+        "print(code, [name for name in ('OpenImageIO', 'PyOpenColorIO', 'moderngl') if name in sys.modules])"
+    )
+    result = subprocess.run([sys.executable, "-c", code, path], capture_output=True, text=True)
+    assert result.stdout.splitlines()[-1] == "0 []", result
 
 
 def test_the_schema_is_printed(cli, tidy):

@@ -208,7 +208,7 @@ def test_the_reference_knows_every_flag_and_exit_code(cli):
     for command, text in chapters.items():
         flags = set(re.findall(r"(--[a-z]+)", cli(command, "--help").out)) - {"--help", "--json", "--input"}
         assert flags <= set(re.findall(r"--[a-z]+", text)), command
-    assert set(chapters) == {"edit", "render", "check", "explain", "info", "nodes", "fmt", "demo", "gallery"}
+    assert set(chapters) == {"edit", "render", "check", "explain", "info", "nodes", "fmt", "demo", "gallery", "schema"}
     assert set(re.findall(r"^(\d+)  ", cli("--help").out.replace("\n  ", "\n"), re.M)) <= set(
         re.findall(r"^\| (\d+) \|", page, re.M)
     )

@@ -191,3 +191,6 @@ def test_versions_in_git(cli, git, branches, repository, monkeypatch):
     for wrong in ("nobody:shot.json", "main:none.json", "main:", ":"):
         found = cli("diff", wrong, "shot.json")
         assert found.code == 3 and wrong in found.err, found
+    monkeypatch.chdir(repository.parent)
+    found = cli("diff", "main:shot.json", "a repository/my graphs/shot.json")
+    assert found.code == 3 and "main:shot.json: there is no such file (not a git repository" in found.err

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from random import Random
 from typing import Any
@@ -14,10 +15,12 @@ from halation.app.document.versions.aligning import align_three
 from halation.app.document.versions.lines import merged_lines
 from halation.app.document.versions.parts import at_part, is_tree, parts_of, same
 from halation.app.errors import UsageError
-from halation.app.graph import Graph, problems
+from halation.app.graph import Graph, Port, problems, signature
+from halation.nodes import catalogue
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+NODES = catalogue()
 SEEDS = st.integers(0, 2**32)
 
 
@@ -67,6 +70,30 @@ def test_nothing_that_a_side_did_is_lost(seed: int) -> None:
     for conflict in made.conflicts:
         assert [same(at_part(parts_of(side), conflict.at), said) for side, said in zip(
             (base, ours, theirs), (conflict.base, conflict.ours, conflict.theirs), strict=True)] == [True] * 3
+
+
+@settings(max_examples=40, deadline=None)
+@given(SEEDS)
+def test_edits_of_different_nodes_make_what_both_in_sequence_make(seed: int) -> None:
+    """One turns values of some nodes, mutes and moves them; the other does so with the others, and adds one."""
+    rng, base = Random(seed), some_graph(seed)
+    ids = [*base.nodes]
+    rng.shuffle(ids)
+    half = len(ids) // 2
+
+    def turned(graph: Graph, mine: list[str], fresh: str) -> Graph:
+        for id in mine:
+            values = [value for value in signature(graph.nodes[id]).values.values() if value.type == "float"]
+            for value in values:
+                graph = graph.put(Port(id, value.name), value.default + 0.25)
+            graph = graph.mute(id, id not in graph.muted)
+            places = {**graph.ui.get("nodes", {}), id: {"x": len(id), "y": -1}}
+            graph = dataclasses.replace(graph, ui={**graph.ui, "nodes": places})
+        return graph.add(fresh, NODES["exposure"](stops=0.5))
+
+    ours, theirs = turned(base, ids[:half], "mine"), turned(base, ids[half:], "yours")
+    both = turned(turned(base, ids[:half], "mine"), ids[half:], "yours")
+    assert merged(base, ours, theirs) == merged(base, theirs, ours) == Merged(dumps(both), ())
 
 
 @settings(max_examples=40, deadline=None)

@@ -25,6 +25,7 @@ FLOORS = (
 HOMES = {
     "moderngl": "renderer", "glcontext": "renderer",
     "OpenImageIO": "media", "PyOpenColorIO": "media",
+    "av": "media",
     "glfw": "editor", "imgui_bundle": "editor",
     "typer": "cli",
     "pytest": "suite.plugin",
@@ -151,7 +152,8 @@ def test_no_module_is_part_of_a_cycle() -> None:
 
 def test_every_library_is_declared() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    declared = {re.split(r"[^\w-]", line)[0].lower() for line in project["dependencies"]}
+    listed = [*project["dependencies"], *project["optional-dependencies"]["video"]]
+    declared = {re.split(r"[^\w-]", line)[0].lower() for line in listed}
     providers = packages_distributions()
     ours = {name.split(".")[0] for name in MODULES}
     used = {target.split(".")[0] for _, target in links()} - ours - sys.stdlib_module_names

@@ -18,7 +18,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 SHIPPED = {
-    "app": ("**/*.py", "py.typed"),
+    "app": ("**/*.py", "py.typed", "suite/report.html"),
     "nodes": ("**/*.py", "py.typed"),
     "shaders": ("__init__.py", "**/*.glsl"),
     "presets": ("__init__.py", "*.json", "samples/*", "pictures/*"),

@@ -14,6 +14,8 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation.app.media.goldens import Stored
+from halation.app.renderer import Renderer, pinned
+from halation.app.suite import crew
 from halation.app.suite.cases import Case
 from halation.app.suite.judging import unusable
 
@@ -283,3 +285,28 @@ def test_stopping_at_the_first_failure(cli, suite) -> None:
     suite('[defaults]\ngraph = "graph.json"\n[cases.a]\n[cases.b]\nerror = "x"\n[cases.c]\n')
     result = cli("-x", "--json")
     assert [case["name"] for case in result.json["cases"]] == ["a", "b"] and result.code == 1
+
+
+def test_a_gpu_alone_is_told_of(cli, suite, monkeypatch, tmp_path) -> None:
+    """Where no software rasterizer is, the tests go on with what there is."""
+    real = crew._renderer(True).device
+    device = replace(real, target=replace(real.target, renderer="GPU 9000", software=False))
+    monkeypatch.setattr(crew, "_renderer", lambda _: Renderer(device, budget=0))
+    suite(ALL)
+    cli("--update")
+    result = cli("--report", "report.html", "--json")
+    assert result.code == 0 and result.json["deterministic"] is False
+    assert "no software rasterizer was found: GPU 9000" in result.json["remark"]
+    assert "no software rasterizer was found: GPU 9000" in (tmp_path / "report.html").read_text()
+    assert "no software rasterizer was found: GPU 9000" in cli().err
+
+
+def test_pinning_leaves_the_environment_as_it_was(monkeypatch) -> None:
+    monkeypatch.setenv("GALLIUM_DRIVER", "softpipe")
+    monkeypatch.setenv("LP_DEBUG", "tgsi")
+    monkeypatch.delenv("LIBGL_ALWAYS_SOFTWARE", raising=False)
+    before = dict(os.environ)
+    with pytest.raises(ZeroDivisionError), pinned():
+        assert os.environ["GALLIUM_DRIVER"] == "llvmpipe" and "LP_DEBUG" not in os.environ
+        raise ZeroDivisionError
+    assert dict(os.environ) == before

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections import Counter
+from collections.abc import Container, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 from ...graph import Graph, Group, Item, Port
+from ...graph.notes import moved_keys
+from ..writing import dumps
 
 Ids = Mapping[str, str]
 """Old ids to new ones."""
+
+_ANY = "node"
+_ROUNDS = 32
+"""How far from nodes that are known others are looked for that can only be told by their neighbors."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +32,9 @@ def renames(before: Graph, after: Graph) -> Ids:
     gone = {id: _Look(before, id) for id in before.nodes if id not in after.nodes}
     come = {id: _Look(after, id) for id in after.nodes if id not in before.nodes}
     certain: dict[str, str] = {}
-    while found := _unique(gone, come, certain):
+    for _ in range(_ROUNDS):
+        if not (found := _unique(gone, come, certain)):
+            break
         certain |= found
     while wrong := [old for old, new in certain.items() if not gone[old].same(come[new], certain)]:
         for old in wrong:
@@ -85,54 +93,48 @@ def with_items(graph: Graph, items: Mapping[str, Item]) -> Graph:
 
 
 class _Look:
-    """Everything that a graph says of one of its nodes."""
+    """Everything that a graph says of one of its nodes, apart from its id."""
 
     def __init__(self, graph: Graph, id: str) -> None:
-        self.id, self.item = id, graph.nodes[id]
-        self.feeding = {end.socket: start for end, start in graph.links.items() if end.node == id}
-        self.fed = {end: start.socket for end, start in graph.links.items() if start.node == id}
-        moving = {port.socket: item for port, item in graph.animation.items() if port.node == id}
-        shown = {(name, item) for name, item in graph.controls.items() if item.target.node == id}
-        controls = frozenset((name, item.target.socket, item.label, item.doc) for name, item in shown)
-        kept = {path.removeprefix(f"nodes.{id}"): keys for path, keys in graph.extra.items() if _inside(path, id)}
-        self.rest: Any = (id in graph.muted, moving, controls, kept)
+        self.feeding = {(end.socket, start) for end, start in graph.links.items() if end.node == id}
+        self.fed = {(start.socket, end) for end, start in graph.links.items() if start.node == id}
+        alone = Graph(
+            {_ANY: graph.nodes[id]},
+            controls={
+                name: replace(item, target=Port(_ANY, item.target.socket))
+                for name, item in graph.controls.items() if item.target.node == id
+            },
+            animation={Port(_ANY, port.socket): item for port, item in graph.animation.items() if port.node == id},
+            muted=frozenset({_ANY} if id in graph.muted else ()),
+            extra=moved_keys({path: keys for path, keys in graph.extra.items() if _inside(path, id)},
+                             f"nodes.{id}", f"nodes.{_ANY}"),
+        )
+        self.text = dumps(alone)
 
     def same(self, other: _Look, ids: Ids) -> bool:
         """True if the other is this one, where `ids` are the new names of all that have one."""
-        links = {socket: _moved(start, ids) for socket, start in self.feeding.items()}
-        ends = {_moved(end, ids): socket for end, socket in self.fed.items()}
-        return self._alike(other) and (links, ends) == (other.feeding, other.fed)
+        return self.key(ids, ()) == other.key({}, ())
 
-    def may_be(self, other: _Look, ids: Ids, gone: Iterable[str], come: Iterable[str]) -> bool:
-        """The same where nodes of which nothing is known yet may be any."""
-        open, free = {*gone}.difference(ids), {*come}.difference(ids.values())
-        links = {(socket, _veiled(start, ids, open)) for socket, start in self.feeding.items()}
-        others = {(socket, _veiled(start, {}, free)) for socket, start in other.feeding.items()}
-        ends = sorted((str(_veiled(end, ids, open)), socket) for end, socket in self.fed.items())
-        other_ends = sorted((str(_veiled(end, {}, free)), socket) for end, socket in other.fed.items())
-        return self._alike(other) and (links, ends) == (others, other_ends)
+    def key(self, ids: Ids, open: Container[str]) -> tuple[object, ...]:
+        """What tells it from others; nodes in `open`, of which nothing is known yet, may be any."""
+        def ports(links: set[tuple[str, Port]]) -> tuple[tuple[str, Port], ...]:
+            return tuple(sorted((socket, _moved(port, ids, open)) for socket, port in links))
 
-    def _alike(self, other: _Look) -> bool:
-        return self.item == other.item and self.rest == other.rest
+        return self.text, ports(self.feeding), ports(self.fed)
 
 
 def _unique(gone: Mapping[str, _Look], come: Mapping[str, _Look], certain: Ids) -> dict[str, str]:
     """Pairs of which neither could go with another."""
-    taken = {*certain.values()}
-    fits = {
-        old: [new for new, other in come.items() if new not in taken and look.may_be(other, certain, gone, come)]
-        for old, look in gone.items() if old not in certain
-    }
-    wanted = [new for news in fits.values() for new in news]
-    return {old: news[0] for old, news in fits.items() if len(news) == 1 and wanted.count(news[0]) == 1}
+    open, free = gone.keys() - certain.keys(), come.keys() - set(certain.values())
+    olds = {old: gone[old].key(certain, open) for old in open}
+    news = {new: come[new].key({}, free) for new in free}
+    there, here = Counter(olds.values()), Counter(news.values())
+    found = {key: new for new, key in news.items() if here[key] == 1}
+    return {old: found[key] for old, key in olds.items() if there[key] == 1 and key in found}
 
 
-def _moved(port: Port, ids: Ids) -> Port:
-    return Port(ids.get(port.node, port.node), port.socket)
-
-
-def _veiled(port: Port, ids: Ids, open: Iterable[str]) -> Port:
-    return Port("", port.socket) if port.node in open else _moved(port, ids)
+def _moved(port: Port, ids: Ids, open: Container[str]) -> Port:
+    return Port("" if port.node in open else ids.get(port.node, port.node), port.socket)
 
 
 def _inside(path: str, id: str) -> bool:

@@ -72,7 +72,7 @@ def code_changed(editor: Editor, path: Path) -> None:
         editor.say(f"{path.name} changed on disk and was loaded again")
 
     editor.code.flush()
-    if path not in session.drafts:
+    if not session.differs_from_disk(path):
         load()
         return
 

@@ -73,6 +73,18 @@ def open_preset(editor: Editor, path: Path) -> None:
     _unless_unsaved(editor, lambda: editor.attempt(opened), "open the preset")
 
 
+def open_made(editor: Editor, path: Path) -> None:
+    """Open the graph that made a picture as a new document, after asking about unsaved work."""
+
+    def opened() -> None:
+        editor.session.open_made(path)
+        editor.canvas.fit()
+        editor.dialogs.open.discard("start")
+        editor.say(f"the graph of {path.name}, as a new document")
+
+    _unless_unsaved(editor, lambda: editor.attempt(opened), "open the graph")
+
+
 def recover(editor: Editor, recovered: Recovered) -> None:
     """Open work that was not saved, after asking about other unsaved work."""
 

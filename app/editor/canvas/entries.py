@@ -9,9 +9,10 @@ from pathlib import Path
 from ....nodes import Kind, Node
 from ..edits.coding import CODE, starter
 from ..panels.fuzzy import match
+from ..services.shader_files import ShaderFile
 from .layout import words
 
-GROUP, GRAPH = "group", "graph"
+GROUP, GRAPH, SHADER = "group", "graph", "code"
 
 
 @dataclass(frozen=True)
@@ -22,6 +23,8 @@ class Entry:
     title: str
     category: str
     doc: str = ""
+    kind: str = ""
+    """The category whose color it has, if not its own."""
 
     @property
     def searched(self) -> str:
@@ -41,6 +44,13 @@ def code_entries() -> tuple[Entry, ...]:
     """What is made by writing it."""
     doc = "GLSL of your own: the function's signature declares sockets and values."
     return (Entry(CODE, "code", starter().category, doc),)
+
+
+def shader_entries(files: Iterable[ShaderFile]) -> tuple[Entry, ...]:
+    """Shaders of this machine, under what they say they are."""
+    return tuple(
+        Entry(str(one.path), words(one.path.stem), f"ISF {one.category.lower()}", one.doc, SHADER) for one in files
+    )
 
 
 def preset_entries(files: Iterable[Path]) -> tuple[Entry, ...]:

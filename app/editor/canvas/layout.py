@@ -147,7 +147,7 @@ def node_layout(id: str, item: Item, graph: Graph, facts: Facts) -> Layout:
     subtitle = subtitle_of(item)
     category = item.category if isinstance(item, Node) else "code" if subtitle in LANGUAGES.values() else what
     doc = (item.__doc__ or "").partition("\n")[0] if isinstance(item, Node) else ""
-    if subtitle == id:
+    if words(subtitle).lower() == words(id).lower():
         subtitle = LANGUAGES[item.id] if isinstance(item, Written) else ""
 
     inputs = dict(face.inputs)

@@ -18,6 +18,7 @@ from ..toolkit.places import record
 from .entries import (
     GRAPH,
     GROUP,
+    SHADER,
     Entry,
     Section,
     code_entries,
@@ -26,6 +27,7 @@ from .entries import (
     narrowed,
     node_entries,
     preset_entries,
+    shader_entries,
 )
 from .geometry import Point
 
@@ -47,6 +49,8 @@ class Search:
     _replaced: str = ""
     """The node that gets another type, instead of a new one."""
     _entries: tuple[Entry, ...] = ()
+    _awaits: bool = False
+    """True while shaders of this machine are being looked for, which are added then."""
     _recent: list[str] = field(default_factory=list[str])
     _opening: bool = False
 
@@ -66,7 +70,7 @@ class Search:
             fits = editor.attempt(lambda: session.fitting(port, output), ()) or ()
             files = editor.attempt(lambda: session.fitting_files(presets.paths(), port, output), ()) or ()
             self._entries = narrowed((*nodes, *self._fixed), {*fits, *map(str, files)})
-        self._at, self._query, self._marked, self._opening = at, "", 0, True
+        self._at, self._query, self._marked, self._opening, self._awaits = at, "", 0, True, True
 
     def begin_replacing(self, editor: Editor, id: str) -> None:
         """Open it for another type of a node."""
@@ -74,7 +78,7 @@ class Search:
         others = [type for type in editor.session.types if not isinstance(now, editor.session.types[type])]
         self._link, self._replaced = None, id
         self._entries = (*narrowed(node_entries(editor.session.types), others), *code_entries())
-        self._query, self._marked, self._opening = "", 0, True
+        self._query, self._marked, self._opening, self._awaits = "", 0, True, False
 
     def draw(self, editor: Editor) -> None:
         """Draw the popup, if it is open, and add what is chosen."""
@@ -88,6 +92,8 @@ class Search:
         if not self.is_open:
             self._opening = False
             return
+        if self._awaits:
+            self._add_shaders(editor)
         if self._opening:
             imgui.set_keyboard_focus_here()
             self._opening = False
@@ -97,6 +103,17 @@ class Search:
         imgui.end_popup()
         if chosen:
             editor.attempt(lambda: self._add(editor, chosen))
+
+    def _add_shaders(self, editor: Editor) -> None:
+        files = editor.shaders.find(editor.store.now.isf_folders)
+        if files is None:
+            return
+        self._awaits = False
+        if self._link is not None:
+            port, output = self._link
+            takes = editor.attempt(lambda: editor.session.fits_picture(port, output), False)
+            files = [one for one in files if takes and (one.takes or not output)]
+        self._entries = (*self._entries, *shader_entries(files))
 
     def _contents(self, editor: Editor) -> Entry | None:
         imgui.set_next_item_width(-1)
@@ -140,7 +157,7 @@ class Search:
                 if marked and follow:
                     imgui.set_scroll_here_y()
                 middle = corner.y + imgui.get_text_line_height() / 2
-                color = mix(palette.category(entry.category), palette.text, 0.2)
+                color = mix(palette.category(entry.kind or entry.category), palette.text, 0.2)
                 draw.add_rect_filled(
                     (corner.x + 2 * scale, middle - 5 * scale), (corner.x + 12 * scale, middle + 5 * scale), u32(color),
                     3 * scale,
@@ -172,7 +189,9 @@ class Search:
         if port is not None:
             # The socket that takes the link lies near the pointer, not the node's corner.
             at = (at[0] - (0.0 if output else 184.0), at[1] - 48.0)
-        if entry.category == GROUP:
+        if entry.kind == SHADER:
+            session.add_code_file(entry.id, at, port, output)
+        elif entry.category == GROUP:
             session.add_group(entry.id, at, port, output)
         elif entry.category != GRAPH:
             session.add_node(entry.id, at, port, output)

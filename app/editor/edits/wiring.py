@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 
-from ....nodes import Node, Pointwise, Socket, Value
+from ....nodes import Kind, Node, Pointwise, Socket, Value
 from ...errors import GraphError
-from ...graph import Graph, Item, Port, conversion, signature
+from ...graph import Graph, Item, Port, conversion, make_socket, signature
 from ...graph.values import coerced, value_fault
 from ...graph.walk import loop_sentence, route
 from .elements import place
@@ -85,6 +85,15 @@ def fits(graph: Graph, port: Port, output: bool, item: Item) -> bool:
     except GraphError:
         return False
     return True
+
+
+def fits_picture(graph: Graph, port: Port, output: bool) -> bool:
+    """True if a port could be linked with a picture, as a source if `output`."""
+    if output:
+        start = graph.source(port)
+        return start is None or conversion(start, make_socket(Kind.IMAGE)) is None
+    end = graph.target(port)
+    return end is None or conversion(make_socket(Kind.IMAGE), end) is None
 
 
 def inserted(graph: Graph, id: str, target: Port) -> Graph:

@@ -73,7 +73,7 @@ def color_rows(rows: Rows, fields: Fields) -> None:
     usable = coloring(editor)
     if fault := editor.viewer.coloring.fault:
         rows.field_note(fault, rows.palette.error)
-    rows.name("working space", "working space", doc="The linear color space that pictures are in between nodes",
+    rows.name("working space", "works in", doc="The linear color space that pictures are in between nodes",
               changed=bool(color.working))
     known = (_REC709, *_linear(ColorSettings(usable.config), color_mark(usable)))
     index = choose(fields, "working space", color.working or _REC709, known, rows.field())

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from time import localtime, strftime
 
+from ...graph.frames import VIDEO_ENDINGS
 from ...media.meshes import MESH_ENDINGS
 from ...media.recolor import table_endings
 from ...media.thumbnail import readable
@@ -106,7 +107,7 @@ def begun(editor: Editor, browse: Browse) -> Browsing:
 def endings(browse: Browse) -> frozenset[str]:
     """Which files are listed."""
     if browse.purpose == "image":
-        return readable()
+        return readable() | VIDEO_ENDINGS
     if browse.purpose == "table":
         return table_endings()
     if browse.purpose == "scene":

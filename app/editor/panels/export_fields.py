@@ -19,7 +19,7 @@ from ..toolkit.fields import combo, label
 from ..toolkit.places import record
 from ..toolkit.words import SMALL, dim, elided, fitted, font, tip, wrapped
 from ..viewer.coloring import coloring
-from .export_form import DEPTHS, FORMATS, VIEWED, Aim, Extent, Form, Sizing
+from .export_form import DEPTHS, VIEWED, Aim, Extent, Form, Sizing, formats
 from .export_words import aim_text, exist_text
 
 _LABELS = 80.0
@@ -130,7 +130,7 @@ def _list(editor: Editor, form: Form) -> None:
 def _options(editor: Editor, form: Form) -> None:
     kinds = {form.file(editor, name).suffix.lower() for name in form.wanted(editor)}
     now = kinds.pop() if len(kinds) == 1 else "mixed"
-    if chosen := choice(editor, "Format", now, FORMATS):
+    if chosen := choice(editor, "Format", now, formats()):
         form.reform(chosen)
     if chosen := choice(editor, "Size", form.sizing, _SIZINGS):
         form.sizing = next(one for one in _SIZINGS if one == chosen)

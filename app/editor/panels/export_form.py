@@ -11,8 +11,9 @@ from typing import Literal
 
 from ....nodes import Kind
 from ...errors import HalationError, UsageError
-from ...graph.frames import Pattern, check_numbered, format_frames, numbered, parse_frames
+from ...graph.frames import Pattern, check_numbered, format_frames, is_video, numbered, parse_frames, unnumbered
 from ...media.sequences import find_sequence
+from ...media.video.library import library
 from ..editor import Editor
 from ..services.exporting import Export, Options
 
@@ -23,8 +24,9 @@ Depth = Literal["", "half", "float"]
 DEPTHS: tuple[tuple[Depth, str], ...] = (
     ("", "as the format has it"), ("half", "16 bit"), ("float", "32 bit (16 in PNG and TIFF)"),
 )
-FORMATS = (".exr", ".png", ".jpg", ".tif", ".webp", ".hdr")
-VIEWED = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp"})
+PICTURES = (".exr", ".png", ".jpg", ".tif", ".webp", ".hdr")
+VIDEOS = (".mp4", ".mov", ".mkv", ".webm")
+VIEWED = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", *VIDEOS})
 """Formats that show a picture as a display does."""
 
 _FRESH = 1.0
@@ -122,9 +124,10 @@ class Form:
         return tuple(name for name, kind in kinds.items() if self.chosen.get(name, kind in (Kind.IMAGE, Kind.FIELD)))
 
     def reform(self, format: str) -> None:
-        """Another format for all files."""
+        """Another format for all files; a video has no place for the frame number."""
         self.format = format
-        self.files = {name: str(Path(path).with_suffix(format)) for name, path in self.files.items() if path}
+        named = {name: str(Path(path).with_suffix(format)) for name, path in self.files.items() if path}
+        self.files = {name: unnumbered(path) if is_video(path) else path for name, path in named.items()}
 
     def number(self, editor: Editor) -> None:
         """Give all files a place for the frame number."""
@@ -145,7 +148,8 @@ class Form:
         """The choices as the exporter wants them."""
         frames = self.frames(editor)
         made = Options(
-            frames=frames, precision=self.precision or None, view=self.view, resume=self.resume,
+            frames=frames, precision=self.precision or None, view=self.view,
+            resume=self.resume and not any(is_video(str(self.file(editor, name))) for name in self.wanted(editor)),
             jobs=self.jobs if len(frames) > 1 else 1,
         )
         if self.sizing == "scale":
@@ -164,6 +168,11 @@ class Form:
         return made
 
 
+def formats() -> tuple[str, ...]:
+    """The endings to choose from: those of videos where PyAV is installed."""
+    return (*PICTURES, *VIDEOS) if library() is not None else PICTURES
+
+
 @lru_cache(maxsize=8)
 def _listed(text: str) -> tuple[tuple[int, ...], str]:
     """The frames of a text, or what is wrong with it."""
@@ -174,9 +183,9 @@ def _listed(text: str) -> tuple[tuple[int, ...], str]:
 
 
 def _numbered(path: str) -> str:
-    """The path with a place for the number, unless it has one."""
+    """The path with a place for the number, unless it has one, or needs none."""
     try:
-        return path if Pattern.parse(path) else numbered(path)
+        return path if is_video(path) or Pattern.parse(path) else numbered(path)
     except UsageError:
         return path
 
@@ -191,7 +200,8 @@ def _aim(paths: tuple[str, ...], frames: tuple[int, ...], fault: str) -> Aim:
         exist = sum(_existing(path, frames) for path in paths)
     except HalationError as error:
         return Aim(fault=str(error))
-    return Aim(len(paths) * len(frames), names[0], names[1], exist)
+    count = sum(1 if is_video(path) else len(frames) for path in paths)
+    return Aim(count, names[0], names[1], exist)
 
 
 def _at(path: str, frame: int) -> str:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
 from typing import Any
 
 from imgui_bundle import ImVec2, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
 
 from ..editor import Editor
 from ..services.preferences import MAX_SCALE, MIN_SCALE, Preferences
 from ..services.recovery import LONGEST
+from ..services.shader_files import CUSTOMARY
 from ..theme.style import ui_scale, vec4
-from ..toolkit.buttons import close_button
+from ..toolkit.buttons import close_button, quiet
 from ..toolkit.dialogs import backdrop, dialog, escaped
 from ..toolkit.fields import combo, label
 from ..toolkit.places import record
@@ -30,6 +34,7 @@ class PreferencesDialog:
         self._page = _PAGES[0]
         self._shortcuts = ShortcutEditor()
         self._edited: dict[str, float] = {}
+        self._folder = ""
 
     def draw(self, editor: Editor) -> None:
         """Draw over everything, if it is open."""
@@ -96,6 +101,8 @@ class PreferencesDialog:
         label("For pictures", _LABELS)
         self._number(editor, "memory_budget", "%.0f MiB", 64.0, 16384.0, logarithmic=True)
         wrapped(editor.palette.dim, "On the graphics card. More keeps more results; it holds from the next start on.")
+        _heading(editor, "Shaders")
+        self._folders(editor)
         _heading(editor, "Files")
         folder = str(editor.store.file.parent)
         wrapped(editor.palette.dim, f"Preferences, recovered work and thumbnails are kept in {folder}")
@@ -104,9 +111,34 @@ class PreferencesDialog:
         imgui.same_line()
         default = Preferences()
         if imgui.button("Reset all preferences"):
-            kept = ("recent", "folders", "extra", "shortcuts", "hint_seen")
+            kept = ("recent", "folders", "extra", "shortcuts", "hint_seen", "isf_folders")
             _change(editor, **{name: value for name, value in vars(default).items() if name not in kept})
         record(editor, "reset preferences")
+
+    def _folders(self, editor: Editor) -> None:
+        """Where shaders in the Interactive Shader Format are looked for."""
+        now = editor.store.now.isf_folders
+        wrapped(editor.palette.dim, "Folders with .fs files in the Interactive Shader Format; what is in them can be "
+                f"added to the graph. {', '.join(CUSTOMARY)} are looked at anyway.")
+        for index, folder in enumerate(now):
+            if quiet(editor, icons.ICON_FA_XMARK, f"forget isf {index}", "No longer look there"):
+                _change(editor, isf_folders=tuple(one for one in now if one != folder))
+            imgui.same_line()
+            imgui.align_text_to_frame_padding()
+            gone = "" if os.path.isdir(folder) else "  (there is no such folder)"  # noqa: PTH112
+            imgui.text_unformatted(f"{folder}{gone}")
+        imgui.set_next_item_width(320 * ui_scale())
+        entered, self._folder = imgui.input_text_with_hint(
+            "##isf folder", "path of a folder", self._folder, int(imgui.InputTextFlags_.enter_returns_true)
+        )
+        record(editor, "field isf folder")
+        imgui.same_line()
+        typed = self._folder.strip().strip('"')
+        if (imgui.button("Add") or entered) and typed:
+            whole = str(Path(typed).expanduser().absolute())
+            _change(editor, isf_folders=tuple(dict.fromkeys((*now, whole))))
+            self._folder = ""
+        record(editor, "button add isf")
 
     def _number(
         self, editor: Editor, name: str, text: str, low: float, high: float, logarithmic: bool = False,

@@ -56,7 +56,8 @@ class Preferences:
     """`ui_scale` is 0 for what the system says; `shortcuts` are those that differ, by action; "" stands for none.
 
     `recent` has the newest first. `folders` are those used last, by purpose. `autosave` is in seconds,
-    `memory_budget` in MiB. `extra` keeps what another version of Halation wrote.
+    `memory_budget` in MiB. `isf_folders` hold shaders that can be added. `extra` keeps what another version of
+    Halation wrote.
     """
 
     theme: Literal["dark", "light"] = "dark"
@@ -71,6 +72,7 @@ class Preferences:
     memory_budget: Annotated[int, msgspec.Meta(ge=64, le=2**20)] = 512
     hint_seen: bool = False
     proxy_while_dragging: bool = True
+    isf_folders: tuple[str, ...] = ()
     extra: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType[str, Any]({}))
 
 

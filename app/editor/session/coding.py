@@ -112,6 +112,15 @@ class Coding(State):
                 except DocumentError:
                     self._note(path, "")
 
+    def differs_from_disk(self, path: Path) -> bool:
+        """True if there is a draft of a file, and the file holds something else now."""
+        if path not in self.drafts:
+            return False
+        try:
+            return read_text(path) != self.drafts[path]
+        except DocumentError:
+            return True
+
     def keep_draft(self, path: Path) -> None:
         """A file was changed by another program; what is here stays, and is a draft now."""
         self._on_disk.pop(path, None)
@@ -146,6 +155,10 @@ class Coding(State):
             raise GraphError(
                 f"group '{found[0][-1]}' comes from the file '{found[1]}': make it local first, or open that file"
             )
+
+    def _read_anew(self) -> None:
+        self._on_disk, self._mark = {}, object()
+        super()._read_anew()
 
     def _restart(self, root: Graph, path: Path | None, saved: Graph | None) -> None:
         self._on_disk, self._mark = {}, object()

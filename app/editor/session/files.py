@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from ...document import load, loads, save
 from ...errors import UsageError
 from ...graph import Graph, Output
+from ...renderer.finding import made_by
 from ..edits import folding, layout, paths
 from .history import Step
 from .state import State
@@ -37,8 +38,9 @@ class Files(State):
 
     def open_made(self, path: str | Path) -> None:
         """Open the graph that made a picture, as a new document that is called like it. Raises HalationError."""
-        root = migrated(made_by(Path(path)), self.types)
-        self._restart(root, None, root, Path(path).stem)
+        root = made_by(Path(path), self.types)
+        self._restart(root, None, root)
+        self._title = Path(path).stem
 
     def open_text(self, text: str) -> None:
         """Open the text of a graph file as a document without a file."""
@@ -82,6 +84,7 @@ class Files(State):
         root = load(self.path, self.types)
         before = self._now
         self._saved = root
+        self._read_anew()
         self._arrive(root)
         if root != before.root:
             self.history.add(Step(label, before, self._now))

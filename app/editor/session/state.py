@@ -27,6 +27,7 @@ class State:
         self._types = types
         self.history = History()
         self.path: Path | None = None
+        self._title = ""
         self.revision = 0
         self._now = Snapshot(Graph())
         self._saved: Graph | None = self._now.root
@@ -187,10 +188,10 @@ class State:
         if (frozenset(chosen), now) != (self.selection, self.active):
             self._set(Snapshot(self.root, self.place, frozenset(chosen), now))
 
-    def _restart(self, root: Graph, path: Path | None, saved: Graph | None, title: str = "") -> None:
-        """Another document, with no past; `title` is what it is called as long as it has no file."""
+    def _restart(self, root: Graph, path: Path | None, saved: Graph | None) -> None:
+        """Another document, with no past."""
         self.history = History()
-        self.path, self._saved, self._title = path, saved, title
+        self.path, self._saved, self._title = path, saved, ""
         self._bound, self._cache = {}, {}
         self._set(Snapshot(root))
 
@@ -244,6 +245,9 @@ class State:
     def _ordered_selection(self) -> list[str]:
         """What is selected, the active element last."""
         return [*sorted(self.selection - {self.active}), *([self.active] if self.active else [])]
+
+    def _read_anew(self) -> None:
+        """Called when the document was read from its file again."""
 
     def _renamed(self, old: str, new: str) -> None:
         """Called before an element gets another key."""

@@ -37,6 +37,13 @@ class Wiring(State):
         """A graph file as a node; returns its id."""
         return self._add(naming.stem(path), self._group(path), at, link, output)
 
+    def add_code_file(
+        self, path: str | Path, at: Place = (0.0, 0.0), link: Port | None = None, output: bool = True
+    ) -> str:
+        """A node whose code is in a file; returns its id."""
+        item = coding.file_item(self.relative(path), self.root.folder)
+        return self._add(naming.stem(path), item, at, link, output)
+
     def insert(self, node: str, target: Port, at: Place | None = None, sizes: Sizes | None = None) -> str:
         """Put a node into the link that feeds `target`: an existing one by id, else a new one of that type.
 
@@ -69,6 +76,10 @@ class Wiring(State):
     def fitting(self, port: Port, is_output: bool) -> tuple[str, ...]:
         """Ids of the node types that could be linked with `port`, a source if `is_output`."""
         return wiring.fitting(self.graph, port, is_output, {**self.types, coding.CODE: type(coding.starter())})
+
+    def fits_picture(self, port: Port, is_output: bool) -> bool:
+        """True if a port could be linked with a picture, as a source if `is_output`."""
+        return wiring.fits_picture(self.graph, port, is_output)
 
     def fitting_files(self, files: Sequence[Path], port: Port, is_output: bool) -> tuple[Path, ...]:
         """Those of some graph files that could, as groups, be linked with `port`, a source if `is_output`."""

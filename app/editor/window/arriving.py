@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from ...errors import HalationError
 from ...media.sequences import find_sequence
-from ..actions.documents import open_graph
+from ...renderer.recipe import has_recipe
+from ..actions.documents import open_graph, open_made
 from ..dialogs import Question
 from ..editor import Editor
 from ..edits.coding import ENDINGS
@@ -16,12 +18,39 @@ from ..services.sequences import patterns
 def arrived(editor: Editor, paths: Sequence[Path]) -> None:
     """Pictures and code become nodes; a graph is opened, or becomes a group if it falls on the canvas.
 
-    Several frames of a sequence are one node; for a single one the person says whether it stands for all.
+    Several frames of a sequence are one node; for a single one the person says whether it stands for all. A picture
+    that was rendered here may be opened as the graph that made it.
     """
     graphs = [path for path in paths if path.suffix.casefold() == ".json"]
     if len(paths) == len(graphs) == 1 and editor.scope != "graph":
         open_graph(editor, graphs[0])
         return
+    if len(paths) == 1 and _has_graph(paths[0]):
+        _ask(editor, paths[0])
+        return
+    _read(editor, paths)
+
+
+def _has_graph(path: Path) -> bool:
+    """True for a picture that Halation rendered, which holds the graph that made it."""
+    try:
+        return path.suffix.casefold() not in (".json", *ENDINGS) and has_recipe(path)
+    except HalationError:
+        return False
+
+
+def _ask(editor: Editor, path: Path) -> None:
+    editor.dialogs.question = Question(
+        "Rendered by Halation", f"{path.name} holds the graph that made it.",
+        (
+            ("Open its graph", lambda: open_made(editor, path)),
+            ("Read it as a picture", lambda: editor.attempt(lambda: _read(editor, [path]))),
+        ),
+    )
+
+
+def _read(editor: Editor, paths: Sequence[Path]) -> None:
+    """Make nodes of files."""
     codes = tuple(path for path in paths if path.suffix.lower() in ENDINGS)
     files, frames = patterns([path for path in paths if path not in codes])
     files = (*codes, *files)

@@ -70,6 +70,7 @@ def take_apart(editor: Editor) -> None:
     editor.exports.close()
     editor.watcher.close()
     editor.renders.close()
+    editor.shaders.close()
     editor.recovery.close(keep=not editor.closing and editor.session.dirty)
     editor.store.flush()
     editor.probe.close()

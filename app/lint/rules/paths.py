@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from pathlib import PurePosixPath, PureWindowsPath
 
 from ...graph import INPUTS, Graph, Group, Problem, signature
+from ...graph.color import BUILT_IN
 from ...graph.rules import Rule
 from ...written import Written
 from ..sheet import Check, Sheet
@@ -22,6 +23,9 @@ BACKSLASH_PATH = Rule(
 
 def named_paths(graph: Graph) -> Iterator[tuple[str, str, str, str]]:
     """Every file that a graph names, groups aside: node, socket, JSON path in the graph, and the path as written."""
+    config = graph.settings.color.config
+    if config and not config.startswith(BUILT_IN):
+        yield "", "", "settings.color.config", config
     for name, end in graph.inputs.items():
         if end.file:
             yield INPUTS, name, f"inputs.{name}.file", end.file
@@ -46,7 +50,7 @@ def absolute_path(sheet: Sheet) -> Iterator[Problem]:
     """Paths from the root."""
     for node, socket, at, path in named_paths(sheet.graph):
         if is_absolute(path):
-            sentence = f"{_who(node, socket)}: '{path}' is there on one machine alone: name it from the graph's folder"
+            sentence = f"{who(node, socket)}: '{path}' is there on one machine alone: name it from the graph's folder"
             yield Problem(node, socket, sentence, ABSOLUTE_PATH, at)
 
 
@@ -55,12 +59,13 @@ def backslash_path(sheet: Sheet) -> Iterator[Problem]:
     for node, socket, at, path in named_paths(sheet.graph):
         if "\\" in path and not is_absolute(path):
             better = path.replace("\\", "/")
-            sentence = f"{_who(node, socket)}: only Windows reads '{path}' as a path: write '{better}'"
+            sentence = f"{who(node, socket)}: only Windows reads '{path}' as a path: write '{better}'"
             yield Problem(node, socket, sentence, BACKSLASH_PATH, at)
 
 
-def _who(node: str, socket: str) -> str:
-    return f"{node}.{socket}" if socket else node
+def who(node: str, socket: str) -> str:
+    """What names a file, for a sentence: `read.path`, or the settings where it is no node."""
+    return f"{node}.{socket}" if socket else node or "settings"
 
 
 CHECKS = (Check(ABSOLUTE_PATH, absolute_path), Check(BACKSLASH_PATH, backslash_path))

@@ -50,7 +50,8 @@ class SizeFormula:
         if not math.isfinite(found):
             raise SizeError("it is not finite")
         # What is whole but for rounding is meant to be whole.
-        return max(1, math.floor(found + 1e-9 * max(1.0, abs(found))))
+        whole = round(found)
+        return max(1, whole if abs(found - whole) <= 1e-9 * max(1.0, abs(found)) else math.floor(found))
 
 
 def read_size(text: str) -> SizeFormula:

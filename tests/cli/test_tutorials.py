@@ -1,0 +1,53 @@
+"""The tutorials work as they are written: every file that they show, every command, in order."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+_BLOCK = re.compile(r"(?P<before>[^\n]*\n)?\n?```(?P<language>\w+)\n(?P<text>.*?)```", re.DOTALL)
+_NAME = re.compile(r"`([\w/.-]+\.(?:json|toml|glsl))`")
+
+
+def halation(words: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
+    return subprocess.run(
+        words, cwd=folder, capture_output=True, text=True, timeout=300, env={**os.environ, "PATH": path},
+    )
+
+
+@pytest.mark.parametrize(("page", "plate"), [("pipeline", "plates/shot.exr"), ("programmer", "shot.exr")])
+@pytest.mark.skipif(not shutil.which("git"), reason="git is not installed")
+def test_a_tutorial(page: str, plate: str, tmp_path: Path) -> None:
+    text = (ROOT / "docs" / f"tutorial-{page}.md").read_text(encoding="utf-8")
+    (tmp_path / plate).parent.mkdir(exist_ok=True)
+    shutil.copy(ROOT / "presets" / "samples" / "neon.exr", tmp_path / plate)
+    ran = 0
+    for block in _BLOCK.finditer(text):
+        language, body = block["language"], block["text"]
+        named = _NAME.findall(text[: block.start() + len(block["before"] or "")].rstrip().rpartition("\n\n")[2])
+        if language in ("json", "toml", "glsl"):
+            assert named, body
+            target = tmp_path / named[0]
+            target.parent.mkdir(exist_ok=True)
+            target.write_text(body, encoding="utf-8")
+        elif language == "python":
+            ended = halation([sys.executable, "-c", body], tmp_path)
+            assert ended.returncode == 0, ended.stderr
+        else:
+            for line in body.splitlines():
+                command, _, into = line.partition(" > ")
+                ended = halation(shlex.split(command), tmp_path)
+                assert ended.returncode == 0, (line, ended.stdout, ended.stderr)
+                if into:
+                    (tmp_path / into).write_text(ended.stdout, encoding="utf-8")
+                ran += 1
+    assert ran >= 8
