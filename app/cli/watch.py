@@ -12,7 +12,7 @@ import typer
 from ..errors import HalationError, UsageError
 from . import parsing
 from .options import GraphFile, Inputs, Lazy, Node, Scale, Sets, SizeText, bound, opened, report_problems
-from .outcome import note
+from .outcome import INTERRUPTED, note
 
 if TYPE_CHECKING:
     from ..editor.services.rerendering import Turn
@@ -84,9 +84,13 @@ def watch(
                 raise turn.fault  # what was typed will not change
             begun = True
             _tell_json(turn) if as_json else _tell(turn)
+    except KeyboardInterrupt:
+        if not begun:
+            raise
+        note("halation: interrupted; nothing unfinished was left behind")  # which is how it is meant to end
     finally:
         turns.close()
-    return 0
+    return INTERRUPTED
 
 
 def _tell(turn: Turn) -> None:

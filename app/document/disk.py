@@ -11,6 +11,7 @@ import time
 from pathlib import Path
 
 from ..errors import DocumentError, OutputError
+from ..graph.fence import outside
 from .limits import MAX_BYTES, size_fault
 
 STALE = 60.0
@@ -19,6 +20,8 @@ STALE = 60.0
 
 def read_text(path: Path) -> str:
     """The text of a graph file. Raises DocumentError; a file that is too large is not read."""
+    if said := outside(path):
+        raise DocumentError(str(path), "", said, rule="unreadable-graph")
     try:
         with path.open("rb") as file:
             if fault := size_fault(max(os.fstat(file.fileno()).st_size, 1)):
@@ -39,6 +42,8 @@ def read_text(path: Path) -> str:
 
 def write_text(path: Path, text: str) -> None:
     """Replace `path` by `text`: after any failure the old file is still there. Raises OutputError."""
+    if said := outside(path):
+        raise OutputError(f"{path}: {said}")
     try:
         # A link to a file stays a link: what it points at is replaced.
         target = path.resolve()

@@ -14,6 +14,7 @@ import OpenImageIO as oiio
 
 from ...nodes import Size
 from ..errors import InputError
+from ..graph.fence import outside
 from ..graph.frames import is_video
 from .layers import Layer, Part, layers_of, pick
 from .video import Facts, facts_of
@@ -75,7 +76,8 @@ def find_layer(header: ImageInfo, name: str) -> Layer:
 
 
 def fingerprint(path: str | Path) -> str:
-    """A cheap mark of this version of the file: where it is, when it was written, how long it is."""
+    """A cheap mark of this version of the file: where it is, when it was written, how long it is. Raises InputError."""
+    check_inside(path)
     try:
         status = Path(path).stat()
     except OSError as error:
@@ -84,7 +86,8 @@ def fingerprint(path: str | Path) -> str:
 
 
 def content_hash(path: str | Path) -> str:
-    """SHA-256 of the bytes of the file, in hexadecimal."""
+    """SHA-256 of the bytes of the file, in hexadecimal. Raises InputError."""
+    check_inside(path)
     try:
         with Path(path).open("rb") as file:
             return hashlib.file_digest(file, "sha256").hexdigest()
@@ -111,8 +114,15 @@ def opened(path: str | Path) -> Iterator[oiio.ImageInput]:
             handle.close()
 
 
+def check_inside(path: str | Path) -> None:
+    """Raise InputError for a file that `--root` forbids."""
+    if said := outside(path):
+        raise InputError(f"{path}: {said}")
+
+
 def check_file(path: str | Path) -> Path:
     """The file, if there is one that may be read and holds something. Raises InputError."""
+    check_inside(path)
     file = Path(path)
     if file.is_dir():
         raise InputError(f"{path}: is a folder: name a picture inside it")

@@ -18,6 +18,7 @@ from typing import Any
 from ...nodes import WORKING_SPACE, ColorSettings
 from ...nodes.color._spaces import SPACES
 from ..errors import GraphError, HalationError, UsageError
+from .config_files import config_fault
 
 BUILT_IN = "ocio://default"
 DEFAULT_COLOR = ColorSettings()
@@ -194,7 +195,11 @@ class Managed:
             near = difflib.get_close_matches(Path(source).name, _listed(folder), 1)
             raise self._fault(f"{self._said(source)}: there is no such color config{_suggested(near)}")
         try:
-            return builtin(source) if source.startswith("ocio://") else ocio().Config.CreateFromFile(source)
+            found = builtin(source) if source.startswith("ocio://") else ocio().Config.CreateFromFile(source)
+            said = config_fault(source, found) if self._fault is GraphError and not source.startswith("ocio://") else ""
+            if said:
+                raise self._fault(f"{self._said(source)}: {said}")
+            return found
         except faults() as error:
             said = f"is no color config that can be read: {_first_line(error)}"
             if source.startswith("ocio://"):

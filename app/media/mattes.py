@@ -19,6 +19,7 @@ import numpy as np
 
 from ...nodes import Kind, Matte, float_bits
 from ..errors import InputError
+from ..graph.fence import outside
 from .color import Array
 from .layers import plain
 from .naming import Role
@@ -88,7 +89,7 @@ def _manifest(attributes: Mapping[str, object], key: str, folder: Path) -> dict[
         said = attributes.get(f"cryptomatte/{key}/manifest")
         beside = attributes.get(f"cryptomatte/{key}/manif_file")
         file = folder / Path(str(beside)).name
-        text = file.read_text(encoding="utf-8") if said is None and beside else str(said or "{}")
+        text = file.read_text(encoding="utf-8") if said is None and beside and not outside(file) else str(said or "{}")
         found = json.loads(text)
         names = cast("dict[str, object]", found if isinstance(found, dict) else {})
         return {name: int(str(number), 16) for name, number in names.items()}

@@ -12,7 +12,7 @@ import numpy as np
 from ...nodes import BuiltInScene, Scene
 from ..compiler import ATTRIBUTES, Mesh
 from ..errors import InputError
-from .info import fingerprint
+from .info import check_inside, fingerprint
 from .stages import BUILT_IN, Piece
 
 Array = np.ndarray
@@ -70,7 +70,7 @@ def _pieces(path: str) -> list[Piece]:
     if not Path(path).is_file():
         raise InputError(f"{path}: there is no such file: choose a .glb, .gltf, .obj, .ply or .stl")
     try:
-        scene: Any = trimesh.load_scene(path)
+        scene: Any = trimesh.load_scene(path, resolver=_resolver(path))
         found = [_piece(scene, name) for name in scene.graph.nodes_geometry]
     except InputError:
         raise
@@ -83,6 +83,18 @@ def _pieces(path: str) -> list[Piece]:
     if sum(len(piece.triangles) for piece in pieces) > _MOST_TRIANGLES:
         raise InputError(f"{path}: holds more than {_MOST_TRIANGLES:,} triangles: thin it out first")
     return pieces
+
+
+def _resolver(path: str) -> Any:
+    """Finds the files that a mesh names, such as buffers and materials, as far as they may be read."""
+    from trimesh.resolvers import FilePathResolver
+
+    class Fenced(FilePathResolver):
+        def get(self, name: str) -> bytes:
+            check_inside(Path(self.parent, name.strip()))
+            return super().get(name)
+
+    return Fenced(path)
 
 
 def _piece(scene: Any, node: str) -> Piece | None:

@@ -26,7 +26,7 @@ from ...nodes import Missing
 from ..compiler import Frame
 from ..errors import InputError, UsageError
 from ..graph.frames import Pattern, format_frames, is_video
-from .info import video_facts
+from .info import check_inside, video_facts
 from .thumbnail import readable
 
 _UNSETTLED = 2_000_000_000
@@ -271,6 +271,7 @@ def _is_read_back(text: str, before: str, after: str) -> bool:
 def _listed(folder: str) -> tuple[str, ...]:
     """The names of the files of a folder, from memory where it has not changed since; none if there is no folder."""
     place = Path(folder or ".").absolute()
+    check_inside(place)
     try:
         written = place.stat().st_mtime_ns
         settled = time.time_ns() - written > _UNSETTLED

@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ..errors import OutputError
+from ..graph.fence import outside
 
 _FAULTS = {
     errno.ENOSPC: "the disk is full: make room or write elsewhere",
@@ -68,6 +69,8 @@ def check_room(path: str | Path) -> None:
 @contextmanager
 def unfinished(path: str | Path) -> Iterator[tuple[Path, Path]]:
     """A new file that is gone afterwards, and the one that it may replace. Raises OutputError."""
+    if said := outside(path):
+        raise OutputError(f"{path}: {said}")
     target = Path(os.path.realpath(path))
     part = target.with_name(f"{part_prefix(os.getpid())}{secrets.token_hex(6)}{target.suffix[:8]}")
     try:

@@ -6,15 +6,17 @@ import pytest
 from halation.app.compiler import Picture, Probed, Request, compile_graph, examine
 from halation.app.errors import HalationError, InputError
 from halation.app.graph import Graph
+from halation.app.media.pictures import Pictures
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_graphs import SIZE, random_graph
 
 
-class Outside:
+class Outside(Pictures):
     """Pictures of one size, or none."""
 
     def __init__(self, lost: bool) -> None:
+        super().__init__()
         self.lost = lost
 
     def probe(self, picture: Picture) -> Probed:

@@ -25,6 +25,11 @@ from .library import HOW_TO_INSTALL, library
 _TRIED = 8
 """Frames that are decoded to see whether packets tell the truth."""
 
+_CONTAINERS = (
+    "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,matroska,webm,avi,mxf,mpeg,mpegvideo,mpegts,asf,flv,ogg,yuv4mpegpipe,dv"
+)
+"""What is read: no playlists, which would lead to other files and to the network."""
+
 _HIDING = ("vp8",)
 _TIMELESS = ("avi",)
 """Containers that know the order of decoding only; times of presentation are guessed."""
@@ -99,7 +104,8 @@ def opened(path: str) -> Iterator[tuple[Any, Any, Any]]:
     if av is None:
         raise InputError(f"{path}: {HOW_TO_INSTALL}")
     try:
-        container = av.open(path, metadata_errors="replace")
+        options = {"format_whitelist": _CONTAINERS, "protocol_whitelist": "file"}
+        container = av.open(path, metadata_errors="replace", options=options)
     except (av.FFmpegError, ValueError, UnicodeError) as error:
         raise InputError(f"{path}: {fault(error)}") from error
     with container:

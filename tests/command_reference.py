@@ -10,7 +10,7 @@ from typing import Any
 from halation.app.cli.program import app
 from typer.main import get_command
 
-PAGE = Path(__file__).parents[2] / "docs" / "command-line.md"
+PAGE = Path(__file__).parents[1] / "docs" / "command-line.md"
 _BLOCK = re.compile(r"<!-- (?P<name>[\w-]+) -->\n.*?<!-- /(?P=name) -->", re.DOTALL)
 
 

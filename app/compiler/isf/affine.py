@@ -1,0 +1,170 @@
+"""What the numbers of a lowered graph depend on: found by lowering it again with other values.
+
+A control that only changes numbers, each of them evenly, becomes an input of what is exported. No node has to say how
+its values are used for that.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from ....nodes import Size
+from ..ir import Constant, Program, Shape
+
+TOLERANCE = 1e-5
+MAX_FACTOR = 4096
+"""Buffers may be so many times smaller than the picture, along each side."""
+
+
+@dataclass(frozen=True)
+class Knob:
+    """A number that the graph depends on. `text` is what it is in the export; samples are `step` apart from `base`."""
+
+    name: str
+    text: str
+    base: float
+    step: float
+    samples: int = 2
+
+
+Point = Mapping[str, float]
+"""Values of knobs by name."""
+
+Lowered = Callable[[Point], Program | None]
+"""The program with knobs at other values; None where there is none."""
+
+
+@dataclass
+class Anatomy:
+    """A program taken apart: what it is made of, its numbers, its sizes, and where the numbers of a constant begin."""
+
+    skeleton: object
+    numbers: list[float] = field(default_factory=list[float])
+    sizes: list[Size] = field(default_factory=list[Size])
+    places: dict[int, int] = field(default_factory=dict[int, int])
+
+
+def anatomy(program: Program) -> Anatomy:
+    """Take a program apart."""
+    found = Anatomy(None)
+    ends = [(name, ref) for name, ref in program.outputs.items()]
+    found.skeleton = (*(_walk(op, found) for op in program.ops), tuple(ends))
+    return found
+
+
+def _walk(item: Any, found: Anatomy) -> object:
+    if isinstance(item, Constant):
+        found.places[id(item)] = len(found.numbers)
+        parts = item.value if isinstance(item.value, tuple) else (item.value,)
+        found.numbers += [float(part) for part in parts]
+        return Constant, len(parts)
+    if isinstance(item, Shape):
+        found.sizes.append(item.size)
+        return item.channels, item.data, item.size == (1, 1)
+    if dataclasses.is_dataclass(item) and not isinstance(item, type):
+        fields = (one for one in dataclasses.fields(item) if one.compare)
+        return type(item), tuple(_walk(getattr(item, one.name), found) for one in fields)
+    if isinstance(item, tuple):
+        parts: tuple[Any, ...] = item
+        return tuple(_walk(part, found) for part in parts)
+    return item
+
+
+@dataclass
+class Model:
+    """Every number as base + sum of slopes + sum of products of two knobs."""
+
+    base: Anatomy
+    knobs: dict[str, Knob]
+    slopes: dict[str, list[float]] = field(default_factory=dict[str, list[float]])
+    products: dict[tuple[str, str], list[float]] = field(default_factory=dict[tuple[str, str], list[float]])
+
+    def predicted(self, point: Point) -> list[float]:
+        """The numbers at other values of the knobs."""
+        away = {name: point.get(name, knob.base) - knob.base for name, knob in self.knobs.items()}
+        found = list(self.base.numbers)
+        for name, slopes in self.slopes.items():
+            found = [number + slope * away[name] for number, slope in zip(found, slopes, strict=True)]
+        for (one, other), slopes in self.products.items():
+            both = away[one] * away[other]
+            found = [number + slope * both for number, slope in zip(found, slopes, strict=True)]
+        return found
+
+    def text(self, place: int) -> str:
+        """A number as GLSL."""
+        whole = self.base.numbers[place]
+        factors: dict[str, float] = {name: slopes[place] for name, slopes in self.slopes.items()}
+        size = max(abs(whole), 1e-30)
+        parts: list[str] = []
+        for (one, other), slopes in self.products.items():
+            if slope := slopes[place]:
+                a, b = self.knobs[one], self.knobs[other]
+                factors[one] -= slope * b.base
+                factors[other] -= slope * a.base
+                whole += slope * a.base * b.base
+                size = max(size, abs(slope * a.base * b.base))
+                parts.append(f"{literal(slope)} * {a.text} * {b.text}")
+        for name, factor in factors.items():
+            knob = self.knobs[name]
+            whole -= self.slopes[name][place] * knob.base
+            size = max(size, abs(factor * knob.base))
+            if abs(factor * max(abs(knob.base), abs(knob.step))) > TOLERANCE * size:
+                parts.append(f"{literal(factor)} * {knob.text}")
+        if not parts:
+            return literal(self.base.numbers[place])
+        if abs(whole) > TOLERANCE * size:
+            parts.append(literal(whole))
+        return f"({' + '.join(parts)})"
+
+
+def fitted(lowered: Lowered, base: Anatomy, knob: Knob) -> list[float] | None:
+    """How fast every number grows with a knob; None if what is computed changes, or numbers do not grow evenly."""
+    columns: list[list[float]] = []
+    for step in range(1, knob.samples + 1):
+        program = lowered({knob.name: knob.base + step * knob.step})
+        taken = anatomy(program) if program else None
+        if taken is None or taken.skeleton != base.skeleton:
+            return None
+        columns.append(taken.numbers)
+    slopes = [(one - start) / knob.step for one, start in zip(columns[0], base.numbers, strict=True)]
+    for step, column in enumerate(columns, 1):
+        if not alike(column, [a + step * knob.step * b for a, b in zip(base.numbers, slopes, strict=True)]):
+            return None
+    return slopes
+
+
+def alike(found: Sequence[float], wanted: Sequence[float]) -> bool:
+    """True if numbers are equal but for rounding."""
+    pairs = zip(found, wanted, strict=True)
+    return all(abs(a - b) <= TOLERANCE * max(abs(a), abs(b), 1e-3) for a, b in pairs)
+
+
+def length_text(canvas: Sequence[int], lengths: Sequence[int]) -> str | None:
+    """A length as a formula of the picture's, written `{}`, that holds for all samples; None if there is none.
+
+    Lengths are constant, or a fraction of the picture's, rounded somehow.
+    """
+    if len(set(lengths)) == 1 and len(set(canvas)) > 1:
+        return literal(lengths[0])
+    if list(lengths) == list(canvas):
+        return "{}"
+    span = lengths[-1] - lengths[0]
+    if span <= 0:
+        return None
+    rough = (canvas[-1] - canvas[0]) / span
+    for factor in sorted(range(2, MAX_FACTOR), key=lambda k: abs(k - rough))[:9]:
+        low = max(length * factor - side for side, length in zip(canvas, lengths, strict=True))
+        high = min((length + 1) * factor - 1 - side for side, length in zip(canvas, lengths, strict=True))
+        if low <= high:
+            added = factor - 1 if low <= factor - 1 <= high else 0 if low <= 0 <= high else (low + high) // 2
+            return f"floor(({{}} + {literal(added)}) / {literal(factor)})"
+    return None
+
+
+def literal(number: float) -> str:
+    """A number as GLSL 1.20 has it."""
+    text = f"{number:.9g}"
+    return text if any(letter in text for letter in ".en") else f"{text}.0"

@@ -1,0 +1,117 @@
+"""Controls of a graph as inputs of a shader, and as knobs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, cast
+
+from ....nodes import Plain, Value
+from ...graph import Graph, signature
+from .affine import Knob
+
+_ODD = re.compile(r"[^A-Za-z0-9]+")
+Section = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Controlled:
+    """A control, what it turns, and its knobs, one for each component."""
+
+    name: str
+    value: Value
+    entry: Section
+    knobs: tuple[Knob, ...]
+
+    def plain(self, point: Mapping[str, float]) -> Plain:
+        """The value where knobs are as `point` says."""
+        parts = tuple(point.get(knob.name, knob.base) for knob in self.knobs)
+        if self.value.length > 1:
+            return parts
+        return {"bool": bool, "int": round}.get(self.value.type, float)(parts[0])
+
+
+def identifier(name: str, taken: Iterable[str]) -> str:
+    """A name for GLSL that is not taken."""
+    plain = _ODD.sub("_", name).strip("_") or "value"
+    plain = f"x{plain}" if plain[0].isdigit() or plain.startswith(("gl_", "isf_", "IMG_")) else plain
+    found, again = plain, 1
+    while found in set(taken):
+        again += 1
+        found = f"{plain}{again}"
+    return found
+
+
+def controlled(graph: Graph, taken: Iterable[str]) -> tuple[list[Controlled], list[str]]:
+    """The controls that may become inputs; and sentences on those that cannot."""
+    names, found, notes = set(taken), list[Controlled](), list[str]()
+    for name, control in graph.controls.items():
+        target = control.target
+        item = graph.nodes.get(target.node)
+        value = signature(item).values.get(target.socket) if item else None
+        if value is None or item is None:
+            continue
+        if value.type not in ("float", "int", "bool", "color", "vector") or (value.type == "vector" and value.length != 2):
+            notes.append(f"control '{name}' keeps its value: the format has no input for a {value.type} like it")
+            continue
+        if target in graph.animation or target in graph.links:
+            notes.append(f"control '{name}' is no input: it is animated or linked")
+            continue
+        called = identifier(name, names)
+        names.add(called)
+        rest = item.values.get(target.socket, value.default) if hasattr(item, "graph") else getattr(item, target.socket)
+        found.append(_controlled(called, name, control.label or value.label or name, value, cast(Plain, rest)))
+    return found, notes
+
+
+def _controlled(called: str, name: str, label: str, value: Value, rest: Plain) -> Controlled:
+    parts = rest if isinstance(rest, tuple) else (float(cast(float, rest)),)
+    low, high = _range(value, parts)
+    entry: Section = {"NAME": called, "LABEL": label}
+    if value.type == "color":
+        straight = [_encoded(part) for part in parts[:3]] + list(parts[3:])
+        entry |= {"TYPE": "color", "DEFAULT": (straight + [1.0])[:4]}
+        texts = [f"halation_light({called}.{letter})" for letter in "rgb"] + [f"{called}.a"]
+    elif value.type == "vector":
+        flips = value.handle
+        place = [parts[0], 1.0 - parts[1] if flips else parts[1]]
+        entry |= {"TYPE": "point2D", "DEFAULT": place, "MIN": [low, low], "MAX": [high, high]}
+        texts = [f"{called}.x", f"(1.0 - {called}.y)" if flips else f"{called}.y"]
+    elif value.type == "bool":
+        entry |= {"TYPE": "bool", "DEFAULT": bool(rest)}
+        texts = [f"({called} ? 1.0 : 0.0)"]
+    else:
+        entry |= {"TYPE": "float", "DEFAULT": parts[0], "MIN": low, "MAX": high}
+        texts = [called if value.type == "float" else f"floor({called} + 0.5)"]
+    knobs = tuple(
+        _knob(f"{name}.{at}" if len(parts) > 1 else name, text, value, part, low, high)
+        for at, (part, text) in enumerate(zip(parts, texts, strict=False))
+    )
+    return Controlled(name, value, entry, knobs)
+
+
+def _knob(name: str, text: str, value: Value, rest: float, low: float, high: float) -> Knob:
+    """Its base is beside the value that it has: a node may do nothing at that, and would not be seen."""
+    if value.type == "bool":
+        return Knob(name, text, rest, 1.0 - 2.0 * rest, 1)
+    step = 1.0 if value.type == "int" else (high - low) * 0.0371
+    step = -step if rest + 3.0 * step > min(high, value.maximum) else step
+    return Knob(name, text, rest + step, step)
+
+
+def pinned(knob: Knob, rest: float) -> Knob:
+    """The knob at the value that it has."""
+    return Knob(knob.name, knob.text, rest, knob.step, knob.samples)
+
+
+def _range(value: Value, parts: tuple[float, ...]) -> tuple[float, float]:
+    low, high = max(value.low, value.minimum), min(value.high, value.maximum)
+    if low == float("-inf") or high == float("inf") or low >= high:
+        low, high = 0.0, 1.0
+    return min(low, *parts), max(high, *parts)
+
+
+def _encoded(light: float) -> float:
+    code = 12.92 * abs(light) if abs(light) <= 0.0031308 else 1.055 * abs(light) ** (1.0 / 2.4) - 0.055
+    return code if light >= 0.0 else -code

@@ -1,0 +1,165 @@
+"""Passes of a lowered graph as functions of one shader."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+from ....nodes import Uniform
+from ...glsl import Text, words
+from ..emit import Parts, around, macros_of, parts_of, texts_of
+from ..fuse import Fused
+from ..ir import Constant, Convolve, Foreign, Op, Program, Raster, Read, Ref
+from ..library import Library
+from ..names import Names, convert
+from .affine import literal
+
+_DEFINED = re.compile(r"\bstruct\s+(\w+)|^[ \t]*#[ \t]*define[ \t]+(\w+)|^[ \t]*const\s+\w+\s+(\w+)", re.MULTILINE)
+_FUNCTION = re.compile(r"^[ \t]*(?:float|int|bool|[iu]?vec[234]|mat3|void)[ \t]+(\w+)[ \t]*\(", re.MULTILINE)
+_BITS = re.compile(r"bool (is_hole|is_finite)\(float (\w)\) \{[^}]*\}")
+_FINITE = re.compile(r"float finite\(float x\) \{.*?\n\}", re.DOTALL)
+_GLOBALS = ("pixel", "extent", "grid", "frame", "proxy")
+
+
+@dataclass
+class PassNames(Names):
+    """Pictures are read through functions of their own; what would be a uniform is set at the start of the pass."""
+
+    texts: Callable[[Constant], tuple[str, ...] | None] = lambda item: None
+    sized: Callable[[tuple[int, int]], tuple[str, str] | None] = lambda size: None
+    readers: Mapping[Ref, str] = field(default_factory=dict[Ref, str])
+    set: list[tuple[str, str, str]] = field(default_factory=list[tuple[str, str, str]])
+    """Type, name and GLSL of what is set."""
+
+    def uniform(self, glsl: str, value: Uniform, name: str = "") -> str:
+        name = name or f"u{len(self.set)}"
+        sizes = self.sized(value) if glsl == "ivec2" and isinstance(value, tuple) and name.endswith("_size") else None
+        if sizes:
+            text = f"ivec2({sizes[0]}, {sizes[1]})"
+        elif glsl.endswith("]") and isinstance(value, tuple):
+            each = ", ".join(_vector(value[at : at + 4]) for at in range(0, len(value), 4))
+            text = f"{glsl}({each})"
+        else:
+            text = _plain(glsl, value)
+        self.set.append(("int" if glsl == "bool" else glsl, name, text))
+        return f"({name} != 0)" if glsl == "bool" else name
+
+    def load(self, ref: Ref, where: str) -> str:
+        where = "ivec2(0)" if self.shape(ref).size == (1, 1) else where
+        return f"{self.readers[ref]}({where})" + ("", ".r", ".rg", ".rgb", "")[self.shape(ref).channels]
+
+    def constant(self, item: Constant, glsl: str) -> str:
+        texts = self.texts(item)
+        if texts is None or glsl.endswith("]") or item.channels > 4:
+            return super().constant(item, glsl)
+        if glsl in ("int", "bool"):
+            return f"int(floor({texts[0]} + 0.5))" if glsl == "int" else f"({texts[0]} > 0.5)"
+        whole = f"vec{len(texts)}({', '.join(texts)})" if len(texts) > 1 else f"({texts[0]})"
+        return convert(whole, len(texts), glsl)
+
+
+def reasons(program: Program, passes: tuple[Fused, ...], pictures: Mapping[Ref, str]) -> Iterator[tuple[str, str]]:
+    """Why a graph cannot be written as one shader: nodes, and sentences about them."""
+    for fused in passes:
+        for index in fused.members:
+            yield from ((owner, why) for owner in program.ops[index].owners if (why := _reason(program.ops[index])))
+        for ref in fused.reads:
+            op = program.ops[ref.op]
+            if isinstance(op, Read) and ref not in pictures:
+                what = "a table of numbers" if op.picture.path == "numbers" else f"the file '{op.picture.path}'"
+                yield op.owner, f"reads {what}, which no shader can hold"
+    for port in program.memories:
+        yield port.node, "makes every frame of the one before"
+
+
+def _reason(op: Op) -> str:
+    if isinstance(op, Raster):
+        return "draws meshes"
+    if isinstance(op, Foreign):
+        return "is a shader of this format already: use its file"
+    if getattr(op, "tables", ()):
+        return "changes color by tables of a color library"
+    return ""
+
+
+def function(
+    program: Program, fused: Fused, output: int, prefix: str, names: PassNames, library: Library
+) -> tuple[list[str], str]:
+    """The functions of a pass, and the name of the one that makes its pixel: a vec4."""
+    parts = parts_of(program, fused, names, library)
+    root = program.ops[fused.root]
+    functions = list(parts.functions)
+    if isinstance(root, Convolve):
+        weights = ", ".join(literal(weight) for weight in root.weights)
+        functions[0] = f"const float weights[{len(root.weights)}] = float[{len(root.weights)}]({weights});"
+        functions = [line.replace("weights[j >> 2][j & 3]", "weights[j]") for line in functions]
+    texts = texts_of(program, fused, parts, library)
+    lines = list(_lines(program, fused, texts, parts, functions))
+    result = parts.results[output]
+    whole = convert(result, names.shape(fused.writes[output]).channels, "vec4")
+    used = words(*lines, *parts.body, result)
+    known = {"frame": ("int", "FRAMEINDEX + " + str(program.frame)), "proxy": ("float", literal(program.scale))}
+    start = ["pixel = ivec2(int(gl_FragCoord.x), int(RENDERSIZE.y - gl_FragCoord.y));", "grid = ivec2(RENDERSIZE);",
+             "extent = grid;"]
+    declared = ["ivec2 pixel;", "ivec2 grid;", "ivec2 extent;"]
+    for name, (glsl, text) in known.items():
+        if name in used:
+            declared.append(f"{glsl} {name};")
+            start.append(f"{name} = {text};")
+    for glsl, name, text in names.set:
+        if glsl.endswith("]"):
+            declared.append(f"const {glsl[:4]} {name}{glsl[4:]} = {text};")
+        else:
+            declared.append(f"{glsl} {name};")
+            start.append(f"{name} = {text};")
+    body = [*declared, *lines, "vec4 made() {", *start, *parts.body, f"return {whole};", "}"]
+    text = "\n".join(line.rstrip() for line in "\n".join(body).split("\n") if line.strip())
+    return _renamed(text, prefix, names, texts).split("\n"), f"{prefix}made"
+
+
+def _lines(
+    program: Program, fused: Fused, texts: tuple[Text, ...], parts: Parts, functions: list[str]
+) -> Iterator[str]:
+    early, late = around(texts, parts)
+    for group in (early, None, late):
+        if group is None:
+            yield from functions
+            continue
+        for text in group:
+            macros = macros_of(text, program, fused)
+            yield from (f"#define {name} {number}" for name, number in macros)
+            yield _portable(text.body)
+            yield from (f"#undef {name}" for name, _ in macros)
+
+
+def _portable(body: str) -> str:
+    """The text without the bits of floats, which older GLSL does not see."""
+    body = _BITS.sub(lambda found: f"bool {found[1]}(float {found[2]}) {{ return "
+                     f"{'!' if found[1] == 'is_hole' else ''}(abs({found[2]}) <= 3.4e38); }}", body)
+    return _FINITE.sub("float finite(float x) { return abs(x) <= 3.4e38 ? x : x > 0.0 ? 65504.0 : x < 0.0 ? -65504.0 "
+                       ": 0.0; }", body)
+
+
+def _renamed(text: str, prefix: str, names: PassNames, texts: tuple[Text, ...]) -> str:
+    """Every global name gets the prefix of the pass: two passes may define the same."""
+    own = {name for found in _DEFINED.finditer(text) for name in found.groups() if name}
+    own |= set(_FUNCTION.findall(text)) | {one.name for file in texts for one in file.all_functions}
+    own |= {name for _, name, _ in names.set} | {"made", "weights", *_GLOBALS}
+    own -= set(names.readers.values())
+    known = re.compile(rf"(?<![\w.])({'|'.join(sorted(map(re.escape, own), key=len, reverse=True))})\b")
+    return known.sub(lambda found: prefix + found[1], text)
+
+
+def _plain(glsl: str, value: Uniform) -> str:
+    if isinstance(value, tuple):
+        if glsl.startswith("ivec"):
+            return f"{glsl}({', '.join(str(int(part)) for part in value)})"
+        if glsl.startswith("uvec"):
+            return f"{glsl}({', '.join(f'{int(part)}u' for part in value)})"
+        return f"{glsl}({', '.join(literal(part) for part in value)})"
+    return str(int(value)) if glsl in ("int", "bool") else literal(value)
+
+
+def _vector(parts: tuple[float, ...]) -> str:
+    return f"vec{len(parts)}({', '.join(literal(part) for part in parts)})" if len(parts) > 1 else literal(parts[0])
