@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import functools
+import inspect
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -40,7 +42,28 @@ Scale = Annotated[
     float, typer.Option("--scale", metavar="X", help="Render a proxy: 0.5 is half size, lengths in pixels included.")
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON object on standard output, for machines.")]
+Root = Annotated[
+    Path | None,
+    typer.Option("--root", metavar="FOLDER", help="Read and write nothing that does not lie below this folder."),
+]
 GraphFile = Annotated[Path, typer.Argument(help="A graph, as JSON; - reads it from standard input.")]
+
+
+def rooted(command: Callable[..., int]) -> Callable[..., int]:
+    """The same command with the flag `--root`, which holds for all that it reads and writes."""
+
+    @functools.wraps(command)
+    def run(*args: Any, root: Root = None, **options: Any) -> int:
+        from ..graph.fence import fenced
+
+        with fenced(root):
+            return command(*args, **options)
+
+    known = inspect.signature(command, eval_str=True)
+    flag = inspect.Parameter("root", inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Root)
+    run.__signature__ = known.replace(parameters=[*known.parameters.values(), flag])  # type: ignore[attr-defined]
+    run.__annotations__ = {**command.__annotations__, "root": Root}
+    return run
 
 
 def opened(path: Path, sets: Sequence[str]) -> Graph:

@@ -21,6 +21,7 @@ from .git_setup import git_setup
 from .info import info
 from .merge import merge
 from .nodes import nodes
+from .options import rooted
 from .outcome import EXIT_CODES, failed, guarded, settle
 from .render import render
 from .reproduce import reproduce
@@ -33,11 +34,13 @@ app = typer.Typer(
     name="halation", add_completion=False, rich_markup_mode=None, epilog=EXIT_CODES,
     help="A node-graph compositor for screen-space effects.",
 )
+fenced = (render, check, explain, info, diff, test, reproduce, watch, sweep, bench)
+"""Commands that take graphs and pictures from people who may not be trusted."""
 for command in (
     edit, render, check, explain, info, nodes, fmt, diff, merge, git_setup, demo, gallery, test, schema,
     reproduce, watch, sweep, bench,
 ):
-    app.command()(guarded(command))
+    app.command()(guarded(rooted(command) if command in fenced else command))
 app.command(hidden=True)(guarded(git_driver))
 
 

@@ -11,6 +11,7 @@ from ...nodes import ColorSettings, Node, Plain, Value, catalogue
 from ..errors import DocumentError, GraphError
 from ..graph import Animation, Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, signature
 from ..graph.animation import adapted
+from ..graph.fence import outside
 from ..graph.names import did_you_mean, name_fault
 from ..graph.values import coerced, expected
 from ..written import CodeFault, Language, node_type
@@ -261,6 +262,8 @@ class _Body:
     def group_file(self, path: str, at: str) -> tuple[Graph, int]:
         """The graph in a group's file."""
         inner = Path(self.folder, path)
+        if said := outside(inner):
+            raise DocumentError(self.file, at, f"the group file '{inner}' {said}")
         real = _real(inner)
         if real is None:
             near = did_you_mean(inner.name, _graphs_in(inner.parent))

@@ -7,7 +7,7 @@ libraries' threads, are inside of the same fence.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -34,7 +34,7 @@ def outside(path: str | Path) -> str:
 
 
 @contextmanager
-def fenced(root: str | Path | None) -> Iterator[None]:
+def fenced(root: str | Path | None) -> Generator[None]:
     """Nothing outside of that folder is read or written meanwhile. Raises UsageError for what is no folder."""
     if root is None:
         yield

@@ -11,7 +11,7 @@ from ...nodes import Node
 from .. import document
 from ..document.syntax import member, parse
 from ..errors import DocumentError, GraphError
-from ..graph import Graph, Problem
+from ..graph import Graph, Group, Problem
 from ..graph.rules import Rule
 
 UNREADABLE_GRAPH = Rule(
@@ -69,12 +69,20 @@ def problems(graph: Graph, text: str, types: Mapping[str, type[Node]]) -> Iterat
     lines = text.replace("\r\n", "\n")
     if lines == wanted:
         return
-    if any(kind.version > 1 for kind in types.values()):
+    if _grown(graph):
         yield from ((problem, 0) for problem in _old(parse(text, ""), types, ""))
     pairs = enumerate(zip_longest(lines.split("\n"), wanted.split("\n")), 1)
     line = next((number for number, (here, there) in pairs if here != there), 1)
     words = "the layout is not the canonical one from here on: halation fmt rewrites it"
     yield Problem("", "", words, NOT_CANONICAL), line
+
+
+def _grown(graph: Graph) -> bool:
+    """True if some of the nodes have had more than one version."""
+    return any(
+        _grown(item.graph) if isinstance(item, Group) else (isinstance(item, Node) and item.version > 1)
+        for item in graph.nodes.values()
+    )
 
 
 def _old(raw: Mapping[str, Any], types: Mapping[str, type[Node]], at: str) -> Iterator[Problem]:

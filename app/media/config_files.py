@@ -9,13 +9,9 @@ from typing import Any
 from ..graph.fence import ROOT, outside
 
 
-def config_fault(source: str, config: Any) -> str:
+def config_fault(config: Any) -> str:
     """Why a config may not be used, as the rest of a sentence about it; "" if it may be."""
-    if not os.environ.get(ROOT):
-        return ""
-    if said := outside(source):
-        return said
-    for table in _tables(config):
+    for table in _tables(config) if os.environ.get(ROOT) else ():
         if said := outside(table):
             return f"its table {table} {said}"
     return ""

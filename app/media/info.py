@@ -22,8 +22,16 @@ from .video import Facts, facts_of
 TAG = "halation:colorspace"
 """Names the color space in formats that have no word for it."""
 
+LIMIT = "HALATION_MAX_PIXELS"
+"""The environment variable for how many pixels a picture may have at most."""
+
 _LONGEST_SIDE = 1 << 17
 _MOST_PIXELS = 1 << 28
+_BYTES = 4
+_COPIES = 3
+_CHANNELS = 4
+"""How many numbers a pixel takes while it is converted: so many copies of so many channels."""
+
 _DTYPES = {"half": "float16", "uint8": "uint8", "uint16": "uint16", "uint": "uint32"}
 _FAULTS = (
     ("subsampled", "stores color at a lower resolution than brightness, which cannot be read: save it as plain RGB"),
@@ -80,8 +88,8 @@ def fingerprint(path: str | Path) -> str:
     check_inside(path)
     try:
         status = Path(path).stat()
-    except OSError as error:
-        raise InputError(f"{path}: {_missing(Path(path))}") from error
+    except (OSError, ValueError) as error:
+        raise InputError(f"{_shown(path)}: {_missing(Path(path))}") from error
     return f"{Path(path).absolute()}:{status.st_mtime_ns}:{status.st_size}"
 
 
@@ -91,8 +99,8 @@ def content_hash(path: str | Path) -> str:
     try:
         with Path(path).open("rb") as file:
             return hashlib.file_digest(file, "sha256").hexdigest()
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror or error}") from error
+    except (OSError, ValueError) as error:
+        raise InputError(f"{_shown(path)}: cannot be read: {getattr(error, 'strerror', None) or error}") from error
 
 
 @contextmanager
@@ -117,13 +125,20 @@ def opened(path: str | Path) -> Iterator[oiio.ImageInput]:
 def check_inside(path: str | Path) -> None:
     """Raise InputError for a file that `--root` forbids."""
     if said := outside(path):
-        raise InputError(f"{path}: {said}")
+        raise InputError(f"{_shown(path)}: {said}")
 
 
 def check_file(path: str | Path) -> Path:
     """The file, if there is one that may be read and holds something. Raises InputError."""
     check_inside(path)
     file = Path(path)
+    try:
+        file.stat()
+    except FileNotFoundError:
+        pass
+    except (OSError, ValueError) as error:
+        said = _missing(file) if not isinstance(error, PermissionError) else "may not be read: check its permissions"
+        raise InputError(f"{_shown(path)}: {said}") from error
     if file.is_dir():
         raise InputError(f"{path}: is a folder: name a picture inside it")
     if not file.is_file():
@@ -162,8 +177,27 @@ def described_video(facts: Facts) -> ImageInfo:
 
 
 def _check_size(size: Size, path: str) -> None:
-    if not all(0 < side <= _LONGEST_SIDE for side in size) or size[0] * size[1] > _MOST_PIXELS:
-        raise InputError(f"{path}: claims to be {size[0]}x{size[1]} pixels, more than can be read (16384x16384 in all)")
+    said = os.environ.get(LIMIT, "")
+    most = int(said) if said.isascii() and said.isdecimal() else _MOST_PIXELS
+    if not all(0 < side <= _LONGEST_SIDE for side in size) or size[0] * size[1] > most:
+        raise InputError(
+            f"{path}: claims to be {size[0]}x{size[1]} pixels, more than can be read ({most:,} in all): if that is "
+            f"right, set {LIMIT} to more"
+        )
+
+
+def check_memory(path: str, size: Size, channels: int) -> None:
+    """Refuse what this machine cannot hold, before the system ends the process for it. Raises InputError."""
+    if not hasattr(os, "sysconf"):
+        return
+    there = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    need = size[0] * size[1] * _BYTES * (channels + _COPIES * _CHANNELS)
+    if 0 < there < need:
+        room, memory = need / 2**30, there / 2**30
+        raise InputError(
+            f"{path}: {size[0]}x{size[1]} pixels of {channels} channels take {room:.0f} GiB, and this machine has "
+            f"{memory:.0f}: make it smaller first"
+        )
 
 
 def _part(index: int, spec: oiio.ImageSpec) -> Part:
@@ -199,9 +233,17 @@ def fault(message: str) -> str:
     return f"is no picture that can be read ({first})"
 
 
+def _shown(path: str | Path) -> str:
+    """A path as a sentence can hold it."""
+    return str(path).replace("\0", "\\0")
+
+
 def _missing(path: Path) -> str:
     """What to say of a file that is not there."""
-    if not path.parent.is_dir():
-        return "there is no such file; its folder is missing too"
-    guess = difflib.get_close_matches(path.name, (item.name for item in path.parent.iterdir()), 1)
+    try:
+        if not path.parent.is_dir():
+            return "there is no such file; its folder is missing too"
+        guess = difflib.get_close_matches(path.name, (item.name for item in path.parent.iterdir()), 1)
+    except (OSError, ValueError):
+        return "no file can have such a name: check it"
     return f"there is no such file; did you mean '{guess[0]}'?" if guess else "there is no such file: check the name"

@@ -18,6 +18,7 @@ from typing import Any
 from ...nodes import WORKING_SPACE, ColorSettings
 from ...nodes.color._spaces import SPACES
 from ..errors import GraphError, HalationError, UsageError
+from ..graph.fence import outside
 from .config_files import config_fault
 
 BUILT_IN = "ocio://default"
@@ -190,14 +191,16 @@ class Managed:
             raise self._fault(f"{self.where}: {_first_line(error)}") from error
 
     def _read(self, source: str) -> Any:
+        theirs = self._fault is GraphError and not source.startswith("ocio://")
+        if theirs and (said := outside(source)):
+            raise self._fault(f"{self._said(source)}: {said}")
         if not source.startswith("ocio://") and not Path(source).is_file():
             folder = Path(source).parent
             near = difflib.get_close_matches(Path(source).name, _listed(folder), 1)
             raise self._fault(f"{self._said(source)}: there is no such color config{_suggested(near)}")
         try:
             found = builtin(source) if source.startswith("ocio://") else ocio().Config.CreateFromFile(source)
-            said = config_fault(source, found) if self._fault is GraphError and not source.startswith("ocio://") else ""
-            if said:
+            if theirs and (said := config_fault(found)):
                 raise self._fault(f"{self._said(source)}: {said}")
             return found
         except faults() as error:
@@ -258,9 +261,10 @@ def ocio() -> Any:
     """OpenColorIO, which comes without types. It is quiet: what is wrong is said in sentences of ours."""
     import PyOpenColorIO
 
+    api: Any = PyOpenColorIO
     if not os.environ.get("OCIO_LOGGING_LEVEL"):
-        PyOpenColorIO.SetLoggingLevel(PyOpenColorIO.LOGGING_LEVEL_NONE)
-    return PyOpenColorIO
+        api.SetLoggingLevel(api.LOGGING_LEVEL_NONE)
+    return api
 
 
 def faults() -> tuple[type[Exception], ...]:

@@ -15,7 +15,8 @@ from ..graph.frames import is_video
 from .color import Array, as_float, available_cores, is_working, to_working
 from .file_space import AUTO, space_of
 from .hints import hints_of
-from .info import ImageInfo, check_file, described, described_video, fault, find_layer, fingerprint, opened
+from .info import ImageInfo, check_file, check_memory, described, described_video, fault, find_layer, opened
+from .info import fingerprint as marked
 from .layers import Layer
 from .managed import DEFAULT_COLOR, managed
 from .video import facts_of, signal_at
@@ -93,7 +94,7 @@ def read_many(path: str | Path, wants: Sequence[Want], frame: int = 1) -> list[P
 
 def _read_video(path: str, wants: Sequence[Want], frame: int) -> list[Pixels]:
     """What sockets want of one frame of a video."""
-    mark = fingerprint(path)
+    mark = marked(path)
     header = described_video(facts_of(path, mark))
     signal = signal_at(path, mark, frame)
     made: list[Pixels] = []
@@ -116,6 +117,7 @@ def _decode(handle: oiio.ImageInput, header: ImageInfo, layers: Sequence[Layer])
         spans.setdefault((layer.part, layer.format), []).extend(layer.indices)
     decoded: dict[tuple[int, str], Array] = {}
     for (part, dtype), indices in spans.items():
+        check_memory(header.path, header.size, max(indices) + 1 - min(indices))
         try:
             block = handle.read_image(part, 0, min(indices), max(indices) + 1, _READ_AS.get(dtype, "float"))
         except (MemoryError, ValueError) as error:

@@ -11,8 +11,8 @@ from .._declare import WORKING_SPACE
 Space = Literal[
     "working", "linear rec709", "srgb", "gamma 2.2", "gamma 2.4", "rec709 camera", "linear p3", "display p3",
     "linear rec2020", "rec2100 pq", "rec2100 hlg", "linear adobergb", "adobergb", "acescg", "acescct", "acescc",
-    "aces2065-1", "arri logc3", "arri logc4", "apple log", "blackmagic film", "canon log2", "canon log3", "davinci intermediate",
-    "dji d-log", "panasonic v-log", "red log3g10", "sony s-log3", "sony s-log3 cine",
+    "aces2065-1", "arri logc3", "arri logc4", "apple log", "blackmagic film", "canon log2", "canon log3",
+    "davinci intermediate", "dji d-log", "panasonic v-log", "red log3g10", "sony s-log3", "sony s-log3 cine",
 ]
 
 WORKING: Space = WORKING_SPACE

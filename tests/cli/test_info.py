@@ -27,7 +27,8 @@ def test_a_render_is_told_in_full(cli):
     head = result.out.splitlines()[:3]
     assert head == [str(NEON), "  480 x 270, openexr, 12 parts, 12 layers",
                     "  made by Blender: Software is 'Blender 5.0.1'"]
-    assert re.findall(r"^(\w[\w ]+)$", result.out, re.M) == ["parts", "layers", "conventions", "camera", "metadata"]
+    sections = re.findall(r"^(\w[\w ]+)$", result.out, re.M)
+    assert sections == ["parts", "layers", "color", "conventions", "camera", "metadata"]
     assert len(section(result.out, "parts")) == len(section(result.out, "layers")) == 12
     assert section(result.out, "parts")[4].split() == ["4", "ViewLayer.Vector", *"XYZW", "float", "piz", "scan",
                                                        "lines", "data"]
@@ -51,7 +52,8 @@ def test_a_render_for_machines(cli, path):
     found = json.loads(said.out, parse_constant=lambda word: pytest.fail(f"{word} is not JSON"))
     assert said.code == 0 and said.err == ""
     assert set(found) == {
-        "file", "format", "size", "renderer", "renderer_reason", "parts", "layers", "roles", "undecided",
+        "file", "format", "size", "renderer", "renderer_reason", "parts", "layers", "color_spaces", "roles",
+        "undecided",
         "conventions", "camera", "metadata",
     }
     assert found["renderer"] == "Blender" and found["roles"]["depth"] == "Depth" and found["undecided"] == {}

@@ -60,7 +60,7 @@ def test_only_what_differs_is_saved_and_the_rest_is_kept():
 
 
 @pytest.mark.parametrize(("config", "said"), [
-    ("hause.ocio", r"settings\.color\.config: .*hause\.ocio: there is no such color config; did you mean 'house\.ocio'"),
+    ("hause.ocio", r"color\.config: .*hause\.ocio: there is no such color config; did you mean 'house\.ocio'"),
     ("broken.ocio", r"settings\.color\.config: .*broken\.ocio: is no color config that can be read"),
     ("ocio://studio-config-latst", r"no such built-in config; did you mean 'ocio://studio-config-latest'"),
 ])
@@ -129,7 +129,7 @@ def test_a_config_without_a_way_to_rec709_says_what_to_do(tmp_path):
     start = text.index("  - !<ColorSpace>\n    name: house seven")
     end = text.index("  - !<ColorSpace>\n    name: house texture")
     alone = write_house(tmp_path, "alone.ocio", text[:start] + text[end:])
-    with pytest.raises(GraphError, match="set settings.color.working to a space or role of this config"):
+    with pytest.raises(GraphError, match=r"set settings\.color\.working to a space or role of this config"):
         _ = managed(ColorSettings(str(alone))).working
     assert managed(ColorSettings(str(alone), "scene_linear")).working.name == "house linear"
 

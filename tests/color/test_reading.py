@@ -89,7 +89,8 @@ def test_what_is_said_of_an_input_is_stronger_than_all(tmp_path, color, referenc
     np.testing.assert_allclose(
         rgb(path, color, "house dim"), through(reference, light / 64.0, "house dim", "house linear"), rtol=2e-5
     )
-    assert [*layer_spaces(path, color, "HOUSE LOG").values()][0].reason == "as color_space says"
+    (found,) = layer_spaces(path, color, "HOUSE LOG").values()
+    assert found.reason == "as color_space says"
     np.testing.assert_array_equal(rgb(path, color, "data"), light / np.float32(64.0))
     np.testing.assert_array_equal(rgb(path, color, "auto"), rgb(path, color))
 
@@ -127,7 +128,7 @@ def test_data_is_never_converted(tmp_path, color, light):
     depth, mask = light[..., :1] * 9.0, light[..., 1:2]
     opaque = np.concatenate([light, np.ones_like(depth)], axis=2)
     layers = {"Combined": opaque, "Depth": depth, "Normal": light, "CryptoObject00": light}
-    path = write_exr(tmp_path / "plates_shot.exr", layers, {name: "float" for name in layers})
+    path = write_exr(tmp_path / "plates_shot.exr", layers, dict.fromkeys(layers, "float"))
     for space in ("", "house log"):
         assert np.abs(rgb(path, color, space) - light).max() > 0.1
         for kind, layer, width, expected in (

@@ -42,7 +42,8 @@ def one(type, **values):
 
 
 LINEAR = [
-    ("exposure", {"stops": 1.5}), ("gaussian_blur", {"sigma": 4.0}), ("white_balance", {"temperature": 3200.0, "tint": 12.0}),
+    ("exposure", {"stops": 1.5}), ("gaussian_blur", {"sigma": 4.0}),
+    ("white_balance", {"temperature": 3200.0, "tint": 12.0}),
     ("white_balance", {"temperature": 9000.0, "method": "cat16"}), ("transform", {"angle": 20.0}),
     ("hue_saturation", {"mode": "perceptual", "hue": 40.0, "saturation": 0.6}),
     ("color_space", {"source": "working", "target": "linear p3"}),

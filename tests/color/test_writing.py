@@ -37,7 +37,8 @@ def seen(reference, light, display, view, look=None):
 
 
 VIEWS = [
-    ("", "", "", ("Screen", "Plain")), ("warm", "", "", ("Screen", "Warm")), ("dim", "projector", "", ("Projector", "Dim")),
+    ("", "", "", ("Screen", "Plain")), ("warm", "", "", ("Screen", "Warm")),
+    ("dim", "projector", "", ("Projector", "Dim")),
     ("Plain", "", "warm", ("Screen", "Plain", "warm")), ("Warm", "", "none", ("Screen", "Plain")),
     ("", "Projector", "warm", ("Projector", "Dim", "warm")),
 ]
@@ -66,7 +67,8 @@ def test_plain_srgb_needs_nothing_of_a_config(color, light):
     expected = np.where(lit <= 0.0031308, 12.92 * lit, 1.055 * np.maximum(lit, 0.0) ** (1 / 2.4) - 0.055)
     inside = (lit > 0.0) & (lit < 4.0)
     for settings in (color, ACESCG):
-        np.testing.assert_allclose(to_display(light, "none", bits=32, color=settings)[inside], expected[inside], atol=1e-4)
+        shown = to_display(light, "none", bits=32, color=settings)
+        np.testing.assert_allclose(shown[inside], expected[inside], atol=1e-4)
 
 
 def test_built_in_views_from_another_working_space(light):
@@ -122,7 +124,8 @@ def test_exr_says_what_it_is(tmp_path, light, color):
 @pytest.mark.parametrize("settings", [ColorSettings(), ACESCG], ids=["rec709", "acescg"])
 @pytest.mark.parametrize(("name", "space", "depth", "says"), [
     ("a.exr", "ARRI LogC4", "half", True), ("a.exr", "arri logc3", "float", True), ("a.exr", "ACEScg", "half", True),
-    ("a.dpx", "ARRI LogC4", "half", False), ("a.dpx", "ARRI LogC4", "float", False), ("a.png", "ARRI LogC4", "float", True),
+    ("a.dpx", "ARRI LogC4", "half", False), ("a.dpx", "ARRI LogC4", "float", False),
+    ("a.png", "ARRI LogC4", "float", True),
     ("a.tif", "ACEScct", "float", False), ("a.png", "sRGB Encoded P3-D65", "float", True),
 ])
 def test_there_and_back(tmp_path, settings, name, space, depth, says):

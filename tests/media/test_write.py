@@ -222,6 +222,18 @@ def test_a_graph_fits_into_the_header(tmp_path: Path, rng: Random, name: str) ->
     assert {key: read_metadata(tmp_path / name)[key] for key in metadata} == metadata
 
 
+@pytest.mark.parametrize("name", ["a.jpg", "a.tif"])
+def test_one_place_holds_all_that_is_ours(tmp_path: Path, rng: Random, name: str) -> None:
+    """Formats without names of our own: what is not ours stays beside it, and nothing is invented."""
+    ours = {"halation:graph": GRAPH[:40_000] + '"]}', "halation:input:inputs.beauty": "ä b.exr:Z sha256:0"}
+    ours["Artist"] = "me"
+    write(tmp_path / name, {"image": hdr(rng)}, kinds=IMAGE, metadata=ours)
+    kept = read_metadata(tmp_path / name)
+    assert {key: kept[key] for key in ours} == ours
+    write(tmp_path / f"b{name}", {"image": hdr(rng)}, kinds=IMAGE, metadata=kept)
+    assert read_metadata(tmp_path / f"b{name}") == kept
+
+
 @pytest.mark.parametrize("name", ["a.jpg", "a.tif", "a.webp", "a.hdr"])
 def test_a_graph_does_no_harm_elsewhere(tmp_path: Path, rng: Random, name: str) -> None:
     metadata = {

@@ -9,7 +9,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, cast
 
 from ....nodes import Size
 from ..ir import Constant, Program, Shape
@@ -21,13 +21,22 @@ MAX_FACTOR = 4096
 
 @dataclass(frozen=True)
 class Knob:
-    """A number that the graph depends on. `text` is what it is in the export; samples are `step` apart from `base`."""
+    """A number that the graph depends on. `text` is what it is in the shader, `rest` what it is in the graph.
+
+    Samples are `step` apart from `base`, which lies beside the rest: a node that does nothing there would not be seen.
+    """
 
     name: str
     text: str
+    rest: float
     base: float
     step: float
     samples: int = 2
+
+    @property
+    def far(self) -> float:
+        """A value that is none of the samples, but for a switch."""
+        return self.base + self.step * (1.0 if self.samples == 1 else 5.0)
 
 
 Point = Mapping[str, float]
@@ -50,8 +59,7 @@ class Anatomy:
 def anatomy(program: Program) -> Anatomy:
     """Take a program apart."""
     found = Anatomy(None)
-    ends = [(name, ref) for name, ref in program.outputs.items()]
-    found.skeleton = (*(_walk(op, found) for op in program.ops), tuple(ends))
+    found.skeleton = (*(_walk(op, found) for op in program.ops), tuple(program.outputs.items()))
     return found
 
 
@@ -68,8 +76,7 @@ def _walk(item: Any, found: Anatomy) -> object:
         fields = (one for one in dataclasses.fields(item) if one.compare)
         return type(item), tuple(_walk(getattr(item, one.name), found) for one in fields)
     if isinstance(item, tuple):
-        parts: tuple[Any, ...] = item
-        return tuple(_walk(part, found) for part in parts)
+        return tuple(_walk(part, found) for part in cast("tuple[Any, ...]", item))
     return item
 
 

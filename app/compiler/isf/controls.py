@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import Any
 
 from ....nodes import Plain, Value
 from ...graph import Graph, signature
@@ -26,7 +26,7 @@ class Controlled:
 
     def plain(self, point: Mapping[str, float]) -> Plain:
         """The value where knobs are as `point` says."""
-        parts = tuple(point.get(knob.name, knob.base) for knob in self.knobs)
+        parts = tuple(point.get(knob.name, knob.rest) for knob in self.knobs)
         if self.value.length > 1:
             return parts
         return {"bool": bool, "int": round}.get(self.value.type, float)(parts[0])
@@ -52,7 +52,8 @@ def controlled(graph: Graph, taken: Iterable[str]) -> tuple[list[Controlled], li
         value = signature(item).values.get(target.socket) if item else None
         if value is None or item is None:
             continue
-        if value.type not in ("float", "int", "bool", "color", "vector") or (value.type == "vector" and value.length != 2):
+        fits = value.type in ("float", "int", "bool", "color") or (value.type == "vector" and value.length == 2)
+        if not fits:
             notes.append(f"control '{name}' keeps its value: the format has no input for a {value.type} like it")
             continue
         if target in graph.animation or target in graph.links:
@@ -60,22 +61,21 @@ def controlled(graph: Graph, taken: Iterable[str]) -> tuple[list[Controlled], li
             continue
         called = identifier(name, names)
         names.add(called)
-        rest = item.values.get(target.socket, value.default) if hasattr(item, "graph") else getattr(item, target.socket)
-        found.append(_controlled(called, name, control.label or value.label or name, value, cast(Plain, rest)))
+        found.append(_controlled(called, name, control.label or value.label or name, value, graph.value(target)))
     return found, notes
 
 
 def _controlled(called: str, name: str, label: str, value: Value, rest: Plain) -> Controlled:
-    parts = rest if isinstance(rest, tuple) else (float(cast(float, rest)),)
+    parts = rest if isinstance(rest, tuple) else tuple([float(rest)])
     low, high = _range(value, parts)
     entry: Section = {"NAME": called, "LABEL": label}
     if value.type == "color":
-        straight = [_encoded(part) for part in parts[:3]] + list(parts[3:])
-        entry |= {"TYPE": "color", "DEFAULT": (straight + [1.0])[:4]}
+        straight = [*(_encoded(part) for part in parts[:3]), *parts[3:], 1.0]
+        entry |= {"TYPE": "color", "DEFAULT": straight[:4]}
         texts = [f"halation_light({called}.{letter})" for letter in "rgb"] + [f"{called}.a"]
     elif value.type == "vector":
-        flips = value.handle
-        place = [parts[0], 1.0 - parts[1] if flips else parts[1]]
+        flips, (across, down) = value.handle, parts
+        place = [across, 1.0 - down if flips else down]
         entry |= {"TYPE": "point2D", "DEFAULT": place, "MIN": [low, low], "MAX": [high, high]}
         texts = [f"{called}.x", f"(1.0 - {called}.y)" if flips else f"{called}.y"]
     elif value.type == "bool":
@@ -92,17 +92,11 @@ def _controlled(called: str, name: str, label: str, value: Value, rest: Plain) -
 
 
 def _knob(name: str, text: str, value: Value, rest: float, low: float, high: float) -> Knob:
-    """Its base is beside the value that it has: a node may do nothing at that, and would not be seen."""
     if value.type == "bool":
-        return Knob(name, text, rest, 1.0 - 2.0 * rest, 1)
+        return Knob(name, text, rest, rest, 1.0 - 2.0 * rest, 1)
     step = 1.0 if value.type == "int" else (high - low) * 0.0371
-    step = -step if rest + 3.0 * step > min(high, value.maximum) else step
-    return Knob(name, text, rest + step, step)
-
-
-def pinned(knob: Knob, rest: float) -> Knob:
-    """The knob at the value that it has."""
-    return Knob(knob.name, knob.text, rest, knob.step, knob.samples)
+    step = -step if rest + 6.0 * step > min(high, value.maximum) else step
+    return Knob(name, text, rest, rest + step, step)
 
 
 def _range(value: Value, parts: tuple[float, ...]) -> tuple[float, float]:

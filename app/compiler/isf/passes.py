@@ -27,18 +27,20 @@ class PassNames(Names):
     """Pictures are read through functions of their own; what would be a uniform is set at the start of the pass."""
 
     texts: Callable[[Constant], tuple[str, ...] | None] = lambda item: None
-    sized: Callable[[tuple[int, int]], tuple[str, str] | None] = lambda size: None
+    sized: Callable[[Uniform], tuple[str, str] | None] = lambda size: None
+    first: int = 1
+    """The frame that FRAMEINDEX counts from."""
     readers: Mapping[Ref, str] = field(default_factory=dict[Ref, str])
     set: list[tuple[str, str, str]] = field(default_factory=list[tuple[str, str, str]])
     """Type, name and GLSL of what is set."""
 
     def uniform(self, glsl: str, value: Uniform, name: str = "") -> str:
         name = name or f"u{len(self.set)}"
-        sizes = self.sized(value) if glsl == "ivec2" and isinstance(value, tuple) and name.endswith("_size") else None
+        sizes = self.sized(value) if glsl == "ivec2" and name.endswith("_size") else None
         if sizes:
             text = f"ivec2({sizes[0]}, {sizes[1]})"
         elif glsl.endswith("]") and isinstance(value, tuple):
-            each = ", ".join(_vector(value[at : at + 4]) for at in range(0, len(value), 4))
+            each = ", ".join(_plain("vec4", value[at : at + 4]) for at in range(0, len(value), 4))
             text = f"{glsl}({each})"
         else:
             text = _plain(glsl, value)
@@ -54,8 +56,9 @@ class PassNames(Names):
         if texts is None or glsl.endswith("]") or item.channels > 4:
             return super().constant(item, glsl)
         if glsl in ("int", "bool"):
-            return f"int(floor({texts[0]} + 0.5))" if glsl == "int" else f"({texts[0]} > 0.5)"
-        whole = f"vec{len(texts)}({', '.join(texts)})" if len(texts) > 1 else f"({texts[0]})"
+            one = "".join(texts)
+            return f"int(floor({one} + 0.5))" if glsl == "int" else f"({one} > 0.5)"
+        whole = f"vec{len(texts)}({', '.join(texts)})" if len(texts) > 1 else f"({''.join(texts)})"
         return convert(whole, len(texts), glsl)
 
 
@@ -99,7 +102,7 @@ def function(
     result = parts.results[output]
     whole = convert(result, names.shape(fused.writes[output]).channels, "vec4")
     used = words(*lines, *parts.body, result)
-    known = {"frame": ("int", "FRAMEINDEX + " + str(program.frame)), "proxy": ("float", literal(program.scale))}
+    known = {"frame": ("int", f"FRAMEINDEX + {names.first}"), "proxy": ("float", literal(program.scale))}
     start = ["pixel = ivec2(int(gl_FragCoord.x), int(RENDERSIZE.y - gl_FragCoord.y));", "grid = ivec2(RENDERSIZE);",
              "extent = grid;"]
     declared = ["ivec2 pixel;", "ivec2 grid;", "ivec2 extent;"]
@@ -159,7 +162,3 @@ def _plain(glsl: str, value: Uniform) -> str:
             return f"{glsl}({', '.join(f'{int(part)}u' for part in value)})"
         return f"{glsl}({', '.join(literal(part) for part in value)})"
     return str(int(value)) if glsl in ("int", "bool") else literal(value)
-
-
-def _vector(parts: tuple[float, ...]) -> str:
-    return f"vec{len(parts)}({', '.join(literal(part) for part in parts)})" if len(parts) > 1 else literal(parts[0])

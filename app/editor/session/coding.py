@@ -78,9 +78,10 @@ class Coding(State):
 
     def save_drafts(self) -> tuple[Path, ...]:
         """Write all code that differs from its file; returns the files. Raises OutputError."""
-        for path, text in self.drafts.items():
+        drafts = self.drafts
+        for path, text in drafts.items():
             self._write(path, text)
-        return tuple(self.drafts)
+        return tuple(drafts)
 
     @property
     def drafts(self) -> Mapping[Path, str]:

@@ -1,0 +1,144 @@
+"""Which numbers of a graph its controls, its frame and its size change, and how."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from ....nodes import Size
+from ...errors import HalationError
+from ..ir import Constant, Program
+from .affine import Anatomy, Knob, Model, Point, alike, anatomy, fitted, length_text
+
+WIDTH, HEIGHT, FRAME = "width", "height", "frame"
+
+Texts = Mapping[Size, tuple[str, str]]
+"""Sizes of pictures as formulas of the whole one's, which is written `{}`."""
+
+
+@dataclass
+class Modelled:
+    """A program, and what its numbers and sizes are in a shader. `held` are the knobs that it does not follow."""
+
+    program: Program
+    model: Model
+    sizes: Texts
+    held: list[str] = field(default_factory=list[str])
+
+    def texts(self, item: Constant) -> tuple[str, ...] | None:
+        """The numbers of a constant as GLSL; None for what is always the same."""
+        place = self.model.base.places.get(id(item))
+        if place is None:
+            return None
+        numbers = range(place, place + (len(item.value) if isinstance(item.value, tuple) else 1))
+        slopes = (*self.model.slopes.values(), *self.model.products.values())
+        return tuple(map(self.model.text, numbers)) if any(one[at] for one in slopes for at in numbers) else None
+
+    @property
+    def used(self) -> set[str]:
+        """The knobs that change something."""
+        return {name for name in self.model.slopes if _matters(self.model, name)}
+
+
+@dataclass
+class Modelling:
+    """The work in progress: knobs that do not fit in are held at what they have in the graph, one after the other."""
+
+    lowered: Callable[[Point], Program]
+    knobs: dict[str, Knob]
+    size: Size
+    held: list[str] = field(default_factory=list[str])
+
+    def whole(self) -> Modelled:
+        """Hold as few knobs as can be. Raises the errors of compiling at the values of the graph."""
+        while True:
+            try:
+                program = self.lowered(self._base())
+            except HalationError:
+                if not self.knobs:
+                    raise
+                self._hold(next(reversed(self.knobs)))
+                continue
+            model = Model(anatomy(program), dict(self.knobs))
+            failed = self._fit(model)
+            sizes: Texts | None = None
+            if WIDTH in self.knobs and not failed:
+                sizes = self._sizes(model.base)
+                failed = WIDTH if sizes is None else ""
+            failed = failed or self._multiply(model)
+            if not failed:
+                return Modelled(program, model, sizes or {}, self.held)
+            self._hold(failed)
+
+    def _base(self) -> dict[str, float]:
+        return {name: knob.base for name, knob in self.knobs.items()}
+
+    def _tried(self, point: Point) -> Program | None:
+        try:
+            return self.lowered({**self._base(), **point})
+        except HalationError:
+            return None
+
+    def _hold(self, name: str) -> None:
+        for one in (WIDTH, HEIGHT) if name in (WIDTH, HEIGHT) else (name,):
+            self.held.append(one)
+            del self.knobs[one]
+
+    def _fit(self, model: Model) -> str:
+        """Find the slopes; the name of the first knob that has none."""
+        for name, knob in self.knobs.items():
+            slopes = fitted(self._tried, model.base, knob)
+            if slopes is None:
+                return name
+            model.slopes[name] = slopes
+        return ""
+
+    def _multiply(self, model: Model) -> str:
+        """Find products of two knobs; the name of a knob that does not fit in with the others, if one does not."""
+        names = [name for name in model.slopes if _matters(model, name)]
+        for at, one in enumerate(names):
+            for other in names[at + 1 :]:
+                a, b = model.knobs[one], model.knobs[other]
+                point = {one: a.base + a.step, other: b.base + b.step}
+                found = self._numbers(model, point)
+                if found is None:
+                    return one if one in (WIDTH, HEIGHT, FRAME) else other
+                apart = model.predicted(point)
+                if not alike(found, apart):
+                    area = a.step * b.step
+                    model.products[one, other] = [(x - y) / area for x, y in zip(found, apart, strict=True)]
+        point = {name: model.knobs[name].far for name in names}
+        found = self._numbers(model, point) if names else None
+        return "" if not names or (found is not None and alike(found, model.predicted(point))) else names[-1]
+
+    def _numbers(self, model: Model, point: Point) -> list[float] | None:
+        """The numbers at a point; None where something else is computed."""
+        program = self._tried(point)
+        taken = anatomy(program) if program else None
+        return taken.numbers if taken is not None and taken.skeleton == model.base.skeleton else None
+
+    def _sizes(self, base: Anatomy) -> Texts | None:
+        """The sizes of all pictures as formulas; None if they have none."""
+        steps = (0, 37, 91, 192)
+        found: list[Anatomy] = []
+        for step in steps:
+            program = self._tried({WIDTH: self.size[0] + step, HEIGHT: self.size[1] + step})
+            if program is None or (taken := anatomy(program)).skeleton != base.skeleton:
+                return None
+            found.append(taken)
+        texts: dict[Size, tuple[str, str]] = {}
+        for at, size in enumerate(base.sizes):
+            across, down = (
+                length_text([self.size[axis] + step for step in steps], [one.sizes[at][axis] for one in found])
+                for axis in (0, 1)
+            )
+            if across is None or down is None or texts.get(size, (across, down)) != (across, down):
+                return None
+            texts[size] = across, down
+        return texts
+
+
+def _matters(model: Model, name: str) -> bool:
+    step = model.knobs[name].step
+    numbers = zip(model.slopes[name], model.base.numbers, strict=True)
+    return any(abs(slope * step) > 1e-7 * max(abs(number), 1e-3) for slope, number in numbers)

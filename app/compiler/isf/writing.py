@@ -1,0 +1,111 @@
+"""The text of a shader that does what a lowered graph does."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from ....nodes import Size, Uniform
+from ..fuse import Fused, fuse
+from ..ir import Ref
+from ..library import Library
+from ..target import NULL
+from .affine import literal
+from .controls import Section
+from .model import Modelled
+from .passes import PassNames, function
+
+_PIXEL = "ivec2(int(gl_FragCoord.x), int(RENDERSIZE.y - gl_FragCoord.y))"
+
+
+@dataclass
+class Writing:
+    """The work in progress: passes drawn so far, by the buffers that they fill."""
+
+    found: Modelled
+    library: Library
+    sources: Mapping[Ref, str]
+    pictures: tuple[str, ...]
+    size: Size
+    buffers: dict[Ref, str] = field(default_factory=dict[Ref, str])
+    targets: list[Section] = field(default_factory=list[Section])
+    calls: list[str] = field(default_factory=list[str])
+    blocks: list[str] = field(default_factory=list[str])
+
+    def whole(self, first: int) -> tuple[str, list[Section]]:
+        """The GLSL, and what the head says of passes. `first` is the frame that FRAMEINDEX counts from."""
+        program = self.found.program
+        for fused in fuse(program, NULL):
+            for output in range(len(fused.writes)):
+                self._pass(fused, output, first)
+        self._show(program.outputs["made"])
+        targets = self.targets
+        lines = ["vec2 canvas;", "", *self._display()]
+        lines += [line for name in self.pictures for line in _reader(name, "from_display({})")]
+        drawn = [str(one["TARGET"]) for one in targets if one]
+        lines += [line for name in drawn for line in _reader(name, "{}")]
+        calls = [f"{'else ' if at else ''}if (PASSINDEX == {at}) {{ {call} }}" for at, call in enumerate(self.calls)]
+        lines += ["", *self.blocks, "void main() {", *(calls if len(calls) > 1 else self.calls), "}"]
+        return "\n".join(lines) + "\n", targets
+
+    def _pass(self, fused: Fused, output: int, first: int) -> None:
+        ref = fused.writes[output]
+        names = PassNames(
+            self.found.program, {one: number for number, one in enumerate(fused.reads)}, "fragment", False, seams=False,
+            texts=self.found.texts, sized=self._sized, first=first,
+            readers={one: f"read_{self._name(one)}" for one in fused.reads},
+        )
+        lines, made = function(self.found.program, fused, output, f"p{len(self.calls)}_", names, self.library)
+        self.blocks += [*lines, ""]
+        size = self._size_of(ref)
+        self.calls.append(f"canvas = {self._canvas(size)}; gl_FragColor = {made}();")
+        name = self.buffers[ref] = f"buffer{len(self.calls)}"
+        target: Section = {"TARGET": name, "FLOAT": True}
+        if size != self.size:
+            across, down = self.found.sizes.get(size) or (literal(size[0]), literal(size[1]))
+            target |= {"WIDTH": across.format("$WIDTH"), "HEIGHT": down.format("$HEIGHT")}
+        self.targets.append(target)
+
+    def _show(self, last: Ref) -> None:
+        """The last pass is the picture."""
+        if not self.targets or self.buffers.get(last) != self.targets[-1]["TARGET"]:
+            self.calls.append(f"gl_FragColor = read_{self._name(last)}({_PIXEL});")
+            self.targets.append({})
+        elif self._size_of(last) == self.size:
+            self.targets[-1] = {}
+        self.calls[-1] += " gl_FragColor = display_straight(gl_FragColor);"
+
+    def _canvas(self, size: Size) -> str:
+        """The size of the whole picture, seen from a pass of this size."""
+        if size == self.size:
+            return "RENDERSIZE"
+        whole = next((str(one["TARGET"]) for one in self.targets if "WIDTH" not in one), "")
+        if whole or self.pictures:
+            return f"IMG_SIZE({whole or self.pictures[0]})"
+        return f"vec2({literal(self.size[0])}, {literal(self.size[1])})"
+
+    def _sized(self, size: Uniform) -> tuple[str, str] | None:
+        assert isinstance(size, tuple)
+        found = self.found.sizes.get((int(size[0]), int(size[1])))
+        return (f"int({found[0].format('canvas.x')})", f"int({found[1].format('canvas.y')})") if found else None
+
+    def _display(self) -> list[str]:
+        """Between light and the display values of the format."""
+        needed, lines = frozenset({"display_straight", "from_display"}), list[str]()
+        for text in reversed(self.library.closure(("lib/isf",), "export")):
+            kept = text.only(needed)
+            needed |= kept.words
+            lines = [line.rstrip() for line in kept.body.split("\n") if line.strip()] + lines
+        return [*lines, "float halation_light(float code) { return srgb_decode(code); }"]
+
+    def _name(self, ref: Ref) -> str:
+        return self.sources.get(ref) or self.buffers[ref]
+
+    def _size_of(self, ref: Ref) -> Size:
+        return self.found.program.ops[ref.op].shapes[ref.output].size
+
+
+def _reader(name: str, shown: str) -> list[str]:
+    """A function that reads one pixel of a picture; rows of ours run from the top."""
+    read = f"IMG_PIXEL({name}, vec2(float(at.x) + 0.5, IMG_SIZE({name}).y - float(at.y) - 0.5))"
+    return [f"vec4 read_{name}(ivec2 at) {{ return {shown.format(read)}; }}"]
