@@ -61,7 +61,8 @@ def test_the_sample_stays_small() -> None:
 
 def test_files_are_short() -> None:
     lines = {label(path): path.read_text("utf-8").count("\n") for path in files() if path.suffix != ".json"}
-    assert not {name: count for name, count in lines.items() if count > 400}
+    printed = {"docs/nodes.md"}  # by halation nodes --markdown
+    assert not {name: count for name, count in lines.items() if count > 400 and name not in printed}
 
 
 @pytest.mark.parametrize(

@@ -24,9 +24,9 @@ COPIES = 25
 FORMATS = {
     "zip.exr": ("half", {"compression": "zip"}), "piz.exr": ("half", {"compression": "piz"}),
     "b44.exr": ("half", {"compression": "b44"}), "dwaa.exr": ("half", {"compression": "dwaa"}),
-    "a.png": ("uint8", {}), "a16.png": ("uint16", {}), "a.jpg": ("uint8", {}), 
-    "a.tif": ("uint8", {"compression": "lzw"}), "f.tif": ("float", {"compression": "zip"}), "a.hdr": ("float", {}), "a.dpx": ("uint16", {}), "a.webp": ("uint8", {}),
-    "a.tga": ("uint8", {}), "a.bmp": ("uint8", {}),
+    "a.tif": ("uint8", {"compression": "lzw"}), "f.tif": ("float", {"compression": "zip"}), "a.png": ("uint8", {}),
+    "a16.png": ("uint16", {}), "a.jpg": ("uint8", {}), "a.hdr": ("float", {}), "a.dpx": ("uint16", {}),
+    "a.webp": ("uint8", {}), "a.tga": ("uint8", {}), "a.bmp": ("uint8", {}),
 }
 
 
