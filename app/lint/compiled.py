@@ -202,7 +202,7 @@ def _unreadable(sentence: str, path: str, places: Mapping[str, tuple[str, str, s
 
 def _is_pointer(path: Path) -> bool:
     try:
-        return path.stat().st_size <= _POINTER_SIZE and path.read_bytes().startswith(_POINTER)
+        return path.is_file() and path.stat().st_size <= _POINTER_SIZE and path.read_bytes().startswith(_POINTER)
     except (OSError, ValueError):
         return False
 

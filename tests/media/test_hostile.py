@@ -64,7 +64,7 @@ def test_a_small_file_that_is_a_large_picture(tmp_path: Path, monkeypatch: pytes
     path = png(tmp_path / "a.png", 3000, 2000)
     assert path.stat().st_size < 50_000
     monkeypatch.setenv("HALATION_MAX_PIXELS", "5999999")
-    with pytest.raises(InputError, match="3000x2000 pixels, more than .*: if that is right, set HALATION_MAX_PIXELS"):
+    with pytest.raises(InputError, match=r"3000x2000 pixels, more than .*: if that is right, set HALATION_MAX_PIXELS"):
         media.read(path, "", Kind.IMAGE)
     monkeypatch.setenv("HALATION_MAX_PIXELS", "6000000")
     assert media.read(path, "", Kind.FIELD).array.shape == (2000, 3000, 1)
@@ -126,7 +126,7 @@ def test_a_playlist_is_no_video(tmp_path: Path) -> None:
         ("c.mp4", "v=0\no=- 0 0 IN IP4 127.0.0.1\ns=x\nc=IN IP4 127.0.0.1\nt=0 0\nm=video 5004 RTP/AVP 96\n"),
     ):
         (tmp_path / name).write_text(text)
-        with pytest.raises(InputError, match="is no video|cannot be read as a video"):
+        with pytest.raises(InputError, match=r"is no video|cannot be read as a video"):
             media.info(tmp_path / name)
 
 

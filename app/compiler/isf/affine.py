@@ -32,6 +32,8 @@ class Knob:
     base: float
     step: float
     samples: int = 2
+    resizes: bool = False
+    """True for what changes the sizes of pictures, as formulas say."""
 
     @property
     def far(self) -> float:
@@ -133,7 +135,7 @@ def fitted(lowered: Lowered, base: Anatomy, knob: Knob) -> list[float] | None:
     for step in range(1, knob.samples + 1):
         program = lowered({knob.name: knob.base + step * knob.step})
         taken = anatomy(program) if program else None
-        if taken is None or taken.skeleton != base.skeleton:
+        if taken is None or taken.skeleton != base.skeleton or (taken.sizes != base.sizes and not knob.resizes):
             return None
         columns.append(taken.numbers)
     slopes = [(one - start) / knob.step for one, start in zip(columns[0], base.numbers, strict=True)]

@@ -66,24 +66,24 @@ def controlled(graph: Graph, taken: Iterable[str]) -> tuple[list[Controlled], li
 
 
 def _controlled(called: str, name: str, label: str, value: Value, rest: Plain) -> Controlled:
-    parts = rest if isinstance(rest, tuple) else tuple([float(rest)])
+    parts: tuple[float, ...] = rest if isinstance(rest, tuple) else (float(rest), 0.0)[:1]
     low, high = _range(value, parts)
     entry: Section = {"NAME": called, "LABEL": label}
     if value.type == "color":
         straight = [*(_encoded(part) for part in parts[:3]), *parts[3:], 1.0]
         entry |= {"TYPE": "color", "DEFAULT": straight[:4]}
-        texts = [f"halation_light({called}.{letter})" for letter in "rgb"] + [f"{called}.a"]
+        texts = [f"@halation_light(@{called}.{letter})" for letter in "rgb"] + [f"@{called}.a"]
     elif value.type == "vector":
         flips, (across, down) = value.handle, parts
         place = [across, 1.0 - down if flips else down]
         entry |= {"TYPE": "point2D", "DEFAULT": place, "MIN": [low, low], "MAX": [high, high]}
-        texts = [f"{called}.x", f"(1.0 - {called}.y)" if flips else f"{called}.y"]
+        texts = [f"@{called}.x", f"(1.0 - @{called}.y)" if flips else f"@{called}.y"]
     elif value.type == "bool":
         entry |= {"TYPE": "bool", "DEFAULT": bool(rest)}
-        texts = [f"({called} ? 1.0 : 0.0)"]
+        texts = [f"(@{called} ? 1.0 : 0.0)"]
     else:
         entry |= {"TYPE": "float", "DEFAULT": parts[0], "MIN": low, "MAX": high}
-        texts = [called if value.type == "float" else f"floor({called} + 0.5)"]
+        texts = [f"@{called}" if value.type == "float" else f"floor(@{called} + 0.5)"]
     knobs = tuple(
         _knob(f"{name}.{at}" if len(parts) > 1 else name, text, value, part, low, high)
         for at, (part, text) in enumerate(zip(parts, texts, strict=False))

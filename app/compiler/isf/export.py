@@ -25,6 +25,7 @@ from .passes import reasons
 from .writing import Writing
 
 MAX_PASSES = 64
+MAX_PICTURES = 16
 SIZE: Size = (1280, 720)
 
 
@@ -99,6 +100,10 @@ class _Export:
         inputs += [one.entry for one in self.controls if {knob.name for knob in one.knobs} & found.used]
         writing = Writing(found, self.library, self._sources(found.program), tuple(self.pictures.values()), self.size)
         text, targets = writing.whole(self.first)
+        count = len(self.pictures) + len({one["TARGET"] for one in targets if one})
+        if count > MAX_PICTURES:
+            why = f"needs {count} pictures at once: shaders read {MAX_PICTURES} at most"
+            return Exported("", (), ((self.target.node, why),))
         head: Section = {
             "ISFVSN": "2", "DESCRIPTION": doc or "Made by Halation.", "CATEGORIES": ["Halation"], "INPUTS": inputs,
             **({"PASSES": targets} if targets != [{}] else {}),
@@ -120,8 +125,9 @@ class _Export:
         width, height = (float(side) for side in self.size)
         return {
             **{knob.name: knob for control in self.controls for knob in control.knobs},
-            FRAME: Knob(FRAME, f"float(FRAMEINDEX + {self.first})", self.first, self.first, 1.0, 3),
-            WIDTH: Knob(WIDTH, "canvas.x", width, width, 96.0), HEIGHT: Knob(HEIGHT, "canvas.y", height, height, 96.0),
+            FRAME: Knob(FRAME, f"float(@FRAMEINDEX + {self.first})", self.first, self.first, 1.0, 3),
+            WIDTH: Knob(WIDTH, "@halation_canvas.x", width, width, 96.0, resizes=True),
+            HEIGHT: Knob(HEIGHT, "@halation_canvas.y", height, height, 96.0, resizes=True),
         }
 
     def _note(self, found: Modelled) -> None:

@@ -15,7 +15,9 @@ from ..library import Library
 from ..names import Names, convert
 from .affine import literal
 
-_DEFINED = re.compile(r"\bstruct\s+(\w+)|^[ \t]*#[ \t]*define[ \t]+(\w+)|^[ \t]*const\s+\w+\s+(\w+)", re.MULTILINE)
+_DEFINED = re.compile(r"\bstruct\s+(\w+)|^[ \t]*#[ \t]*define[ \t]+(\w+)", re.MULTILINE)
+_CONSTANTS = re.compile(r"^const\s+\w+\s+([^;]*);", re.MULTILINE)
+_CONSTANT = re.compile(r"(?:^|,)\s*(\w+)(?:\[[^\]]*\])?\s*=")
 _FUNCTION = re.compile(r"^[ \t]*(?:float|int|bool|[iu]?vec[234]|mat3|void)[ \t]+(\w+)[ \t]*\(", re.MULTILINE)
 _BITS = re.compile(r"bool (is_hole|is_finite)\(float (\w)\) \{[^}]*\}")
 _FINITE = re.compile(r"float finite\(float x\) \{.*?\n\}", re.DOTALL)
@@ -49,7 +51,7 @@ class PassNames(Names):
 
     def load(self, ref: Ref, where: str) -> str:
         where = "ivec2(0)" if self.shape(ref).size == (1, 1) else where
-        return f"{self.readers[ref]}({where})" + ("", ".r", ".rg", ".rgb", "")[self.shape(ref).channels]
+        return f"@{self.readers[ref]}({where})" + ("", ".r", ".rg", ".rgb", "")[self.shape(ref).channels]
 
     def constant(self, item: Constant, glsl: str) -> str:
         texts = self.texts(item)
@@ -102,7 +104,7 @@ def function(
     result = parts.results[output]
     whole = convert(result, names.shape(fused.writes[output]).channels, "vec4")
     used = words(*lines, *parts.body, result)
-    known = {"frame": ("int", f"FRAMEINDEX + {names.first}"), "proxy": ("float", literal(program.scale))}
+    known = {"frame": ("int", f"@FRAMEINDEX + {names.first}"), "proxy": ("float", literal(program.scale))}
     start = ["pixel = ivec2(int(gl_FragCoord.x), int(RENDERSIZE.y - gl_FragCoord.y));", "grid = ivec2(RENDERSIZE);",
              "extent = grid;"]
     declared = ["ivec2 pixel;", "ivec2 grid;", "ivec2 extent;"]
@@ -145,13 +147,13 @@ def _portable(body: str) -> str:
 
 
 def _renamed(text: str, prefix: str, names: PassNames, texts: tuple[Text, ...]) -> str:
-    """Every global name gets the prefix of the pass: two passes may define the same."""
+    """Every global name gets the prefix of the pass: two passes may define the same. What is marked with @ stays."""
     own = {name for found in _DEFINED.finditer(text) for name in found.groups() if name}
+    own |= {name for found in _CONSTANTS.finditer(text) for name in _CONSTANT.findall(found[1])}
     own |= set(_FUNCTION.findall(text)) | {one.name for file in texts for one in file.all_functions}
     own |= {name for _, name, _ in names.set} | {"made", "weights", *_GLOBALS}
-    own -= set(names.readers.values())
-    known = re.compile(rf"(?<![\w.])({'|'.join(sorted(map(re.escape, own), key=len, reverse=True))})\b")
-    return known.sub(lambda found: prefix + found[1], text)
+    known = re.compile(rf"(?<![\w.@])({'|'.join(sorted(map(re.escape, own), key=len, reverse=True))})\b")
+    return known.sub(lambda found: prefix + found[1], text).replace("@", "")
 
 
 def _plain(glsl: str, value: Uniform) -> str:

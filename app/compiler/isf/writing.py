@@ -31,18 +31,22 @@ class Writing:
     targets: list[Section] = field(default_factory=list[Section])
     calls: list[str] = field(default_factory=list[str])
     blocks: list[str] = field(default_factory=list[str])
+    last: dict[Ref, int] = field(default_factory=dict[Ref, int])
+    """The pass that reads a picture last."""
 
     def whole(self, first: int) -> tuple[str, list[Section]]:
         """The GLSL, and what the head says of passes. `first` is the frame that FRAMEINDEX counts from."""
         program = self.found.program
-        for fused in fuse(program, NULL):
-            for output in range(len(fused.writes)):
-                self._pass(fused, output, first)
+        passes = [(fused, output) for fused in fuse(program, NULL) for output in range(len(fused.writes))]
+        self.last = {ref: index for index, (fused, _) in enumerate(passes) for ref in fused.reads}
+        self.last[program.outputs["made"]] = len(passes)
+        for fused, output in passes:
+            self._pass(fused, output, first)
         self._show(program.outputs["made"])
         targets = self.targets
-        lines = ["vec2 canvas;", "", *self._display()]
+        lines = ["vec2 halation_canvas;", "", *self._display()]
         lines += [line for name in self.pictures for line in _reader(name, "from_display({})")]
-        drawn = [str(one["TARGET"]) for one in targets if one]
+        drawn = dict.fromkeys(str(one["TARGET"]) for one in targets if one)
         lines += [line for name in drawn for line in _reader(name, "{}")]
         calls = [f"{'else ' if at else ''}if (PASSINDEX == {at}) {{ {call} }}" for at, call in enumerate(self.calls)]
         lines += ["", *self.blocks, "void main() {", *(calls if len(calls) > 1 else self.calls), "}"]
@@ -58,17 +62,26 @@ class Writing:
         lines, made = function(self.found.program, fused, output, f"p{len(self.calls)}_", names, self.library)
         self.blocks += [*lines, ""]
         size = self._size_of(ref)
-        self.calls.append(f"canvas = {self._canvas(size)}; gl_FragColor = {made}();")
-        name = self.buffers[ref] = f"buffer{len(self.calls)}"
-        target: Section = {"TARGET": name, "FLOAT": True}
+        self.calls.append(f"halation_canvas = {self._canvas(size)}; gl_FragColor = {made}();")
+        lengths: Section = {}
         if size != self.size:
             across, down = self.found.sizes.get(size) or (literal(size[0]), literal(size[1]))
-            target |= {"WIDTH": across.format("$WIDTH"), "HEIGHT": down.format("$HEIGHT")}
-        self.targets.append(target)
+            lengths = {"WIDTH": across.format("$WIDTH"), "HEIGHT": down.format("$HEIGHT")}
+        self.buffers[ref] = self._free(lengths)
+        self.targets.append({"TARGET": self.buffers[ref], "FLOAT": True, **lengths})
+
+    def _free(self, lengths: Section) -> str:
+        """A buffer of this size that nobody reads any more, or another one: hosts read 16 pictures at most."""
+        now = len(self.targets)
+        taken = {name for ref, name in self.buffers.items() if self.last.get(ref, -1) >= now}
+        known = {str(one["TARGET"]): {key: one[key] for key in ("WIDTH", "HEIGHT") if key in one} for one in self.targets}
+        return next((name for name, size in known.items() if size == lengths and name not in taken),
+                    f"buffer{len(known) + 1}")
 
     def _show(self, last: Ref) -> None:
         """The last pass is the picture."""
-        if not self.targets or self.buffers.get(last) != self.targets[-1]["TARGET"]:
+        newest = next(reversed(self.buffers), None)
+        if newest != last:
             self.calls.append(f"gl_FragColor = read_{self._name(last)}({_PIXEL});")
             self.targets.append({})
         elif self._size_of(last) == self.size:
@@ -87,7 +100,7 @@ class Writing:
     def _sized(self, size: Uniform) -> tuple[str, str] | None:
         assert isinstance(size, tuple)
         found = self.found.sizes.get((int(size[0]), int(size[1])))
-        return (f"int({found[0].format('canvas.x')})", f"int({found[1].format('canvas.y')})") if found else None
+        return (f"int({found[0].format('@halation_canvas.x')})", f"int({found[1].format('@halation_canvas.y')})") if found else None
 
     def _display(self) -> list[str]:
         """Between light and the display values of the format."""

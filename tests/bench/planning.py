@@ -1,0 +1,83 @@
+"""How long large graphs take from graph to plan, and again after a value has changed. It prints JSON.
+
+`planning.py COUNT...` measures graphs of so many nodes: `plan`, seconds for graphs that were never planned before;
+`change`, those after a value in the middle of a graph was changed; `programs`, how many shaders of the changed plan
+are new; `read`, how long the JSON takes to a graph.
+"""
+
+from __future__ import annotations
+
+import gc
+import json
+import sys
+import time
+from collections.abc import Callable
+
+import numpy as np
+from halation.app.document import dumps, loads
+from halation.app.graph import Graph, Input, Output, Port
+from halation.app.renderer import Renderer, Wanted
+from halation.nodes import Kind, catalogue
+
+TIMES = 7
+TYPES = (
+    "exposure", "grade", "saturation", "gaussian_blur", "cdl", "mix_images", "vignette", "edge_detect",
+    "clip", "merge",
+)
+"""In turn. Those of two pictures take the node before and the one five before it."""
+
+
+def large(count: int, first: int = 0) -> Graph:
+    """A graph of so many nodes in a chain with side branches; no two are alike, nor two graphs with another `first`."""
+    known, made = catalogue(), [Port("inputs", "image")]
+    graph = Graph().add_input("image", Input(Kind.IMAGE))
+    for number in range(count):
+        kind, amount = known[TYPES[(number + first) % len(TYPES)]], 0.1 + 0.8 * (number + 1) / (count + first)
+        value = next(name for name, item in kind.values.items() if isinstance(item.default, float))
+        graph = graph.add(f"n{number}", kind(**{value: amount}))
+        sockets = [name for name in kind.inputs if name != "mask"]
+        for socket, source in zip(sockets, (made[-1], made[-5:][0]), strict=False):
+            graph = graph.connect(source, Port(f"n{number}", socket))
+        made.append(Port(f"n{number}", "out"))
+    graph = graph.add_output("out", Output(Kind.IMAGE))
+    return graph.connect(made[-1], Port("outputs", "out"))
+
+
+def timed(work: Callable[[int], object]) -> list[float]:
+    """Seconds of some runs, each with its number, after one that does not count."""
+    seconds: list[float] = []
+    for turn in range(TIMES + 1):
+        gc.collect()
+        started = time.perf_counter()
+        work(turn)
+        seconds.append(time.perf_counter() - started)
+    return seconds[1:]
+
+
+def measured(engine: Renderer, count: int) -> dict[str, object]:
+    """All figures of one graph."""
+    graph, wanted = large(count), Wanted({"image": np.zeros((64, 64, 4), np.float32)})
+    number = count // 2 // len(TYPES) * len(TYPES)
+    changed = [graph.override(f"n{number}.stops", 0.001 * (turn + 1)) for turn in range(TIMES + 1)]
+    text = dumps(graph)
+    first = {one.shader for one in engine.compile(graph, wanted).passes}
+    others = [large(count, turn + 1) for turn in range(TIMES + 1)]
+    plan = timed(lambda turn: engine.compile(others[turn], wanted))
+    engine.compile(graph, wanted)
+    change = timed(lambda turn: engine.compile(changed[turn], wanted))
+    after = {one.shader for one in engine.compile(changed[-1], wanted).passes}
+    return {
+        "nodes": count, "passes": len(engine.compile(graph, wanted).passes), "plan": plan, "change": change,
+        "programs": len(after - first), "read": timed(lambda turn: loads(text)),
+    }
+
+
+def main() -> None:
+    """Print what each graph took."""
+    engine = Renderer()
+    print(json.dumps({"graphs": [measured(engine, int(count)) for count in sys.argv[1:]]}))
+    engine.close()
+
+
+if __name__ == "__main__":
+    main()

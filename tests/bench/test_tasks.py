@@ -1,0 +1,53 @@
+"""The graphs of the benchmark compute what the tasks say, so that what is timed is the same work."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from bench import references, tasks
+from bench.inputs import pictures
+from halation.app import document
+from halation.app.renderer import Wanted
+
+WIDTH, HEIGHT = tasks.SIZES["tiny"]
+ALIKE = 3e-4
+"""RMS of the difference, as a part of the reference's: writing half floats alone costs 2.1e-4."""
+
+
+@cache
+def given():
+    return {name: pixels.reshape(HEIGHT, WIDTH, -1) for name, pixels in pictures(WIDTH, HEIGHT).items()}
+
+
+def rendered(renderer, task):
+    graph = document.load(task.path)
+    for name, value in task.values(WIDTH).items():
+        graph = graph.override(name, value)
+    wanted = Wanted({name: given()[name] for name in task.inputs}, precision="float")
+    return renderer.render(graph, wanted)["out"].astype(np.float16)
+
+
+@pytest.mark.parametrize("task", tasks.TASKS.values(), ids=list(tasks.TASKS))
+def test_a_graph_computes_its_task(renderer, task):
+    found = references.compared(rendered(renderer, task), references.reference(task.name, given()))
+    assert found["rms"] <= ALIKE
+
+
+def test_references_see_what_is_different():
+    """An edge of the picture, a lost channel, a wrong sigma: each is seen."""
+    right = references.reference("T1s3", given())
+    for wrong in (np.roll(right, 1, 1), right * (1.0, 1.0, 1.0, 0.0), references.blurred(given()["a"].astype(float), 3.02)):
+        assert references.compared(wrong, right)["rms"] > ALIKE
+
+
+def test_pictures_are_what_the_tasks_ask_for():
+    found = given()
+    color, alpha = found["a"][..., :3].astype(np.float32), found["a"][..., 3]
+    assert color.min() >= 0.0 and 50.0 < color.max() <= 502.0
+    assert 0.0 == alpha.min() < 0.5 < alpha.mean() < alpha.max() == 1.0
+    assert not color[alpha == 0.0].any()
+    assert found["depth"].min() > 0.0 and np.abs(found["noise"]).max() <= 1.0
+    np.testing.assert_allclose(np.linalg.norm(found["normal"], axis=2), 1.0, atol=1e-4)
+    assert all(np.isfinite(one.astype(np.float32)).all() for one in found.values())
