@@ -20,7 +20,7 @@ BUG = 70
 EXIT_CODES = """\b
 Exit codes:
 0    done
-1    rendering or writing failed; fmt --check, diff, merge or test found something
+1    rendering or writing failed; fmt --check, diff, merge, test, reproduce or bench found something
 2    the command line makes no sense
 3    the graph is at fault; check --strict found something to warn of
 4    a picture cannot be read

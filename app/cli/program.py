@@ -14,6 +14,7 @@ from .demo import demo
 from .diff import diff
 from .edit import edit
 from .explain import explain
+from .export_isf import export_isf
 from .fmt import fmt
 from .gallery import gallery
 from .git_driver import git_driver
@@ -38,7 +39,7 @@ fenced = (render, check, explain, info, diff, test, reproduce, watch, sweep, ben
 """Commands that take graphs and pictures from people who may not be trusted."""
 for command in (
     edit, render, check, explain, info, nodes, fmt, diff, merge, git_setup, demo, gallery, test, schema,
-    reproduce, watch, sweep, bench,
+    reproduce, watch, sweep, bench, export_isf,
 ):
     app.command()(guarded(rooted(command) if command in fenced else command))
 app.command(hidden=True)(guarded(git_driver))

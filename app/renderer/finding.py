@@ -13,6 +13,7 @@ from ...presets import paths as presets
 from ..compiler.named import CONFIG, path_texts
 from ..errors import InputError, UsageError
 from ..graph import INPUTS, Graph, did_you_mean
+from ..graph.fence import outside
 from ..graph.frames import Pattern
 from ..graph.paths import relocated, repointed
 from .recipe import Recipe, Used, read_recipe
@@ -89,13 +90,13 @@ class Finder:
     def _looked_at(self, used: Used, path: str) -> Found | None:
         """What is at a path, if there is anything; of a sequence, at that of one of its files or at its pattern."""
         if not used.frames:
-            if not Path(path).is_file():
+            if not _may_be_read(path):
                 return None
             digest = self._hashes.of(path)
             return Found(used, "same" if digest == used.digest else "changed", path, digest)
         pattern = Pattern.parse(path) or Pattern.parse(str(Path(path).with_name(used.pattern)))
         files = [pattern.name(frame) for frame in used.frames] if pattern else []
-        if not pattern or not all(Path(file).is_file() for file in files):
+        if not pattern or not all(map(_may_be_read, files)):
             return None
         digest = self._hashes.of_all(files)
         return Found(used, "same" if digest == used.together else "changed", pattern.text, digest)
@@ -124,7 +125,7 @@ class Finder:
             for top in self._search:
                 for folder, _, names in os.walk(top):
                     files = (str(Path(folder, name)) for name in names if Path(name).suffix.casefold() in endings)
-                    self._others |= {self._hashes.of(file): file for file in files if os.access(file, os.R_OK)}
+                    self._others |= {self._hashes.of(file): file for file in files if _may_be_read(file)}
         return self._others.get(used.digest, "")
 
     def text_of(self, owner: str) -> str:
@@ -176,7 +177,12 @@ def _same_drive(full: str, folder: str) -> bool:
 
 def _is_there(used: Used, path: str) -> bool:
     pattern = Pattern.parse(path) if used.frames else None
-    return Path(pattern.name(used.frames[0]) if pattern else path).is_file()
+    return _may_be_read(pattern.name(used.frames[0]) if pattern else path)
+
+
+def _may_be_read(path: str) -> bool:
+    """True for a file that is there, and not beyond the fence."""
+    return Path(path).is_file() and os.access(path, os.R_OK) and not outside(path)
 
 
 def missing(found: Sequence[Found], path: Path) -> InputError | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -12,6 +13,7 @@ import numpy as np
 
 from ..errors import DeviceError, UsageError
 from ..graph import Graph, color_settings, node_output
+from ..graph.fence import ROOT
 from ..media import color_digest
 from ..media.compare import CODE, Compared, compare
 from ..media.stored import stored
@@ -92,7 +94,7 @@ def reproduce(
     for file in files:
         if file.resolve() == recipe.path.resolve():
             raise UsageError(f"-o {file}: this is the picture to compare with; write to another file")
-    with tempfile.TemporaryDirectory(prefix="halation-") as folder:
+    with tempfile.TemporaryDirectory(prefix="halation-", dir=os.environ.get(ROOT) or None) as folder:
         again = Path(folder, recipe.path.name)
         pairs = [(name, file) for file in (again, *files) for name in names]
         writing = Writing(

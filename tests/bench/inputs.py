@@ -1,7 +1,8 @@
-"""The pictures that the tasks take: the same on every machine. `inputs.py FOLDER WIDTHxHEIGHT` writes them.
+"""The pictures that the tasks take: the same on every machine. `inputs.py FOLDER WIDTHxHEIGHT [--still]` writes them.
 
 `a`, `b`: half RGBA, premultiplied, with highlights up to 500 and soft holes. `depth`, `normal`, `velocity`: of balls on
-a floor, seen from above it. `noise`: two channels of -1 to 1. `mask`: how much defocused, 0 to 1. All else is float.
+a floor, seen from above it. `noise`: two channels of -1 to 1. `mask`: how much defocused, 0 to 1. Beside them the
+frames of the sequence, unless only what stands still is wanted.
 """
 
 from __future__ import annotations
@@ -15,9 +16,6 @@ sys.path.append(str(Path(__file__).parents[1]))
 
 from bench.exr import write
 from bench.tasks import FRAMES, SEQUENCE, Lens, Occlusion, picture
-
-VERSION = 1
-"""Goes up when the pictures change."""
 
 Array = np.ndarray
 
@@ -115,7 +113,7 @@ def main() -> None:
     (made / SEQUENCE).parent.mkdir(parents=True, exist_ok=True)
     for name, pixels in pictures(width, height).items():
         write(picture(made, name), pixels)
-    for frame in range(1, FRAMES + 1):
+    for frame in range(1, FRAMES + 1) if "--still" not in sys.argv else ():
         write(made / SEQUENCE.format(frame), light(width, height, 1, 0.004 * frame))
     made.rename(folder)
 

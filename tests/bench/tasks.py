@@ -16,7 +16,8 @@ SIZES: Mapping[str, tuple[int, int]] = MappingProxyType({
     "tiny": (96, 54), "small": (480, 270), "hd": (1920, 1080), "uhd": (3840, 2160),
 })
 FRAMES = 24
-LONG = 240
+PICTURES = 1
+"""The version of the pictures: goes up when they change."""
 LUMINANCE = (0.2126, 0.7152, 0.0722)
 GOLDEN_ANGLE = 2.399963
 

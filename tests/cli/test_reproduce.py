@@ -213,6 +213,19 @@ def test_the_graph_that_made_it(cli, graphs, shot, tmp_path):
     assert cli("reproduce", picture, "--graph", folder / "made.json").code == 0, "no input is needed for the graph"
 
 
+def test_nothing_beyond_the_fence_is_read_or_written(cli, graphs, shot, tmp_path):
+    inside = tmp_path / "inside"
+    inside.mkdir()
+    picture = render(cli, graphs(), inside / "out.exr", "-i", shot)
+    lost = cli("reproduce", picture, "--root", inside, "--search", tmp_path)
+    assert lost.code == 4 and "what it was made of is not there: shot.exr (beauty)" in lost.err
+    shutil.copy(shot, inside)
+    assert again(cli, picture, "--root", inside)["same"]
+    assert sorted(path.name for path in inside.iterdir()) == ["out.exr", "shot.exr"]
+    refused = cli("reproduce", picture, "--root", inside, "-o", tmp_path / "again.exr")
+    assert refused.code == 1 and "lies outside of" in refused.err and not (tmp_path / "again.exr").exists()
+
+
 def test_files_that_hold_no_graph(cli, graphs, shot, tmp_path):
     webp = render(cli, graphs(), tmp_path / "out.webp")
     plain = tmp_path / "plain.png"

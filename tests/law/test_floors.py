@@ -127,7 +127,9 @@ def test_a_library_has_one_home(library: str) -> None:
 
 
 def test_the_editor_works_without_a_window_below_its_panels() -> None:
-    drawn = ("theme", "toolkit", "window", "canvas", "curves", "inspector", "viewer", "panels", "timeline", "keys")
+    drawn = (
+        "theme", "toolkit", "window", "canvas", "code", "curves", "inspector", "viewer", "panels", "timeline", "keys",
+    )
     assert not [
         f"{name} imports {target}"
         for name, target in links()

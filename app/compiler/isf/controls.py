@@ -66,11 +66,11 @@ def controlled(graph: Graph, taken: Iterable[str]) -> tuple[list[Controlled], li
 
 
 def _controlled(called: str, name: str, label: str, value: Value, rest: Plain) -> Controlled:
-    parts: tuple[float, ...] = rest if isinstance(rest, tuple) else (float(rest), 0.0)[:1]
+    parts = list(rest) if isinstance(rest, tuple) else [float(rest)]
     low, high = _range(value, parts)
     entry: Section = {"NAME": called, "LABEL": label}
     if value.type == "color":
-        straight = [*(_encoded(part) for part in parts[:3]), *parts[3:], 1.0]
+        straight = [*map(_encoded, parts[:3]), *parts[3:], 1.0]
         entry |= {"TYPE": "color", "DEFAULT": straight[:4]}
         texts = [f"@halation_light(@{called}.{letter})" for letter in "rgb"] + [f"@{called}.a"]
     elif value.type == "vector":
@@ -99,7 +99,7 @@ def _knob(name: str, text: str, value: Value, rest: float, low: float, high: flo
     return Knob(name, text, rest, rest + step, step)
 
 
-def _range(value: Value, parts: tuple[float, ...]) -> tuple[float, float]:
+def _range(value: Value, parts: list[float]) -> tuple[float, float]:
     low, high = max(value.low, value.minimum), min(value.high, value.maximum)
     if low == float("-inf") or high == float("inf") or low >= high:
         low, high = 0.0, 1.0

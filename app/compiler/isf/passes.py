@@ -71,7 +71,7 @@ def reasons(program: Program, passes: tuple[Fused, ...], pictures: Mapping[Ref, 
             yield from ((owner, why) for owner in program.ops[index].owners if (why := _reason(program.ops[index])))
         for ref in fused.reads:
             op = program.ops[ref.op]
-            if isinstance(op, Read) and ref not in pictures:
+            if isinstance(op, Read) and ref not in pictures and not op.owner.startswith("inputs."):
                 what = "a table of numbers" if op.picture.path == "numbers" else f"the file '{op.picture.path}'"
                 yield op.owner, f"reads {what}, which no shader can hold"
     for port in program.memories:
@@ -139,7 +139,8 @@ def _lines(
 
 
 def _portable(body: str) -> str:
-    """The text without the bits of floats, which older GLSL does not see."""
+    """The text without the bits of floats, and a word, that older GLSL does not know."""
+    body = re.sub(r"\bprecise\s+", "", body)
     body = _BITS.sub(lambda found: f"bool {found[1]}(float {found[2]}) {{ return "
                      f"{'!' if found[1] == 'is_hole' else ''}(abs({found[2]}) <= 3.4e38); }}", body)
     return _FINITE.sub("float finite(float x) { return abs(x) <= 3.4e38 ? x : x > 0.0 ? 65504.0 : x < 0.0 ? -65504.0 "

@@ -74,9 +74,11 @@ class Writing:
         """A buffer of this size that nobody reads any more, or another one: hosts read 16 pictures at most."""
         now = len(self.targets)
         taken = {name for ref, name in self.buffers.items() if self.last.get(ref, -1) >= now}
-        known = {str(one["TARGET"]): {key: one[key] for key in ("WIDTH", "HEIGHT") if key in one} for one in self.targets}
-        return next((name for name, size in known.items() if size == lengths and name not in taken),
-                    f"buffer{len(known) + 1}")
+        known = {
+            str(one["TARGET"]): {key: one[key] for key in ("WIDTH", "HEIGHT") if key in one} for one in self.targets
+        }
+        free = (name for name, size in known.items() if size == lengths and name not in taken)
+        return next(free, f"buffer{len(known) + 1}")
 
     def _show(self, last: Ref) -> None:
         """The last pass is the picture."""
@@ -100,7 +102,10 @@ class Writing:
     def _sized(self, size: Uniform) -> tuple[str, str] | None:
         assert isinstance(size, tuple)
         found = self.found.sizes.get((int(size[0]), int(size[1])))
-        return (f"int({found[0].format('@halation_canvas.x')})", f"int({found[1].format('@halation_canvas.y')})") if found else None
+        if found is None:
+            return None
+        across, down = found
+        return f"int({across.format('@halation_canvas.x')})", f"int({down.format('@halation_canvas.y')})"
 
     def _display(self) -> list[str]:
         """Between light and the display values of the format."""

@@ -47,7 +47,7 @@ def color_field(
     if label or numbers:
         draw_swatch(fields, rect, color, hovered)
     else:
-        _in_short(fields, rect, side, color, mixed, hovered)
+        _in_short(fields, rect, side, color if alpha else color[:3], mixed, hovered)
     if label:
         _name_on(fields, rect, color, label)
     if pressed:
@@ -91,7 +91,7 @@ def color_picker(
     _label(fields, "sRGB hex", side)
     room = width - side - (3 if eyedropper else 2) * (imgui.get_frame_height() + imgui.get_style().item_inner_spacing.x)
     text = text_field(fields, f"{id} hex", hexadecimal(color), _TEXT, room)
-    fresh = numbers or (from_hex(text) if text else None) or _buttons(fields, id, color, eyedropper)
+    fresh = numbers or (from_hex(text) if text else None) or _buttons(fields, id, color, eyedropper, alpha)
     if fresh:
         fields.stops = intensity(rgba(fresh.value))
     return fresh or found
@@ -136,12 +136,12 @@ def _wheel(fields: Fields, id: str, color: RGBA, width: float, alpha: bool) -> E
     return Edit(picked((made[0], made[1], made[2]), fields.stops, made[3]), fields.merge)
 
 
-def _buttons(fields: Fields, id: str, color: RGBA, eyedropper: bool) -> Edit | None:
+def _buttons(fields: Fields, id: str, color: RGBA, eyedropper: bool, alpha: bool) -> Edit | None:
     found = None
     gap = imgui.get_style().item_inner_spacing.x
     imgui.same_line(0.0, gap)
-    if quiet(fields, icons.ICON_FA_COPY, f"button copy {id}", "Copy the four linear numbers"):
-        imgui.set_clipboard_text(" ".join(f"{part:g}" for part in color))
+    if quiet(fields, icons.ICON_FA_COPY, f"button copy {id}", "Copy the linear numbers"):
+        imgui.set_clipboard_text(" ".join(f"{part:g}" for part in (color if alpha else color[:3])))
     imgui.same_line(0.0, gap)
     if quiet(fields, icons.ICON_FA_PASTE, f"button paste {id}", "Paste linear numbers, or hexadecimal digits"):
         found = _from_text(imgui.get_clipboard_text(), color)
@@ -186,10 +186,10 @@ def _inside(rect: Rect) -> tuple[float, float]:
     return x, max(min(rect[3], view.pos.y + view.size.y - height), view.pos.y)
 
 
-def _in_short(fields: Fields, rect: Rect, side: float, color: RGBA, mixed: bool, hovered: bool) -> None:
+def _in_short(fields: Fields, rect: Rect, side: float, color: RGBA | RGB, mixed: bool, hovered: bool) -> None:
     """A swatch, and the numbers in few digits where there is no room to edit them."""
     background(fields.palette, rect, hovered=hovered)
-    draw_swatch(fields, (rect[0], rect[1], rect[0] + side, rect[3]), color, hovered)
+    draw_swatch(fields, (rect[0], rect[1], rect[0] + side, rect[3]), rgba(color), hovered)
     text = NO_VALUE if mixed else " ".join(f"{part:.2g}" for part in color)
     pad = imgui.get_style().frame_padding.x * 0.75
     write((rect[0] + side + pad, rect[1], rect[2] - pad, rect[3]), text, fields.palette.text)

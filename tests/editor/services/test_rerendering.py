@@ -84,8 +84,8 @@ def test_a_file_of_a_node_that_is_broken_is_a_turn(turning, folder: Path) -> Non
     with written_on(node):
         turn = next(turns)
     assert turn.changed == (node,) and str(turn.fault) == FAULT
-    (folder / "graph.json").write_text("1")
-    assert any(turn.report is DONE for turn in turns), "it is said once for every change"
+    with written_on(folder / "graph.json"):
+        assert any(turn.report is DONE for turn in turns), "it is said once for every change"
 
 
 def test_pictures_that_are_not_there_yet(turning, folder: Path) -> None:

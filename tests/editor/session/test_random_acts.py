@@ -96,9 +96,11 @@ ACTS: dict[str, Act] = {
     "select_downstream": lambda s, r: s.select_downstream(),
     "select_linked": lambda s, r: s.select_linked(),
     "add_node": lambda s, r: s.add_node(
-        r.choice([*TOYS]), spot(r), r.choice([None, any_source(s, r), any_target(s, r)]), r.random() < 0.5
+        r.choice([*TOYS, "glsl"]), spot(r), r.choice([None, any_source(s, r), any_target(s, r)]), r.random() < 0.5
     ),
-    "insert": lambda s, r: s.insert(r.choice([*TOYS, any_node(s, r)]), any_target(s, r), r.choice([None, spot(r)])),
+    "insert": lambda s, r: s.insert(
+        r.choice([*TOYS, "glsl", any_node(s, r)]), any_target(s, r), r.choice([None, spot(r)])
+    ),
     "splice": lambda s, r: s.splice(some_keys(s, r), any_target(s, r), spot(r), None, r.choice(["", "drag"])),
     "abandon": lambda s, r: s.abandon(r.choice(["", "drag"])),
     "connect": lambda s, r: s.connect(any_source(s, r), any_target(s, r)),
@@ -109,7 +111,7 @@ ACTS: dict[str, Act] = {
     "swap_inputs": lambda s, r: s.swap_inputs(any_node(s, r)),
     "delete": lambda s, r: s.delete(r.random() < 0.7),
     "extract": lambda s, r: s.extract(r.choice(["", "drag"])),
-    "replace": lambda s, r: s.replace(any_node(s, r), r.choice([*TOYS])),
+    "replace": lambda s, r: s.replace(any_node(s, r), r.choice([*TOYS, "glsl"])),
     "rename": lambda s, r: s.rename(any_node(s, r), r.choice(["a", "b", "blur", "frames", "inputs", "a.b", "x/y"])),
     "mute": lambda s, r: s.mute(),
     "collapse": lambda s, r: s.collapse(),
@@ -172,6 +174,12 @@ ACTS: dict[str, Act] = {
                   r.choice([*s.graph.controls, "no"])]),
     ),
     "bake": lambda s, r: s.bake(some_animated(s, r), r.choice([None, [1, 3], []])),
+    "set_code": lambda s, r: s.set_code(
+        r.choice([*s.graph.nodes, "no"]),
+        r.choice(["", "nonsense", "vec4 f(vec4 a) { return a; }", "float g(vec4 b, float k /* = 1 */) { return k; }"]),
+        merge=r.choice(["", "burst"]),
+    ),
+    "inline_code": lambda s, r: s.inline_code(r.choice([*s.graph.nodes, "no"])),
     "look_again": lambda s, r: s.look_again(),
     "undo": lambda s, r: s.undo(),
     "redo": lambda s, r: s.redo(),
@@ -182,7 +190,8 @@ ACTS: dict[str, Act] = {
 OTHERS = {
     "edit", "go", "go_to", "new", "open", "open_copy", "open_text", "restore", "save", "save_as", "revert", "reload",
     "reload_groups", "migrate", "save_group", "add_group", "drop_files", "add_matte", "animate_all",
-    "set_all",
+    "set_all", "add_code_file", "export_code", "save_code", "save_drafts", "reread_code", "note_code_files",
+    "keep_draft",
 }
 """What needs files or graphs, and what all the others call: tested by name elsewhere."""
 
@@ -190,6 +199,7 @@ QUESTIONS = {
     "value", "is_default", "linked", "control_of", "fitting", "fitting_files", "refusal", "relative", "position",
     "frame_members", "copy", "viewed", "viewed_in_root", "can_animate", "animation", "key_at", "value_now",
     "value_then", "animated_outside", "expression_fault", "key_frames", "next_key", "previous_key",
+    "code", "fits_picture", "differs_from_disk",
 }
 
 

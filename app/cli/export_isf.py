@@ -1,0 +1,83 @@
+"""`halation export-isf`: a graph as one shader for other programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from . import parsing
+from .options import AsJson, GraphFile, Lazy, Node, Sets, SizeText, opened, report_problems
+from .outcome import note, print_json
+
+if TYPE_CHECKING:
+    from ..graph import Graph, Port
+
+
+def export_isf(
+    graph: GraphFile,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="FILE.fs", help="The shader; by default standard output.")
+    ] = None,
+    sets: Sets = None,
+    node: Node = "",
+    selection: Annotated[
+        str, typer.Option("--select", metavar="ID,ID,...", help="Only these nodes: what feeds them becomes pictures.")
+    ] = "",
+    size: SizeText = None,
+    as_json: AsJson = False,
+) -> int:
+    """Write a graph as one shader in the Interactive Shader Format, for programs that play such shaders.
+
+    Its pictures become pictures of the shader, its controls inputs. What no shader can do is listed, node by node.
+    """
+    from ..compiler.isf import export_isf as exported
+    from ..errors import GraphError, UsageError
+
+    if as_json and output is None:
+        raise UsageError("--json and a shader would both go to standard output: write the shader to a file with -o")
+    opened_graph = opened(graph, sets or ())
+    report_problems(graph, opened_graph)
+    if selection:
+        from ..graph.selection import selected
+
+        opened_graph = selected(opened_graph, [part.strip() for part in selection.split(",") if part.strip()])
+    target = _target(opened_graph, node)
+    found = exported(opened_graph, target, Lazy(), size=parsing.size(size))
+    if found.reasons:
+        said = [f"{_owner(owner)} {why}" for owner, why in found.reasons]
+        for line in said[1:] if len(said) > 1 else ():
+            note(f"{graph}: {line}")
+        more = f" ({len(said)} reasons in all)" if len(said) > 1 else ""
+        raise GraphError(f"{graph}: it cannot be written as one shader: {said[0]}{more}", node=found.reasons[0][0])
+    for line in found.notes:
+        note(f"{graph}: {line}")
+    if output is None:
+        print(found.text, end="")
+    else:
+        from ..document.disk import write_text
+
+        write_text(output, found.text)
+    if as_json:
+        print_json({"file": str(output), "notes": list(found.notes)})
+    return 0
+
+
+def _target(graph: Graph, node: str) -> Port:
+    """The only output of the graph, or that of a node."""
+    from ..errors import UsageError
+
+    found = parsing.targets(graph, node)
+    if node:
+        return next(iter(found.values()))
+    from ..graph import OUTPUTS, Port
+
+    if len(graph.outputs) != 1:
+        known = ", ".join(graph.outputs) or "none"
+        raise UsageError(f"a shader makes one picture, and the outputs of this graph are {known}: choose by --node")
+    return Port(OUTPUTS, next(iter(graph.outputs)))
+
+
+def _owner(owner: str) -> str:
+    return f"input '{owner.removeprefix('inputs.')}'" if owner.startswith("inputs.") else f"node '{owner}'"

@@ -1,0 +1,147 @@
+"""Graphs as shaders in the Interactive Shader Format: read back, they make the same pictures."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+from halation.app.cli.options import Lazy
+from halation.app.compiler.isf import Exported, export_isf
+from halation.app.compiler.isf.affine import length_text
+from halation.app.graph import Control, Graph, Input, Output, Port, Settings
+from halation.app.renderer import Renderer, Wanted
+from halation.app.written import Written
+from halation.nodes import Kind, Node, catalogue
+from hypothesis import given
+from hypothesis import strategies as some
+from isf_files import Array, alone, opaque, shader
+
+TARGET = Port("outputs", "out")
+
+
+def made(name: str, **values: Any) -> Node:
+    return catalogue()[name](**values)
+
+
+def chain(*nodes: Node, pictures: int = 1) -> Graph:
+    """Nodes one after the other: n0, n1, ..."""
+    graph = Graph(settings=Settings(frames=(1, 9)))
+    for number in range(pictures):
+        graph = graph.add_input(f"image{number}", Input(Kind.IMAGE, 4))
+    graph = graph.add_output("out", Output(Kind.IMAGE, 4))
+    last = Port("inputs", "image0") if pictures else None
+    for number, one in enumerate(nodes):
+        graph = graph.add(f"n{number}", one)
+        if last:
+            graph = graph.connect(last, Port(f"n{number}", next(iter(one.inputs))))
+        last = Port(f"n{number}", next(iter(one.outputs)))
+    assert last is not None
+    return graph.connect(last, TARGET)
+
+
+def exported(graph: Graph, size: tuple[int, int] = (64, 48)) -> Exported:
+    found = export_isf(graph, TARGET, Lazy(), size=size)
+    assert not found.reasons
+    return found
+
+
+def both(
+    renderer: Renderer, graph: Graph, text: str, size: tuple[int, int], frame: int = 1, **values: Any
+) -> tuple[Array, Array]:
+    """What the graph makes, and what the shader makes; pictures reach above white."""
+    kind: type[Written] = shader(text)
+    pictures = {name: opaque(size[1], size[0], seed) * np.array([3, 3, 3, 1], np.float32)
+                for seed, name in enumerate(graph.inputs)}
+    wanted = renderer.render(graph, Wanted(pictures, size=size, frame=frame, precision="float"))["out"]
+    given = dict(zip(kind.inputs, pictures.values(), strict=True))
+    item = alone(kind(**values), size)
+    return wanted, renderer.render(item, Wanted(given, size=size, frame=frame, precision="float"))["out"]
+
+
+def close(pair: tuple[Array, Array], far: float = 1e-4) -> bool:
+    return pair[0].shape == pair[1].shape and bool(np.abs(pair[0] - pair[1]).max() < far)
+
+
+GRAPHS = {
+    "points": chain(made("exposure", stops=0.5), made("saturation"), made("vignette"), made("hue_saturation")),
+    "edges": chain(made("edge_detect"), made("invert")),
+    "blur": chain(made("gaussian_blur", sigma=3.0), made("exposure", stops=-1.0)),
+    "wide blur": chain(made("gaussian_blur", sigma=20.0)),
+    "sharpen": chain(made("sharpen"), made("posterize")),
+    "pattern": chain(made("noise"), made("invert"), pictures=0),
+    "median": chain(made("median")),
+    "warp": chain(made("swirl"), made("bulge")),
+}
+
+
+@pytest.mark.parametrize("name", GRAPHS)
+def test_a_shader_makes_what_its_graph_makes(renderer: Renderer, name: str) -> None:
+    """At the size that it was made for; and at another one, unless it says that this looks different."""
+    graph = GRAPHS[name]
+    found = exported(graph)
+    assert close(both(renderer, graph, found.text, (64, 48)))
+    if not any("looks different" in note for note in found.notes):
+        assert close(both(renderer, graph, found.text, (83, 61)))
+
+
+def test_the_whole_size_is_followed(renderer: Renderer) -> None:
+    for name in ("points", "edges", "blur", "warp", "median"):
+        assert not exported(GRAPHS[name]).notes
+
+
+def test_controls_become_inputs(renderer: Renderer) -> None:
+    graph = chain(made("exposure"), made("saturation"), made("vignette"), made("invert"))
+    for name, target in {"stops": "n0.stops", "color": "n1.saturation", "darker": "n2.amount"}.items():
+        if Port.parse(target).socket in graph.nodes[target[:2]].values:
+            graph = graph.add_control(name, Control(Port.parse(target), label=name.title()))
+    found = exported(graph)
+    head = json.loads(found.text[2 : found.text.index("*/")])
+    assert [one["NAME"] for one in head["INPUTS"]] == ["inputImage", *graph.controls] and "PASSES" not in head
+    for values in ({}, {"stops": 1.5}, {"stops": -2.0, "color": 0.25}):
+        changed = graph
+        for name, value in values.items():
+            changed = changed.set_control(name, value)
+        assert close(both(renderer, changed, found.text, (64, 48), **values), 1e-3)
+
+
+def test_a_control_that_changes_what_is_computed_keeps_its_value(renderer: Renderer) -> None:
+    graph = chain(made("gaussian_blur", sigma=2.0)).add_control("size", Control(Port("n0", "sigma")))
+    found = exported(graph)
+    assert found.notes == ("control 'size' keeps its value: it changes more than numbers",)
+    assert close(both(renderer, graph, found.text, (64, 48)))
+
+
+def test_time_goes_on(renderer: Renderer) -> None:
+    graph = chain(made("film_grain"))
+    found = exported(graph)
+    for frame in (1, 4):
+        assert close(both(renderer, graph, found.text, (64, 48), frame), 1e-3)
+
+
+def test_two_pictures(renderer: Renderer) -> None:
+    graph = chain(made("mix_images"), pictures=2)
+    names = list(graph.nodes["n0"].inputs)
+    graph = graph.connect(Port("inputs", "image1"), Port("n0", names[1]))
+    found = exported(graph)
+    assert "image0" in found.text and "inputImage" not in found.text
+    assert close(both(renderer, graph, found.text, (64, 48)))
+
+
+def test_what_no_shader_can_do_is_listed_by_node() -> None:
+    graph = chain(made("feedback"), made("exposure"))
+    assert export_isf(graph, TARGET, Lazy()).reasons == (("n0", "makes every frame of the one before"),)
+
+
+@given(some.integers(1, 64), some.integers(0, 63), some.lists(some.integers(64, 4000), min_size=4, max_size=4))
+def test_lengths_are_found(factor: int, added: int, sides: list[int]) -> None:
+    """A formula is right for every sample, or there is none."""
+    sides = sorted(set(sides))
+    lengths = [(side + min(added, factor - 1)) // factor for side in sides]
+    text = length_text(sides, lengths)
+    if text is None:
+        assert len(sides) < 2 or lengths[-1] == lengths[0] or (lengths[-1] - lengths[0]) < 3
+        return
+    for side, length in zip(sides, lengths, strict=True):
+        assert eval(text.format(float(side)), {"floor": np.floor}) == length
