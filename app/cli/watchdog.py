@@ -39,7 +39,7 @@ def watched(context: typer.Context, graph: Graph, timeout: float, text: str = ""
     """
     from ..renderer.heartbeat import HEARTBEAT
 
-    if not timeout or os.environ.get(HEARTBEAT) or not has_code(graph):
+    if not timeout or os.environ.get(HEARTBEAT) or not has_loops(graph):
         return None
     with tempfile.TemporaryDirectory(prefix="halation-") as folder:
         beat = Path(folder, "heartbeat")
@@ -47,13 +47,16 @@ def watched(context: typer.Context, graph: Graph, timeout: float, text: str = ""
         return _watch([sys.executable, "-P", "-m", "halation.app.cli", *context.obj], beat, timeout, text)
 
 
-def has_code(graph: Graph) -> bool:
-    """True if somebody wrote code in it, or in one of its groups."""
+def has_loops(graph: Graph) -> bool:
+    """True if somebody wrote code with loops in it, or in one of its groups: only those can take for ever."""
+    from ..glsl import words
     from ..graph import Group
     from ..written import Written
 
     return any(
-        has_code(item.graph) if isinstance(item, Group) else isinstance(item, Written) for item in graph.nodes.values()
+        has_loops(item.graph) if isinstance(item, Group)
+        else isinstance(item, Written) and not words(item.code.text, item.code.vertex).isdisjoint(("for", "while", "do"))
+        for item in graph.nodes.values()
     )
 
 
