@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
 
 from . import _declare
@@ -22,7 +22,7 @@ class Catalogue(Mapping[str, type[Node]]):
     """
 
     def __init__(self) -> None:
-        self._modules = {name: f".{folder}.{name}" for folder in _names(__path__) for name in _files(folder)}
+        self._modules = {name: f".{folder}.{name}" for folder in _folders() for name in _files(folder)}
         self._found: dict[str, type[Node]] = {}
 
     def __getitem__(self, id: str) -> type[Node]:
@@ -55,9 +55,10 @@ def catalogue() -> Mapping[str, type[Node]]:
     return Catalogue()
 
 
-def _names(path: Iterable[str]) -> list[str]:
+def _folders() -> list[str]:
     """The packages of nodes."""
-    return sorted(item.name for item in pkgutil.iter_modules(path) if item.ispkg and not item.name.startswith("_"))
+    found = pkgutil.iter_modules(importlib.import_module(__name__).__path__)
+    return sorted(item.name for item in found if item.ispkg and not item.name.startswith("_"))
 
 
 def _files(folder: str) -> list[str]:

@@ -42,14 +42,17 @@ def export_isf(
     if selection:
         from ..graph.selection import selected
 
-        opened_graph = selected(opened_graph, [part.strip() for part in selection.split(",") if part.strip()])
+        try:
+            opened_graph = selected(opened_graph, [part.strip() for part in selection.split(",") if part.strip()])
+        except GraphError as fault:
+            raise UsageError(f"--select {selection}: {fault}") from None
     target = _target(opened_graph, node)
     found = exported(opened_graph, target, Lazy(), size=parsing.size(size))
     if found.reasons:
         said = [f"{_owner(owner)} {why}" for owner, why in found.reasons]
         for line in said[1:] if len(said) > 1 else ():
             note(f"{graph}: {line}")
-        more = f" ({len(said)} reasons in all)" if len(said) > 1 else ""
+        more = f" (the first of {len(said)} reasons)" if len(said) > 1 else ""
         raise GraphError(f"{graph}: it cannot be written as one shader: {said[0]}{more}", node=found.reasons[0][0])
     for line in found.notes:
         note(f"{graph}: {line}")
@@ -80,4 +83,6 @@ def _target(graph: Graph, node: str) -> Port:
 
 
 def _owner(owner: str) -> str:
+    if not owner:
+        return "it"
     return f"input '{owner.removeprefix('inputs.')}'" if owner.startswith("inputs.") else f"node '{owner}'"

@@ -15,7 +15,9 @@ if TYPE_CHECKING:
 
 
 def nodes(
-    id: Annotated[str, typer.Argument(help="A node; without one, all are listed.")] = "",
+    id: Annotated[
+        str, typer.Argument(help="A node, or a file of code: FILE.fs, FILE.glsl; without one, all are listed.")
+    ] = "",
     markdown: Annotated[
         bool, typer.Option("--markdown", help="Print the whole catalogue as one Markdown page.")
     ] = False,
@@ -27,6 +29,8 @@ def nodes(
     from ..graph import did_you_mean
 
     known = catalogue()
+    if id.endswith((".fs", ".glsl")):
+        known = {id: _written(id)}
     if id and id not in known:
         raise UsageError(f"there is no node '{id}'{did_you_mean(id, known)}")
     if markdown and (id or as_json):
@@ -42,6 +46,18 @@ def nodes(
     else:
         _list(list(known.values()))
     return 0
+
+
+def _written(file: str) -> type[Node]:
+    """The node that is made of a file of code. Raises UsageError."""
+    from ..document.code import read_code
+    from ..errors import UsageError
+    from ..written import CodeFault, node_type
+
+    try:
+        return node_type(read_code("isf" if file.endswith(".fs") else "glsl", None, file, ""))
+    except CodeFault as fault:
+        raise UsageError(f"{file}, {fault}" if fault.line else str(fault)) from None
 
 
 def _list(classes: list[type[Node]]) -> None:

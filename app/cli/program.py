@@ -35,7 +35,7 @@ app = typer.Typer(
     name="halation", add_completion=False, rich_markup_mode=None, epilog=EXIT_CODES,
     help="A node-graph compositor for screen-space effects.",
 )
-fenced = (render, check, explain, info, diff, test, reproduce, watch, sweep, bench)
+fenced = (render, check, explain, export_isf, info, diff, test, reproduce, watch, sweep, bench)
 """Commands that take graphs and pictures from people who may not be trusted."""
 for command in (
     edit, render, check, explain, info, nodes, fmt, diff, merge, git_setup, demo, gallery, test, schema,

@@ -55,7 +55,7 @@ def has_loops(graph: Graph) -> bool:
 
     return any(
         has_loops(item.graph) if isinstance(item, Group)
-        else isinstance(item, Written) and not words(item.code.text, item.code.vertex).isdisjoint(("for", "while", "do"))
+        else isinstance(item, Written) and bool({"for", "while", "do"} & words(item.code.text, item.code.vertex))
         for item in graph.nodes.values()
     )
 

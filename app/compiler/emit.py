@@ -119,6 +119,7 @@ class Parts:
 
 
 def parts_of(program: Program, fused: Fused, names: Names, library: Library) -> Parts:
+    """What a pass does, in pieces."""
     root = program.ops[fused.root]
     ops = [program.ops[index] for index in fused.members]
     shaders = [op.shader for op in ops if isinstance(op, Call) and not op.program]

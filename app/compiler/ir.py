@@ -236,7 +236,7 @@ class Foreign(Op):
 
     @property
     def label(self) -> str:
-        return self.text.fragment.file
+        return self.text.fragment.file.rpartition("/")[2]
 
     def reads(self) -> Iterator[Ref]:
         return (ref for _, ref in self.pictures)

@@ -38,7 +38,7 @@ def selected(graph: Graph, ids: Sequence[str]) -> Graph:
             inputs[names[source]] = _end(graph, source)
         links[target] = Port(INPUTS, names[source])
     last = node_output(graph, ends[0])
-    made = signature(graph.node(last.node)).outputs[last.socket].socket
+    made = signature(graph.node(last.node)).outputs[last.socket]
     links[Port(OUTPUTS, "image")] = last
     return replace(
         graph, nodes={id: item for id, item in graph.nodes.items() if id in kept}, links=links, inputs=inputs,
@@ -52,7 +52,7 @@ def selected(graph: Graph, ids: Sequence[str]) -> Graph:
 def _end(graph: Graph, source: Port) -> Input:
     if source.node == INPUTS:
         return graph.inputs[source.socket]
-    socket = signature(graph.node(source.node)).outputs[source.socket].socket
+    socket = signature(graph.node(source.node)).outputs[source.socket]
     return Input(socket.kind, socket.channels)
 
 

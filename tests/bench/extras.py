@@ -9,19 +9,18 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
+from bench.figures import LIBRARIES
+from bench.measuring import Place
 from bench.programs import HERE, halation, in_memory, rendering
 from bench.started import Ended, run
 from bench.tasks import FRAMES, SEQUENCE, SIZES, TASKS
 
 LONG = 240
 PLANNED = (1000, 2000)
-HEAVY = ("moderngl", "glcontext", "OpenImageIO", "PyOpenColorIO", "numpy", "glfw", "imgui_bundle")
-"""Modules that a command which needs no pictures does not load."""
-
 Say = Callable[[str], None]
 
 
-def extras(size: str, folder: Path, out: Path, rounds: int, repeat: int, say: Say) -> dict[str, Any]:
+def extras(place: Place, rounds: int, repeat: int, say: Say) -> dict[str, Any]:
     """All of it, by name."""
     say("starting up")
     words = {"help": ["--help"], "check": ["check", str(TASKS["T5"].path)]}
@@ -30,18 +29,18 @@ def extras(size: str, folder: Path, out: Path, rounds: int, repeat: int, say: Sa
         for name, given in words.items():
             found[name]["wall"].append(run([*halation(), *given]).wall)
     say("a cold cache of shaders")
-    found["cold"], found["warm"] = _cold(size, folder, out, rounds)
+    found["cold"], found["warm"] = _cold(place, rounds)
     say("wide blurs")
     wide: dict[str, list[float]] = {"20": [], "200": []}
     for _ in range(rounds):
         for sigma, seconds in wide.items():
-            ended = run([*in_memory("T1s10", folder, repeat), "--set", f"blur.sigma={sigma}"])
+            ended = run([*in_memory("T1s10", place.folder, repeat), "--set", f"blur.sigma={sigma}"])
             seconds.append(median(_result(ended)["seconds"]))
     found["sigma"] = wide
     say("large graphs")
     found["plans"] = _result(run([sys.executable, str(HERE / "planning.py"), *map(str, PLANNED)]))["graphs"]
     say(f"{LONG} frames")
-    found["frames"] = _long(size, folder, out)
+    found["frames"] = _long(place)
     return found
 
 
@@ -55,13 +54,13 @@ def _loaded(words: list[str]) -> list[str]:
     """The heavy modules that a command loads."""
     said = run([sys.executable, "-X", "importtime", "-m", "halation.app.cli", *words]).said
     names = {line.rpartition("|")[2].strip().partition(".")[0] for line in said.splitlines() if "|" in line}
-    return sorted(names & set(HEAVY))
+    return sorted(names & {"numpy", *LIBRARIES})
 
 
-def _cold(size: str, folder: Path, out: Path, rounds: int) -> tuple[list[float], list[float]]:
+def _cold(place: Place, rounds: int) -> tuple[list[float], list[float]]:
     """T5 with an empty cache of shaders, and with one that was filled by a run before; seconds of each round."""
     cold, warm = list[float](), list[float]()
-    command = rendering("T5", folder, SIZES[size], out / "cold.exr")
+    command = rendering("T5", place.folder, SIZES[place.size], place.out / "cold.exr")
     for _ in range(rounds):
         with tempfile.TemporaryDirectory() as cache:
             place = {"MESA_SHADER_CACHE_DIR": cache, "MESA_GLSL_CACHE_DIR": cache}
@@ -73,16 +72,17 @@ def _cold(size: str, folder: Path, out: Path, rounds: int) -> tuple[list[float],
     return cold, warm
 
 
-def _long(size: str, folder: Path, out: Path) -> dict[str, float]:
+def _long(place: Place) -> dict[str, float]:
     """Peak memory of T10 over some and over many frames, in MiB; many frames are the same ones again and again."""
     found: dict[str, float] = {}
     for count in (FRAMES, LONG):
-        with tempfile.TemporaryDirectory(dir=out) as made:
+        with tempfile.TemporaryDirectory(dir=place.out) as made:
             frames = f"{made}/in.{{:04d}}.exr"
             for frame in range(1, count + 1):
-                source = folder / SEQUENCE.format((frame - 1) % FRAMES + 1)
+                source = place.folder / SEQUENCE.format((frame - 1) % FRAMES + 1)
                 Path(frames.format(frame)).symlink_to(source.resolve())
-            ended = run(rendering("T10", folder, SIZES[size], Path(made, "out.{}.exr"), frames), patience=1800.0)
+            command = rendering("T10", place.folder, SIZES[place.size], Path(made, "out.{}.exr"), frames)
+            ended = run(command, patience=1800.0)
         if ended.code:
             raise SystemExit(ended.said)
         found[str(count)] = ended.memory

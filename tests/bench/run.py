@@ -2,8 +2,8 @@
 
     .venv/bin/python tests/bench/run.py --sizes hd,uhd --venvs FOLDER --json new.json --table
 
-Every task is done by whole processes, which read EXR, work and write EXR, and in memory, all programs in turn, again and
-again: a moment in which the machine is busy falls on all of them alike. docs/performance.md says what is printed.
+Every task is done by whole processes, which read EXR, work and write EXR, and in memory, all programs in turn, again
+and again: a moment in which the machine is busy falls on all of them alike. docs/performance.md says what is printed.
 """
 
 from __future__ import annotations
@@ -15,20 +15,21 @@ import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
-from statistics import median
 
 sys.path.append(str(Path(__file__).parents[1]))
 
 from bench.extras import extras
 from bench.figures import table
-from bench.programs import HERE, OURS, Program, installed
+from bench.measuring import Place, memory, whole
+from bench.programs import HERE, OURS, installed
 from bench.report import listing
-from bench.results import Results, Run
+from bench.results import Results
 from bench.started import run
 from bench.tasks import PICTURES, SIZES, TASKS
 
-SLOW = 20.0
-"""Seconds from which a program does a task only once."""
+STILL = 1920
+"""Wider pictures come without the sequence: 24 frames of them take too long."""
+
 Say = Callable[[str], None]
 
 
@@ -41,7 +42,7 @@ def options() -> argparse.Namespace:
     reader.add_argument("--tasks", default=",".join(TASKS), help=f"some of {', '.join(TASKS)}")
     reader.add_argument("--programs", default="", help="some of those that are installed; by default all of them")
     reader.add_argument("--rounds", type=int, default=5, help="how often each program does each task")
-    reader.add_argument("--repeat", type=int, default=5, help="how often in a round in memory")
+    reader.add_argument("--repeat", type=int, default=3, help="how often in each of half as many rounds in memory")
     reader.add_argument("--parts", default="whole,memory,extras", help="what to measure")
     reader.add_argument(
         "--venvs", type=Path, default=Path(venvs) if venvs else None, metavar="FOLDER",
@@ -68,61 +69,11 @@ def folder_of(data: Path, size: str, say: Say) -> Path:
     if not folder.exists():
         say(f"making pictures in {folder}")
         data.mkdir(parents=True, exist_ok=True)
-        still = ["--still"] if width > 1920 else []
+        still = ["--still"] if width > STILL else []
         ended = run([sys.executable, str(HERE / "inputs.py"), str(folder), f"{width}x{height}", *still])
         if ended.code:
             raise SystemExit(ended.said)
     return folder
-
-
-def whole(results: Results, size: str, task: str, programs: list[Program], folder: Path, out: Path, rounds: int) -> None:
-    """Whole processes in turn, after one of each that fills caches and whose picture is looked at."""
-    slow = set[str]()
-    todo = [one for one in programs if one.whole and task in one.tasks]
-    for turn in range(rounds + 1):
-        for one in todo:
-            found = results.run(size, task, one.name)
-            if found.error or (one.name in slow and turn > 1):
-                continue
-            file = out / (f"{one.name}.{task}.{{}}.exr" if task == "T10" else f"{one.name}.{task}.exr")
-            ended = run(one.whole(task, folder, SIZES[size], file), one.environment)
-            if ended.code:
-                found.error = (ended.said.strip().splitlines() or [f"exit {ended.code}"])[-1][:200]
-            elif turn == 0:
-                judged(found, folder, file)
-                if ended.wall > SLOW:
-                    slow.add(one.name)
-            else:
-                found.wall.append(ended.wall)
-                found.cpu.append(ended.cpu)
-                found.memory.append(ended.memory)
-
-
-def judged(found: Run, folder: Path, file: Path) -> None:
-    """Compare a file with the reference, in a process of its own, and delete it."""
-    task = found.task
-    last = Path(str(file).format("0024")) if task == "T10" else file
-    told = run([sys.executable, str(HERE / "references.py"), task, str(folder), str(last)]).result
-    found.rms, found.peak = told.get("rms"), told.get("peak")
-
-
-def memory(results: Results, size: str, task: str, programs: list[Program], folder: Path, rounds: int, repeat: int) -> None:
-    """The work in memory, program by program, each in a new process in every round."""
-    todo = [one for one in programs if one.memory and task in one.tasks and task != "T10"]
-    slow = set[str]()
-    for turn in range(rounds):
-        for one in todo:
-            found = results.run(size, task, one.name)
-            if found.error or (one.name in slow and turn):
-                continue
-            few = 1 if found.wall and median(found.wall) > SLOW else repeat
-            ended = run(one.memory(task, folder, few), one.environment)
-            if ended.code or "seconds" not in ended.result:
-                found.error = (ended.said.strip().splitlines() or [f"exit {ended.code}"])[-1][:200]
-            else:
-                found.op.append(median(ended.result["seconds"]))
-                if ended.wall > 2 * SLOW:
-                    slow.add(one.name)
 
 
 def machine() -> dict[str, object]:
@@ -146,10 +97,7 @@ def main() -> None:
     def say(text: str) -> None:
         print(text, file=sys.stderr, flush=True)
 
-    if given.earlier:
-        results = Results.load(given.earlier)
-    else:
-        results = measured(given, say)
+    results = Results.load(given.earlier) if given.earlier else measured(given, say)
     print(listing(results, Results.load(given.against) if given.against else None))
     if given.table:
         print("\n" + table(results))
@@ -167,24 +115,24 @@ def measured(given: argparse.Namespace, say: Say) -> Results:
     results = Results(machine())
     with tempfile.TemporaryDirectory(prefix="halation-bench-") as made:
         for size in given.sizes:
-            folder, out = folder_of(given.data, size, say), Path(made, size)
-            out.mkdir()
+            place = Place(size, folder_of(given.data, size, say), Path(made, size))
+            place.out.mkdir()
             for task in given.tasks:
-                if task == "T10" and SIZES[size][0] > 1920:
+                if task == "T10" and SIZES[size][0] > STILL:
                     continue
                 say(f"{size} {task}")
                 if "whole" in given.parts:
-                    whole(results, size, task, programs, folder, out, given.rounds)
+                    whole(results, place, task, programs, given.rounds)
                 if "memory" in given.parts:
-                    memory(results, size, task, programs, folder, given.rounds, given.repeat)
-                for file in out.iterdir():
+                    memory(results, place, task, programs, (given.rounds + 1) // 2, given.repeat)
+                for file in place.out.iterdir():
                     file.unlink()
                 if given.json:
                     results.save(given.json)
         if "extras" in given.parts and OURS in wanted:
             size = given.sizes[0]
-            folder = folder_of(given.data, size, say)
-            results.extras = {"size": size, **extras(size, folder, Path(made, size), given.rounds, given.repeat, say)}
+            place = Place(size, folder_of(given.data, size, say), Path(made, size))
+            results.extras = {"size": size, **extras(place, given.rounds, given.repeat, say)}
     if given.json:
         results.save(given.json)
     return results

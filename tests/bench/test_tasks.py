@@ -38,7 +38,8 @@ def test_a_graph_computes_its_task(renderer, task):
 def test_references_see_what_is_different():
     """An edge of the picture, a lost channel, a wrong sigma: each is seen."""
     right = references.reference("T1s3", given())
-    for wrong in (np.roll(right, 1, 1), right * (1.0, 1.0, 1.0, 0.0), references.blurred(given()["a"].astype(float), 3.02)):
+    wide = references.blurred(given()["a"].astype(float), 3.02)
+    for wrong in (np.roll(right, 1, 1), right * (1.0, 1.0, 1.0, 0.0), wide):
         assert references.compared(wrong, right)["rms"] > ALIKE
 
 

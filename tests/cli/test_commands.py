@@ -6,7 +6,6 @@ import json
 import os
 import re
 from importlib import metadata
-from pathlib import Path
 
 import command_reference as reference
 import numpy as np

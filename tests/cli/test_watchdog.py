@@ -51,7 +51,8 @@ def test_code_that_never_ends_is_stopped(tmp_path: Path) -> None:
 @pytest.mark.parametrize("piped", [False, True])
 def test_code_that_ends_is_only_watched(tmp_path: Path, piped: bool) -> None:
     """What the other process says and how it ends is what this one says, also where the graph comes through a pipe."""
-    path, out = graph(tmp_path, "vec4 f(vec4 image, float k /* = 1 */) {\n for (int i = 0; i < 2; ++i) image *= k;\n return image;\n}"), tmp_path / "o.exr"
+    code = "vec4 f(vec4 image, float k /* = 1 */) {\n for (int i = 0; i < 2; ++i) image *= k;\n return image;\n}"
+    path, out = graph(tmp_path, code), tmp_path / "o.exr"
     text = path.read_text() if piped else None
     ended = render("-" if piped else path, "-o", out, "--set", "user.k=0.5", "--json", text=text)
     assert ended.returncode == 0 and json.loads(ended.stdout)["written"] == [str(out)] and out.exists()

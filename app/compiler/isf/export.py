@@ -91,7 +91,7 @@ class _Export:
         wrong = [*self._data(program), *reasons(program, passes, self._sources(program))]
         count = sum(len(fused.writes) for fused in passes)
         if count > MAX_PASSES:
-            wrong.append((self.target.node, f"takes {count} passes: {MAX_PASSES} are the most"))
+            wrong.append(("", f"takes {count} passes: {MAX_PASSES} are the most"))
         if wrong:
             return Exported("", (), tuple(dict.fromkeys(wrong)))
         found = Modelling(self._lowered, self._knobs(), self.size).whole()
@@ -103,7 +103,7 @@ class _Export:
         count = len(self.pictures) + len({one["TARGET"] for one in targets if one})
         if count > MAX_PICTURES:
             why = f"needs {count} pictures at once: shaders read {MAX_PICTURES} at most"
-            return Exported("", (), ((self.target.node, why),))
+            return Exported("", (), (("", why),))
         head: Section = {
             "ISFVSN": "2", "DESCRIPTION": doc or "Made by Halation.", "CATEGORIES": ["Halation"], "INPUTS": inputs,
             **({"PASSES": targets} if targets != [{}] else {}),

@@ -96,9 +96,8 @@ def function(
     root = program.ops[fused.root]
     functions = list(parts.functions)
     if isinstance(root, Convolve):
-        weights = ", ".join(literal(weight) for weight in root.weights)
-        functions[0] = f"const float weights[{len(root.weights)}] = float[{len(root.weights)}]({weights});"
-        functions = [line.replace("weights[j >> 2][j & 3]", "weights[j]") for line in functions]
+        functions[0] = f"float weight(int j) {{ {_weight(root.weights, 0)} }}"
+        functions = [line.replace("weights[j >> 2][j & 3]", "weight(j)") for line in functions]
     texts = texts_of(program, fused, parts, library)
     lines = list(_lines(program, fused, texts, parts, functions))
     result = parts.results[output]
@@ -152,9 +151,18 @@ def _renamed(text: str, prefix: str, names: PassNames, texts: tuple[Text, ...]) 
     own = {name for found in _DEFINED.finditer(text) for name in found.groups() if name}
     own |= {name for found in _CONSTANTS.finditer(text) for name in _CONSTANT.findall(found[1])}
     own |= set(_FUNCTION.findall(text)) | {one.name for file in texts for one in file.all_functions}
-    own |= {name for _, name, _ in names.set} | {"made", "weights", *_GLOBALS}
+    own |= {name for _, name, _ in names.set} | {"made", *_GLOBALS}
     known = re.compile(rf"(?<![\w.@])({'|'.join(sorted(map(re.escape, own), key=len, reverse=True))})\b")
     return known.sub(lambda found: prefix + found[1], text).replace("@", "")
+
+
+def _weight(weights: tuple[float, ...], first: int) -> str:
+    """Statements that return weight `j`: arrays of constants take drivers four times as long to compile."""
+    if len(weights) == 1:
+        return f"return {literal(weights[0])};"
+    half = len(weights) // 2
+    low, high = _weight(weights[:half], first), _weight(weights[half:], first + half)
+    return f"if (j < {first + half}) {{ {low} }} else {{ {high} }}"
 
 
 def _plain(glsl: str, value: Uniform) -> str:

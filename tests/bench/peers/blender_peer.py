@@ -8,13 +8,16 @@ from __future__ import annotations
 
 import json
 import os
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import bpy
-from harness import arguments, said, timed
 
+sys.path.append(str(Path(__file__).parents[2]))
+
+from bench.peers.harness import arguments, said, timed
 from bench.tasks import FRAMES, PUSH, SEQUENCE, SIGMAS, STEPS, TASKS, Bloom, Lens, Reinhard, Ten, picture, scaled
 
 NEW = bpy.app.version[0] >= 5
@@ -123,7 +126,8 @@ class Tree:
 def bloom(tree: Tree, a: Any) -> Any:
     """T2: the node Glare, in its fastest way, Bloom."""
     node = tree.tree.nodes.new("CompositorNodeGlare")
-    for name, socket, value, label in (("glare_type", "Type", "BLOOM", "Bloom"), ("quality", "Quality", "HIGH", "High")):
+    menus = (("glare_type", "Type", "BLOOM", "Bloom"), ("quality", "Quality", "HIGH", "High"))
+    for name, socket, value, label in menus:
         if hasattr(node, name):
             setattr(node, name, value)
         else:

@@ -9,13 +9,10 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
-
-sys.path.append(str(Path(__file__).parents[2]))
 
 from bench.tasks import FRAMES, SEQUENCE, TASKS, picture
 
@@ -50,7 +47,7 @@ def said(seconds: list[float]) -> None:
 
 
 def main(works: Mapping[str, Work], read: Work | None = None, write: Work | None = None) -> None:
-    """A peer: `works` make a picture of those that the task takes. Pictures are float arrays unless `read` says else."""
+    """A peer: `works` make a picture of those that a task takes; they are float arrays, unless `read` says else."""
     task, folder, out, repeat, listed = arguments()
     if listed:
         print(json.dumps({"tasks": list(works)}))
@@ -58,8 +55,8 @@ def main(works: Mapping[str, Work], read: Work | None = None, write: Work | None
     from bench import exr
 
     exr.threaded()
-    read, write = read or exr.read, write or (lambda path, pixels: exr.write(path, pixels, half=True))
-    work = works[task]
+    work, read = works[task], read or exr.read
+    write = write or (lambda path, pixels: exr.write(path, pixels, half=True))
     if task == "T10":
         b = read(picture(folder, "b"))
         for frame in range(1, FRAMES + 1):

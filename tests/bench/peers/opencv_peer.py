@@ -7,11 +7,15 @@ from __future__ import annotations
 
 import math
 import os
+import sys
+from pathlib import Path
 
 import cv2
 import numpy as np
-from harness import main
 
+sys.path.append(str(Path(__file__).parents[2]))
+
+from bench.peers.harness import main
 from bench.tasks import LUMINANCE, PUSH, SIGMAS, Bloom, Lens, Reinhard, Ten, scaled
 
 Array = np.ndarray

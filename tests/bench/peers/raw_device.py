@@ -13,6 +13,7 @@ import moderngl
 import numpy as np
 
 Array = np.ndarray
+Texture = moderngl.Texture
 GROUP = 64
 FORMATS: Mapping[tuple[str, int], str] = {
     ("f2", 4): "rgba16f", ("f4", 4): "rgba32f", ("f4", 1): "r32f", ("f4", 2): "rg32f",
@@ -24,7 +25,10 @@ SPREAD = 0.7
 ENOUGH = 1.45
 """Sigma in small pixels that has to be left for the blur there: less would show the grid."""
 SPLINE = """
-vec4 spline(float t) { float u = 1 - t; vec4 w = vec4(u*u*u, 4 - 6*t*t + 3*t*t*t, 0, t*t*t) / 6; w.z = 1 - w.x - w.y - w.w; return w; }
+vec4 spline(float t) {
+  float u = 1 - t; vec4 w = vec4(u*u*u, 4 - 6*t*t + 3*t*t*t, 0, t*t*t) / 6;
+  w.z = 1 - w.x - w.y - w.w; return w;
+}
 """
 
 
@@ -34,17 +38,17 @@ class Device:
     def __init__(self) -> None:
         self.context = moderngl.create_context(standalone=True, backend="egl")
         self._programs: dict[tuple[Any, ...], moderngl.ComputeShader] = {}
-        self._textures: dict[tuple[Any, ...], moderngl.Texture] = {}
+        self._textures: dict[tuple[Any, ...], Texture] = {}
         self._weights: dict[float, moderngl.Buffer] = {}
 
-    def texture(self, name: str, width: int, height: int, depth: str = "f4", channels: int = 4) -> moderngl.Texture:
+    def texture(self, name: str, width: int, height: int, depth: str = "f4", channels: int = 4) -> Texture:
         """The texture of that name, size and format."""
         key = (name, width, height, depth, channels)
         if key not in self._textures:
             self._textures[key] = self.context.texture((width, height), channels, dtype=depth)
         return self._textures[key]
 
-    def upload(self, name: str, pixels: Array) -> moderngl.Texture:
+    def upload(self, name: str, pixels: Array) -> Texture:
         """Pixels of half or float; three channels become four."""
         height, width, channels = pixels.shape
         if channels == 3:
@@ -53,15 +57,15 @@ class Device:
         made.write(np.ascontiguousarray(pixels))
         return made
 
-    def download(self, texture: moderngl.Texture) -> Array:
+    def download(self, texture: Texture) -> Array:
         """Its pixels."""
         width, height = texture.size
         made = np.empty((height, width, texture.components), np.float16 if texture.dtype == "f2" else np.float32)
         texture.read_into(made)
         return made
 
-    def run(self, text: str, into: moderngl.Texture, of: Sequence[moderngl.Texture], invocations: tuple[int, int],
-            **values: Any) -> moderngl.Texture:
+    def run(self, text: str, into: Texture, of: Sequence[Texture], invocations: tuple[int, int],
+            **values: Any) -> Texture:
         """Run a shader: it reads `at0(p)`, `at1(p)`..., knows `last`, the last pixel, and says `put(p, o)`."""
         formats = [FORMATS[item.dtype, item.components] for item in (into, *of)]
         key = (text, *formats)
@@ -84,14 +88,14 @@ class Device:
         self.context.memory_barrier()
         return into
 
-    def pixels(self, body: str, into: moderngl.Texture, *of: moderngl.Texture, head: str = "") -> moderngl.Texture:
+    def pixels(self, body: str, into: Texture, *of: Texture, head: str = "") -> Texture:
         """One invocation to a pixel `p`; the body sets `o`."""
-        text = f"{head}\nvoid main() {{ ivec2 p = ivec2(gl_GlobalInvocationID.xy); if (p.x > last.x) return; vec4 o; {body} put(p, o); }}"
-        return self.run(text, into, of, into.size)
+        begin = "ivec2 p = ivec2(gl_GlobalInvocationID.xy); if (p.x > last.x) return;"
+        return self.run(f"{head}\nvoid main() {{ {begin} vec4 o; {body} put(p, o); }}", into, of, into.size)
 
     # --- Gaussian blur -----------------------------------------------------------------------------------------------
 
-    def blur(self, of: moderngl.Texture, into: moderngl.Texture, sigma: float) -> moderngl.Texture:
+    def blur(self, of: Texture, into: Texture, sigma: float) -> Texture:
         """At a reduced size where that is exact enough."""
         found = self.reduced(of, sigma)
         if found is None:
@@ -100,13 +104,13 @@ class Device:
         tall = self.texture("tall", small.width, of.height)
         return self.enlarged(self.enlarged(small, tall, factor, apron, 1), into, factor, apron, 0)
 
-    def exact(self, of: moderngl.Texture, into: moderngl.Texture, sigma: float) -> moderngl.Texture:
+    def exact(self, of: Texture, into: Texture, sigma: float) -> Texture:
         """Rows, then columns."""
         between = self.texture("between", *of.size, into.dtype)
         return self._line(self._line(of, between, sigma, 0), into, sigma, 1)
 
-    def reduced(self, of: moderngl.Texture, sigma: float) -> tuple[moderngl.Texture, int, int] | None:
-        """The blurred picture at a smaller size, how much smaller, and the apron around it in pixels of the large one."""
+    def reduced(self, of: Texture, sigma: float) -> tuple[Texture, int, int] | None:
+        """The blurred picture at a smaller size, by how much, and the apron around it in pixels of the large one."""
         factor, variance, steps = self._steps(sigma)
         if factor == 1:
             return None
@@ -137,11 +141,11 @@ class Device:
             else:
                 return factor, variance, steps
 
-    def _line(self, of: moderngl.Texture, into: moderngl.Texture, sigma: float, axis: int) -> moderngl.Texture:
+    def _line(self, of: Texture, into: Texture, sigma: float, axis: int) -> Texture:
         reach = math.ceil(4.0 * sigma)
         return self._short(of, into, sigma, axis) if reach <= 16 else self._long(of, into, sigma, axis, reach)
 
-    def _long(self, of: moderngl.Texture, into: moderngl.Texture, sigma: float, axis: int, reach: int) -> moderngl.Texture:
+    def _long(self, of: Texture, into: Texture, sigma: float, axis: int, reach: int) -> Texture:
         """16 pixels to an invocation; every loaded pixel goes to all of them. One program for all sigmas."""
         count = 16
         if sigma not in self._weights:
@@ -170,20 +174,21 @@ void main() {{
         taps = -(-(count + 2 * reach) // count) * count
         return self._along(text, into, of, axis, count, reach=reach, taps=taps, way=(1, 0) if axis == 0 else (0, 1))
 
-    def _short(self, of: moderngl.Texture, into: moderngl.Texture, sigma: float, axis: int) -> moderngl.Texture:
+    def _short(self, of: Texture, into: Texture, sigma: float, axis: int) -> Texture:
         """8 pixels to an invocation without a loop; a program for each class of radius."""
         count, reach = 8, next(size for size in (4, 6, 8, 12, 16) if size >= math.ceil(4.0 * sigma))
         weights = np.exp(-0.5 * (np.arange(reach + 1) / sigma) ** 2)
         weights /= weights[0] + 2.0 * weights[1:].sum()
         taps = {
-            j: [(k, f"w[{abs(j - k)}]") for k in range(count) if abs(j - k) <= reach] for j in range(-reach, count + reach)
+            j: [(k, f"w[{abs(j - k)}]") for k in range(count) if abs(j - k) <= reach]
+            for j in range(-reach, count + reach)
         }
         return self._along(
             f"uniform float w[{reach + 1}];\n{_strip(taps, count, axis, '1', 'last')}", into, of, axis, count,
             w=[float(weight) for weight in weights],
         )
 
-    def _shrink(self, of: moderngl.Texture, into: moderngl.Texture, step: int, axis: int, margin: int) -> moderngl.Texture:
+    def _shrink(self, of: Texture, into: Texture, step: int, axis: int, margin: int) -> Texture:
         """Every `step`-th pixel of a Gaussian blur, 4 to an invocation."""
         count, middle, sigma = 4, (step - 1) / 2.0, SPREAD * step
         reach = math.ceil(3.6 * sigma - middle)
@@ -196,11 +201,13 @@ void main() {{
         end = f"ivec2({of.width - 1}, {of.height - 1})"
         return self._along(_strip(taps, count, axis, str(step), end, margin), into, of, axis, count)
 
-    def enlarged(self, of: moderngl.Texture, into: moderngl.Texture, factor: int, apron: int, axis: int) -> moderngl.Texture:
+    def enlarged(self, of: Texture, into: Texture, factor: int, apron: int, axis: int) -> Texture:
         """Back to the large size along one axis, by cubic B-splines."""
         return self.pixels(f"{enlarging(0, factor, apron, axis)} o = found;", into, of, head=SPLINE)
 
-    def _along(self, text: str, into: moderngl.Texture, of: moderngl.Texture, axis: int, count: int, **values: Any) -> moderngl.Texture:
+    def _along(
+        self, text: str, into: Texture, of: Texture, axis: int, count: int, **values: Any
+    ) -> Texture:
         length, lines = into.size if axis == 0 else into.size[::-1]
         return self.run(text, into, [of], (lines, -(-length // count)), **values)
 
@@ -213,8 +220,10 @@ def enlarging(number: int, factor: int, apron: int, axis: int) -> str:
             f"vec4 w = spline(c - i); vec4 found = {terms};")
 
 
-def _strip(taps: Mapping[int, list[tuple[int, str]]], count: int, axis: int, step: str, end: str, margin: int = 0) -> str:
-    """A shader that makes some pixels of a line: `taps` says which loaded pixel goes to which of them, and its weight."""
+def _strip(
+    taps: Mapping[int, list[tuple[int, str]]], count: int, axis: int, step: str, end: str, margin: int = 0
+) -> str:
+    """A shader that makes some pixels of a line: `taps` says which loaded pixel goes to which, and with what weight."""
     spot, limit, lines = (("ivec2({}, line)", "x", "y"), ("ivec2(line, {})", "y", "x"))[axis]
     loads = "\n".join(
         f"t = at0({spot.format(f'clamp(base + {j}, 0, end.{limit})')});" + "".join(f"s{k} += {w} * t;" for k, w in to)

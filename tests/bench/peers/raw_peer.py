@@ -9,6 +9,7 @@ import json
 import math
 import os
 import queue
+import sys
 import threading
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -16,10 +17,12 @@ from typing import Any
 
 import moderngl
 import numpy as np
-from harness import arguments, said, timed
-from raw_device import SPLINE, Array, Device, enlarging
+
+sys.path.append(str(Path(__file__).parents[2]))
 
 from bench import exr
+from bench.peers.harness import arguments, said, timed
+from bench.peers.raw_device import SPLINE, Array, Device, enlarging
 from bench.tasks import (
     FRAMES,
     GOLDEN_ANGLE,
@@ -44,7 +47,8 @@ ROWS = 8
 """Pixels of a column to an invocation, where three rows slide through registers."""
 LIGHT = f"dot(x, vec3{LUMINANCE})"
 GRADES = (
-    f"x *= {Ten.exposure};", f"x = x * vec3{Ten.gain} + vec3{Ten.lift};", f"x = pow(max(x, 0), vec3({1.0 / Ten.gamma}));",
+    f"x *= {Ten.exposure};", f"x = x * vec3{Ten.gain} + vec3{Ten.lift};",
+    f"x = pow(max(x, 0), vec3({1.0 / Ten.gamma}));",
     f"x = max(mix(vec3({LIGHT}), x, {Ten.saturation}), 0);", f"x = {Ten.curve[0]} * x / (x + {Ten.curve[1]});",
 )
 
@@ -98,8 +102,9 @@ def mapped(device: Device, a: Texture) -> Texture:
         body = ("float s = 0; for (int j = 0; j < 8; ++j) for (int i = 0; i < 8; ++i) { ivec2 q = p * 8 + ivec2(i, j); "
                 f"if (q.x < {sums.width} && q.y < {sums.height}) s += {term}; }} o = vec4(s);")
         sums = device.pixels(body, device.texture("sums", -(-sums.width // 8), -(-sums.height // 8)), sums)
-    body = (f"float k = {Reinhard.key} / exp(at1(ivec2(0)).x / {a.width * a.height}.0); vec4 c = at0(p); vec3 x = c.rgb; "
-            f"float l = {LIGHT} * k; o = vec4(x * (k * (1 + l / {Reinhard.white**2}) / (1 + l)), c.a);")
+    mean = f"exp(at1(ivec2(0)).x / {a.width * a.height}.0)"
+    body = (f"vec4 c = at0(p); vec3 x = c.rgb; float k = {Reinhard.key} / {mean}, l = {LIGHT} * k; "
+            f"o = vec4(x * (k * (1 + l / {Reinhard.white**2}) / (1 + l)), c.a);")
     return device.pixels(body, result(device, a), a, sums)
 
 
@@ -156,7 +161,8 @@ vec3 place(ivec2 q, float z) {{
 float z = at0(p).x, turn = float((p.x * 73 ^ p.y * 151) & 255) * (6.2831853 / 256), s = 0;
 vec3 center = place(p, z), n = at1(p).xyz; vec2 cs = vec2(cos(turn), sin(turn));
 for (int i = 0; i < {count}; ++i) {{
-  vec2 u = places[i].xy; ivec2 q = clamp(p + ivec2(vec2(u.x * cs.x - u.y * cs.y, u.x * cs.y + u.y * cs.x)), ivec2(0), last);
+  vec2 u = places[i].xy;
+  ivec2 q = clamp(p + ivec2(vec2(u.x * cs.x - u.y * cs.y, u.x * cs.y + u.y * cs.x)), ivec2(0), last);
   vec3 v = place(q, at0(q).x) - center; float d = dot(v, v);
   if (d < {far.reach**2}) s += max(0, dot(v, n) - {far.bias} * z) / (d + 1e-3);
 }}

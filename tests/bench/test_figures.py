@@ -1,0 +1,61 @@
+"""What the benchmark makes of its numbers."""
+
+from __future__ import annotations
+
+import pytest
+from bench.figures import rows, table
+from bench.report import listing
+from bench.results import Results, Run, paired
+
+
+def measured(**walls):
+    """T5 in whole processes, by program; ours also as accurate as is wanted."""
+    found = Results({"processors": 2})
+    found.runs = [Run("hd", "T5", name, wall, wall, [100.0] * len(wall)) for name, wall in walls.items()]
+    found.run("hd", "T5", "halation").rms = 2e-4
+    return found
+
+
+def row(results, beginning):
+    return next(one for one in rows(results) if one.what.startswith(beginning))
+
+
+def test_ratios_are_of_the_same_round():
+    """A slow moment falls on both programs of a round: the median of ratios is not the ratio of medians."""
+    assert paired([1.0, 10.0, 2.0], [2.0, 20.0, 4.0]) == 0.5
+    assert paired([3.0, 1.0, 2.0], [8.0]) == 0.25
+    assert paired([], [1.0]) is None
+
+
+def test_the_best_of_others_counts():
+    found = measured(halation=[1.0, 1.0], blender=[4.0, 4.0], blender5=[2.5, 2.5])
+    figure = next(one for one in row(found, "whole process against the best Blender").figures if one.label == "T5")
+    assert figure.number == 0.4 and figure.reached
+
+
+@pytest.mark.parametrize(("ours", "verdict"), [(0.5, "yes"), (0.51, "no")])
+def test_a_row_is_reached_up_to_its_limit(ours, verdict):
+    found = measured(halation=[ours], blender=[1.0])
+    assert row(found, "whole process against the best Blender").verdict == verdict
+
+
+def test_what_was_not_measured_is_said():
+    found = measured(halation=[1.0])
+    assert row(found, "cold cache").verdict == "\N{EN DASH}"
+    assert "| cold cache of shaders against warm, T5 | 2 | not measured |" in table(found)
+
+
+def test_results_are_kept_as_they_are(tmp_path):
+    found = measured(halation=[1.0, 2.0], raw=[0.5, 1.0])
+    found.extras = {"sigma": {"20": [1.0], "200": [1.2]}}
+    found.save(tmp_path / "kept.json")
+    assert Results.load(tmp_path / "kept.json") == found
+    (tmp_path / "other.json").write_text("{}")
+    with pytest.raises(SystemExit, match=r"other\.json: no results of this benchmark"):
+        Results.load(tmp_path / "other.json")
+
+
+def test_the_listing_tells_what_changed():
+    before, now = measured(halation=[2.0, 2.0]), measured(halation=[1.0, 1.0])
+    line = next(one for one in listing(now, before).splitlines() if "halation" in one)
+    assert "| 1.00 | 1.00 |" in line and "0.50, \N{EN DASH}" in line
