@@ -11,7 +11,8 @@ from halation.app.cli.program import app
 from typer.main import get_command
 
 PAGE = Path(__file__).parents[1] / "docs" / "command-line.md"
-_EVERYWHERE = "One JSON object on standard output, for machines."
+_EVERYWHERE = ("--json", "--root", "--timeout")
+"""Flags that the page explains once."""
 _BLOCK = re.compile(r"<!-- (?P<name>[\w-]+) -->\n.*?<!-- /(?P=name) -->", re.DOTALL)
 
 
@@ -32,7 +33,8 @@ def block(name: str, command: Any) -> str:
     options = [item for item in command.params if item.param_type_name == "option" and not item.hidden]
     usage = " ".join(["halation", name, *(_usage(item) for item in arguments), *_required(options)])
     rows = [(f"`{_usage(item)}`", item.help or "") for item in arguments]
-    rows += [(_flags(item), item.help or "") for item in options if item.help != _EVERYWHERE and item.name != "help"]
+    known = [item for item in options if item.name != "help" and not set(_EVERYWHERE) & set(item.opts)]
+    rows += [(_flags(item), item.help or "") for item in known]
     lines = [f"| {head} | {_cell(text)} |" for head, text in rows]
     table = "\n".join(["", "| | |", "|---|---|", *lines]) if rows else ""
     return f"<!-- {name} -->\n`{usage}`\n{table}\n<!-- /{name} -->"

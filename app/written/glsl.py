@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from hashlib import blake2b
+from keyword import iskeyword
 from types import new_class
 from typing import Any, Literal, cast
 
@@ -24,7 +25,7 @@ _FORBIDDEN = re.compile(
 )
 _DEFINED = re.compile(r"\bstruct\s+(\w+)|^[ \t]*#[ \t]*define[ \t]+(\w+)|^[ \t]*const\s+\w+\s+(\w+)", re.MULTILINE)
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
-_RESERVED = frozenset({"out", "pixel", "extent", "frame", "proxy", "grid", "node", "muted"})
+_RESERVED = frozenset({"out", "pixel", "extent", "frame", "proxy", "grid", "node", "muted", "code", "text", "title"})
 KEPT = 512
 
 
@@ -131,7 +132,7 @@ def _parameters(source: str, plain: str, entry: Function) -> Iterator[_Parameter
 def _check(entry: Function, parameters: tuple[_Parameter, ...]) -> None:
     seen = set[str]()
     for one in parameters:
-        if one.name in seen or one.name in _RESERVED:
+        if one.name in seen or one.name in _RESERVED or iskeyword(one.name) or hasattr(Filter, one.name):
             why = "is there twice" if one.name in seen else "means something else here"
             raise CodeFault(one.line, f"the name '{one.name}' {why}: choose another")
         seen.add(one.name)
