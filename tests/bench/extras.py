@@ -63,9 +63,9 @@ def _cold(place: Place, rounds: int) -> tuple[list[float], list[float]]:
     command = rendering("T5", place.folder, SIZES[place.size], place.out / "cold.exr")
     for _ in range(rounds):
         with tempfile.TemporaryDirectory() as cache:
-            place = {"MESA_SHADER_CACHE_DIR": cache, "MESA_GLSL_CACHE_DIR": cache}
+            kept = {"MESA_SHADER_CACHE_DIR": cache, "MESA_GLSL_CACHE_DIR": cache}
             for seconds in (cold, warm):
-                ended = run(command, place)
+                ended = run(command, kept)
                 if ended.code:
                     raise SystemExit(ended.said)
                 seconds.append(ended.wall)

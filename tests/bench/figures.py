@@ -15,7 +15,7 @@ AGAINST_BLENDER: Mapping[str, float] = {
     "copy": 0.6, "T1s3": 0.6, "T1s10": 0.6, "T1s50": 0.6, "T2": 0.8, "T3": 0.6, "T4": 0.6, "T5": 0.5, "T6": 0.6,
     "T8": 0.2, "T9": 0.45, "T10": 0.42,
 }
-AGAINST_GEGL = ("copy", "T1s3", "T1s10", "T1s50", "T2", "T3", "T4", "T5", "T6", "T8", "T10")
+AGAINST_GEGL: tuple[str, ...] = ("copy", "T1s3", "T1s10", "T1s50", "T2", "T3", "T4", "T5", "T6", "T8", "T10")
 AGAINST_SCRIPTS: Mapping[str, float] = {
     "copy": 1.0, "T1s3": 1.2, "T1s10": 1.0, "T1s50": 1.0, "T2": 1.0, "T3": 1.0, "T4": 1.0, "T5": 0.95, "T6": 1.2,
     "T7": 1.0, "T8": 0.6, "T9": 0.6, "T10": 0.65,
