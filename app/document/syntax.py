@@ -49,7 +49,8 @@ def member(path: str, key: str | int) -> str:
     """The JSON path of a part of what is at `path`."""
     if isinstance(key, int):
         return f"{path}[{key}]"
-    return f"{path}.{key}" if path else key
+    shown = key if key.isprintable() else ascii(key)[1:-1]
+    return f"{path}.{shown}" if path else shown
 
 
 def word(item: object) -> str:

@@ -14,4 +14,4 @@ vec4 from_straight(vec4 c) {
     return vec4(c.rgb * alpha, alpha);
 }
 
-vec4 from_display(vec4 c) { return from_straight(vec4(from_rec709(srgb_decode(c.rgb)), c.a)); }
+vec4 from_codes(vec4 c) { return from_straight(vec4(from_rec709(srgb_decode(c.rgb)), c.a)); }

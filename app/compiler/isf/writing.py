@@ -45,7 +45,7 @@ class Writing:
         self._show(program.outputs["made"])
         targets = self.targets
         lines = ["vec2 halation_canvas;", "", *self._display()]
-        lines += [line for name in self.pictures for line in _reader(name, "from_display({})")]
+        lines += [line for name in self.pictures for line in _reader(name, "from_codes({})")]
         drawn = dict.fromkeys(str(one["TARGET"]) for one in targets if one)
         lines += [line for name in drawn for line in _reader(name, "{}")]
         calls = [f"{'else ' if at else ''}if (PASSINDEX == {at}) {{ {call} }}" for at, call in enumerate(self.calls)]
@@ -109,7 +109,7 @@ class Writing:
 
     def _display(self) -> list[str]:
         """Between light and the display values of the format."""
-        needed, lines = frozenset({"display_straight", "from_display"}), list[str]()
+        needed, lines = frozenset({"display_straight", "from_codes"}), list[str]()
         for text in reversed(self.library.closure(("lib/isf",), "export")):
             kept = text.only(needed)
             needed |= kept.words

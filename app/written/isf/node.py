@@ -30,7 +30,7 @@ _LIGHT = Value(
 )
 _AROUND = """#include "lib/isf.glsl"
 vec4 isf_read(vec4 image, int light) { return light == LIGHT_DISPLAY ? display_straight(image) : straight(image); }
-vec4 isf_made(vec4 image, int light) { return light == LIGHT_DISPLAY ? from_display(image) : from_straight(image); }
+vec4 isf_made(vec4 image, int light) { return light == LIGHT_DISPLAY ? from_codes(image) : from_straight(image); }
 vec4 isf_sound(float sound) { return vec4(vec3(sound), 1.0); }
 vec4 isf_nothing() { return vec4(0.0); }
 """

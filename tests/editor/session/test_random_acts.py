@@ -188,8 +188,8 @@ ACTS: dict[str, Act] = {
 }
 
 OTHERS = {
-    "edit", "go", "go_to", "new", "open", "open_copy", "open_text", "restore", "save", "save_as", "revert", "reload",
-    "reload_groups", "migrate", "save_group", "add_group", "drop_files", "add_matte", "animate_all",
+    "edit", "go", "go_to", "new", "open", "open_copy", "open_made", "open_text", "restore", "save", "save_as", "revert",
+    "reload", "reload_groups", "migrate", "save_group", "add_group", "drop_files", "add_matte", "animate_all",
     "set_all", "add_code_file", "export_code", "save_code", "save_drafts", "reread_code", "note_code_files",
     "keep_draft",
 }
