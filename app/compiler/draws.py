@@ -152,6 +152,7 @@ class Recorder:
             Gather(
                 (self._shape(result, size or self.size),), self._owner, self._shader, function, tuple(accessors),
                 self._parameters(signature, rest), edge, choices(self._node),
+                light=self._library.light(self._shader, function, self._owner),
             )
         )
 
@@ -334,7 +335,9 @@ class Recorder:
         shape = Shape(size, made.shape.channels, made.shape.data)
         accessor = Accessor("image", "vec4", made.ref)
         numbers = tuple(Parameter("int", Constant(value)) for value in (axis, factor, apron))
-        return self._made(Gather((shape,), self._owner, "primitive/enlarge", "enlarge", (accessor,), numbers, edge))
+        enlarge = ("primitive/enlarge", "enlarge")
+        light = self._library.light(*enlarge, self._owner)
+        return self._made(Gather((shape,), self._owner, *enlarge, (accessor,), numbers, edge, light=light))
 
 
 def choices(node: Node) -> tuple[tuple[str, tuple[str, ...]], ...]:

@@ -7,14 +7,14 @@ Names are counted from zero in every pass, so that equal passes of different gra
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ...nodes import Camera, Uniform, glsl_type
 from ..glsl import Text, words
 from . import bodies
 from .foreign import foreign
 from .fuse import Fused
-from .ir import Call, Convolve, Foreign, Gather, Op, Program, Raster, Reduce, Ref, Shape
+from .ir import Accessor, Call, Convolve, Foreign, Gather, Op, Program, Raster, Reduce, Ref, Shape
 from .library import Library
 from .names import Names, convert, glsl_channels
 from .plan import LINES_PER_FILE, Shader
@@ -23,6 +23,9 @@ from .target import Target
 
 LOCAL_SIZE = 64
 """Invocations of a work group, along a row."""
+
+ACCESSORS = ("raw", "at", "near", "size")
+"""What there is for a picture that is read anywhere: `image_at` and so on."""
 
 NO_SEAM = (0, 0, 0, 0)
 """What a seam between fused functions does to the bits: nothing. See primitive/settled.glsl."""
@@ -77,6 +80,8 @@ def emit(program: Program, fused: Fused, library: Library, target: Target, texel
     lines += parts.functions
     for text in late:
         lines += _included(text, files, program, fused)
+    for guest in parts.guests:
+        lines += _as_guest(guest, files, program, fused)
     return Emitted(
         Shader("\n".join([*lines, *main]) + "\n", target.form, tuple(files), by_image),
         tuple((name, value) for name, _, value in names.uniforms),
@@ -108,6 +113,26 @@ def _preamble(target: Target) -> list[str]:
 
 
 @dataclass(frozen=True)
+class Guest:
+    """An operation that looks around within a pass of pointwise ones: what its file needs, under names of its own."""
+
+    op: Gather
+    text: Text
+    prefix: str
+
+    @property
+    def accessors(self) -> list[Accessor]:
+        """Its pictures, by the names that they have in the pass."""
+        return [replace(item, name=self.prefix + item.name) for item in self.op.accessors]
+
+    @property
+    def renamed(self) -> list[str]:
+        """The words of its file that mean something else in the pass."""
+        reads = [f"{item.name}_{way}" for item in self.op.accessors for way in ACCESSORS]
+        return [word for word in (*self.text.functions, *reads) if word in self.text.words]
+
+
+@dataclass(frozen=True)
 class Parts:
     """Text of a pass: shader files; functions, of which `accessors` read pictures; statements of main; results."""
 
@@ -116,6 +141,7 @@ class Parts:
     body: list[str]
     results: list[str]
     accessors: frozenset[str] = frozenset()
+    guests: tuple[Guest, ...] = ()
 
 
 def parts_of(program: Program, fused: Fused, names: Names, library: Library) -> Parts:
@@ -126,10 +152,16 @@ def parts_of(program: Program, fused: Fused, names: Names, library: Library) -> 
     if len(fused.members) > 1 and names.seams:
         shaders.insert(0, "primitive/settled")
     if isinstance(root, Call):
-        body, values = _calls(program, fused, names)
-        return Parts(shaders, [], body, [values[ref] for ref in fused.writes])
+        guests = tuple(_guests(program, fused, library))
+        functions = [
+            line for guest in guests for item in guest.accessors
+            for line in bodies.accessor(names, item, guest.op.edge)
+        ]
+        body, values = _calls(program, fused, names, library)
+        shaders = [*(["primitive/edges"] if guests else []), *shaders]
+        return Parts(shaders, functions, body, [values[ref] for ref in fused.writes], guests=guests)
     if isinstance(root, Reduce):
-        body, values = _calls(program, fused, names)
+        body, values = _calls(program, fused, names, library)
         functions = bodies.source(names, root, body, values[root.image]) + bodies.reduction(names, root)
         return Parts(shaders, functions, [], ["reduced(pixel)"])
     if isinstance(root, Convolve):
@@ -139,23 +171,33 @@ def parts_of(program: Program, fused: Fused, names: Names, library: Library) -> 
         return Parts(["primitive/edges"], functions, [], ["convolved()"])
     assert isinstance(root, Gather)
     functions = [line for item in root.accessors for line in bodies.accessor(names, item, root.edge)]
-    arguments = ", ".join(names.argument(item, {}) for item in root.parameters)
-    call = f"{root.function}({arguments})"
-    returned = library.function(root.shader, root.function, root.owner).result
-    result = convert(call, glsl_channels(returned), glsl_type(root.shapes[0].channels))
-    accessors = frozenset(f"{item.name}_{way}" for item in root.accessors for way in ("raw", "at", "near", "size"))
+    result = _gathered(root, [names.argument(item, {}) for item in root.parameters], library)
+    accessors = frozenset(f"{item.name}_{way}" for item in root.accessors for way in ACCESSORS)
     return Parts(["primitive/edges", root.shader], functions, [], [result], accessors)
+
+
+def _guests(program: Program, fused: Fused, library: Library) -> Iterator[Guest]:
+    """The members of a pass that look around."""
+    for number, index in enumerate(fused.members):
+        op = program.ops[index]
+        if isinstance(op, Gather):
+            text = library.closure((op.shader,), op.owner)[-1].only(frozenset({op.function}))
+            yield Guest(op, text, f"g{number}_")
 
 
 def texts_of(program: Program, fused: Fused, parts: Parts, library: Library) -> tuple[Text, ...]:
     """The shader files of a pass, includes first, with only the functions that it needs."""
     found: list[Text] = []
     needed = words(*parts.functions, *parts.body, *parts.results)
-    files = library.closure(tuple(dict.fromkeys(parts.shaders)), program.ops[fused.root].owner)
+    lent = frozenset[str]().union(*(guest.text.words for guest in parts.guests))
+    own = {guest.text.name for guest in parts.guests}
+    included = (name for guest in parts.guests for name in guest.text.includes)
+    files = library.closure(tuple(dict.fromkeys((*parts.shaders, *included))), program.ops[fused.root].owner)
     calls = (op for op in (program.ops[index] for index in fused.members) if isinstance(op, Call))
     made = dict.fromkeys(op.program for op in calls if op.program)
     for text in reversed((*files, *(one.text for one in made))):
-        kept = text.only(needed)
+        # What a guest needs of its own file comes with the guest.
+        kept = text.only(needed if text.name in own else needed | lent)
         needed |= kept.words
         found.append(kept)
     return tuple(reversed(found))
@@ -170,21 +212,28 @@ def around(texts: tuple[Text, ...], parts: Parts) -> tuple[list[Text], list[Text
     return early, late
 
 
-def _calls(program: Program, fused: Fused, names: Names) -> tuple[list[str], dict[Ref, str]]:
-    """Statements that evaluate the pointwise members of a pass at one pixel, and the names of all they computed."""
+def _calls(program: Program, fused: Fused, names: Names, library: Library) -> tuple[list[str], dict[Ref, str]]:
+    """Statements that evaluate the members of a pass at one pixel, and the names of all they computed."""
     lines: list[str] = []
     values: dict[Ref, str] = {}
+    members = [program.ops[index] for index in fused.members]
+    # A root that reduces wants its picture at every pixel; one that looks around reads through its accessors.
+    wanted = {ref for op in members if not isinstance(op, Gather) for ref in op.reads()}
     for number, ref in enumerate(fused.reads):
+        if ref not in wanted:
+            continue
         values[ref] = f"a{number}"
         lines.append(f"{glsl_type(names.shape(ref).channels)} a{number} = {names.load(ref, 'pixel')};")
     for number, index in enumerate(fused.members):
         op = program.ops[index]
-        if not isinstance(op, Call):
+        if not isinstance(op, (Call, Gather)):
             continue
         outputs = [f"v{number}_{output}" for output in range(len(op.shapes))]
         arguments = [names.argument(item, values) for item in op.parameters]
         types = [glsl_type(shape.channels) for shape in op.shapes]
-        if len(outputs) == 1:
+        if isinstance(op, Gather):
+            lines.append(f"{types[0]} {outputs[0]} = {_gathered(op, arguments, library, f'g{number}_')};")
+        elif len(outputs) == 1:
             lines.append(f"{types[0]} {outputs[0]} = {op.function}({', '.join(arguments)});")
         else:
             lines += [f"{glsl} {name};" for glsl, name in zip(types, outputs, strict=True)]
@@ -193,6 +242,22 @@ def _calls(program: Program, fused: Fused, names: Names) -> tuple[list[str], dic
             lines += [f"{name} = settled({name}, {names.uniform('uvec4', NO_SEAM)});" for name in outputs]
         values |= {Ref(index, output): name for output, name in enumerate(outputs)}
     return lines, values
+
+
+def _gathered(op: Gather, arguments: list[str], library: Library, prefix: str = "") -> str:
+    """What an operation that looks around makes of a pixel."""
+    returned = library.function(op.shader, op.function, op.owner).result
+    call = f"{prefix}{op.function}({', '.join(arguments)})"
+    return convert(call, glsl_channels(returned), glsl_type(op.shapes[0].channels))
+
+
+def _as_guest(guest: Guest, files: list[str], program: Program, fused: Fused) -> list[str]:
+    """The file of a member that looks around, under names of its own."""
+    return [
+        *(f"#define {word} {guest.prefix}{word}" for word in guest.renamed),
+        *_included(guest.text, files, program, fused),
+        *(f"#undef {word}" for word in guest.renamed),
+    ]
 
 
 def _included(text: Text, files: list[str], program: Program, fused: Fused) -> list[str]:

@@ -1,7 +1,8 @@
 """Second stage: which operations share a pass.
 
 A pointwise operation joins its reader when nothing else reads it, both have the same size, and the pass stays
-within the device's limits. Reductions take their producer in too: they read every pixel exactly once.
+within the device's limits. Reductions take their producer in too: they read every pixel exactly once. So does an
+operation that looks around, if it is light, join a pointwise reader; what it reads itself must be a texture.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from .ir import Call, Constant, History, Op, Program, Read, Reduce, Ref
+from .ir import Call, Constant, Gather, History, Op, Program, Read, Reduce, Ref
 from .target import Target
 
 MAX_MEMBERS = 48
@@ -32,8 +33,11 @@ class Fused:
         return self.members[-1]
 
 
-def fuse(program: Program, target: Target, *, enabled: bool = True) -> tuple[Fused, ...]:
-    """Group the operations of `program` into passes, in order. `enabled=False` leaves every one alone."""
+def fuse(program: Program, target: Target, *, enabled: bool = True, gathers: bool = True) -> tuple[Fused, ...]:
+    """Group the operations of `program` into passes, in order.
+
+    `enabled=False` leaves every one alone, `gathers=False` those that look around.
+    """
     ops = program.ops
     live = _live(program)
     readers = _readers(ops, live)
@@ -49,7 +53,9 @@ def fuse(program: Program, target: Target, *, enabled: bool = True) -> tuple[Fus
         outputs = [Ref(index, number) for number in range(len(op.shapes))]
         roots = {home[reader] for ref in outputs for reader in readers.get(ref, ())}
         root = roots.pop() if len(roots) == 1 else index
-        if enabled and root != index and isinstance(op, Call) and not kept.intersection(outputs):
+        joins = isinstance(op, Call) or (gathers and isinstance(op, Gather) and op.light)
+        joins = joins and root != index and not kept.intersection(outputs) and _at_its_pixel(ops, outputs, readers)
+        if enabled and joins:
             joined = _joined(reads[root], outputs, op)
             together = uniforms[root] + _uniforms(op)
             inputs = len(joined) + _tables(ops, [*members[root], index])
@@ -92,6 +98,11 @@ def _readers(ops: tuple[Op, ...], live: set[int]) -> dict[Ref, list[int]]:
     return found
 
 
+def _at_its_pixel(ops: tuple[Op, ...], outputs: Iterable[Ref], readers: dict[Ref, list[int]]) -> bool:
+    """True if all that read these pictures want each pixel for one of their own."""
+    return all(isinstance(ops[reader], (Call, Reduce)) for ref in outputs for reader in readers.get(ref, ()))
+
+
 def _joined(outer: Iterable[Ref], made: list[Ref], op: Op) -> dict[Ref, None]:
     """What a pass reads once `op` is part of it."""
     return dict.fromkeys([*(ref for ref in outer if ref not in made), *op.reads()])
@@ -99,12 +110,13 @@ def _joined(outer: Iterable[Ref], made: list[Ref], op: Op) -> dict[Ref, None]:
 
 def _uniforms(op: Op) -> int:
     """Floats of uniforms that an operation takes at most: each is rounded up to four, and every output has a seam."""
-    if not isinstance(op, Call):
+    if not isinstance(op, (Call, Gather)):
         return 0
     constants = [item.operand for item in op.parameters if isinstance(item.operand, Constant)]
     factors = [item for item in op.parameters if item.factor != 1.0]
     taken = sum(12 if item.channels == 9 else -(-item.channels // 4) * 4 for item in constants)
-    return taken + 4 * (len(factors) + len(op.shapes))
+    sizes = len(op.accessors) if isinstance(op, Gather) else 0
+    return taken + 4 * (len(factors) + len(op.shapes) + sizes)
 
 
 def _tables(ops: tuple[Op, ...], members: Iterable[int]) -> int:
@@ -116,7 +128,7 @@ def _fits(ops: tuple[Op, ...], op: Op, root: int, count: int, inputs: int, targe
     reader = ops[root]
     if isinstance(reader, Call):
         same_size = reader.size == op.size
-    elif isinstance(reader, Reduce):
+    elif isinstance(reader, Reduce) and isinstance(op, Call):
         same_size = ops[reader.image.op].size == op.size
     else:
         return False

@@ -187,6 +187,8 @@ class Gather(Op):
     parameters: tuple[Parameter, ...]
     edge: Edge = "clamp"
     choices: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    light: bool = field(default=False, kw_only=True)
+    """Cheap enough to be computed within the pass that reads it: see `Library.light`."""
 
     @property
     def label(self) -> str:

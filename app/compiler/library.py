@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
@@ -10,6 +11,8 @@ from importlib.resources.abc import Traversable
 
 from ..errors import ShaderError
 from ..glsl import Function, Text, parse
+
+_ACCESSOR = re.compile(r"\w+_(?:at|near|raw|size)")
 
 LARGER = 8
 """Libraries kept that hold code of graphs as well: more than are open at once."""
@@ -23,6 +26,7 @@ class Library:
     _closures: dict[tuple[str, ...], tuple[Text, ...]] = field(
         default_factory=dict[tuple[str, ...], tuple[Text, ...]], compare=False, repr=False
     )
+    _light: dict[tuple[str, str], bool] = field(default_factory=dict[tuple[str, str], bool], compare=False, repr=False)
     _larger: dict[frozenset[str], Library] = field(
         default_factory=dict[frozenset[str], "Library"], compare=False, repr=False
     )
@@ -71,6 +75,26 @@ class Library:
     def uses(self, shader: str, words: frozenset[str], asker: str) -> bool:
         """True if the file or anything it includes says one of `words`."""
         return any(words & text.words for text in self.closure((shader,), asker))
+
+    def light(self, shader: str, function: str, asker: str) -> bool:
+        """True for a function that reads pictures itself, without loops, of a file that holds nothing but functions.
+
+        It costs little, and may stand in a pass several times under different names.
+        """
+        if (shader, function) not in self._light:
+            self._light[shader, function] = self._is_light(shader, function, asker)
+        return self._light[shader, function]
+
+    def _is_light(self, shader: str, function: str, asker: str) -> bool:
+        if self._text(shader, asker).outside:
+            return False
+        needed = frozenset({function})
+        for text in reversed(self.closure((shader,), asker)):
+            called = text.only(needed).words if needed & text.functions.keys() else frozenset[str]()
+            if text.name != shader and any(_ACCESSOR.fullmatch(word) for word in called):
+                return False
+            needed |= called
+        return needed.isdisjoint(("for", "while", "do"))
 
     def _text(self, name: str, asker: str) -> Text:
         if name not in self.texts:

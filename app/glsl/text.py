@@ -63,7 +63,7 @@ class Text:
 
     def _only(self, entries: frozenset[str]) -> Text:
         needed: set[str] = set()
-        todo = [*entries, *(self._outside() & self.functions.keys())]
+        todo = [*entries, *(self.outside & self.functions.keys())]
         while todo:
             name = todo.pop()
             if name not in needed:
@@ -78,7 +78,8 @@ class Text:
                 text = text[: one.start] + blank + text[one.end :]
         return replace(self, body=text, words=words(text), _cuts={})
 
-    def _outside(self) -> frozenset[str]:
+    @property
+    def outside(self) -> frozenset[str]:
         """The words that stand in no function: those of constants and macros."""
         text = self.body
         for one in reversed(self.all_functions):

@@ -87,7 +87,7 @@ class _Export:
     def whole(self, doc: str) -> Exported:
         """The shader, or why there is none."""
         program = self._lowered({})
-        passes = fuse(program, NULL)
+        passes = fuse(program, NULL, gathers=False)
         wrong = [*self._data(program), *reasons(program, passes, self._sources(program))]
         count = sum(len(fused.writes) for fused in passes)
         if count > MAX_PASSES:

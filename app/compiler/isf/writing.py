@@ -37,7 +37,8 @@ class Writing:
     def whole(self, first: int) -> tuple[str, list[Section]]:
         """The GLSL, and what the head says of passes. `first` is the frame that FRAMEINDEX counts from."""
         program = self.found.program
-        passes = [(fused, output) for fused in fuse(program, NULL) for output in range(len(fused.writes))]
+        alone = fuse(program, NULL, gathers=False)
+        passes = [(fused, output) for fused in alone for output in range(len(fused.writes))]
         self.last = {ref: index for index, (fused, _) in enumerate(passes) for ref in fused.reads}
         self.last[program.outputs["made"]] = len(passes)
         for fused, output in passes:
