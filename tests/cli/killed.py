@@ -41,7 +41,7 @@ def main(count: int, words: list[str]) -> None:
         file.unlink()
     for _ in range(count):
         child = start()
-        time.sleep(draw.uniform(0.1, 1.1) * whole)
+        time.sleep(draw.uniform(0.1, 0.8) * whole)
         os.kill(child, signal.SIGKILL)
         killed += os.WIFSIGNALED(os.waitpid(child, 0)[1])
         files = sorted(folder.glob("out.*.exr"))
