@@ -11,7 +11,7 @@ import typer
 
 from . import parsing
 from .batch import shown
-from .options import AsJson, GraphFile, Inputs, Lazy, Node, Scale, Sets, SizeText, bound, opened, report_problems
+from .options import AsJson, Form, GraphFile, Inputs, Lazy, Node, Scale, Sets, SizeText, bound, opened, report_problems
 from .outcome import print_json
 from .sharing import piped
 from .watchdog import PATIENCE, Timeout, watched
@@ -43,9 +43,7 @@ def bench(
         str | None, typer.Option(metavar="1.2", help="Exit with 1 if something takes more times as long as that.")
     ] = None,
     precision: Annotated[str | None, typer.Option(metavar="half|float", help="Precision of intermediates.")] = None,
-    form: Annotated[
-        str | None, typer.Option(metavar="fragment|compute", help="How passes run; by default what suits the device.")
-    ] = None,
+    form: Form = None,
     timeout: Timeout = PATIENCE,
     as_json: AsJson = False,
 ) -> int:

@@ -41,6 +41,17 @@ SizeText = Annotated[
 Scale = Annotated[
     float, typer.Option("--scale", metavar="X", help="Render a proxy: 0.5 is half size, lengths in pixels included.")
 ]
+OneFrame = Annotated[int | None, typer.Option(help="The one frame to render; by default the first of the graph.")]
+Frames = Annotated[
+    str | None,
+    typer.Option(metavar="1-24x2,40", help="The frames to render; the file's name has #### for the number."),
+]
+Precision = Annotated[
+    str | None, typer.Option(metavar="half|float", help="Precision of intermediates and of EXR files.")
+]
+Form = Annotated[
+    str | None, typer.Option(metavar="fragment|compute", help="How passes run; by default what suits the device.")
+]
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON object on standard output, for machines.")]
 Root = Annotated[
     Path | None,

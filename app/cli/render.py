@@ -11,7 +11,23 @@ import typer
 
 from ..errors import UsageError
 from . import parsing
-from .options import AsJson, GraphFile, Inputs, Lazy, Node, Scale, Sets, SizeText, bound, opened, report_problems
+from .options import (
+    AsJson,
+    Form,
+    Frames,
+    GraphFile,
+    Inputs,
+    Lazy,
+    Node,
+    OneFrame,
+    Precision,
+    Scale,
+    Sets,
+    SizeText,
+    bound,
+    opened,
+    report_problems,
+)
 from .outcome import note, print_json
 from .progress import told_to
 from .sharing import independent, piped, share
@@ -33,22 +49,15 @@ def render(
     node: Node = "",
     size: SizeText = None,
     scale: Scale = 1.0,
-    frame: Annotated[
-        int | None, typer.Option(help="The one frame to render; by default the first of the graph.")
-    ] = None,
-    frames: Annotated[
-        str | None,
-        typer.Option(metavar="1-24x2,40", help="The frames to render; the file's name has #### for the number."),
-    ] = None,
+    frame: OneFrame = None,
+    frames: Frames = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Keep frames whose files are there and would come out the same.")
     ] = False,
     jobs: Annotated[
         int, typer.Option("-j", "--jobs", min=1, help="Processes that share the frames, where these are independent.")
     ] = 1,
-    precision: Annotated[
-        str | None, typer.Option(metavar="half|float", help="Precision of intermediates and of EXR files.")
-    ] = None,
+    precision: Precision = None,
     view: Annotated[
         str, typer.Option(help="OpenColorIO view for PNG, JPEG, TIFF, WebP and DPX; 'none' for plain sRGB.")
     ] = "",
@@ -65,9 +74,7 @@ def render(
     codec: Annotated[
         str, typer.Option(help="Of videos: h264, h265, prores, prores4444, ffv1, qtrle, vp9; by default by the ending.")
     ] = "",
-    form: Annotated[
-        str | None, typer.Option(metavar="fragment|compute", help="How passes run; by default what suits the device.")
-    ] = None,
+    form: Form = None,
     deterministic: Annotated[
         bool, typer.Option("--deterministic", help="The same bytes on every machine: the software rasterizer, pinned.")
     ] = False,

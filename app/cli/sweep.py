@@ -10,7 +10,7 @@ import typer
 
 from . import parsing
 from .batch import batch
-from .options import AsJson, GraphFile, Inputs, Lazy, Node, Scale, SizeText, bound, opened, report_problems
+from .options import AsJson, GraphFile, Inputs, Lazy, Node, Precision, Scale, SizeText, bound, opened, report_problems
 from .outcome import note, print_json
 from .sharing import piped
 from .sweeping import axes
@@ -51,9 +51,7 @@ def sweep(
     ending: Annotated[
         str, typer.Option(metavar=".png|.exr|...", help="What kind of files --cells writes.")
     ] = ".png",
-    precision: Annotated[
-        str | None, typer.Option(metavar="half|float", help="Precision of intermediates and of EXR files.")
-    ] = None,
+    precision: Precision = None,
     timeout: Timeout = PATIENCE,
     as_json: AsJson = False,
 ) -> int:

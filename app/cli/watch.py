@@ -11,7 +11,21 @@ import typer
 
 from ..errors import HalationError, UsageError
 from . import parsing
-from .options import GraphFile, Inputs, Lazy, Node, Scale, Sets, SizeText, bound, opened, report_problems
+from .options import (
+    Frames,
+    GraphFile,
+    Inputs,
+    Lazy,
+    Node,
+    OneFrame,
+    Precision,
+    Scale,
+    Sets,
+    SizeText,
+    bound,
+    opened,
+    report_problems,
+)
 from .outcome import INTERRUPTED, note
 
 if TYPE_CHECKING:
@@ -32,16 +46,9 @@ def watch(
     node: Node = "",
     size: SizeText = None,
     scale: Scale = 1.0,
-    frame: Annotated[
-        int | None, typer.Option(help="The one frame to render; by default the first of the graph.")
-    ] = None,
-    frames: Annotated[
-        str | None,
-        typer.Option(metavar="1-24x2,40", help="The frames to render; the file's name has #### for the number."),
-    ] = None,
-    precision: Annotated[
-        str | None, typer.Option(metavar="half|float", help="Precision of intermediates and of EXR files.")
-    ] = None,
+    frame: OneFrame = None,
+    frames: Frames = None,
+    precision: Precision = None,
     view: Annotated[str, typer.Option(help="OpenColorIO view for pictures that are not EXR.")] = "",
     compression: Annotated[str, typer.Option(help="EXR compression.")] = "zip",
     as_json: Annotated[bool, typer.Option("--json", help="One JSON object per line for every render.")] = False,

@@ -36,21 +36,11 @@ class Library:
         added = {text.name: text for text in texts}
         if not added:
             return self
-        names = frozenset(added)
-        if names not in self._larger:
-            if len(self._larger) >= LARGER:
-                self._larger.pop(next(iter(self._larger)))
-            self._larger[names] = Library(Layered(added, self.texts))
-        return self._larger[names]
+        return self._with(added, frozenset(added))
 
     def replacing(self, text: Text, mark: str) -> Library:
         """This library with another file in place of the one of that name; `mark` says what it holds."""
-        key = frozenset({text.name, mark})
-        if key not in self._larger:
-            if len(self._larger) >= LARGER:
-                self._larger.pop(next(iter(self._larger)))
-            self._larger[key] = Library(Layered({text.name: text}, self.texts))
-        return self._larger[key]
+        return self._with({text.name: text}, frozenset({text.name, mark}))
 
     def file(self, shader: str) -> str:
         """What messages call a file."""
@@ -95,6 +85,14 @@ class Library:
                 return False
             needed |= called
         return needed.isdisjoint(("for", "while", "do"))
+
+    def _with(self, added: Mapping[str, Text], key: frozenset[str]) -> Library:
+        """This library with other files over its own, known by what `key` says of them."""
+        if key not in self._larger:
+            if len(self._larger) >= LARGER:
+                self._larger.pop(next(iter(self._larger)))
+            self._larger[key] = Library(Layered(added, self.texts))
+        return self._larger[key]
 
     def _text(self, name: str, asker: str) -> Text:
         if name not in self.texts:

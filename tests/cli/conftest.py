@@ -4,35 +4,19 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from commands import Cli, command
 from exr_files import write_exr
 from halation.app import renderer
-from halation.app.cli.program import run
 
 WIDTH, HEIGHT = 48, 32
 RED = np.linspace(0.0, 1.0, WIDTH, dtype=np.float32).astype(np.float16).astype(np.float32)
 
-
-@dataclass(frozen=True)
-class Result:
-    """How a command ended and what it said."""
-
-    code: int
-    out: str
-    err: str
-
-    @property
-    def json(self) -> Any:
-        return json.loads(self.out)
-
-
-Cli = Callable[..., Result]
 Graphs = Callable[..., Path]
 
 
@@ -49,12 +33,7 @@ def cli(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> C
     """`cli("render", path, "-o", file)` runs a command; a thousand devices would be slow, so there is one per form."""
     monkeypatch.setattr(renderer, "open_device", lambda form=None: device(form))
 
-    def called(*words: object) -> Result:
-        capfd.readouterr()
-        code = run([str(word) for word in words])
-        return Result(code, *capfd.readouterr())
-
-    return called
+    return command(capfd)
 
 
 @pytest.fixture

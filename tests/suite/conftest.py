@@ -4,32 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
+from commands import Cli, command
 from exr_files import write_exr
-from halation.app.cli.program import run
 
 WIDTH, HEIGHT = 48, 32
 
-
-@dataclass(frozen=True)
-class Result:
-    """How a command ended and what it said."""
-
-    code: int
-    out: str
-    err: str
-
-    @property
-    def json(self) -> Any:
-        return json.loads(self.out)
-
-
-Cli = Callable[..., Result]
 Suite = Callable[..., Path]
 
 
@@ -37,13 +20,7 @@ Suite = Callable[..., Path]
 def cli(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Cli:
     """`cli("-k", "bloom")` runs `halation test` in the folder of the test."""
     monkeypatch.chdir(tmp_path)
-
-    def called(*words: object) -> Result:
-        capfd.readouterr()
-        code = run(["test", *map(str, words)])
-        return Result(code, *capfd.readouterr())
-
-    return called
+    return command(capfd, "test")
 
 
 @pytest.fixture

@@ -1,0 +1,38 @@
+"""How a command ended, for tests that run the command line inside their own process."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import pytest
+from halation.app.cli.program import run
+
+
+@dataclass(frozen=True)
+class Result:
+    """How a command ended and what it said."""
+
+    code: int
+    out: str
+    err: str
+
+    @property
+    def json(self) -> Any:
+        return json.loads(self.out)
+
+
+Cli = Callable[..., Result]
+
+
+def command(capfd: pytest.CaptureFixture[str], *before: str) -> Cli:
+    """What runs a command whose first words are `before`, and tells how it ended."""
+
+    def called(*words: object) -> Result:
+        capfd.readouterr()
+        code = run([*before, *map(str, words)])
+        return Result(code, *capfd.readouterr())
+
+    return called
