@@ -2,8 +2,8 @@
 
     python killed.py COUNT WORDS...
 
-The first one may end, to see how long it takes. Prints how many were killed before they had ended, and how many times
-there was a file to look at. Modules are loaded once: every render is a fork of this process, which never touches OpenGL
+The moment is counted in changes of the folder, not in seconds: it then falls among the writes however slow the machine
+is. Prints how many were killed before they had ended, and how many times there was a file to look at. Modules are loaded once: every render is a fork of this process, which never touches OpenGL
 itself.
 """
 
@@ -26,6 +26,7 @@ def main(count: int, words: list[str]) -> None:
     from halation.app.renderer import job  # noqa: F401
 
     folder = Path(words[words.index("-o") + 1]).parent
+
     def start() -> int:
         child = os.fork()
         if child == 0:
@@ -33,17 +34,24 @@ def main(count: int, words: list[str]) -> None:
             os._exit(run(["render", *words]))
         return child
 
+    def ended(child: int, changes: int) -> bool:
+        """Whether the child came to its end before the folder's listing had changed so many times."""
+        listing = os.listdir(folder)
+        while changes:
+            if os.waitpid(child, os.WNOHANG)[0]:
+                return True
+            if (now := os.listdir(folder)) != listing:
+                listing, changes = now, changes - 1
+            time.sleep(0.0005)
+        return False
+
     draw, killed, seen = random.Random(7), 0, 0
-    began = time.perf_counter()
-    os.waitpid(start(), 0)
-    whole = time.perf_counter() - began
-    for file in folder.glob("out.*.exr"):
-        file.unlink()
     for _ in range(count):
         child = start()
-        time.sleep(draw.uniform(0.1, 0.8) * whole)
-        os.kill(child, signal.SIGKILL)
-        killed += os.WIFSIGNALED(os.waitpid(child, 0)[1])
+        if not ended(child, draw.randint(1, 6)):
+            time.sleep(draw.uniform(0.0, 0.004))
+            os.kill(child, signal.SIGKILL)
+            killed += os.WIFSIGNALED(os.waitpid(child, 0)[1])
         files = sorted(folder.glob("out.*.exr"))
         for file in files:
             picture = oiio.ImageInput.open(str(file))

@@ -273,7 +273,7 @@ def test_kills_leave_no_half_frame_and_resume_ends_the_same(cli, movie, tmp_path
     )
     assert result.returncode == 0, result.stderr
     killed, seen = json.loads(result.stdout)
-    assert killed >= 100 and seen >= 20, (killed, seen)
+    assert killed >= 100 and seen >= 50, (killed, seen)
     assert rendered(cli, path, "out.####.exr", "--resume")["frames"] == list(FRAMES)
     for frame, expected in whole.items():
         assert (tmp_path / f"out.{frame:04d}.exr").read_bytes() == expected
