@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import importlib
-import pkgutil
 from collections.abc import Iterator, Mapping
 from functools import cache
+from importlib import resources
+from importlib.resources.abc import Traversable
 
 from . import _declare
 from ._declare import *  # noqa: F403  (the vocabulary: `_declare.__all__` names it)
@@ -22,7 +23,7 @@ class Catalogue(Mapping[str, type[Node]]):
     """
 
     def __init__(self) -> None:
-        self._modules = {name: f".{folder}.{name}" for folder in _folders() for name in _files(folder)}
+        self._modules = {name: f".{folder.name}.{name}" for folder in _folders() for name in _files(folder)}
         self._found: dict[str, type[Node]] = {}
 
     def __getitem__(self, id: str) -> type[Node]:
@@ -55,13 +56,17 @@ def catalogue() -> Mapping[str, type[Node]]:
     return Catalogue()
 
 
-def _folders() -> list[str]:
-    """The packages of nodes."""
-    found = pkgutil.iter_modules(importlib.import_module(__name__).__path__)
-    return sorted(item.name for item in found if item.ispkg and not item.name.startswith("_"))
+def _folders() -> list[Traversable]:
+    """The packages of nodes, without loading any."""
+    found = resources.files(__name__).iterdir()
+    return sorted((item for item in found if "." not in item.name and not item.name.startswith("_")), key=_name)
 
 
-def _files(folder: str) -> list[str]:
+def _files(folder: Traversable) -> list[str]:
     """The nodes of a package."""
-    package = importlib.import_module(f".{folder}", __package__)
-    return sorted(item.name for item in pkgutil.iter_modules(package.__path__) if not item.name.startswith("_"))
+    names = [item.name for item in folder.iterdir()]
+    return sorted(name.removesuffix(".py") for name in names if name.endswith(".py") and not name.startswith("_"))
+
+
+def _name(item: Traversable) -> str:
+    return item.name

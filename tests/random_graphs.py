@@ -12,9 +12,9 @@ SIZE = (37, 23)
 CLASSES = [node for node in catalogue().values() if not issubclass(node, Source)]
 
 
-def random_node(rng: Random) -> Node:
-    """A node with values anywhere in their soft ranges."""
-    node = rng.choice(CLASSES)
+def random_node(rng: Random, node: type[Node] | None = None) -> Node:
+    """A node, of any class unless one is given, with values anywhere in their soft ranges."""
+    node = node or rng.choice(CLASSES)
     values = {}
     for value in node.values.values():
         if value.type == "choice":

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..version import VERSION
 from .options import AsJson, standard_input
 from .outcome import note, print_json
 
@@ -121,14 +122,12 @@ def _told(report: Report, strict: bool) -> dict[str, Any]:
 
 def _write_sarif(reports: Sequence[Report], rules: Mapping[str, Rule], file: str) -> None:
     """Paths in the log start at the repository that this folder is in, else at this folder."""
-    from importlib import metadata
-
     from ..document.disk import write_text
     from ..lint.sarif import sarif
     from ..lint.surroundings import Surroundings
 
     here = Path.cwd()
-    log = sarif(reports, rules, Surroundings().root(here) or here, metadata.version("halation"))
+    log = sarif(reports, rules, Surroundings().root(here) or here, VERSION)
     if file == "-":
         print_json(log)
     else:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
 from . import parsing
-from .options import AsJson, GraphFile, Inputs, Lazy, Node, Scale, Sets, SizeText, opened, report_problems
+from .options import AsJson, GraphFile, Inputs, Lazy, Memory, Node, Scale, Sets, SizeText, opened, report_problems
 from .outcome import print_json
+
+if TYPE_CHECKING:
+    from ..compiler import Form, Target
 
 
 def explain(
@@ -19,12 +22,20 @@ def explain(
     size: SizeText = None,
     scale: Scale = 1.0,
     frame: Annotated[int | None, typer.Option(help="The frame to plan; by default the first of the graph.")] = None,
-    form: Annotated[str, typer.Option(metavar="fragment|compute", help="Plan for this form of passes.")] = "compute",
-    precision: Annotated[str, typer.Option(metavar="half|float", help="Precision of color intermediates.")] = "float",
+    form: Annotated[str, typer.Option(
+        metavar="fragment|compute|device", help="Plan for this form of passes, or for the device that is here.",
+    )] = "compute",
+    precision: Annotated[
+        str | None, typer.Option(metavar="half|float", help="Precision of color intermediates.")
+    ] = None,
+    memory: Memory = None,
     dot: Annotated[bool, typer.Option("--dot", help="Print Graphviz.")] = False,
     as_json: AsJson = False,
 ) -> int:
-    """Print passes, fused nodes, formats, slots, bytes and the peak of memory. Needs no OpenGL."""
+    """Print passes, fused nodes, formats, slots, bytes and the peak of memory. Needs no OpenGL.
+
+    With --form device it says which form of passes the device here is given, and why.
+    """
     from dataclasses import replace
 
     from .. import compiler
@@ -32,8 +43,8 @@ def explain(
 
     if dot and as_json:
         raise UsageError("--dot and --json: choose one")
-    target = replace(compiler.NULL, form=parsing.form(form))
-    depth = parsing.precision(precision)
+    way, most = parsing.form_or_device(form), parsing.memory(memory)
+    depth = parsing.precision(precision) if precision is not None else None
     opened_graph = opened(graph, sets or ())
     report_problems(graph, opened_graph)
     lazy = Lazy()
@@ -41,9 +52,23 @@ def explain(
         parsing.targets(opened_graph, node), lazy.bind(opened_graph, inputs or ()), parsing.size(size),
         parsing.scale(scale), frame if frame is not None else lazy.frames(opened_graph, inputs or ())[0],
     )
+    target = replace(_target(way), memory=most)
     plan = compiler.compile_graph(opened_graph, request, lazy, target=target, precision=depth)
     if as_json:
         print_json(compiler.as_json(plan))
     else:
         print(compiler.dot(plan) if dot else compiler.explain(plan))
     return 0
+
+
+def _target(form: Form | Literal["device"]) -> Target:
+    """What to plan for: the device that is here, or none."""
+    from dataclasses import replace
+
+    if form != "device":
+        from ..compiler import NULL
+
+        return replace(NULL, form=form)
+    from ..renderer import open_device
+
+    return open_device().target

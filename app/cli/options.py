@@ -52,6 +52,10 @@ Precision = Annotated[
 Form = Annotated[
     str | None, typer.Option(metavar="fragment|compute", help="How passes run; by default what suits the device.")
 ]
+Memory = Annotated[
+    str | None,
+    typer.Option(metavar="SIZE", help="Bytes that a frame may take, as 512M or 2G: what is larger is made by tiles."),
+]
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON object on standard output, for machines.")]
 Root = Annotated[
     Path | None,

@@ -53,6 +53,20 @@ def value(text: str) -> Any:
     return text
 
 
+def memory(text: str | None) -> int:
+    """`512M` or `2G` as bytes; 0 where nothing is said. Raises UsageError."""
+    if text is None:
+        return 0
+    number, unit = (text[:-1], text[-1].upper()) if text[-1:].isalpha() else (text, "")
+    try:
+        found = float(number) * 1024 ** " KMGT".index(unit or " ")
+    except ValueError:
+        found = 0.0
+    if not 1.0 <= found < 2.0**63:
+        raise UsageError(f"--memory {text}: give a size as 512M or 2G")
+    return int(found)
+
+
 def setting(text: str) -> Any:
     """What a value is set to: a value, keys (`1@1,4@24`, `0,0@1:linear,1,.5@24`), or `=` and an expression."""
     from ..graph import Expression, Interpolation, Key, Keys
@@ -123,6 +137,11 @@ def scale(number: float) -> float:
 def form(text: str) -> Form:
     """How passes run."""
     return _choice(text, ("fragment", "compute"), "--form")
+
+
+def form_or_device(text: str) -> Form | Literal["device"]:
+    """How passes run, or where to find out."""
+    return _choice(text, ("fragment", "compute", "device"), "--form")
 
 
 def precision(text: str) -> Precision:

@@ -3,46 +3,61 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from importlib import import_module
+from typing import Any
 
 import typer
+from typer.core import TyperGroup
 from typer.main import get_command
 
-from .bench import bench
-from .check import check
-from .demo import demo
-from .diff import diff
-from .edit import edit
-from .explain import explain
-from .export_isf import export_isf
-from .fmt import fmt
-from .gallery import gallery
-from .git_driver import git_driver
-from .git_setup import git_setup
-from .info import info
-from .merge import merge
-from .nodes import nodes
+from ..version import VERSION
 from .options import rooted
 from .outcome import EXIT_CODES, failed, guarded, settle
-from .render import render
-from .reproduce import reproduce
-from .schema import schema
-from .sweep import sweep
-from .test import test
-from .watch import watch
+
+_SHOWN = (
+    "edit", "render", "check", "explain", "info", "nodes", "fmt", "diff", "merge", "git-setup", "demo", "gallery",
+    "test", "schema", "reproduce", "watch", "sweep", "bench", "export-isf",
+)
+_HIDDEN = ("git-driver",)
+_FENCED = ("render", "check", "explain", "export-isf", "info", "diff", "test", "reproduce", "watch", "sweep", "bench")
+"""Commands that take graphs and pictures from people who may not be trusted."""
+
+
+class Commands(Mapping[str, Any]):
+    """What typer makes of the commands, by name: each is the function of its name in the module of its name.
+
+    A module is loaded when its command is asked for.
+    """
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in (*_SHOWN, *_HIDDEN):
+            raise KeyError(name)
+        return _command(name)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter((*_SHOWN, *_HIDDEN))
+
+    def __len__(self) -> int:
+        return len(_SHOWN) + len(_HIDDEN)
+
+
+class _Group(TyperGroup):
+    """A group that knows its commands by name until one is wanted."""
+
+    def __init__(self, **given: Any) -> None:
+        super().__init__(**{**given, "commands": Commands()})
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Their names, in the order of the help."""
+        return list(self.commands)
+
 
 app = typer.Typer(
-    name="halation", add_completion=False, rich_markup_mode=None, epilog=EXIT_CODES,
+    name="halation", cls=_Group, add_completion=False, rich_markup_mode=None, epilog=EXIT_CODES,
     help="A node-graph compositor for screen-space effects.",
 )
-fenced = (render, check, explain, export_isf, info, diff, test, reproduce, watch, sweep, bench)
-"""Commands that take graphs and pictures from people who may not be trusted."""
-for command in (
-    edit, render, check, explain, info, nodes, fmt, diff, merge, git_setup, demo, gallery, test, schema,
-    reproduce, watch, sweep, bench, export_isf,
-):
-    app.command()(guarded(rooted(command) if command in fenced else command))
-app.command(hidden=True)(guarded(git_driver))
 
 
 @app.callback(invoke_without_command=True)
@@ -52,9 +67,7 @@ def whole(
 ) -> None:
     """What there is to say without a command."""
     if version:
-        from importlib import metadata
-
-        print(f"halation {metadata.version('halation')}")
+        print(f"halation {VERSION}")
         raise typer.Exit
     if context.invoked_subcommand is None:
         print(context.get_help(), file=sys.stderr)
@@ -70,3 +83,12 @@ def run(arguments: Sequence[str]) -> int:
     except (Exception, KeyboardInterrupt) as fault:
         code = failed(fault, as_json)
     return settle(code if isinstance(code, int) else 0)
+
+
+@cache
+def _command(name: str) -> Any:
+    function = name.replace("-", "_")
+    command = getattr(import_module(f".{function}", __package__), function)
+    alone = typer.Typer(add_completion=False, rich_markup_mode=None)
+    alone.command(hidden=name in _HIDDEN)(guarded(rooted(command) if name in _FENCED else command))
+    return get_command(alone)

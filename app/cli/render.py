@@ -18,6 +18,7 @@ from .options import (
     GraphFile,
     Inputs,
     Lazy,
+    Memory,
     Node,
     OneFrame,
     Precision,
@@ -58,6 +59,7 @@ def render(
         int, typer.Option("-j", "--jobs", min=1, help="Processes that share the frames, where these are independent.")
     ] = 1,
     precision: Precision = None,
+    memory: Memory = None,
     view: Annotated[
         str, typer.Option(help="OpenColorIO view for PNG, JPEG, TIFF, WebP and DPX; 'none' for plain sRGB.")
     ] = "",
@@ -96,13 +98,21 @@ def render(
         raise UsageError("--deterministic renders with fragment passes: leave out --form compute")
     told = parsing.progress(progress)
     destinations = parsing.paths(output)
-    canvas, proxy = parsing.size(size), parsing.scale(scale)
+    canvas, proxy, most = parsing.size(size), parsing.scale(scale), parsing.memory(memory)
     chosen = parsing.frames(frame, frames)
     opened_graph = opened(graph, sets or ())
     report_problems(graph, opened_graph)
     if (code := watched(context, opened_graph, timeout, piped(graph, opened_graph))) is not None:
         return code
     bindings, targets = bound(opened_graph, inputs or ()), parsing.targets(opened_graph, node)
+    from ..renderer.warming import warm
+
+    if not deterministic and jobs == 1:  # a pinned driver is loaded with other settings
+        warm()
+    from ..media.ahead import Ahead
+
+    alone = jobs == 1 and not resume and not targets and not most
+    ahead = Ahead(opened_graph, bindings) if alone else None  # it reads while all else is loaded
     from ..renderer import DEFAULT_BUDGET, Renderer, Wanted, open_device, open_pinned
     from ..renderer.job import Writing, run_job
 
@@ -119,14 +129,17 @@ def render(
         # What came from standard input goes on with its values set.
         rest = sets if str(graph) != "-" else ()
         words = _words(graph, output, inputs, rest, node, size, scale, resume, precision, compression, form)
+        words += _flags({"--memory": memory})
         words += _flags({"--view": view, "--display": display, "--look": look, "--colorspace": colorspace})
         words += ["--deterministic"] if deterministic else []
         with told_to(told, len(chosen)) as hears:
             reports = share(words, chosen, jobs, hears, piped(graph, opened_graph))
         return _told(_added(reports), time.perf_counter() - started, as_json)
     loaded = time.perf_counter()
-    device = open_pinned() if deterministic else open_device(passes)
-    renderer = Renderer(device, budget=DEFAULT_BUDGET if len(chosen) > 1 else 0)
+    device = (open_pinned() if deterministic else open_device(passes)).within(most)
+    # A job keeps what the next frame wants; where each frame is led up to, it wants more than that of the one before.
+    led = len(chosen) > 1 and opened_graph.settings.preroll is not None
+    renderer = Renderer(device, budget=DEFAULT_BUDGET if led and not most else 0, ahead=ahead)
     note(renderer.device.description)
     ready = time.perf_counter()
     wanted = Wanted(bindings, targets, canvas, proxy, precision="float" if deterministic else depth)

@@ -53,7 +53,8 @@ def share(
     parts = [part for start in range(jobs) if (part := frames[start::jobs])]
     threads = str(max(1, (os.cpu_count() or 1) // len(parts)))
     # Processes that each used all cores would only get into each other's way.
-    environment = {"LP_NUM_THREADS": threads, **os.environ, "PYTHONIOENCODING": "utf-8"}
+    fewer = {"LP_NUM_THREADS": threads, "OPENIMAGEIO_THREADS": threads}
+    environment = {**fewer, **os.environ, "PYTHONIOENCODING": "utf-8"}
     command = [sys.executable, "-P", "-m", "halation.app.cli", "render", *words, "--json", "--progress=json"]
     crew = [
         subprocess.Popen(

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any
 
 from ...nodes import ColorSettings, Kind, Matte, Missing, Node, Render, Size, Socket, Source, catalogue
-from ..compiler import Frame, Picture, Plan, Probed, Request, compile_graph
+from ..compiler import NULL, Frame, Picture, Plan, Probed, Request, Target, compile_graph
 from ..graph import Graph, Input, Output, Port, Settings
 from .options import Lazy
 
@@ -58,7 +58,7 @@ def drawn(node: type[Node]) -> tuple[str, ...]:
     return tuple(name for name, output in node.outputs.items() if output.socket.kind is not Kind.CAMERA)
 
 
-def planned(node: type[Node], size: Size) -> Plan:
+def planned(node: type[Node], size: Size, target: Target = NULL) -> Plan:
     """What a node compiles to at its defaults, all that it draws wanted, over pictures of that size. Needs no OpenGL.
 
     Raises GraphError for a node that draws nothing.
@@ -75,7 +75,7 @@ def planned(node: type[Node], size: Size) -> Plan:
         if not socket.single:
             pictures[name] = Picture(name, "", socket.kind, socket.channels, in_memory=True)
     targets = {name: Port(NODE, name) for name in drawn(node)}
-    return compile_graph(graph, Request(targets, pictures), _SameSize(size))
+    return compile_graph(graph, Request(targets, pictures), _SameSize(size), target=target)
 
 
 def over(node: type[Node], sample: Path) -> Graph:

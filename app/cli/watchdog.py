@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -41,6 +40,8 @@ def watched(context: typer.Context, graph: Graph, timeout: float, text: str = ""
 
     if not timeout or os.environ.get(HEARTBEAT) or not has_loops(graph):
         return None
+    import tempfile
+
     with tempfile.TemporaryDirectory(prefix="halation-") as folder:
         beat = Path(folder, "heartbeat")
         beat.touch()

@@ -7,7 +7,10 @@ from .ir import BLOCK, Accessor, Convolve, Reduce, Ref
 from .names import Names
 
 OUTPUTS = 8
-"""Pixels that one invocation of a sliding convolution makes: each pixel read is used for all of them."""
+"""Pixels that one invocation of a convolution makes: each pixel read is used for all of them."""
+
+SHORT = (9, 17, 25, 33)
+"""Classes of taps of convolutions that are written out: longer ones would take the driver long to compile."""
 
 MAX_WEIGHTS = 4096
 """Floats in the uniform block: GL promises 16 KB."""
@@ -44,22 +47,23 @@ def accessor(names: Names, item: Accessor, edge: Edge) -> list[str]:
     ]
 
 
-def convolved_accessor(names: Names, root: Convolve) -> list[str]:
-    """The accessor and the uniforms that both forms of a convolution share."""
-    names.uniform("ivec2", (1, 0) if root.axis == 0 else (0, 1), "along")
-    names.uniform("int", root.origin, "origin")
-    names.uniform("int", len(root.weights), "taps")
-    glsl = glsl_type(names.shape(root.image).channels)
+def convolution_accessor(names: Names, op: Convolve) -> list[str]:
+    """The accessor, the weights and the uniforms that all forms of a convolution share."""
+    names.uniform("ivec2", (1, 0) if op.axis == 0 else (0, 1), "along")
+    names.uniform("int", op.origin, "origin")
+    if names.form == "fragment" or not is_short(op):
+        names.uniform("int", len(op.weights), "taps")
+    glsl = glsl_type(names.shape(op.image).channels)
     block = f"layout(std140) uniform Weights {{ vec4 weights[{MAX_WEIGHTS // 4}]; }};"
-    return [block, *accessor(names, Accessor("image", glsl, root.image), root.edge)]
+    return [block, *accessor(names, Accessor("image", glsl, op.image), op.edge)]
 
 
-def convolution(names: Names, root: Convolve) -> list[str]:
-    """One pixel per invocation, any stride."""
-    glsl = glsl_type(names.shape(root.image).channels)
-    stride = names.uniform("int", root.stride, "stride")
+def convolution(names: Names, op: Convolve) -> list[str]:
+    """`convolution`, one pixel of it, for fragment passes."""
+    glsl = glsl_type(names.shape(op.image).channels)
+    stride = names.uniform("int", op.stride, "stride")
     return [
-        f"{glsl} convolved() {{",
+        f"{glsl} convolution() {{",
         f"    ivec2 p = pixel + along * (pixel * ({stride} - 1) + origin);",
         f"    {glsl} sum = {glsl}(0.0);",
         "    for (int j = 0; j < taps; ++j, p += along) sum += weights[j >> 2][j & 3] * image_at(p);",
@@ -68,40 +72,63 @@ def convolution(names: Names, root: Convolve) -> list[str]:
     ]
 
 
-def sliding(names: Names, root: Convolve, stores: list[str]) -> list[str]:
-    """A main that makes OUTPUTS pixels in a row: every pixel is read once and slides past all their weights.
+def is_short(op: Convolve) -> bool:
+    """Whether all taps are written out."""
+    return len(op.weights) <= SHORT[-1]
 
-    Tap j adds weight j - k to pixel k; the last OUTPUTS weights stay in registers, used in turn. Terms are added in
-    the order of a plain loop, so both forms give the same bits.
+
+def strip(names: Names, op: Convolve, count: int) -> list[str]:
+    """Statements that make `s0`, `s1`..., the convolution at `count` pixels from `first` on.
+
+    Every pixel is read once. Terms are added in the order of a plain loop, so all forms give the same bits.
     """
-    glsl = glsl_type(names.shape(root.image).channels)
+    glsl = glsl_type(names.shape(op.image).channels)
     lines = [
-        "void main() {",
-        "    ivec2 at = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, first_row);",
-        f"    ivec2 first = at.x * along.yx + at.y * {OUTPUTS} * along;",
-        "    if (any(greaterThanEqual(first, grid))) return;",
-        "    ivec2 p = first + along * origin;",
-        f"    {glsl} t, {', '.join(f's{k} = {glsl}(0.0)' for k in range(OUTPUTS))};",
-        f"    float {', '.join(f'w{k} = 0.0' for k in range(OUTPUTS))};",
-        "    vec4 four;",
-        f"    for (int j = 0; j < taps + {OUTPUTS - 1}; j += {OUTPUTS}) {{",
+        f"ivec2 p = first + along * (first * {op.stride - 1} + origin);",
+        f"{glsl} t, {', '.join(f's{k} = {glsl}(0.0)' for k in range(count))};",
     ]
-    for tap in range(OUTPUTS):
+    return lines + (_written_out(op, count) if is_short(op) else _sliding(count))
+
+
+def _written_out(op: Convolve, count: int) -> list[str]:
+    """Few taps: no loop, and every weight is where it is needed."""
+    taps, lines = _class(op), list[str]()
+    for tap in range((count - 1) * op.stride + taps):
+        sums = [
+            f"s{k} += weights[{number // 4}].{'xyzw'[number % 4]} * t;"
+            for k in range(count) if 0 <= (number := tap - k * op.stride) < taps
+        ]
+        lines.append(f"t = image_at(p); p += along; {' '.join(sums)}")
+    return lines
+
+
+def _sliding(count: int) -> list[str]:
+    """Many taps. Tap j adds weight j - k to pixel k; the last weights stay in registers, used in turn."""
+    lines = [
+        f"float {', '.join(f'w{k} = 0.0' for k in range(count))};", "vec4 four;",
+        f"for (int j = 0; j < taps + {count - 1}; j += {count}) {{",
+    ]
+    for tap in range(count):
         if tap % 4 == 0:
-            lines.append(f"        four = weights[(j >> 2) + {tap // 4}];")
-        lines.append(f"        w{tap} = four.{'xyzw'[tap % 4]}; t = image_at(p); p += along;")
-        lines.append("        " + " ".join(f"s{k} += w{(tap - k) % OUTPUTS} * t;" for k in range(OUTPUTS)))
-    lines += ["    }", "    pixel = first;"]
-    lines += [f"    if (all(lessThan(pixel, grid))) {{ {text} }} pixel += along;" for text in stores]
+            lines.append(f"    four = weights[(j >> 2) + {tap // 4}];")
+        lines.append(f"    w{tap} = four.{'xyzw'[tap % 4]}; t = image_at(p); p += along;")
+        lines.append("    " + " ".join(f"s{k} += w{(tap - k) % count} * t;" for k in range(count)))
     return [*lines, "}"]
 
 
-def padded_weights(root: Convolve, slides: bool) -> tuple[float, ...]:
-    """The uniform block's contents: a sliding convolution runs past the last weight, where zeros must lie."""
-    count = len(root.weights)
-    if slides:
-        count = -(-(count + OUTPUTS - 1) // OUTPUTS) * OUTPUTS
-    return root.weights + (0.0,) * (-(-count // 4) * 4 - len(root.weights))
+def _class(op: Convolve) -> int:
+    """How many taps are written out: those of a class of lengths, so that lengths share programs."""
+    if op.stride > 1:
+        return len(op.weights)
+    return next(size for size in SHORT if size >= len(op.weights))
+
+
+def padded_weights(op: Convolve, form: str) -> tuple[float, ...]:
+    """The uniform block's contents: strips run past the last weight, where zeros must lie."""
+    count = len(op.weights)
+    if form == "compute":
+        count = _class(op) if is_short(op) else -(-(count + OUTPUTS - 1) // OUTPUTS) * OUTPUTS
+    return op.weights + (0.0,) * (-(-count // 4) * 4 - len(op.weights))
 
 
 def source(names: Names, root: Reduce, body: list[str], value: str) -> list[str]:

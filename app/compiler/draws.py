@@ -9,6 +9,8 @@ from hashlib import blake2b
 from types import MappingProxyType
 from typing import Literal
 
+from msgspec import Struct
+
 from ...nodes import (
     Affine,
     Argument,
@@ -22,6 +24,7 @@ from ...nodes import (
     Kind,
     Motion,
     Node,
+    Overlap,
     Pixels,
     Plain,
     Render,
@@ -36,6 +39,7 @@ from ...nodes import (
 from ..errors import ShaderError
 from ..glsl import Function
 from . import fourier, gaussian, transforms
+from .areas import Around
 from .bodies import MAX_TAPS
 from .ir import (
     BLOCK,
@@ -63,8 +67,7 @@ from .raster import CHANNELS, Mesh
 from .recolor import ColorProgram
 
 
-@dataclass(frozen=True)
-class Made:
+class Made(Struct, frozen=True):
     """A draw's result: the `Drawn` that a node sees."""
 
     ref: Ref
@@ -88,8 +91,7 @@ class Fed:
     linked: set[str] = field(default_factory=set[str])
 
 
-@dataclass(frozen=True)
-class Files:
+class Files(Struct, frozen=True):
     """What a node names beyond the graph: pixels, changes of color, triangles, and what a render holds."""
 
     read: Callable[[Picture], Ref]
@@ -106,12 +108,19 @@ class Recorder:
         self, fed: Fed, node: Filter, size: Size, builder: Builder, library: Library, files: Files,
         memories: Mapping[str, Memory], rate: float, start: int,
     ) -> None:
-        self.size, self.frame, self.rate, self.start = size, fed.frame, rate, start
+        self.size, self.rate, self.start = size, rate, start
+        self.timed = False
+        """Whether the node asked for the frame."""
         self._owner, self._fed, self._node = fed.path, fed, node
         self._builder, self._library, self._files = builder, library, files
         self._memories = memories
         self._shader = node.shader
         self.remembered: dict[str, Ref] = {}
+
+    @property
+    def frame(self) -> int:
+        self.timed = True
+        return self._fed.frame
 
     def size_of(self, pixels: Pixels) -> Size:
         operand = self._operand(pixels)
@@ -135,25 +144,46 @@ class Recorder:
 
     def __call__(
         self, function: str, /, *inputs: Socket, size: Size | None = None, edge: Edge = "clamp",
-        result: Socket | None = None, **arguments: Argument,
+        result: Socket | None = None, overlap: Overlap | Mapping[str, Overlap] | None = None, **arguments: Argument,
     ) -> Drawn:
-        signature = self._library.function(self._shader, function, self._owner)
-        named: dict[str, Argument] = {item.name: item for item in inputs} | arguments
+        light = self._library.light(self._shader, function, self._owner)
+        shapes = (self._shape(result, size or self.size),)
+        op = self._gather(function, {item.name: item for item in inputs} | arguments, shapes, edge, overlap, light)
+        return self._made(op)
+
+    def several(
+        self, function: str, results: tuple[Socket, ...], /, *inputs: Socket, size: Size | None = None,
+        edge: Edge = "clamp", overlap: Overlap | Mapping[str, Overlap] | None = None, **arguments: Argument,
+    ) -> tuple[Drawn, ...]:
+        shapes = tuple(self._shape(result, size or self.size) for result in results)
+        given = [glsl for glsl, _ in self._library.function(self._shader, function, self._owner).outputs]
+        wanted = [result.glsl for result in results]
+        if given != wanted:
+            fault = f"'{function}' makes ({', '.join(given)}) but is drawn for ({', '.join(wanted)})"
+            raise ShaderError(self._owner, self._library.file(self._shader), 1, fault)
+        op = self._gather(function, {item.name: item for item in inputs} | arguments, shapes, edge, overlap, False)
+        first = self._builder.add(op)
+        return tuple(Made(Ref(first.op, number), shape) for number, shape in enumerate(shapes))
+
+    def _gather(
+        self, function: str, named: Mapping[str, Argument], shapes: tuple[Shape, ...], edge: Edge,
+        overlap: Overlap | Mapping[str, Overlap] | None, light: bool,
+    ) -> Gather:
+        overlaps = overlap if isinstance(overlap, Mapping) else dict.fromkeys(named, overlap)
         accessors: list[Accessor] = []
         rest: dict[str, Argument] = {}
         for name, item in named.items():
             if isinstance(item, (Socket, Made)):
                 operand = self._operand(item)
                 channels = item.channels if isinstance(item, Socket) else item.shape.channels
-                accessors.append(Accessor(name, glsl_type(channels), operand))
+                around = self._around(operand, shapes[0].size, overlaps.get(name))
+                accessors.append(Accessor(name, glsl_type(channels), operand, around))
             else:
                 rest[name] = item
-        return self._made(
-            Gather(
-                (self._shape(result, size or self.size),), self._owner, self._shader, function, tuple(accessors),
-                self._parameters(signature, rest), edge, choices(self._node),
-                light=self._library.light(self._shader, function, self._owner),
-            )
+        parameters = self._parameters(self._library.function(self._shader, function, self._owner), rest)
+        return Gather(
+            shapes, self._owner, self._shader, function, tuple(accessors), parameters, edge, choices(self._node),
+            light=light,
         )
 
     def point(self, function: str, /, *inputs: Socket, result: Socket | None = None, **arguments: Argument) -> Drawn:
@@ -269,6 +299,13 @@ class Recorder:
         socket = result or Image()
         return Shape((1, 1) if socket.single else size, socket.channels, socket.kind is not Kind.IMAGE)
 
+    def _around(self, operand: Operand, own: Size, overlap: Overlap | None) -> Around | None:
+        """Where a function reads a picture that has this overlap."""
+        if overlap is None or isinstance(operand, Constant):
+            return None
+        radius = overlap if isinstance(overlap, tuple) else (overlap, overlap)
+        return Around.pixel(own, self._builder.shape(operand).size, radius)
+
     def _operand(self, item: Pixels) -> Ref | Constant:
         if isinstance(item, Socket):
             return self._fed.inputs[item.name]
@@ -333,7 +370,10 @@ class Recorder:
     def _enlarge(self, made: Made, axis: int, factor: int, apron: int, length: int, edge: Edge) -> Made:
         size = (length, made.size[1]) if axis == 0 else (made.size[0], length)
         shape = Shape(size, made.shape.channels, made.shape.data)
-        accessor = Accessor("image", "vec4", made.ref)
+        part, start = 1.0 / factor, apron / factor
+        matrix = (part, 0.0, start, 0.0, 1.0, 0.0) if axis == 0 else (1.0, 0.0, 0.0, 0.0, part, start)
+        around = Around(matrix, (2.0, 0.0) if axis == 0 else (0.0, 2.0))
+        accessor = Accessor("image", "vec4", made.ref, around)
         numbers = tuple(Parameter("int", Constant(value)) for value in (axis, factor, apron))
         enlarge = ("primitive/enlarge", "enlarge")
         light = self._library.light(*enlarge, self._owner)

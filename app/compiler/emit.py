@@ -7,22 +7,20 @@ Names are counted from zero in every pass, so that equal passes of different gra
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+
+from msgspec import Struct, structs
 
 from ...nodes import Camera, Uniform, glsl_type
 from ..glsl import Text, words
-from . import bodies
+from . import bodies, forms
 from .foreign import foreign
 from .fuse import Fused
-from .ir import Accessor, Call, Convolve, Foreign, Gather, Op, Program, Raster, Reduce, Ref, Shape
-from .library import Library
+from .ir import Accessor, Call, Convolve, Foreign, Gather, Program, Raster, Reduce, Ref, Shape
+from .library import Library, Lines
 from .names import Names, convert, glsl_channels
 from .plan import LINES_PER_FILE, Shader
 from .raster import CHANNELS, fragment_lines, vertex_text
 from .target import Target
-
-LOCAL_SIZE = 64
-"""Invocations of a work group, along a row."""
 
 ACCESSORS = ("raw", "at", "near", "size")
 """What there is for a picture that is read anywhere: `image_at` and so on."""
@@ -31,14 +29,13 @@ NO_SEAM = (0, 0, 0, 0)
 """What a seam between fused functions does to the bits: nothing. See primitive/settled.glsl."""
 
 
-@dataclass(frozen=True)
-class Emitted:
+class Emitted(Struct, frozen=True):
     """A program, what its uniforms and weights are set to, and how many work groups run."""
 
     shader: Shader
     uniforms: tuple[tuple[str, Uniform], ...]
     weights: tuple[float, ...]
-    groups: tuple[int, int]
+    groups: tuple[int, int, int]
 
 
 def emit(program: Program, fused: Fused, library: Library, target: Target, texels: Mapping[Ref, str]) -> Emitted:
@@ -48,45 +45,48 @@ def emit(program: Program, fused: Fused, library: Library, target: Target, texel
         return _drawn(program, root, fused, library)
     if isinstance(root, Foreign):
         rounding = _half_rounding(target, [texels[ref].endswith("16f") for ref in fused.writes])
-        return Emitted(*foreign(root, fused, rounding), (), (0, 0))
+        return Emitted(*foreign(root, fused, rounding), (), (0, 0, 0))
     by_image = target.loads_images and len(fused.reads) + len(fused.writes) <= target.max_images
     names = Names(program, {ref: number for number, ref in enumerate(fused.reads)}, target.form, by_image)
+    _look_through(names, fused)
     halves = [texels[ref].endswith("16f") for ref in fused.writes]
-    sliding = isinstance(root, Convolve) and root.stride == 1 and target.form == "compute"
+    strip, convolve = forms.strip_of(program, fused), forms.convolution_in(program, fused)
     parts = parts_of(program, fused, names, library)
-    texts = texts_of(program, fused, parts, library)
-    used = frozenset[str]().union(*(text.words for text in texts))
+    early, late, files, asked = _included_texts(program, fused, parts, library)
     names.uniform("ivec2", root.size, "grid")
-    if "proxy" in used:
+    if "proxy" in asked:
         names.uniform("float", program.scale, "proxy")
-    if "frame" in used:
+    if "frame" in asked:
         names.uniform("int", program.frame, "frame")
-    if sliding:
-        assert isinstance(root, Convolve)
-        stores = [_store(names.shape(fused.writes[0]), f"s{k}", 0, target, halves[0]) for k in range(bodies.OUTPUTS)]
-        main = bodies.sliding(names, root, stores)
-    else:
-        main = _main(names, fused, parts, target, halves)
-    files = ["generated"]
+    stored = [
+        _texel(names.shape(ref), result, half)
+        for ref, result, half in zip(fused.writes, parts.results, halves, strict=True)
+    ]
+    compute = target.form == "compute"
+    main = forms.main(names, strip, convolve, parts.body, stored) if compute else _fragment(names, parts.body, stored)
     lines = [
         *_preamble(target),
         *(f"uniform {glsl} {name};" for name, glsl, _ in names.uniforms),
         *_textures(names, fused, target, texels), *_targets(names, fused, target, texels),
         "ivec2 pixel = ivec2(0), extent = ivec2(0);", *_half_rounding(target, halves),
+        *early, *parts.functions, *late, *main,
     ]
-    early, late = around(texts, parts)
-    for text in early:
-        lines += _included(text, files, program, fused)
-    lines += parts.functions
-    for text in late:
-        lines += _included(text, files, program, fused)
-    for guest in parts.guests:
-        lines += _as_guest(guest, files, program, fused)
     return Emitted(
-        Shader("\n".join([*lines, *main]) + "\n", target.form, tuple(files), by_image),
+        Shader("\n".join(lines) + "\n", target.form, files, by_image),
         tuple((name, value) for name, _, value in names.uniforms),
-        bodies.padded_weights(root, sliding) if isinstance(root, Convolve) else (), _groups(root, sliding),
+        bodies.padded_weights(convolve, target.form) if convolve else (),
+        forms.groups(strip, program.held(fused.writes[0])),
     )
+
+
+def _look_through(names: Names, fused: Fused) -> None:
+    """Where of pictures only a part is on the device, say which."""
+    windows = names.program.windows
+    for number, ref in enumerate(fused.reads):
+        if ref in windows:
+            names.uniform("ivec2", windows[ref].start, f"t{number}_start")
+    if fused.writes[0] in windows:
+        names.window(windows[fused.writes[0]])
 
 
 def _drawn(program: Program, root: Raster, fused: Fused, library: Library) -> Emitted:
@@ -99,7 +99,7 @@ def _drawn(program: Program, root: Raster, fused: Fused, library: Library) -> Em
         ("cameras", root.cameras), ("motions", root.motions), ("near", root.near),
         ("eye", Camera(root.cameras[:12]).eye), ("grid", root.size), ("proxy", program.scale),
     )
-    return Emitted(shader, uniforms, (), (0, 0))
+    return Emitted(shader, uniforms, (), (0, 0, 0))
 
 
 def _preamble(target: Target) -> list[str]:
@@ -108,12 +108,11 @@ def _preamble(target: Target) -> list[str]:
     Compute passes may be dispatched in bands: `first_row` is the row of work groups that a band starts with.
     """
     if target.form == "compute":
-        return ["#version 430 core", f"layout(local_size_x = {LOCAL_SIZE}) in;", "uniform int first_row;"]
+        return ["#version 430 core", f"layout(local_size_x = {forms.LOCAL_SIZE}) in;", "uniform uint first_row;"]
     return ["#version 410 core", "#extension GL_ARB_shading_language_packing : enable"]
 
 
-@dataclass(frozen=True)
-class Guest:
+class Guest(Struct, frozen=True):
     """An operation that looks around within a pass of pointwise ones: what its file needs, under names of its own."""
 
     op: Gather
@@ -123,7 +122,7 @@ class Guest:
     @property
     def accessors(self) -> list[Accessor]:
         """Its pictures, by the names that they have in the pass."""
-        return [replace(item, name=self.prefix + item.name) for item in self.op.accessors]
+        return [structs.replace(item, name=self.prefix + item.name) for item in self.op.accessors]
 
     @property
     def renamed(self) -> list[str]:
@@ -132,8 +131,7 @@ class Guest:
         return [word for word in (*self.text.functions, *reads) if word in self.text.words]
 
 
-@dataclass(frozen=True)
-class Parts:
+class Parts(Struct, frozen=True):
     """Text of a pass: shader files; functions, of which `accessors` read pictures; statements of main; results."""
 
     shaders: list[str]
@@ -157,23 +155,43 @@ def parts_of(program: Program, fused: Fused, names: Names, library: Library) -> 
             line for guest in guests for item in guest.accessors
             for line in bodies.accessor(names, item, guest.op.edge)
         ]
+        convolve = forms.convolution_in(program, fused)
+        around, before = _convolved(names, convolve) if convolve else ([], [])
         body, values = _calls(program, fused, names, library)
-        shaders = [*(["primitive/edges"] if guests else []), *shaders]
-        return Parts(shaders, functions, body, [values[ref] for ref in fused.writes], guests=guests)
+        shaders = [*(["primitive/edges"] if guests or convolve else []), *shaders]
+        results = [values[ref] for ref in fused.writes]
+        return Parts(shaders, functions + around, before + body, results, guests=guests)
     if isinstance(root, Reduce):
         body, values = _calls(program, fused, names, library)
         functions = bodies.source(names, root, body, values[root.image]) + bodies.reduction(names, root)
         return Parts(shaders, functions, [], ["reduced(pixel)"])
     if isinstance(root, Convolve):
-        functions = bodies.convolved_accessor(names, root)
-        if root.stride != 1 or names.form == "fragment":
-            functions += bodies.convolution(names, root)
-        return Parts(["primitive/edges"], functions, [], ["convolved()"])
+        functions, body = _convolved(names, root)
+        return Parts(["primitive/edges"], functions, body, ["convolved"])
     assert isinstance(root, Gather)
     functions = [line for item in root.accessors for line in bodies.accessor(names, item, root.edge)]
-    result = _gathered(root, [names.argument(item, {}) for item in root.parameters], library)
+    arguments = [names.argument(item, {}) for item in root.parameters]
     accessors = frozenset(f"{item.name}_{way}" for item in root.accessors for way in ACCESSORS)
-    return Parts(["primitive/edges", root.shader], functions, [], [result], accessors)
+    body, results = list[str](), [f"r{ref.output}" for ref in fused.writes]
+    if len(root.shapes) == 1:
+        results = [_gathered(root, arguments, library)]
+    else:
+        outputs = {f"r{number}": glsl_type(shape.channels) for number, shape in enumerate(root.shapes)}
+        body = [f"{glsl} {name};" for name, glsl in outputs.items()]
+        body.append(f"{root.function}({', '.join([*arguments, *outputs])});")
+    return Parts(["primitive/edges", root.shader], functions, body, results, accessors)
+
+
+def _convolved(names: Names, op: Convolve) -> tuple[list[str], list[str]]:
+    """What a convolution needs around it, and the statement that makes its value of a pixel.
+
+    Compute passes make those of several pixels at once.
+    """
+    functions = bodies.convolution_accessor(names, op)
+    if names.form == "compute":
+        return functions, []
+    glsl = glsl_type(names.shape(op.image).channels)
+    return functions + bodies.convolution(names, op), [f"{glsl} convolved = convolution();"]
 
 
 def _guests(program: Program, fused: Fused, library: Library) -> Iterator[Guest]:
@@ -183,6 +201,28 @@ def _guests(program: Program, fused: Fused, library: Library) -> Iterator[Guest]
         if isinstance(op, Gather):
             text = library.closure((op.shader,), op.owner)[-1].only(frozenset({op.function}))
             yield Guest(op, text, f"g{number}_")
+
+
+def _included_texts(program: Program, fused: Fused, parts: Parts, library: Library) -> Lines:
+    """The shader files that a pass includes: many passes of a large graph differ in numbers alone."""
+    ops = [op for op in (program.ops[index] for index in fused.members) if isinstance(op, (Call, Gather))]
+    if any(isinstance(op, Call) and op.program for op in ops):
+        return _find_texts(program, fused, parts, library)
+    key = (
+        *parts.shaders, None, *parts.functions, None, *parts.body, None, *parts.results, parts.accessors,
+        *((op.shader, op.function, op.choices) for op in ops), *(guest.prefix for guest in parts.guests),
+    )
+    return library.kept(key, lambda: _find_texts(program, fused, parts, library))
+
+
+def _find_texts(program: Program, fused: Fused, parts: Parts, library: Library) -> Lines:
+    texts, files = texts_of(program, fused, parts, library), ["generated"]
+    early, late = (
+        [line for text in some for line in _included(text, files, program, fused)] for some in around(texts, parts)
+    )
+    late += [line for guest in parts.guests for line in _as_guest(guest, files, program, fused)]
+    asked = frozenset[str]().union(*(text.words for text in texts)) & {"proxy", "frame"}
+    return (*early,), (*late,), (*files,), asked
 
 
 def texts_of(program: Program, fused: Fused, parts: Parts, library: Library) -> tuple[Text, ...]:
@@ -217,8 +257,8 @@ def _calls(program: Program, fused: Fused, names: Names, library: Library) -> tu
     lines: list[str] = []
     values: dict[Ref, str] = {}
     members = [program.ops[index] for index in fused.members]
-    # A root that reduces wants its picture at every pixel; one that looks around reads through its accessors.
-    wanted = {ref for op in members if not isinstance(op, Gather) for ref in op.reads()}
+    # A root that reduces wants its picture at every pixel; what looks around reads through its accessors.
+    wanted = {ref for op in members if not isinstance(op, (Gather, Convolve)) for ref in op.reads()}
     for number, ref in enumerate(fused.reads):
         if ref not in wanted:
             continue
@@ -226,12 +266,14 @@ def _calls(program: Program, fused: Fused, names: Names, library: Library) -> tu
         lines.append(f"{glsl_type(names.shape(ref).channels)} a{number} = {names.load(ref, 'pixel')};")
     for number, index in enumerate(fused.members):
         op = program.ops[index]
-        if not isinstance(op, (Call, Gather)):
+        if not isinstance(op, (Call, Gather, Convolve)):
             continue
         outputs = [f"v{number}_{output}" for output in range(len(op.shapes))]
-        arguments = [names.argument(item, values) for item in op.parameters]
         types = [glsl_type(shape.channels) for shape in op.shapes]
-        if isinstance(op, Gather):
+        arguments = [] if isinstance(op, Convolve) else [names.argument(item, values) for item in op.parameters]
+        if isinstance(op, Convolve):
+            lines.append(f"{types[0]} {outputs[0]} = convolved;")
+        elif isinstance(op, Gather):
             lines.append(f"{types[0]} {outputs[0]} = {_gathered(op, arguments, library, f'g{number}_')};")
         elif len(outputs) == 1:
             lines.append(f"{types[0]} {outputs[0]} = {op.function}({', '.join(arguments)});")
@@ -304,42 +346,24 @@ def _targets(names: Names, fused: Fused, target: Target, texels: Mapping[Ref, st
 
 
 def _half_rounding(target: Target, halves: list[bool]) -> list[str]:
-    """Halves saturate instead of overflowing; the software rasterizer would also truncate them."""
+    """Halves saturate instead of overflowing; the software rasterizer would also truncate them, and lose NaN."""
     if not any(halves):
         return []
-    rounded = "vec4(unpackHalf2x16(packHalf2x16(c.xy)), unpackHalf2x16(packHalf2x16(c.zw)))"
-    exact = target.software and target.version >= 430
-    return [f"vec4 as_half(vec4 c) {{ c = clamp(c, -65504.0, 65504.0); return {rounded if exact else 'c'}; }}"]
+    clamped, rounded = "clamp(c, -65504.0, 65504.0)", "c"
+    if target.rounds_halves:
+        clamped = f"mix({clamped}, c, isnan(c))"
+        rounded = "vec4(unpackHalf2x16(packHalf2x16(c.xy)), unpackHalf2x16(packHalf2x16(c.zw)))"
+    return [f"vec4 as_half(vec4 c) {{ c = {clamped}; return {rounded}; }}"]
 
 
-def _main(names: Names, fused: Fused, parts: Parts, target: Target, halves: list[bool]) -> list[str]:
-    """A main that makes one pixel per invocation."""
-    if target.form == "compute":
-        start = [
-            "pixel = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, first_row);",
-            "if (any(greaterThanEqual(pixel, grid))) return;",
-        ]
-    else:
-        start = ["pixel = ivec2(gl_FragCoord.xy);"]
-    stores = [
-        _store(names.shape(ref), result, number, target, halves[number])
-        for number, (ref, result) in enumerate(zip(fused.writes, parts.results, strict=True))
-    ]
-    return ["void main() {", *start, "extent = grid;", *parts.body, *stores, "}"]
+def _fragment(names: Names, body: list[str], texels: list[str]) -> list[str]:
+    """The entry point of a fragment pass, which makes one pixel."""
+    start = f" + {names.start}" if names.start else ""
+    stores = (f"o{number} = {texel};" for number, texel in enumerate(texels))
+    return ["void main() {", f"pixel = ivec2(gl_FragCoord.xy){start}; extent = grid;", *body, *stores, "}"]
 
 
-def _store(shape: Shape, result: str, number: int, target: Target, half: bool) -> str:
-    """Write target `number` at `pixel`; unused channels are zero."""
+def _texel(shape: Shape, result: str, half: bool) -> str:
+    """What is stored of a result; unused channels are zero."""
     texel = result if shape.channels == 4 else f"vec4({result}, {', '.join(['0.0'] * (4 - shape.channels))})"
-    texel = f"as_half({texel})" if half else texel
-    return f"imageStore(o{number}, pixel, {texel});" if target.form == "compute" else f"o{number} = {texel};"
-
-
-def _groups(root: Op, sliding: bool) -> tuple[int, int]:
-    """Work groups of a compute pass."""
-    width, height = root.size
-    if sliding:
-        assert isinstance(root, Convolve)
-        along, across = (width, height) if root.axis == 0 else (height, width)
-        return (-(-across // LOCAL_SIZE), -(-along // bodies.OUTPUTS))
-    return (-(-width // LOCAL_SIZE), height)
+    return f"as_half({texel})" if half else texel

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import chain
 from typing import Any
 
@@ -31,6 +31,8 @@ class Flat:
 
     def source(self, port: Port) -> Port | None:
         """What is linked to an input, followed through the ends of groups to a node or a graph input."""
+        if port not in self.links:
+            return None
         found, seen = port, set[Port]()
         while found in self.links:
             if found in self.faults:
@@ -40,7 +42,7 @@ class Flat:
                 raise GraphError(f"group '{group}' feeds itself: cut one link of the loop", node=group)
             seen.add(found)
             found = self.links[found]
-        return found if seen else None
+        return found
 
     def behind(self, end: Port) -> Port:
         """`source` without any check, for what has been followed before; the end itself if nothing feeds it."""
@@ -74,8 +76,7 @@ def expand(graph: Graph) -> Flat:
             group = prefix.rstrip("/")
             fault = f"group '{group}': groups nest deeper than {MAX_DEPTH}; flatten some of them"
             raise GraphError(fault, node=group)
-        for name, value in values.items():
-            body = body.set_control(name, value)
+        body = _with_controls(body, values)
         flat.folders[prefix] = body.folder
         for name, socket in body.inputs.items():
             flat.inputs[Port(prefix + INPUTS, name)] = socket
@@ -101,6 +102,41 @@ def expand(graph: Graph) -> Flat:
     return flat
 
 
+def changed_nodes(before: Graph, after: Graph, prefix: str = "") -> dict[str, Node] | None:
+    """The nodes that have other values, by path, if two graphs differ in nothing else that matters; else None."""
+    parts = ("links", "inputs", "outputs", "controls", "muted", "settings")
+    same = all(getattr(before, part) is getattr(after, part) for part in parts) and before.folder == after.folder
+    moves = before.animation is not after.animation and (before.animation or after.animation)
+    if not same or moves or [*before.nodes] != [*after.nodes]:
+        return None
+    found: dict[str, Node] = {}
+    for id, item in after.nodes.items():
+        old = before.nodes[id]
+        if item is old:
+            continue
+        if isinstance(item, Node) and type(item) is type(old):
+            found[prefix + id] = item
+        elif isinstance(item, Group) and isinstance(old, Group) and id not in after.muted:
+            try:
+                bodies = [_with_controls(group.graph, group.values) for group in (old, item)]
+                inner = changed_nodes(bodies[0], bodies[1], f"{prefix}{id}/")
+            except GraphError:
+                return None
+            if inner is None:
+                return None
+            found |= inner
+        else:
+            return None
+    return found
+
+
+def _with_controls(body: Graph, values: Mapping[str, Any]) -> Graph:
+    """The body of a group, its controls set."""
+    for name, value in values.items():
+        body = body.set_control(name, value)
+    return body
+
+
 def _inward(body: Graph, prefix: str, target: Port) -> Port:
     """A link into a group ends at the group's own input, or at what its control turns."""
     item = body.nodes.get(target.node)
@@ -112,14 +148,14 @@ def _inward(body: Graph, prefix: str, target: Port) -> Port:
         if control is None:
             break
         target, item = control.target, item.graph.nodes.get(control.target.node)
-    return replace(target, node=prefix + target.node)
+    return Port(prefix + target.node, target.socket)
 
 
 def _outward(body: Graph, prefix: str, source: Port) -> Port:
     """A link out of a group starts at the group's own output."""
     if isinstance(body.nodes.get(source.node), Group):
         return Port(f"{prefix}{source.node}/{OUTPUTS}", source.socket)
-    return replace(source, node=prefix + source.node)
+    return Port(prefix + source.node, source.socket)
 
 
 def _mute(flat: Flat, prefix: str, body: Graph) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from .plan import Pass, Plan, Surface
 
 
@@ -17,7 +19,8 @@ def size_text(count: int) -> str:
 
 def explain(plan: Plan) -> str:
     """Uploads, passes with what was fused into each, formats, slots, bytes, and the peak of texture memory."""
-    lines = [f"target    {plan.target.renderer}, GL {plan.target.version / 100:.1f}, {plan.target.form} passes"]
+    target = plan.target
+    lines = [f"target    {target.renderer}, GL {target.version / 100:.1f}, {target.form} passes ({target.why})"]
     for upload in plan.uploads:
         picture, surface = upload.picture, plan.surfaces[upload.surface]
         layer = f":{picture.layer}" if picture.layer else ""
@@ -34,7 +37,23 @@ def explain(plan: Plan) -> str:
         f"total     {len(plan.passes)} passes, {shaders} programs, {len(plan.surfaces)} surfaces in "
         f"{len(plan.slots)} textures, peak {size_text(plan.peak_bytes)}"
     )
-    return "\n".join(lines)
+    return "\n".join([*lines, *_tiles(plan)])
+
+
+def _tiles(plan: Plan) -> Iterator[str]:
+    """How a plan that does not fit is run: what is made whole first, and then the outputs."""
+    if plan.tiling is None:
+        return
+    yield f"tiles     {plan.tiling.why}"
+    for stage in plan.tiling.stages:
+        first = next(iter(stage.outputs.values()))
+        whole, (width, height) = plan.tiling.program.shape(first).size, stage.tiles[0].size
+        owner = plan.tiling.program.ops[first.op].owner
+        yield (
+            f"stage     {whole[0]}x{whole[1]} of {owner} in {len(stage.tiles)} tiles of {width}x{height}, "
+            f"{len(stage.passes)} passes each"
+        )
+    yield f"held      at most {size_text(plan.tiling.nbytes)} of textures and pictures at once"
 
 
 def frames_text(plan: Plan) -> str:
@@ -51,6 +70,7 @@ def as_json(plan: Plan) -> dict[str, object]:
     return {
         "target": plan.target.renderer,
         "form": plan.target.form,
+        "why": plan.target.why,
         "frames": {"independent": not plan.memories, "remembering": sorted(plan.remembering)},
         "uploads": [
             {"surface": item.surface, "node": item.node, "path": item.picture.path, "layer": item.picture.layer}
@@ -72,6 +92,13 @@ def as_json(plan: Plan) -> dict[str, object]:
         ],
         "outputs": dict(plan.outputs),
         "peak_bytes": plan.peak_bytes,
+        "tiles": None if plan.tiling is None else {
+            "why": plan.tiling.why, "peak_bytes": plan.tiling.nbytes,
+            "stages": [
+                {"outputs": list(stage.outputs), "tiles": len(stage.tiles), "size": list(stage.tiles[0].size)}
+                for stage in plan.tiling.stages
+            ],
+        },
     }
 
 

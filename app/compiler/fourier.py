@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cache
+
+from msgspec import Struct
 
 from .ir import Accessor, Builder, Choice, Constant, Gather, Parameter, Ref, Shape
 
@@ -20,8 +21,7 @@ _MOST = 20
 _SHADER = "primitive/fourier"
 
 
-@dataclass(frozen=True)
-class Stage:
+class Stage(Struct, frozen=True):
     """One pass: `radix` transforms of length `span` become one; every pixel of it is made of `terms` pixels.
 
     Of the first stage, `terms` may be less than `radix`: what is not read is black.

@@ -8,7 +8,8 @@ whose own variance of a third of a small pixel squared is taken off first (Unser
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from ...nodes import Edge
 
@@ -25,8 +26,7 @@ _REST = 1.8
 """Sigma that must be left for the small size, in its pixels: less of it shows the grid."""
 
 
-@dataclass(frozen=True)
-class Axis:
+class Axis(Struct, frozen=True):
     """How to blur along one axis: decimate by each step, convolve with weights, enlarge by `factor`."""
 
     steps: tuple[int, ...]

@@ -7,16 +7,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
+
+from msgspec import Struct
+from msgspec.structs import force_setattr
 
 from ...nodes import Camera, ColorSettings, Edge, Kind, ShaderText, Size
 from ..graph import Port
 from ..written import unprefixed
+from .areas import Around, Region
 from .raster import Mesh
 from .recolor import ColorProgram, Table
 
 
-@dataclass(frozen=True)
-class Shape:
+class Shape(Struct, frozen=True):
     """What a picture in the making looks like. `data` (depth, ids, measurements) always keeps 32 bits."""
 
     size: Size
@@ -24,8 +28,7 @@ class Shape:
     data: bool
 
 
-@dataclass(frozen=True)
-class Memory:
+class Memory(Struct, frozen=True):
     """What a node remembered of the frame before, and whether in half floats."""
 
     key: str
@@ -33,16 +36,14 @@ class Memory:
     half: bool
 
 
-@dataclass(frozen=True)
-class Ref:
+class Ref(Struct, frozen=True):
     """One output of one operation."""
 
     op: int
     output: int = 0
 
 
-@dataclass(frozen=True)
-class Constant:
+class Constant(Struct, frozen=True):
     """A number or vector that becomes a uniform: it never changes the shader's text."""
 
     value: float | int | bool | tuple[float, ...]
@@ -50,15 +51,14 @@ class Constant:
     def __post_init__(self) -> None:
         # Operations that are equal must compute the same: -0.0 == 0.0, but not to a shader. Adding 0 leaves one zero.
         plain = self.value
-        object.__setattr__(self, "value", tuple(part + 0 for part in plain) if isinstance(plain, tuple) else plain + 0)
+        force_setattr(self, "value", tuple(part + 0 for part in plain) if isinstance(plain, tuple) else plain + 0)
 
     @property
     def channels(self) -> int:
         return len(self.value) if isinstance(self.value, tuple) else 1
 
 
-@dataclass(frozen=True)
-class Choice:
+class Choice(Struct, frozen=True):
     """An index that is part of the shader's text: another choice is another program."""
 
     index: int
@@ -67,8 +67,7 @@ class Choice:
 Operand = Ref | Constant
 
 
-@dataclass(frozen=True)
-class Parameter:
+class Parameter(Struct, frozen=True):
     """One argument of a GLSL function. A wired value is clamped to its hard range, then brought to working units."""
 
     glsl: str
@@ -78,13 +77,13 @@ class Parameter:
     high: float = float("inf")
 
 
-@dataclass(frozen=True)
-class Accessor:
-    """A picture that a function reads anywhere, through `<name>_at` and `<name>_near`."""
+class Accessor(Struct, frozen=True):
+    """A picture that a function reads anywhere, or only `around` a place, through `<name>_at` and `<name>_near`."""
 
     name: str
     glsl: str
     operand: Ref | Constant
+    around: Around | None = None
 
 
 @dataclass(frozen=True)
@@ -149,6 +148,15 @@ class History(Op):
 
     key: str
     half: bool
+
+
+@dataclass(frozen=True)
+class Held(Op):
+    """What an operation made before: by output, the pixels (None where nobody needs them) and their key."""
+
+    pictures: tuple[Picture | None, ...]
+    halves: tuple[bool, ...]
+    keys: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -258,19 +266,30 @@ BLOCK = 16
 
 
 class Builder:
-    """Collects operations; adding an equal one again returns the first."""
+    """Collects operations; adding an equal one again returns the first.
+
+    `added` and `looked` are which ones were added, and looked into, since they were last emptied.
+    """
 
     def __init__(self) -> None:
         self.ops: list[Op] = []
-        self._known: dict[Op, int] = {}
+        self.known: dict[Op, int] = {}
+        self.added: list[int] = []
+        self.looked: list[int] = []
 
     def add(self, op: Op) -> Ref:
         """The first output of `op`."""
-        known = self._known.get(op)
+        known = self.known.get(op)
         if known is None:
-            known = self._known[op] = len(self.ops)
+            known = self.known[op] = len(self.ops)
             self.ops.append(op)
+        self.added.append(known)
         return Ref(known)
+
+    def op(self, ref: Ref) -> Op:
+        """The operation behind an output, for who has to know more than its shape."""
+        self.looked.append(ref.op)
+        return self.ops[ref.op]
 
     def shape(self, ref: Ref) -> Shape:
         """What an output of an operation looks like."""
@@ -291,3 +310,13 @@ class Program:
     """What inputs of nodes that take a camera were given."""
     scale: float
     frame: int
+    windows: Mapping[Ref, Region] = field(default_factory=lambda: MappingProxyType({}))
+    """The parts of pictures that are made or read, of those that are not whole on the device."""
+
+    def held(self, ref: Ref) -> Size:
+        """How many pixels of it are on the device."""
+        return self.windows[ref].size if ref in self.windows else self.shape(ref).size
+
+    def shape(self, ref: Ref) -> Shape:
+        """What an output of an operation looks like."""
+        return self.ops[ref.op].shapes[ref.output]

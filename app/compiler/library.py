@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, cached_property
 from importlib import resources
 from importlib.resources.abc import Traversable
 
@@ -13,6 +13,14 @@ from ..errors import ShaderError
 from ..glsl import Function, Text, parse
 
 _ACCESSOR = re.compile(r"\w+_(?:at|near|raw|size)")
+
+_DEAR = frozenset({"for", "while", "do", "pow", "exp", "log", "log2", "sin", "cos", "tan", "asin", "acos", "atan"})
+
+Lines = tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...], frozenset[str]]
+"""Lines of the files that a pass includes before and after its own functions; the files; the words that matter in them."""
+
+KEPT = 1024
+"""Passes of which the files that they include are known."""
 
 LARGER = 8
 """Libraries kept that hold code of graphs as well: more than are open at once."""
@@ -27,6 +35,8 @@ class Library:
         default_factory=dict[tuple[str, ...], tuple[Text, ...]], compare=False, repr=False
     )
     _light: dict[tuple[str, str], bool] = field(default_factory=dict[tuple[str, str], bool], compare=False, repr=False)
+    _cheap: dict[tuple[str, str], bool] = field(default_factory=dict[tuple[str, str], bool], compare=False, repr=False)
+    _lines: dict[Hashable, Lines] = field(default_factory=dict[Hashable, Lines], compare=False, repr=False)
     _larger: dict[frozenset[str], Library] = field(
         default_factory=dict[frozenset[str], "Library"], compare=False, repr=False
     )
@@ -66,6 +76,14 @@ class Library:
         """True if the file or anything it includes says one of `words`."""
         return any(words & text.words for text in self.closure((shader,), asker))
 
+    def kept(self, key: Hashable, find: Callable[[], Lines]) -> Lines:
+        """The lines of files for a pass, which `find` finds the first time. `key` is all that they depend on."""
+        if key not in self._lines:
+            if len(self._lines) >= KEPT:
+                self._lines.pop(next(iter(self._lines)))
+            self._lines[key] = find()
+        return self._lines[key]
+
     def light(self, shader: str, function: str, asker: str) -> bool:
         """True for a function that reads pictures itself, without loops, of a file that holds nothing but functions.
 
@@ -74,6 +92,15 @@ class Library:
         if (shader, function) not in self._light:
             self._light[shader, function] = self._is_light(shader, function, asker)
         return self._light[shader, function]
+
+    def cheap(self, shader: str, function: str, asker: str) -> bool:
+        """True for a function that costs less than a picture that is stored and read: it has no loops and no powers."""
+        if (shader, function) not in self._cheap:
+            found = frozenset({function})
+            for text in reversed(self.closure((shader,), asker)):
+                found |= text.only(found).words if found & text.functions.keys() else frozenset[str]()
+            self._cheap[shader, function] = found.isdisjoint(_DEAR)
+        return self._cheap[shader, function]
 
     def _is_light(self, shader: str, function: str, asker: str) -> bool:
         if self._text(shader, asker).outside:
@@ -136,8 +163,12 @@ class Texts(Mapping[str, Text]):
     """Shader files of a folder by name; each is read when it is asked for."""
 
     def __init__(self, folder: Traversable) -> None:
-        self._files = dict(_walk(folder, ""))
+        self._folder = folder
         self._read: dict[str, Text] = {}
+
+    @cached_property
+    def _files(self) -> dict[str, Traversable]:
+        return dict(_walk(self._folder, ""))
 
     def __getitem__(self, name: str) -> Text:
         if name not in self._read:
@@ -156,7 +187,7 @@ class Texts(Mapping[str, Text]):
 
 def _walk(folder: Traversable, prefix: str) -> Iterator[tuple[str, Traversable]]:
     for item in folder.iterdir():
-        if item.is_dir():
+        if "." not in item.name:
             yield from _walk(item, f"{prefix}{item.name}/")
         elif item.name.endswith(".glsl"):
             yield prefix + item.name.removesuffix(".glsl"), item

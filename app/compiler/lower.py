@@ -6,24 +6,21 @@ pictures of the wrong size get a fit, and values arrive in working units.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import chain
 from types import MappingProxyType
 
 from ...nodes import (
     Camera,
-    ColorChange,
     Filter,
     Image,
     Kind,
-    LookupFile,
     Missing,
     Node,
     Pointwise,
     Reader,
-    Render,
-    Scene,
-    SceneFile,
     Size,
     Socket,
     Temporal,
@@ -33,63 +30,87 @@ from ...nodes import (
     working_factor,
 )
 from ..errors import GraphError, HalationError, ShaderError
-from ..graph import INPUTS, OUTPUTS, Graph, Port, color_settings, did_you_mean
+from ..graph import INPUTS, OUTPUTS, Graph, Port, did_you_mean
 from . import constants
-from .draws import Fed, Files, Made, Recorder, choices
+from .draws import Fed, Made, Recorder, choices
 from .expand import nothing, stand_in
-from .ir import Builder, Call, Choice, Constant, Memory, Operand, Parameter, Picture, Program, Ref, Shape
+from .ir import Builder, Call, Choice, Constant, Memory, Operand, Parameter, Program, Ref, Shape
 from .library import Library
 from .moments import Moments
 from .outside import Outside
 from .pictures import Pictures
-from .raster import Mesh
-from .recolor import ColorProgram
 from .request import Request
+from .steps import Lowered, Place, Shown, Step, Watched
 
 
-def lower(graph: Graph, request: Request, library: Library, outside: Outside) -> Program:
+def lower(graph: Graph, request: Request, library: Library, outside: Outside) -> Lowered:
     """Lower what `request` wants of `graph`. Raises GraphError where the graph is not fit to render."""
-    return _Lowering(graph, request, library, outside).run()
+    return Lowering(graph, request, library, outside, Moments(graph), Builder()).run()
 
 
-class _Lowering:
-    """The work in progress: `results` says what every port visited so far stands for at a frame."""
+class Lowering:
+    """The work in progress: `results` says what every port visited so far stands for, so many frames from now."""
 
-    def __init__(self, graph: Graph, request: Request, library: Library, outside: Outside) -> None:
-        self.graph, self.request, self.library, self.outside = graph, request, library, outside
+    def __init__(
+        self, graph: Graph, request: Request, library: Library, outside: Outside, moments: Moments, builder: Builder
+    ) -> None:
+        self.graph, self.request, self.library, self.outside = graph, request, library, Watched(outside)
         self.now = request.frame
-        self.moments = Moments(graph)
+        self.moments, self.builder = moments, builder
         self.flat = self.moments.flat(self.now)
-        self.builder = Builder()
-        self.pictures = Pictures(graph, self.flat, request, outside, self.builder)
-        self.results: dict[tuple[Port, int], Operand] = {}
+        self.pictures = Pictures(graph, self.flat, request, self.outside, self.builder)
+        self.results: dict[Shown, Operand] = {}
         self.memories: dict[Port, Ref] = {}
         self.cameras: dict[Port, Camera] = {}
+        self.outputs: dict[str, Ref] = {}
 
-    def run(self) -> Program:
-        targets = dict(self.request.targets) or {name: Port(OUTPUTS, name) for name in self.graph.outputs}
-        if not targets:
-            raise GraphError("the graph has no outputs: link something to an output, or name a node to render")
-        sources = {name: self._target(name, port) for name, port in targets.items()}
-        for path, frame in self.moments.order(sources.values(), self.now):
-            try:
-                self._node(path, frame)
-            except HalationError as error:
-                error.node = error.node or path
-                raise
-        outputs = {name: self._finished(port, name, self._shown(targets[name], port)) for name, port in sources.items()}
-        return Program(
-            tuple(self.builder.ops), MappingProxyType(outputs), MappingProxyType(self.memories),
+    def run(self) -> Lowered:
+        sources = self.sources()
+        order = [(path, frame - self.now) for path, frame in self.moments.order(sources.values(), self.now)]
+        steps: dict[Place, Step] = {place: self.step(place) for place in (*order, None)}
+        program = Program(
+            tuple(self.builder.ops), MappingProxyType(self.outputs), MappingProxyType(self.memories),
             MappingProxyType(self._materialized()), MappingProxyType(self.cameras), self.request.scale,
             self.request.frame,
         )
+        counts = Counter(chain.from_iterable(step.added for step in steps.values()))
+        return Lowered(
+            program, self.library, self.moments, self.now, self.builder, steps, self.results, counts,
+            self.pictures.canvas if self.pictures.measured else None,
+        )
+
+    def step(self, place: Place) -> Step:
+        """Lower a node at a frame, or at last the outputs."""
+        self.builder.added, self.builder.looked, self.outside.asked = [], [], False
+        self.at = Step(len(self.builder.ops), self.builder.added, self.builder.looked)
+        if place is None:
+            self._finish()
+        else:
+            path, away = place
+            try:
+                self._node(path, self.now + away)
+            except HalationError as error:
+                error.node = error.node or path
+                raise
+        self.at.asked |= self.outside.asked
+        self.results |= self.at.shown
+        self.memories |= self.at.memories
+        self.cameras |= self.at.cameras
+        return self.at
+
+    def sources(self) -> dict[str, Port]:
+        """What is behind everything wanted, by name."""
+        if not self._targets():
+            raise GraphError("the graph has no outputs: link something to an output, or name a node to render")
+        return {name: self._target(name, port) for name, port in self._targets().items()}
+
+    def _targets(self) -> dict[str, Port]:
+        return dict(self.request.targets) or {name: Port(OUTPUTS, name) for name in self.graph.outputs}
 
     def _materialized(self) -> dict[Port, Ref]:
         """What is not a constant, also by the outputs of groups and the inputs of their bodies."""
-        found = {
-            port: operand for (port, frame), operand in self.results.items()
-            if frame == self.now and isinstance(operand, Ref)
-        }
+        now = ((port, operand) for (port, away), operand in self.results.items() if not away)
+        found = {port: operand for port, operand in now if isinstance(operand, Ref)}
         for end in self.flat.links:
             group, slash, side = end.node.rpartition("/")
             if slash and side in (INPUTS, OUTPUTS) and (ref := found.get(self.flat.behind(end))):
@@ -124,8 +145,11 @@ class _Lowering:
 
     def _operand(self, port: Port, frame: int) -> Operand | None:
         """What a source port stands for; None for a graph input that has neither a picture nor a default."""
-        if (port, frame) in self.results:
-            return self.results[port, frame]
+        known = (port, frame - self.now)
+        if known in self.results:
+            return self.results[known]
+        if known in self.at.shown:
+            return self.at.shown[known]
         socket = self.flat.inputs.get(port)
         if socket is None and port.node.endswith("/" + OUTPUTS):
             group = port.node.removesuffix("/" + OUTPUTS)
@@ -146,8 +170,15 @@ class _Lowering:
             made = constants.of_input(port, socket)
         else:
             return None
-        self.results[port, frame] = made
+        self.at.shown[known] = made
         return made
+
+    def _finish(self) -> None:
+        """Every output that is wanted, as its pixels."""
+        targets = self._targets()
+        self.outputs = {
+            name: self._finished(port, name, self._shown(targets[name], port)) for name, port in self.sources().items()
+        }
 
     def _finished(self, port: Port, name: str, shown: Socket | None) -> Ref:
         """What an output shows, as pixels of its type; a constant fills the canvas unless one value is wanted."""
@@ -171,7 +202,7 @@ class _Lowering:
         fed = self._fed(path, frame, node)
         if frame == self.now:
             cameras = {name: fed.inputs[name] for name in fed.linked if node.inputs[name].kind is Kind.CAMERA}
-            self.cameras |= {
+            self.at.cameras = {
                 Port(path, name): Camera(rows) for name, given in cameras.items()
                 if isinstance(given, Constant) and isinstance(rows := given.value, tuple) and any(rows)
             }
@@ -180,7 +211,7 @@ class _Lowering:
         if through is not None:
             for name, passed in through.items():
                 fitted = self.pictures.fit(passed, size, path) if isinstance(passed, Ref) else passed
-                self.results[Port(path, name), frame] = fitted
+                self.at.shown[Port(path, name), frame - self.now] = fitted
             return
         self._fit_all(fed, size)
         working = node.working(self.request.scale, size[1])
@@ -224,6 +255,8 @@ class _Lowering:
         refs = [operand for name, operand in named if isinstance(operand, Ref) and name not in as_it_is]
         sizes = [found for found in (self.builder.shape(ref).size for ref in refs) if found != (1, 1)]
         wanted = sizes[0] if sizes and isinstance(fed.node, Filter) else size
+        if all(found == wanted for found in sizes) and all(frame == fed.frame for _, frame in fed.others):
+            return
 
         def fitted(name: str, operand: Operand) -> Operand:
             if isinstance(operand, Constant) or name in as_it_is:
@@ -277,7 +310,7 @@ class _Lowering:
         self._check_function(fed.path, node, [item.glsl for item in parameters], [item.glsl for item in sockets])
         ref = self.builder.add(Call(shapes, fed.path, node.shader, node.function, tuple(parameters), choices(node)))
         for index, name in enumerate(node.outputs):
-            self.results[Port(fed.path, name), fed.frame] = Ref(ref.op, index)
+            self.at.shown[Port(fed.path, name), fed.frame - self.now] = Ref(ref.op, index)
 
     def _check_function(self, path: str, node: Node, taken: list[str], made: list[str]) -> None:
         """Raise ShaderError unless the node's GLSL function takes and makes what the node declares."""
@@ -315,20 +348,24 @@ class _Lowering:
         for (name, frame), operand in fed.others.items():
             fed.others[name, frame] = self._as_pixels(path, node.inputs[name], operand, size)
         settings = self.graph.settings
+        missing = fed.node.missing if isinstance(fed.node, Reader) else "error"
         recorder = Recorder(
-            fed, node, size, self.builder, self.library, self._files(fed),
+            fed, node, size, self.builder, self.library,
+            self.pictures.files(fed, self._missing(missing, fed.frame)),
             self._remembered(path) if remembers else {}, settings.rate, (settings.frames or (1, 1))[0],
         )
         drawn = node.passes(recorder)
-        self.memories |= {Port(path, name): ref for name, ref in recorder.remembered.items()}
+        self.at.memories = {Port(path, name): ref for name, ref in recorder.remembered.items()}
+        self.at.timed = recorder.timed
         made = drawn if isinstance(drawn, Mapping) else {next(iter(node.outputs)): drawn}
         for name, item in made.items():
             assert isinstance(item, Made | Camera)
             result = Constant(item.rows) if isinstance(item, Camera) else item.ref
-            self.results[Port(path, name), fed.frame] = result
+            self.at.shown[Port(path, name), fed.frame - self.now] = result
 
     def _remembered(self, path: str) -> dict[str, Memory]:
         """What a node remembered of the frame before, by name."""
+        self.at.asked = True
         return {port.socket: memory for port, memory in self.request.memories.items() if port.node == path}
 
     def _as_pixels(self, path: str, socket: Socket, operand: Operand, size: Size) -> Operand:
@@ -347,34 +384,3 @@ class _Lowering:
     def _missing(self, wanted: Missing, frame: int) -> Missing:
         """What stands for a missing file. Nodes may look beyond the ends of a shot: those stay as they are."""
         return "hold" if wanted == "error" and frame != self.now else wanted
-
-    def _files(self, fed: Fed) -> Files:
-        """The files that a node names, which lie beside the graph file that it came from."""
-        missing = self._missing(fed.node.missing if isinstance(fed.node, Reader) else "error", fed.frame)
-
-        def located(file: str) -> str:
-            return self.pictures.named.located(file, fed.path)
-
-        def recolor(change: ColorChange) -> ColorProgram:
-            if isinstance(change, LookupFile):
-                change = replace(change, path=located(change.path))
-            else:
-                change = replace(change, color=color_settings(self.graph))
-            return self.outside.recolor(change)
-
-        def read(picture: Picture) -> Ref:
-            return self.pictures.read(replace(picture, path=located(picture.path)), fed.path, fed.frame, missing)
-
-        def mesh(scene: Scene) -> Mesh:
-            if isinstance(scene, SceneFile):
-                scene = replace(scene, path=located(scene.path))
-            return self.outside.mesh(scene)
-
-        def render(file: str, named: Mapping[str, str]) -> Render:
-            return self.outside.render(self.outside.at(located(file), fed.frame, missing).path, named)
-
-        def asset(picture: Picture) -> Ref:
-            whole = replace(picture, path=located(picture.path), within=located(picture.within))
-            return self.pictures.asset(whole, fed.path)
-
-        return Files(read, recolor, mesh, render, asset)

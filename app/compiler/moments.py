@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Set
+from dataclasses import replace
 
 from ...nodes import Node
 from ..errors import GraphError
 from ..graph import Graph, Port, is_animated, still
-from .expand import Flat, expand
+from .expand import Flat, changed_nodes, expand
 
 Moment = tuple[str, int]
 """A node, as a path through groups, at a frame."""
@@ -22,15 +23,43 @@ class Moments:
     def __init__(self, graph: Graph) -> None:
         self._graph = graph
         self._moves = is_animated(graph)
-        self._flats: dict[int, Flat] = {}
+        self._flats: dict[int, tuple[Graph, Flat]] = {}
+        self._changed: dict[int, Set[str]] = {}
         self._feeding: dict[Moment, Mapping[str, Feed]] = {}
 
     def flat(self, frame: int) -> Flat:
         """The graph at a frame."""
         key = frame if self._moves else 0
         if key not in self._flats:
-            self._flats[key] = expand(still(self._graph, frame))
-        return self._flats[key]
+            graph = still(self._graph, frame)
+            self._flats[key] = graph, expand(graph)
+        return self._flats[key][1]
+
+    def followed(self, graph: Graph, before: int, now: int) -> Moments | None:
+        """The same of a graph that differs in values of nodes only, which `changed` tells; else None.
+
+        `now` is looked from instead of `before`. Where these are two frames, no node may look at others.
+        """
+        after = Moments(graph)
+        if after._moves != self._moves:
+            return None
+        if before == now:
+            after._feeding = self._feeding
+        elif len(self._flats) > 1 or any(map(looks_around, self.flat(before).nodes.values())):
+            return None
+        for key, (old, flat) in self._flats.items():
+            frame = key if before == now or not self._moves else now
+            new = still(graph, frame)
+            changed = changed_nodes(old, new)
+            if changed is None:
+                return None
+            after._flats[frame] = new, replace(flat, nodes={**flat.nodes, **changed})
+            after._changed[frame] = changed.keys()
+        return after
+
+    def changed(self, frame: int) -> Set[str]:
+        """The nodes that are others at a frame than they were at that one, or before now, in the graph followed."""
+        return self._changed[frame if self._moves else 0]
 
     def node(self, path: str, frame: int) -> Node:
         """A node at a frame."""
@@ -85,3 +114,8 @@ class Moments:
             if source is not None:
                 found[name] = (source, times.get(name, (frame,)))
         return found
+
+
+def looks_around(node: Node) -> bool:
+    """True for a node that may see other frames than its own."""
+    return type(node).times is not Node.times

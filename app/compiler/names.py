@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+
+from msgspec import Struct, field
 
 from ...nodes import Uniform, glsl_type
+from .areas import Region
 from .ir import Choice, Constant, Parameter, Program, Ref, Shape
 from .target import Form
 
@@ -14,8 +16,7 @@ _INT32 = 2**31
 """Numbers that GLSL can hold. A float this large is infinite for every purpose."""
 
 
-@dataclass
-class Names:
+class Names(Struct):
     """Hands out textures and uniforms as the text of a pass asks for them."""
 
     program: Program
@@ -25,6 +26,16 @@ class Names:
     uniforms: list[tuple[str, str, Uniform]] = field(default_factory=list[tuple[str, str, Uniform]])
     seams: bool = True
     """Whether fused functions are kept apart: see primitive/settled.glsl."""
+
+    start: str = ""
+    """The first pixel that is written, where that is not the first one of the picture."""
+    room: str = "grid"
+    """How many pixels are written, across and down."""
+
+    def window(self, region: Region) -> None:
+        """Only a region is written, and of some pictures only parts are there."""
+        self.start = self.uniform("ivec2", region.start, "window_start")
+        self.room = self.uniform("ivec2", region.size, "window_size")
 
     def uniform(self, glsl: str, value: Uniform, name: str = "") -> str:
         """A uniform of this type set to `value`; booleans travel as integers."""
@@ -40,6 +51,8 @@ class Names:
         shape = self.shape(ref)
         where = "ivec2(0)" if shape.size == (1, 1) else where
         name = f"t{self.textures[ref]}"
+        if ref in self.program.windows:
+            where = f"{where} - {name}_start"
         call = f"imageLoad({name}, {where})" if self.by_image else f"texelFetch({name}, {where}, 0)"
         return call + ("", ".r", ".rg", ".rgb", "")[shape.channels]
 

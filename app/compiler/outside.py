@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Protocol
+
+from msgspec import Struct
 
 from ...nodes import ColorChange, ColorSettings, Missing, Render, Scene, Size
 from .ir import Picture
@@ -13,8 +14,7 @@ from .recolor import ColorProgram
 from .working import Working
 
 
-@dataclass(frozen=True)
-class Probed:
+class Probed(Struct, frozen=True):
     """What is known of a picture before it is read."""
 
     size: Size
@@ -22,8 +22,7 @@ class Probed:
     fingerprint: str
 
 
-@dataclass(frozen=True)
-class Frame:
+class Frame(Struct, frozen=True):
     """The file that a frame shows. `black`: it has none, this one is as large, and black is to be seen.
 
     `number` is the frame of a video that is to be shown; of a picture it is 1.

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
 
-from ...nodes import Kind, Missing, Size, Socket
+from msgspec import structs
+
+from ...nodes import ColorChange, Kind, LookupFile, Missing, Render, Scene, SceneFile, Size, Socket
 from ..errors import HalationError
 from ..graph import Graph, color_settings, make_socket
+from .areas import Around
+from .draws import Fed, Files
 from .expand import Flat, nothing
 from .ir import Accessor, Builder, Call, Constant, Gather, Operand, Parameter, Picture, Read, Ref, Shape
 from .named import Named
 from .outside import Outside, Probed
+from .raster import Mesh
+from .recolor import ColorProgram
 from .request import Request
 
 DEFAULT_CANVAS: Size = (1920, 1080)
@@ -25,6 +32,8 @@ class Pictures:
         self._settled = graph.settings.size
         self._color = color_settings(graph)
         self._request, self._outside, self._builder = request, outside, builder
+        self.measured = False
+        """Whether the canvas has been asked for."""
 
     @cached_property
     def canvas(self) -> Size:
@@ -33,6 +42,7 @@ class Pictures:
         if size is None:
             first = next(iter(self.named), None)
             size = self._first_size(*first) if first else DEFAULT_CANVAS
+        self.measured = True
         return self._scaled(size)
 
     def _first_size(self, picture: Picture, owner: str) -> Size:
@@ -63,6 +73,8 @@ class Pictures:
         if black:
             socket = make_socket(picture.kind, picture.width)
             return self.converted(Constant(nothing(socket)), socket, wanted, owner)
+        # What is bound is known by its fingerprint. Its pixels come with the request: nothing else holds on to them.
+        picture = replace(picture, pixels=None)
         ref = self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half))
         return self.fit(ref, wanted, owner)
 
@@ -72,6 +84,36 @@ class Pictures:
         probed = self._probed(picture, owner)
         shape = Shape(probed.size, picture.width, picture.kind is not Kind.IMAGE)
         return self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half))
+
+    def files(self, fed: Fed, missing: Missing) -> Files:
+        """The files that a node names, which lie beside the graph file that it came from."""
+
+        def located(file: str) -> str:
+            return self.named.located(file, fed.path)
+
+        def recolor(change: ColorChange) -> ColorProgram:
+            if isinstance(change, LookupFile):
+                change = structs.replace(change, path=located(change.path))
+            else:
+                change = structs.replace(change, color=self._color)
+            return self._outside.recolor(change)
+
+        def read(picture: Picture) -> Ref:
+            return self.read(replace(picture, path=located(picture.path)), fed.path, fed.frame, missing)
+
+        def mesh(scene: Scene) -> Mesh:
+            if isinstance(scene, SceneFile):
+                scene = structs.replace(scene, path=located(scene.path))
+            return self._outside.mesh(scene)
+
+        def render(file: str, named: Mapping[str, str]) -> Render:
+            return self._outside.render(self._outside.at(located(file), fed.frame, missing).path, named)
+
+        def asset(picture: Picture) -> Ref:
+            whole = replace(picture, path=located(picture.path), within=located(picture.within))
+            return self.asset(whole, fed.path)
+
+        return Files(read, recolor, mesh, render, asset)
 
     def fit(self, ref: Ref, size: Size, owner: str) -> Ref:
         """The picture at another size. Equal up to rounding: stretched; otherwise scaled to cover and cropped."""
@@ -83,7 +125,12 @@ class Pictures:
             across = down = min(across, down)
         fitted = Shape(size, shape.channels, shape.data)
         function = "fit_nearest" if shape.data else "fit"
-        accessor, scale = Accessor("image", "vec4", ref), Parameter("vec2", Constant((across, down)))
+        # The middles of both lie on each other; a pixel more for what floats of 32 bits round.
+        matrix = (
+            across, 0.0, (shape.size[0] - across * size[0]) / 2.0, 0.0, down, (shape.size[1] - down * size[1]) / 2.0
+        )
+        around = Around(matrix, (max(across, 1.0) + 1.0, max(down, 1.0) + 1.0))
+        accessor, scale = Accessor("image", "vec4", ref, around), Parameter("vec2", Constant((across, down)))
         return self._builder.add(Gather((fitted,), owner, "primitive/fit", function, (accessor,), (scale,)))
 
     def converted(self, operand: Operand, socket: Socket, size: Size, owner: str) -> Ref:

@@ -6,12 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+from msgspec import Struct
+
 from ...nodes import Camera, Size, Uniform
 from ..graph import Port
+from .areas import Region
 from .ir import Memory, Picture
 from .raster import Mesh
 from .recolor import Table
 from .target import Form, Target
+from .tiles import Tiling
 
 Depth = Literal["f2", "f4"]
 FIRST_TABLE = 16
@@ -48,6 +52,8 @@ class Surface:
     slot: int
     first: int
     last: int
+    window: Region | None = None
+    """The part of its picture that it holds, where that is not all."""
 
     @property
     def components(self) -> int:
@@ -63,8 +69,7 @@ class Surface:
         return texel(self.channels, self.depth == "f2")
 
 
-@dataclass(frozen=True)
-class Shader:
+class Shader(Struct, frozen=True):
     """A whole GLSL program, made of `files`. `reads_images`: its textures are bound to image units."""
 
     source: str
@@ -89,6 +94,8 @@ class Upload:
     surface: int
     picture: Picture
     node: str
+    whole: Size
+    """The size of the picture, of which the surface may hold a part."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +113,7 @@ class Pass:
     targets: tuple[int, ...]
     uniforms: tuple[tuple[str, Uniform], ...]
     weights: tuple[float, ...]
-    groups: tuple[int, int]
+    groups: tuple[int, int, int]
     tables: tuple[Table, ...] = ()
     mesh: Mesh | None = None
     writers: Mapping[str, str] = field(default_factory=dict[str, str], compare=False, repr=False)
@@ -133,6 +140,8 @@ class Plan:
     """What temporal nodes will want of this frame, by node and name."""
     slots: tuple[int, ...]
     """Bytes of each texture that the plan needs at the same time."""
+    tiling: Tiling | None = None
+    """How it is run where it does not fit: then surfaces and passes say what is computed, but cannot be run."""
 
     @property
     def remembering(self) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ from types import MappingProxyType
 from ...nodes import Size
 from ..errors import UsageError
 from ..graph import Port
+from .areas import Region
 from .ir import Memory, Picture
 
 
@@ -29,6 +30,11 @@ class Request:
     frame: int = 1
     memories: Mapping[Port, Memory] = field(default_factory=lambda: MappingProxyType({}))
     """What temporal nodes remembered of the frame before, by node and name; none for a frame that follows no other."""
+    halves: frozenset[str] = frozenset()
+    """Targets, or outputs, that will be rounded to half floats: they are that already where nothing else wants them."""
+
+    region: Region | None = None
+    """The part of every output that is wanted, in pixels as they are rendered; None for all. See `regions.focused`."""
 
     def __post_init__(self) -> None:
         if not 0.0 < self.scale < math.inf:

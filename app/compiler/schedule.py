@@ -2,73 +2,136 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from hashlib import blake2b
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from types import MappingProxyType
+
+from msgspec import Struct
 
 from ...nodes import Size
 from ..errors import DeviceError
+from ..graph import Port
 from .emit import Emitted, emit
 from .fuse import Fused, kept_refs
-from .ir import Call, Foreign, Gather, History, Memory, Op, Program, Raster, Read, Ref, Shape
+from .ir import Call, Foreign, Gather, Held, History, Memory, Op, Program, Raster, Read, Ref, Shape
+from .keys import Mark, keys_of, marks_of, update
 from .library import Library
+from .numbers import differing
 from .plan import Depth, Pass, Plan, Surface, Upload, texel, texture_bytes
 from .target import Precision, Target
 
 
+class Scheduled(Struct, frozen=True):
+    """A plan, and what it was made of."""
+
+    program: Program
+    passes: tuple[Fused, ...]
+    texels: Mapping[Ref, str]
+    """Formats, in the order of the surfaces."""
+    marks: tuple[tuple[Mark, ...], ...]
+    keys: Mapping[Ref, str]
+    plan: Plan
+
+
 def schedule(
-    program: Program, passes: tuple[Fused, ...], library: Library, target: Target, precision: Precision
-) -> Plan:
-    """Write the program of every pass, and find a texture for everything it makes."""
-    needed = check_limits(program, passes, target)
-    texels = {ref: _texel(program, ref, precision) for ref in needed}
+    program: Program, passes: tuple[Fused, ...], library: Library, target: Target, precision: Precision,
+    halves: frozenset[str] = frozenset(),
+) -> Scheduled:
+    """Write the program of every pass, and find a texture for everything it makes.
+
+    `halves` are outputs that will be rounded to half floats.
+    """
+    texels = formats(program, passes, target, precision, halves)
+    needed = dict.fromkeys(texels)
     emitted = [emit(program, fused, library, target, texels) for fused in passes]
-    keys = _keys(program, passes, emitted, needed)
+    marks = tuple(
+        marks_of(program, fused, item, library, target, texels) for fused, item in zip(passes, emitted, strict=True)
+    )
+    keys = keys_of(program, marks, needed)
     first, last = _lives(program, passes)
     slots, sizes = _slots(program, needed, texels, first, last)
     numbers = {ref: number for number, ref in enumerate(needed)}
     surfaces = tuple(
         Surface(
-            keys[ref], program.ops[ref.op].owner, (shape := _shape(program, ref)).size, shape.channels,
-            _depth(texels[ref]), slots[ref], first[ref], last[ref],
+            keys[ref], program.ops[ref.op].owner, program.held(ref), _shape(program, ref).channels,
+            _depth(texels[ref]), slots[ref], first[ref], last[ref], program.windows.get(ref),
         )
         for ref in needed
     )
-    return Plan(
+    plan = Plan(
         target, surfaces, tuple(_uploads(program, numbers)),
         tuple(_pass(program, fused, item, numbers, library) for fused, item in zip(passes, emitted, strict=True)),
         MappingProxyType({name: numbers[ref] for name, ref in program.outputs.items()}),
         MappingProxyType({port: numbers[ref] for port, ref in program.results.items() if ref in numbers}),
-        program.cameras,
-        MappingProxyType({
-            node: Memory(keys[ref], _shape(program, ref), texels[ref].endswith("16f"))
-            for node, ref in program.memories.items()
-        }),
-        sizes,
+        program.cameras, _memories(program, keys, texels), sizes,
     )
+    return Scheduled(program, passes, texels, marks, keys, plan)
 
 
-def check_limits(program: Program, passes: tuple[Fused, ...], target: Target) -> dict[Ref, None]:
-    """Raise DeviceError for what the target cannot hold. Returns all that needs a texture."""
-    needed = dict.fromkeys(ref for fused in passes for ref in (*fused.reads, *fused.writes))
-    needed |= dict.fromkeys(kept_refs(program))
-    for ref in needed:
-        _check_size(program.ops[ref.op].shapes[ref.output].size, program.ops[ref.op].owner, target)
+def reschedule(known: Scheduled, program: Program, library: Library) -> Scheduled | None:
+    """The plan of a program that differs from the known one in numbers alone, else None.
+
+    The same passes make the same pictures in the same textures: only the passes whose numbers are others are written
+    again, and keys found of all that comes after them.
+    """
+    changed = differing(known.program, program)
+    if changed is None:
+        return None
+    plan, target, numbers = known.plan, known.plan.target, {ref: number for number, ref in enumerate(known.texels)}
+    moved = program.frame != known.program.frame
+    passes, marks, surfaces, keys = [*plan.passes], [*known.marks], [*plan.surfaces], dict(known.keys)
+    others = [
+        number for number, fused in enumerate(known.passes)
+        if not changed.isdisjoint(fused.members)
+        or (moved and any(name == "frame" for name, _ in passes[number].uniforms))
+    ]
+    for number in others:
+        fused = known.passes[number]
+        item = emit(program, fused, library, target, known.texels)
+        passes[number] = _pass(program, fused, item, numbers, library)
+        marks[number] = marks_of(program, fused, item, library, target, known.texels)
+    sources = [ref for ref in numbers if ref.op in changed]
+    for ref in update(keys, program, sources, marks, others):
+        if ref in numbers:
+            surfaces[numbers[ref]] = replace(surfaces[numbers[ref]], key=keys[ref])
+    plan = replace(
+        plan, surfaces=tuple(surfaces), uploads=tuple(_uploads(program, numbers)), passes=tuple(passes),
+        cameras=program.cameras, memories=_memories(program, keys, known.texels),
+    )
+    return Scheduled(program, known.passes, known.texels, tuple(marks), keys, plan)
+
+
+def _memories(program: Program, keys: Mapping[Ref, str], texels: Mapping[Ref, str]) -> Mapping[Port, Memory]:
+    return MappingProxyType({
+        node: Memory(keys[ref], _shape(program, ref), texels[ref].endswith("16f"))
+        for node, ref in program.memories.items()
+    })
+
+
+def formats(
+    program: Program, passes: Sequence[Fused], target: Target, precision: Precision, halves: frozenset[str]
+) -> dict[Ref, str]:
+    """The format of everything that needs a texture. Raises DeviceError for a pass that writes too many at once."""
     for fused in passes:
         _check_outputs(len(fused.writes), program.ops[fused.root], target)
-    return needed
+    rounded = _rounded(program, passes, target, halves)
+    return {ref: _texel(program, ref, "half" if ref in rounded else precision) for ref in _textures(program, passes)}
+
+
+def _textures(program: Program, passes: Sequence[Fused]) -> dict[Ref, None]:
+    """Everything that passes read and write, and what must be there at the end."""
+    needed = dict.fromkeys(ref for fused in passes for ref in (*fused.reads, *fused.writes))
+    return needed | dict.fromkeys(kept_refs(program))
 
 
 def _shape(program: Program, ref: Ref) -> Shape:
     return program.ops[ref.op].shapes[ref.output]
 
 
-def _check_size(size: Size, owner: str, target: Target) -> None:
-    if max(size) > target.max_size:
-        raise DeviceError(
-            f"node '{owner}': {size[0]}x{size[1]} pixels is more than the {target.max_size} that {target.renderer} "
-            "can hold on a side; render smaller with --scale or --size", node=owner,
-        )
+def peak(program: Program, passes: Sequence[Fused], texels: Mapping[Ref, str]) -> int:
+    """Bytes of all textures that passes need at the same time."""
+    first, last = _lives(program, passes)
+    return sum(_slots(program, _textures(program, passes), texels, first, last)[1])
 
 
 def _check_outputs(count: int, op: Op, target: Target) -> None:
@@ -84,45 +147,30 @@ def _check_outputs(count: int, op: Op, target: Target) -> None:
 def _texel(program: Program, ref: Ref, precision: Precision) -> str:
     """As narrow as the data allows: data keeps 32 bits, a file of halves stays half, color follows the precision."""
     op, shape = program.ops[ref.op], _shape(program, ref)
+    if isinstance(op, Held):
+        return texel(shape.channels, op.halves[ref.output])
     half = op.half if isinstance(op, (Read, History)) else precision == "half" and not shape.data
     return texel(shape.channels, half)
+
+
+def _rounded(
+    program: Program, passes: Sequence[Fused], target: Target, halves: frozenset[str]
+) -> frozenset[Ref]:
+    """Outputs that are stored as half floats because nobody wants more, neither a pass nor the next frame."""
+    if not target.rounds_halves:
+        return frozenset()
+    found = {ref for name, ref in program.outputs.items() if name in halves}
+    found -= {ref for name, ref in program.outputs.items() if name not in halves}
+    found -= {ref for fused in passes for ref in fused.reads}
+    found = {ref for ref in found if not isinstance(program.ops[ref.op], Raster)}  # the driver rounds what it draws
+    return frozenset(found.difference(program.memories.values()))
 
 
 def _depth(format: str) -> Depth:
     return "f2" if format.endswith("16f") else "f4"
 
 
-def _keys(
-    program: Program, passes: tuple[Fused, ...], emitted: list[Emitted], needed: Mapping[Ref, None]
-) -> dict[Ref, str]:
-    """Equal keys mean equal pixels: everything that they depend on is hashed, and nothing else."""
-    keys: dict[Ref, str] = {}
-    for ref in needed:
-        op = program.ops[ref.op]
-        if isinstance(op, Read):
-            keys[ref] = _hash("read", op.fingerprint, op.picture, op.half)
-        elif isinstance(op, History):
-            keys[ref] = op.key
-    for fused, item in zip(passes, emitted, strict=True):
-        inputs = [keys[ref] for ref in fused.reads]
-        made = _hash(item.shader.source, item.uniforms, item.weights, inputs, _digest(program.ops[fused.root]))
-        for number, ref in enumerate(fused.writes):
-            keys[ref] = f"{made}.{number}"
-    return keys
-
-
-def _digest(op: Op) -> str:
-    """What is drawn, where that is neither text nor a picture."""
-    if isinstance(op, Foreign):
-        return repr(op.text.vertex)
-    return op.mesh.digest if isinstance(op, Raster) else ""
-
-
-def _hash(*parts: object) -> str:
-    return blake2b("\0".join(str(part) for part in parts).encode(), digest_size=16).hexdigest()
-
-
-def _lives(program: Program, passes: tuple[Fused, ...]) -> tuple[dict[Ref, int], dict[Ref, int]]:
+def _lives(program: Program, passes: Sequence[Fused]) -> tuple[dict[Ref, int], dict[Ref, int]]:
     """The pass that makes each surface, or that reads an upload first; and the pass that reads it last."""
     first: dict[Ref, int] = {}
     last: dict[Ref, int] = {}
@@ -151,9 +199,9 @@ def _slots(
         while ended < len(by_end) and last[by_end[ended]] < first[ref]:
             gone = by_end[ended]
             if gone in slots:
-                free.setdefault((_shape(program, gone).size, texels[gone]), []).append(slots[gone])
+                free.setdefault((program.held(gone), texels[gone]), []).append(slots[gone])
             ended += 1
-        kind = (_shape(program, ref).size, texels[ref])
+        kind = (program.held(ref), texels[ref])
         if free.get(kind):
             slots[ref] = free[kind].pop()
             continue
@@ -166,8 +214,9 @@ def _uploads(program: Program, numbers: Mapping[Ref, int]) -> list[Upload]:
     found: list[Upload] = []
     for ref, number in numbers.items():
         op = program.ops[ref.op]
-        if isinstance(op, Read):
-            found.append(Upload(number, op.picture, op.owner))
+        picture = op.picture if isinstance(op, Read) else op.pictures[ref.output] if isinstance(op, Held) else None
+        if picture is not None:
+            found.append(Upload(number, picture, op.owner, _shape(program, ref).size))
     return found
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 Form = Literal["fragment", "compute"]
@@ -13,8 +13,8 @@ Precision = Literal["half", "float"]
 class Target:
     """A GL implementation: its name, version (410, 430, ...), limits, and what suits it.
 
-    `form` is how passes are emitted. `precision` is how color intermediates are kept: the software rasterizer
-    truncates half-float stores and gains nothing from them, so its own choice is float.
+    `form` is how passes are emitted, and `why` who chose that: see `devices`. `precision` is how color intermediates
+    are kept: the software rasterizer truncates half-float stores and gains nothing from them, so its own is float.
     """
 
     renderer: str
@@ -26,6 +26,9 @@ class Target:
     max_targets: int = 8
     form: Form = "compute"
     precision: Precision = "float"
+    memory: int = 0
+    """Bytes that textures and pictures may take at once; 0 for as many as there are."""
+    why: str = field(default="", compare=False)
 
     @property
     def loads_images(self) -> bool:
@@ -33,10 +36,15 @@ class Target:
         return self.form == "compute" and self.software
 
     @property
+    def rounds_halves(self) -> bool:
+        """True if passes round to half floats as the processor does: to nearest even, and NaN stays."""
+        return self.software and self.version >= 430
+
+    @property
     def max_inputs(self) -> int:
         """How many pictures one pass may read."""
         return self.max_images - 1 if self.loads_images else self.max_samplers
 
 
-NULL = Target("none", 430, software=True)
+NULL = Target("none", 430, software=True, why="planned without a device")
 """A target for plans that are only looked at."""

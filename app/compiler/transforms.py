@@ -7,14 +7,24 @@ have the same edge mode; another one says that the frame in between does matter.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import get_args
 
 from ...nodes import Affine, Edge, Kernel
+from .areas import Around
 from .ir import Accessor, Builder, Choice, Constant, Gather, Parameter, Ref, Shape
 
 STILL = 1e-9
 """A product that moves no pixel farther than this is that of a transform and its inverse, but for rounding."""
+
+
+_LOBES = {"nearest": 0.0, "triangle": 1.0, "catmull-rom": 2.0, "mitchell": 2.0, "lanczos": 3.0}
+_WIDEST = 32.0
+"""How far a kernel reaches, and how many times that at most: as in primitive/place.glsl."""
+
+_ROUNDING = 1.0
+"""Pixels by which a place may be off in floats of 32 bits."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +46,7 @@ class Placed(Gather):
 
 def place(builder: Builder, image: Ref, owner: str, shape: Shape, matrix: Affine, kernel: Kernel, edge: Edge) -> Ref:
     """Place `image`, or what it was placed from, into a picture of `shape`."""
-    chain, before = (owner,), builder.ops[image.op]
+    chain, before = (owner,), builder.op(image)
     if isinstance(before, Placed) and before.edge == edge:
         source = before.accessors[0].operand
         assert isinstance(source, Ref)
@@ -45,13 +55,16 @@ def place(builder: Builder, image: Ref, owner: str, shape: Shape, matrix: Affine
         return image
     a, b, x, c, d, y = matrix
     kernels = get_args(Kernel)
+    widths = (min(max(math.hypot(*row), 1.0), _WIDEST) for row in ((a, b), (c, d)))
+    across, down = (_LOBES[kernel] * width + _ROUNDING for width in widths)
     parameters = (
         Parameter("vec2", Constant((a, b))), Parameter("vec2", Constant((c, d))), Parameter("vec2", Constant((x, y))),
         Parameter("int", Choice(kernels.index(kernel))),
     )
     return builder.add(
         Placed(
-            (shape,), owner, "primitive/place", "place", (Accessor("image", "vec4", image),), parameters, edge,
+            (shape,), owner, "primitive/place", "place",
+            (Accessor("image", "vec4", image, Around(matrix, (across, down))),), parameters, edge,
             (("kernel", kernels),), matrix, chain,
         )
     )

@@ -8,7 +8,7 @@ from hashlib import blake2b
 from ...nodes import Node
 from ..errors import GraphError
 from ..graph import INPUTS, OUTPUTS, Graph, Group, Port, is_animated
-from .expand import Flat
+from .expand import Flat, changed_nodes
 from .moments import Moments
 
 
@@ -25,7 +25,7 @@ class Upstream:
         self.graph, self.frame = graph, frame
         self.hashes: dict[str, str] = {}
         follows = known and known.frame == frame and not is_animated(graph)
-        changed = _changed(known.graph, graph) if known and follows else None
+        changed = changed_nodes(known.graph, graph) if known and follows else None
         try:
             if known is None or changed is None:
                 self._find_all()
@@ -99,29 +99,6 @@ class Upstream:
         if source in self._flat.inputs:
             return _hash(f"{source}", self._flat.inputs[source], self._settings)
         return self.hashes.get(source.node, "")
-
-
-def _changed(before: Graph, after: Graph, prefix: str = "") -> dict[str, Node] | None:
-    """The nodes that have other values, by path, if two graphs differ in nothing else that matters; else None."""
-    parts = ("links", "inputs", "outputs", "controls", "animation", "muted", "settings")
-    same = all(getattr(before, part) is getattr(after, part) for part in parts) and [*before.nodes] == [*after.nodes]
-    if not same:
-        return None
-    found: dict[str, Node] = {}
-    for id, item in after.nodes.items():
-        old = before.nodes[id]
-        if item is old:
-            continue
-        if isinstance(item, Node) and type(item) is type(old):
-            found[prefix + id] = item
-        elif isinstance(item, Group) and isinstance(old, Group) and id not in after.muted:
-            inner = None if item.values or old.values else _changed(old.graph, item.graph, f"{prefix}{id}/")
-            if inner is None:
-                return None
-            found |= inner
-        else:
-            return None
-    return found
 
 
 def _animations(graph: Graph) -> list[object]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from ..glsl import Text, parse
 from .library import Library
@@ -16,8 +17,7 @@ vec3 from_rec709(vec3 rgb) {{ return rgb * mat3({back}); }}
 """
 
 
-@dataclass(frozen=True)
-class Working:
+class Working(Struct, frozen=True):
     """A working space: the luminance of its red, green and blue, and matrices, by rows, that take its colors to linear
     Rec.709 and back."""
 

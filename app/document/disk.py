@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import glob
 import os
-import secrets
 import stat
 import time
 from pathlib import Path
@@ -50,7 +49,7 @@ def write_text(path: Path, text: str) -> None:
         if target.exists() and not target.stat().st_mode & (stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH):
             raise OutputError(f"{path}: the file is read-only; save under another name, or make it writable")
         begun = f".{target.name[:100]}."
-        temporary = target.with_name(f"{begun}{secrets.token_hex(4)}.tmp")
+        temporary = target.with_name(f"{begun}{os.urandom(4).hex()}.tmp")
         handle = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
     except (OSError, ValueError, RuntimeError) as error:
         raise OutputError(f"{path}: it cannot be saved here ({_reason(error)}); choose another folder") from None

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, cast, get_args
+
+from msgspec import Struct, field
 
 from ...nodes import ColorSettings, Node, Plain, Value, catalogue
 from ..errors import DocumentError, GraphError
@@ -51,8 +52,7 @@ def _types(given: Types | None) -> Types:
     return catalogue() if given is None else given
 
 
-@dataclass
-class _Loading:
+class _Loading(Struct):
     """One call of `load`: every group file is read once, however often it is named."""
 
     types: Types
@@ -84,8 +84,7 @@ class _Loading:
         return _Body(self, file, folder, outer).graph(raw, "", len(outer))
 
 
-@dataclass
-class _Body:
+class _Body(Struct):
     """One file: what its paths and messages start from. `outer` are the files that led here, itself included."""
 
     loading: _Loading

@@ -10,8 +10,9 @@ import ast
 import operator
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
+
+from msgspec import Struct
 
 from .text import blanked
 
@@ -41,8 +42,7 @@ _STILL = 1e-6
 """Of a float, a part that adding may leave as it is."""
 
 
-@dataclass(frozen=True)
-class _Loop:
+class _Loop(Struct, frozen=True):
     """Where a loop's body is: from `start` to `end`, without its braces if it has some; how often it runs, if known."""
 
     start: int

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
+from msgspec import Struct
+
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 _INCLUDE = re.compile(r'^[ \t]*#include[ \t]+"([^"]+)"[^\n]*$', re.MULTILINE)
 _FUNCTION = re.compile(
@@ -18,8 +20,7 @@ _WORD = re.compile(r"[A-Za-z_]\w*")
 _BLANK = re.compile(r"[^\n]")
 
 
-@dataclass(frozen=True)
-class Function:
+class Function(Struct, frozen=True):
     """A GLSL signature: `result name(parameters)`; `outputs` are the `out` parameters."""
 
     name: str

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import PurePath
+
+from msgspec import structs
 
 from ...nodes import ColorSettings
 from .graph import Graph
@@ -17,4 +18,4 @@ def color_settings(graph: Graph) -> ColorSettings:
     color = graph.settings.color
     if not color.config or color.config.startswith(BUILT_IN):
         return color
-    return replace(color, config=str(PurePath(graph.folder, color.config)))
+    return structs.replace(color, config=str(PurePath(graph.folder, color.config)))

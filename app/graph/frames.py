@@ -14,9 +14,10 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import chain
+
+from msgspec import Struct
 
 from ..errors import UsageError
 
@@ -82,8 +83,7 @@ def format_frames(frames: Iterable[int]) -> str:
     return ",".join(reversed(parts))
 
 
-@dataclass(frozen=True)
-class Pattern:
+class Pattern(Struct, frozen=True, dict=True):
     """A file name with a place for the frame number, or several for the same one: `Pattern.parse("shot.####.exr")`.
 
     `folder` ends with its separator; `pieces` are the texts around the numbers, `widths` how many characters each

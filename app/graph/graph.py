@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, Literal, Self
 
+from msgspec import structs
+
 from ...nodes import Node, Plain, Pointwise, Socket, Value
 from ..errors import GraphError
 from .animation import ANIMATED, Animation, adapted, moved, unfit
@@ -365,7 +367,7 @@ def control_value(graph: Graph, name: str) -> Value | None:
     control = graph.controls[name]
     item = graph.nodes.get(control.target.node)
     value = None if item is None else _present(item, control.target.socket)
-    return value and dataclasses.replace(value, name=name, label=control.label, doc=control.doc or value.doc)
+    return value and structs.replace(value, name=name, label=control.label, doc=control.doc or value.doc)
 
 
 def declared(item: Item, name: str, id: str) -> Value:
@@ -382,9 +384,9 @@ def declared(item: Item, name: str, id: str) -> Value:
 
 def _present(item: Item, name: str) -> Value | None:
     if isinstance(item, Node) and name in item.values:
-        return dataclasses.replace(item.values[name], default=getattr(item, name))
+        return structs.replace(item.values[name], default=getattr(item, name))
     if isinstance(item, Group) and name in item.graph.controls and (value := control_value(item.graph, name)):
-        return dataclasses.replace(value, default=item.values.get(name, value.default))
+        return structs.replace(value, default=item.values.get(name, value.default))
     return None
 
 

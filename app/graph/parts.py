@@ -7,13 +7,14 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, cast
 
+from msgspec import Struct
+
 from ...nodes import ColorSettings, Kind, Missing, Plain, Size, Socket, Value
 from ..errors import GraphError
 from .conversion import make_socket
 
 
-@dataclass(frozen=True, order=True)
-class Port:
+class Port(Struct, frozen=True, order=True):
     """One end of a link, written `bloom.image`. The nodes `inputs` and `outputs` are the ends of the graph."""
 
     node: str
@@ -124,8 +125,7 @@ class Settings:
         object.__setattr__(self, "allow", freeze(self.allow))
 
 
-@dataclass(frozen=True)
-class Signature:
+class Signature(Struct, frozen=True):
     """What a node shows to links: its sockets and values by name. `anything`: its type is unknown."""
 
     inputs: Mapping[str, Socket]

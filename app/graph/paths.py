@@ -8,6 +8,8 @@ from dataclasses import replace
 from pathlib import Path, PurePath
 from typing import get_args
 
+from msgspec import structs
+
 from ...nodes import Node, Plain
 from ..written import Language, Written, node_type
 from .color import BUILT_IN
@@ -25,7 +27,7 @@ def rebased(graph: Graph, folder: str) -> Graph:
         return graph
     old, color = graph.folder, graph.settings.color
     if color.config and not color.config.startswith(BUILT_IN):
-        color = replace(color, config=relocated(color.config, old, folder))
+        color = structs.replace(color, config=relocated(color.config, old, folder))
         graph = replace(graph, settings=replace(graph.settings, color=color))
     return _changed(graph, folder, lambda path: relocated(path, old, folder))
 

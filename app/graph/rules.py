@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
+
+from msgspec import Struct
 
 Severity = Literal["error", "warning"]
 
 
-@dataclass(frozen=True)
-class Rule:
+class Rule(Struct, frozen=True):
     """One thing that can be wrong. `doc` is a sentence about why it matters, `way_out` one about what to do.
 
     An error keeps a graph, or that part of it, from rendering; a warning does not.

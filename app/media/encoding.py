@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-
 import numpy as np
+from msgspec import Struct, field
 
 from ...nodes import ColorSettings
 from ..errors import UsageError
@@ -17,8 +16,7 @@ _IN_PNG = (SRGB, "srgb_p3d65_scene", "g22_rec709_scene", "lin_rec709_scene")
 _SHARED = "<USE_DISPLAY_NAME>"
 
 
-@dataclass(frozen=True)
-class Encoding:
+class Encoding(Struct, frozen=True):
     """How color leaves. Formats for people show it through a `view` of a `display`, with a `look` in place of those of
     the view; with a `space` every format holds the numbers of that color space."""
 

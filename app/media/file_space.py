@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from msgspec import Struct
 
 from ..errors import GraphError, InputError
 from .managed import LINEAR_REC709, Managed, Space
@@ -26,8 +26,7 @@ GAMUTS = {
 """Linear spaces by the chromaticities of red, green, blue and white."""
 
 
-@dataclass(frozen=True)
-class Hints:
+class Hints(Struct, frozen=True):
     """What a header says of color: a tag that someone wrote, what its format means without one, an ICC profile,
     chromaticities, and whether it holds integers."""
 
@@ -38,8 +37,7 @@ class Hints:
     integer: bool = False
 
 
-@dataclass(frozen=True)
-class FileSpace:
+class FileSpace(Struct, frozen=True):
     """A color space by name, and how it is known. Without a `space` the numbers are taken as they are."""
 
     name: str

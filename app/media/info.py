@@ -7,17 +7,21 @@ import hashlib
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import OpenImageIO as oiio
+from msgspec import Struct
 
-from ...nodes import Size
+from ...nodes import Kind, Size
 from ..errors import InputError
 from ..graph.fence import outside
 from ..graph.frames import is_video
 from .layers import Layer, Part, layers_of, pick
-from .video import Facts, facts_of
+
+if TYPE_CHECKING:
+    from ..graph import Input
+    from .video import Facts
 
 TAG = "halation:colorspace"
 """Names the color space in formats that have no word for it."""
@@ -43,8 +47,7 @@ _FAULTS = (
 )
 
 
-@dataclass(frozen=True)
-class ImageInfo:
+class ImageInfo(Struct, frozen=True):
     """The header of a file. `size` is the display window, upright; `fingerprint` changes when the file does."""
 
     path: str
@@ -68,6 +71,8 @@ def info(path: str | Path) -> ImageInfo:
 
 def video_facts(path: str | Path) -> Facts:
     """What is known of a video. Raises InputError."""
+    from .video import facts_of
+
     check_file(path)
     return facts_of(str(path), fingerprint(path))
 
@@ -81,6 +86,17 @@ def find_layer(header: ImageInfo, name: str) -> Layer:
         InputError: no layer, or more than one, answers to the name.
     """
     return pick(header.path, header.layers, name)
+
+
+def layer_or_first(header: ImageInfo, socket: Input) -> str:
+    """The layer that an input asks for, if this file has it; a plain picture stands for any layer of color."""
+    if not socket.layer or socket.kind is not Kind.IMAGE:
+        return socket.layer
+    try:
+        find_layer(header, socket.layer)
+    except InputError:
+        return find_layer(header, "").name
+    return socket.layer
 
 
 def fingerprint(path: str | Path) -> str:

@@ -9,7 +9,10 @@ import difflib
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from pathlib import Path
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from ..errors import InputError
 
@@ -31,8 +34,7 @@ _LISTED = 20
 _DEPTH = re.compile(r"z|_*(z_?depth|depth_?z|depth|hitpz|linear_?depth|zfiltered)", re.IGNORECASE)
 
 
-@dataclass(frozen=True)
-class Layer:
+class Layer(Struct, frozen=True):
     """A named group of channels of one part. `data` means numbers that are not color: never converted.
 
     `channels` are short names in natural order (RGBA, XYZW); `indices` are their places in the part. `full` is the
@@ -58,8 +60,7 @@ class Layer:
         return self.format == "float16"
 
 
-@dataclass(frozen=True)
-class Part:
+class Part(Struct, frozen=True):
     """What the header of one part says: `tag` is its color space or "data", "" where nobody said."""
 
     index: int
@@ -203,3 +204,11 @@ def _only(path: str, name: str, match: Sequence[Layer]) -> Layer:
     if len(match) > 1:
         raise InputError(f"{path}: '{name}' may mean {' or '.join(layer.full for layer in match)}: write one of them")
     return match[0]
+
+
+def split_layer(text: str) -> tuple[str, str]:
+    """`shot.exr:Depth` as path and layer. A path that exists as it stands has no layer; `C:` is a drive."""
+    path, colon, layer = text.rpartition(":")
+    if not colon or len(path) < 2 or "/" in layer or "\\" in layer or Path(text).exists():
+        return text, ""
+    return path, layer

@@ -9,11 +9,12 @@ from __future__ import annotations
 import difflib
 import os
 from collections.abc import Iterable
-from dataclasses import dataclass
 from functools import cache, cached_property, lru_cache
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
+
+from msgspec import Struct
 
 from ...nodes import WORKING_SPACE, ColorSettings
 from ...nodes.color._spaces import SPACES
@@ -30,8 +31,7 @@ _BUILT_IN_MARK = "ocio://"
 _NUMBERS = ("raw", "data", "unknown", "none")
 
 
-@dataclass(frozen=True)
-class Space:
+class Space(Struct, frozen=True):
     """A color space of a config; `own` is False for one of the studio config. `data` are numbers without color."""
 
     name: str

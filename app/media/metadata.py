@@ -5,15 +5,14 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import OpenImageIO as oiio
+from msgspec import Struct
 
 from ..graph.frames import is_video
 from .info import opened, video_facts
-from .video import passed_on
 
 _STRUCTURAL = re.compile(
     r"(oiio|openexr|png|jpeg|tiff|targa|bmp|gif|hdr|webp|jpegxl|ICCProfile|dwa):.*|Exif:(ColorSpace|Pixel.Dimension|ImageHistory)"
@@ -29,8 +28,7 @@ _PACKED_BYTES = 60_000
 _OURS = "halation:"
 
 
-@dataclass(frozen=True)
-class Attribute:
+class Attribute(Struct, frozen=True):
     """A value whose type is more than int, float or str: `type` is OpenImageIO's name (`matrix`, `timecode`)."""
 
     type: str
@@ -46,6 +44,8 @@ def read_metadata(path: str | Path) -> dict[str, int | float | str | Attribute]:
         InputError: the file cannot be read.
     """
     if is_video(str(path)):
+        from .video import passed_on
+
         return {**passed_on(video_facts(path))}
     with opened(path) as handle:
         found: dict[str, int | float | str | Attribute] = {}

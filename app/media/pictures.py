@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from fractions import Fraction
 from hashlib import blake2b
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -14,12 +13,16 @@ from ..compiler import Picture, Probed, named_files
 from ..errors import InputError, UsageError
 from ..graph import INPUTS, OUTPUTS, Graph, Input, keyed_range
 from ..graph.frames import is_video
+from .layers import split_layer
 
 if TYPE_CHECKING:
+    from fractions import Fraction
+
     import numpy as np
 
     from ...nodes import ColorChange, ColorSettings, Missing, Render, Scene
     from ..compiler import ColorProgram, Frame, Mesh, Working
+    from .ahead import Ahead
     from .info import ImageInfo
 
     Array = np.ndarray
@@ -34,6 +37,8 @@ class Pictures:
     repaired: dict[str, int] = field(default_factory=dict[str, int])
     look: Callable[[str, Mapping[str, str]], Render] | None = None
     """Finds out what a render holds, where that is not to be waited for."""
+    ahead: Ahead | None = None
+    """What reads some of them already."""
     _infos: dict[str, ImageInfo] = field(default_factory=dict[str, "ImageInfo"], repr=False)
     _marks: dict[str, str] = field(default_factory=dict[str, str], repr=False)
 
@@ -109,10 +114,9 @@ class Pictures:
             return widened(array, picture.kind, picture.width)
         from .read import read
 
-        pixels = read(
-            picture.path, picture.layer, picture.kind, picture.width, picture.frame, space=picture.space,
-            color=picture.color,
-        )
+        what = (picture.path, picture.layer, picture.kind, picture.width)
+        pixels = self.ahead and self.ahead.take((*what, picture.space, picture.color))
+        pixels = pixels or read(*what, picture.frame, space=picture.space, color=picture.color)
         if pixels.repaired:
             self.repaired[picture.path] = pixels.repaired
         return pixels.array
@@ -187,15 +191,11 @@ class Pictures:
         return Picture(path, layer or self._hinted(path, socket), socket.kind, socket.socket().channels)
 
     def _hinted(self, path: str, socket: Input) -> str:
-        """The layer that the input asks for, if this file has it; a plain picture stands for any color layer."""
-        from .info import find_layer
+        """The layer that the input asks for, if this file has it."""
+        from .info import layer_or_first
 
         if socket.layer and socket.kind is Kind.IMAGE:
-            path = self.at(path, 1, "nearest").path
-            try:
-                find_layer(self.info(path), socket.layer)
-            except InputError:
-                return find_layer(self.info(path), "").name
+            return layer_or_first(self.info(self.at(path, 1, "nearest").path), socket)
         return socket.layer
 
 
@@ -248,14 +248,6 @@ def _check_within(path: str, folder: str) -> None:
         inside = False
     if not inside:
         raise InputError(f"{path}: it does not lie in the folder '{folder}', which it may not leave")
-
-
-def split_layer(text: str) -> tuple[str, str]:
-    """`shot.exr:Depth` as path and layer. A path that exists as it stands has no layer; `C:` is a drive."""
-    path, colon, layer = text.rpartition(":")
-    if not colon or len(path) < 2 or "/" in layer or "\\" in layer or Path(text).exists():
-        return text, ""
-    return path, layer
 
 
 def widened(array: Array, kind: Kind, width: int) -> Array:

@@ -3,33 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
+from msgspec import Struct, field
 
 from ...nodes import ColorSettings, Kind
 from ..errors import InputError
 from ..graph.frames import is_video
 from .color import Array, as_float, available_cores, is_working, to_working
 from .file_space import AUTO, space_of
+from .finite import has_bad, not_finite
 from .hints import hints_of
 from .info import ImageInfo, check_file, check_memory, described, described_video, fault, find_layer, opened
 from .info import fingerprint as marked
 from .layers import Layer
 from .managed import DEFAULT_COLOR, managed
-from .video import facts_of, signal_at
 
 _READ_AS = {"float16": "half", "uint8": "uint8", "uint16": "uint16", "uint32": "uint"}
 _ALPHA = ("a", "alpha")
+_AS_IT_IS = {(*"rgb", alpha) for alpha in _ALPHA}
 
-oiio.attribute("threads", available_cores())
-oiio.attribute("exr_threads", available_cores())
+# OpenImageIO hears OPENIMAGEIO_THREADS, but not which processors this process may use, and OpenEXR hears neither.
+oiio.attribute("threads", min(available_cores(), oiio.get_int_attribute("threads")))
+oiio.attribute("exr_threads", oiio.get_int_attribute("threads"))
 
 
-@dataclass(frozen=True)
-class Want:
+class Want(Struct, frozen=True):
     """A layer, and the socket it is for; `width` counts the channels of a Vector.
 
     `space` is what its color is in, by name or role, "" to find out; `color` says how colors are managed.
@@ -42,8 +43,7 @@ class Want:
     color: ColorSettings = field(default_factory=ColorSettings)
 
 
-@dataclass(frozen=True)
-class Pixels:
+class Pixels(Struct, frozen=True):
     """A contiguous [height, width, channels] array; row 0 is the top.
 
     `half` says that 16 bits hold it without loss (the dtype is then float16), `repaired` how many pixels were not
@@ -95,6 +95,8 @@ def read_many(path: str | Path, wants: Sequence[Want], frame: int = 1) -> list[P
 def _read_video(path: str, wants: Sequence[Want], frame: int) -> list[Pixels]:
     """What sockets want of one frame of a video."""
     mark = marked(path)
+    from .video import facts_of, signal_at
+
     header = described_video(facts_of(path, mark))
     signal = signal_at(path, mark, frame)
     made: list[Pixels] = []
@@ -142,8 +144,9 @@ def _pixels(block: Array, layer: Layer, want: Want, spec: oiio.ImageSpec, header
         array = _data_image(block, layer) if layer.data else _image(block, layer, spec, header, want)
     else:
         width = want.width if want.kind is Kind.VECTOR else 1
-        array = np.zeros((*block.shape[:2], width), as_float(block[:0]).dtype)
-        array[..., : block.shape[2]] = as_float(block[..., :width])
+        array = as_float(block[..., :width])
+        if (missing := width - array.shape[2]) > 0:
+            array = np.concatenate([array, np.zeros((*array.shape[:2], missing), array.dtype)], axis=2)
     color = want.kind in (Kind.IMAGE, Kind.COLOR) and not layer.data
     array = np.ascontiguousarray(array)
     array, repaired = _repaired_color(array) if color else _repaired_data(array)
@@ -159,10 +162,12 @@ def _data_image(block: Array, layer: Layer) -> Array:
 
 def _image(block: Array, layer: Layer, spec: oiio.ImageSpec, header: ImageInfo, want: Want) -> Array:
     """Premultiplied RGBA in the working space."""
-    rgb, alpha = _parts(block, layer)
     manager = managed(want.color)
     found = space_of(header.path, hints_of(spec, header.format, block.dtype.kind in "ui"), manager, want.space)
     straight = spec.get_int_attribute("oiio:UnassociatedAlpha") == 1
+    if is_working(found, manager) and not straight and tuple(map(str.casefold, layer.channels)) in _AS_IT_IS:
+        return as_float(block)
+    rgb, alpha = _parts(block, layer)
     if alpha is not None:
         alpha = as_float(alpha)
     if is_working(found, manager):
@@ -200,7 +205,7 @@ def _rgba(rgb: Array, alpha: Array | None) -> Array:
 
 
 def _repaired_color(array: Array) -> tuple[Array, int]:
-    bad = int(_not_finite(array).any(axis=2).sum()) if _has_bad(array) else 0
+    bad = int(not_finite(array).any(axis=2).sum()) if has_bad(array) else 0
     if not bad:
         return array, 0
     buffer = oiio.ImageBuf(array)
@@ -210,22 +215,10 @@ def _repaired_color(array: Array) -> tuple[Array, int]:
 
 
 def _repaired_data(array: Array) -> tuple[Array, int]:
-    if not _has_bad(array):
+    if not has_bad(array):
         return array, 0
     nan = np.isnan(array)
-    array[nan] = 0.0
-    return array, int(nan.any(axis=2).sum())
-
-
-def _has_bad(array: Array) -> bool:
-    """True if anything is NaN or infinite; bits are compared, since numpy is slow on halves."""
-    return bool(_not_finite(array).any())
-
-
-def _not_finite(array: Array) -> Array:
-    if array.dtype == np.float16:
-        return (array.view(np.uint16) & 0x7C00) == 0x7C00
-    return ~np.isfinite(array)
+    return np.where(nan, array.dtype.type(0.0), array), int(nan.any(axis=2).sum())
 
 
 def _placed(array: Array, spec: oiio.ImageSpec) -> Array:

@@ -15,12 +15,13 @@ import time
 from bisect import bisect_left
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property, lru_cache
 from itertools import pairwise
 from pathlib import Path
 from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from ...nodes import Missing
 from ..compiler import Frame
@@ -28,6 +29,9 @@ from ..errors import InputError, UsageError
 from ..graph.frames import Pattern, format_frames, is_video
 from .info import check_inside, video_facts
 from .thumbnail import readable
+
+if TYPE_CHECKING:
+    from fractions import Fraction
 
 _UNSETTLED = 2_000_000_000
 """Nanoseconds: how coarse the clocks of file systems are. A folder that changed just now may change again unseen."""
@@ -38,8 +42,7 @@ _WIDEST = 16
 _NUMBER = re.compile(r"(?:(?<![^._-])-)?[0-9]+")
 
 
-@dataclass(frozen=True)
-class Sequence:
+class Sequence(Struct, frozen=True, dict=True):
     """The frames of a pattern that have a file; `names` are the names of the files, by frame and in order.
 
     Of a video all are in the one file, and `rate` is how many of them a second has.

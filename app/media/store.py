@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
-import secrets
 import shutil
 import time
 from collections.abc import Callable, Iterator
@@ -72,7 +71,7 @@ def unfinished(path: str | Path) -> Iterator[tuple[Path, Path]]:
     if said := outside(path):
         raise OutputError(f"{path}: {said}")
     target = Path(os.path.realpath(path))
-    part = target.with_name(f"{part_prefix(os.getpid())}{secrets.token_hex(6)}{target.suffix[:8]}")
+    part = target.with_name(f"{part_prefix(os.getpid())}{os.urandom(6).hex()}{target.suffix[:8]}")
     try:
         if target.is_dir():
             raise OutputError(f"{path}: is a folder: add the name of a file")

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 import OpenImageIO as oiio
+from msgspec import Struct
 
 from ...nodes import Kind, Size
 from ..errors import OutputError, UsageError
 from .color import Array
 from .encoding import Encoding, png_space
+from .finite import as_half
 from .info import TAG
 from .layers import is_depth
 from .metadata import add_metadata
@@ -29,13 +30,11 @@ _COMPRESSIONS = {
     "openexr": ("none", "rle", "zips", "zip", "piz", *_EXR_LOSSY), "tiff": ("none", "lzw", "zip", "packbits"),
 }
 _STORED = {"uint8": "uint8", "uint16": "uint16", "float32": "float"}
-_HALF_MAX = 65504.0
 
 Precision = Literal["half", "float"]
 
 
-@dataclass(frozen=True)
-class _Part:
+class _Part(Struct, frozen=True):
     """What one part of a file will be."""
 
     spec: oiio.ImageSpec
@@ -75,6 +74,11 @@ def write(
         add_metadata(part.spec, metadata if part is parts[0] else {}, format)
     room = sum(part.array.nbytes for part in parts) + sum(len(str(value)) for value in metadata.values())
     store(path, _encoder(path, format, parts), room)
+
+
+def rounds(path: str | Path, kind: Kind, *, precision: Precision, encoding: Encoding) -> bool:
+    """True if `write` stores the numbers of a layer as they are, but rounded to half floats."""
+    return _halved(kind, precision) and not encoding.space and Path(path).suffix.casefold() == ".exr"
 
 
 def check_destination(
@@ -121,7 +125,7 @@ def _exr_parts(
     parts: list[_Part] = []
     for name, array in layers.items():
         color = kinds[name] in (Kind.IMAGE, Kind.COLOR)
-        half = color and precision == "half"
+        half = _halved(kinds[name], precision)
         height, width, count = array.shape
         spec = oiio.ImageSpec(width, height, count, "half" if half else "float")
         prefix = f"{name}." if name and len(layers) > 1 else ""
@@ -134,9 +138,13 @@ def _exr_parts(
         if color:
             array = encoding.numbers(array)
         if half:
-            array = np.clip(array, -_HALF_MAX, _HALF_MAX).astype(np.float16)
+            array = as_half(array)
         parts.append(_Part(spec, np.ascontiguousarray(array)))
     return parts
+
+
+def _halved(kind: Kind, precision: Precision) -> bool:
+    return kind in (Kind.IMAGE, Kind.COLOR) and precision == "half"
 
 
 def _tag(spec: oiio.ImageSpec, encoding: Encoding, color: bool) -> None:

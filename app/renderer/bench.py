@@ -108,13 +108,13 @@ def bench(
     for frame, reel in reels.items():  # one after the other: what one remembers is what the next one makes
         started = time.perf_counter()
         step(f"frame {frame}")
-        held = _held(renderer, reel, frame)
+        given = held(renderer, reel, frame)
         reel.close()
         loading += time.perf_counter() - started
         try:
-            turns = [_once(renderer, plans[frame]) for _ in range(warm_up + repeats)]
+            turns = [renderer.runner.timed(plans[frame]) for _ in range(warm_up + repeats)]
         finally:
-            held.close()
+            given.close()
         timings[frame] = turns[warm_up:]
     first = plans[frames[0]]
     outputs = [first.surfaces[number].size for number in first.outputs.values()]
@@ -152,7 +152,7 @@ def names(passes: Iterable[Pass | Timed]) -> list[Name]:
     return found
 
 
-def _held(renderer: Renderer, reel: Reel, frame: int) -> Lease:
+def held(renderer: Renderer, reel: Reel, frame: int) -> Lease:
     """What a frame is made of, on the device: pixels of files, and what was remembered before it."""
     plan, runner = reel.plan(frame), renderer.runner
     lease, kept = runner.lease(), runner.lease()
@@ -173,17 +173,6 @@ def _held(renderer: Renderer, reel: Reel, frame: int) -> Lease:
     finally:
         kept.close()
     return lease
-
-
-def _once(renderer: Renderer, plan: Plan) -> Timings:
-    kept, taken = renderer.runner.lease(), Timings()
-    try:
-        with renderer.runner.steps(plan, kept, timings=taken) as run:
-            for _ in run:
-                pass
-    finally:
-        kept.close()
-    return taken
 
 
 def _merged(plans: Mapping[int, Plan], timings: Mapping[int, Sequence[Timings]]) -> tuple[Timed, ...]:

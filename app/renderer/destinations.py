@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
 from pathlib import Path
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from ...nodes import Kind, Socket
 from .. import media
@@ -16,8 +18,7 @@ from ..graph.frames import Pattern, check_numbered, is_video
 from .engine import Wanted
 
 
-@dataclass(frozen=True)
-class Writing:
+class Writing(Struct, frozen=True):
     """Where and how results are written. `files` are pairs of an output's name and a file; "" stands for all outputs.
 
     Without a `view`, outputs are shown as they ask for themselves. `display`, `look` and `space` are those of
@@ -40,8 +41,7 @@ class Writing:
         return tuple(path for _, path in self.files if is_video(str(path)))
 
 
-@dataclass(frozen=True)
-class Destination:
+class Destination(Struct, frozen=True):
     """A file to be written: the output behind each of its layers, and what the layers hold."""
 
     path: Path
@@ -110,6 +110,16 @@ def check(found: Sequence[Destination], plan: Plan, sources: Mapping[str, Pictur
             media.check_video(file.path, file.kinds, sizes, codec=writing.codec, encoding=file.encoding)
             continue
         media.check_destination(file.path, file.kinds, sizes, compression=writing.compression, encoding=file.encoding)
+
+
+def halves(files: Sequence[Destination], writing: Writing) -> frozenset[str]:
+    """The outputs of which only half floats are kept, as they are: no file wants more of them."""
+    found, rest = set[str](), set[str]()
+    for file in files:
+        for layer, name in file.layers.items():
+            rounds = media.rounds(file.path, file.kinds[layer], precision=writing.precision, encoding=file.encoding)
+            (found if rounds else rest).add(name)
+    return frozenset(found - rest)
 
 
 def _destination(graph: Graph, wanted: Wanted, writing: Writing, path: Path, names: Sequence[str]) -> Destination:

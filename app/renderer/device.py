@@ -1,8 +1,7 @@
-"""Opening OpenGL, with or without a display, and finding out what it can do."""
+"""An OpenGL context, and what it can do."""
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field, replace
@@ -12,13 +11,12 @@ from threading import current_thread, get_ident
 import moderngl
 import numpy as np
 
-from ..compiler import Form, Target
+from ..compiler import Target
+from ..compiler.devices import is_software
 from ..errors import DeviceError, UsageError
 
 OLDEST = 410
 """macOS stops at OpenGL 4.1."""
-
-_SOFTWARE = ("llvmpipe", "softpipe", "swiftshader", "swrast", "lavapipe", "software", "basic render")
 
 
 @dataclass(frozen=True)
@@ -41,6 +39,10 @@ class Device:
             name = current_thread().name
             raise UsageError(f"thread '{name}' did not open this device and cannot render on it: open one there")
         return nullcontext() if self.shared else self.context
+
+    def within(self, memory: int) -> Device:
+        """The same device, of which plans use no more bytes than that; 0 for all that there are."""
+        return replace(self, target=replace(self.target, memory=memory))
 
     def to_screen(self) -> None:
         """What is drawn next by others goes to the window again."""
@@ -84,21 +86,8 @@ class Device:
         return f"{self.target.renderer} ({kind}, OpenGL {self.target.version / 100:.1f}, {self.target.form} passes)"
 
 
-def open_device(form: Form | None = None) -> Device:
-    """Open OpenGL without a window. Raises DeviceError where there is none, or one that is too old."""
-    context = _standalone()
-    return Device(context, describe(context, form))
-
-
-def adopt(form: Form | None = None) -> Device:
-    """The device of the OpenGL context that is current on this thread, a window's. Raises DeviceError if it is old."""
-    moderngl.init_context()
-    context = moderngl.get_context()
-    return Device(context, describe(context, form), shared=True)
-
-
-def describe(context: moderngl.Context, form: Form | None = None) -> Target:
-    """What a context can do. `form` overrides how passes are emitted."""
+def describe(context: moderngl.Context) -> Target:
+    """What a context can do; the form of passes is left as it is by default. Raises DeviceError for one too old."""
     info = context.info
     renderer = str(info["GL_RENDERER"])
     version = context.version_code
@@ -107,37 +96,10 @@ def describe(context: moderngl.Context, form: Form | None = None) -> Target:
             f"{renderer} offers OpenGL {version / 100:.1f}, but at least {OLDEST / 100:.1f} is needed: "
             "update the graphics driver, or install Mesa's software rasterizer"
         )
-    software = any(word in renderer.lower() for word in _SOFTWARE)
-    target = Target(
+    software = is_software(renderer)
+    return Target(
         renderer, version, software,
         max_size=int(info["GL_MAX_TEXTURE_SIZE"]),
         max_samplers=int(info["GL_MAX_TEXTURE_IMAGE_UNITS"]),
-        form="compute" if version >= 430 else "fragment",
         precision="float" if software else "half",
     )
-    if form == "compute" and version < 430:
-        raise DeviceError(
-            f"{renderer} offers OpenGL {version / 100:.1f}, but compute passes need 4.3: use fragment passes"
-        )
-    return replace(target, form=form) if form else target
-
-
-def _standalone() -> moderngl.Context:
-    backends = ("egl", None) if sys.platform.startswith("linux") else (None,)
-    faults: list[str] = []
-    for backend in backends:
-        try:
-            if backend is None:
-                return moderngl.create_context(standalone=True, require=OLDEST)
-            return moderngl.create_context(standalone=True, require=OLDEST, backend=backend)  # pyright: ignore[reportArgumentType]  (its stub is wrong)
-        except Exception as fault:  # moderngl and its loaders raise plain Exceptions
-            faults.append(str(fault).strip().rstrip("."))
-    raise DeviceError(f"OpenGL {OLDEST / 100:.1f} cannot be opened ({'; '.join(faults)}): {_way_out()}")
-
-
-def _way_out() -> str:
-    if sys.platform.startswith("linux"):
-        return "install a graphics driver or the software rasterizer (Debian, Ubuntu: apt-get install libegl1 libgl1)"
-    if sys.platform == "win32":
-        return "install the graphics driver of your card's maker"
-    return "run where a window system is available"

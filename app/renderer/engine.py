@@ -8,14 +8,16 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from ...nodes import Size
-from ..compiler import Library, Memory, Plan, Precision, Request, compile_graph
+from ..compiler import Library, Memory, Plan, Planner, Precision, Region, Request
 from ..graph import Graph, Port
 from ..media.pictures import Pictures
 from .decoding import Array
-from .device import Device, open_device
+from .device import Device
+from .opening import open_device
 from .runner import Runner
 
 if TYPE_CHECKING:
+    from ..media.ahead import Ahead
     from ..media.pictures import Binding
 
 DEFAULT_BUDGET = 512 * 2**20
@@ -38,6 +40,11 @@ class Wanted:
     precision: Precision | None = None
     memories: Mapping[Port, Memory] = field(default_factory=lambda: MappingProxyType({}))
     """What nodes remember of the frame before: see `Reel`."""
+    halves: frozenset[str] = frozenset()
+    """Those that will be rounded to half floats: they may come back as that."""
+
+    region: Region | None = None
+    """The part of every output that is computed, in pixels of it: a surface's `window` says what came of that."""
 
     @property
     def bound(self) -> dict[str, Binding]:
@@ -49,25 +56,30 @@ class Renderer:
     """Renders graphs on one device and one thread, keeping programs, textures and results for the next time.
 
     `budget` is how many bytes of results may stay on the device. Without a `device` it opens one, and closes it too.
+    `ahead` reads pictures already.
     """
 
     def __init__(
         self, device: Device | None = None, *, budget: int = DEFAULT_BUDGET, library: Library | None = None,
-        fusion: bool = True,
+        fusion: bool = True, ahead: Ahead | None = None,
     ) -> None:
         self._owns_device = device is None
         self.device = device or open_device()
-        self.pictures = Pictures()
+        self.pictures = Pictures(ahead=ahead)
         self.runner = Runner(self.device, self.pictures.load, budget)
         self.library = library
         """The shaders of nodes; None for those that ship with Halation."""
         self._fusion = fusion
+        self._planner = Planner()
 
     def compile(self, graph: Graph, wanted: Wanted = Wanted(), *, fusion: bool = True) -> Plan:
         """Plan the rendering of what is wanted of `graph`. Raises the errors of `app.errors`."""
         bindings = self.pictures.bind(graph, wanted.bound)
-        request = Request(wanted.targets, bindings, wanted.size, wanted.scale, wanted.frame, wanted.memories)
-        return compile_graph(
+        request = Request(
+            wanted.targets, bindings, wanted.size, wanted.scale, wanted.frame, wanted.memories, wanted.halves,
+            wanted.region,
+        )
+        return self._planner.plan(
             graph, request, self.pictures, target=self.device.target, precision=wanted.precision,
             library=self.library, fusion=fusion and self._fusion,
         )

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
 
 import moderngl
 import numpy as np
+from msgspec import Struct
 
 from ..compiler import FIRST_TABLE, MAX_WEIGHTS, Mesh, Pass, Plan, Shader, Upload
 from ..errors import InputError, RenderError
-from .decoding import Array
+from .arrays import Arrays
+from .costs import Costs
+from .decoding import Array, Decoded
 from .device import Device
 from .heartbeat import Heartbeat
 from .meshes import MeshBuffers
@@ -24,8 +26,7 @@ BAND_PIXELS = 2**21
 """The software rasterizer computes at most so many pixels at a time: an interrupt is heard only in between."""
 
 
-@dataclass
-class Counters:
+class Counters(Struct):
     """What a runner has done since it was made."""
 
     passes: int = 0
@@ -42,6 +43,7 @@ class Executor:
         self.textures = Textures(device.context, budget)
         self.counters = Counters()
         self.closed = False
+        self._costs = Costs(device.target.software)
         self._tables = Tables(device.context)
         self._meshes = MeshBuffers(device.context)
         self._filtered = device.context.sampler(
@@ -63,17 +65,26 @@ class Executor:
             buffer.release()
         self._weights.clear()
 
-    def upload(self, plan: Plan, upload: Upload, pixels: Array, lease: Lease) -> None:
-        """Write decoded pixels into their surface. Raises InputError if they are not those that were planned for."""
-        surface = plan.surfaces[upload.surface]
+    def upload(self, plan: Plan, upload: Upload, decoded: Decoded, lease: Lease) -> None:
+        """Write decoded pixels, or the part that is wanted of them, into their surface.
+
+        Raises InputError if they are not those that were planned for.
+        """
+        surface, pixels = plan.surfaces[upload.surface], decoded.pixels
+        started = time.perf_counter()
         found = (pixels.shape[1], pixels.shape[0])
-        if found != surface.size:
+        if surface.window and found == upload.whole:
+            rows, columns = (slice(*span) for span in (surface.window.down, surface.window.across))
+            pixels = pixels[rows, columns]
+        elif found != surface.size:
             raise InputError(
-                f"{upload.picture.path}: it was {surface.size[0]}x{surface.size[1]} pixels when the rendering "
+                f"{upload.picture.path}: it was {upload.whole[0]}x{upload.whole[1]} pixels when the rendering "
                 f"began, and is {found[0]}x{found[1]} now; render again"
             )
         try:
-            lease.make(surface).handle.write(_fitting(pixels, surface.components, surface.depth))
+            texture = lease.make(surface)
+            texture.handle.write(_fitting(pixels, surface.components, surface.depth))
+            texture.cost = decoded.seconds + time.perf_counter() - started
         except BaseException:
             lease.spoil(surface.key)
             raise
@@ -88,12 +99,15 @@ class Executor:
             started = time.perf_counter()
             self.execute(plan, one, lease)
             context.finish()
-            return time.perf_counter() - started
-        if self._query is None:
-            self._query = context.query(time=True)
-        with self._query:
-            self.execute(plan, one, lease)
-        return self._query.elapsed / 1e9
+            seconds = time.perf_counter() - started
+        else:
+            if self._query is None:
+                self._query = context.query(time=True)
+            with self._query:
+                self.execute(plan, one, lease)
+            seconds = self._query.elapsed / 1e9
+        self._costs.learn(plan, one, seconds)
+        return seconds
 
     def execute(self, plan: Plan, one: Pass, lease: Lease) -> None:
         """Run a pass whose textures are on the device. Raises ShaderError, DeviceError, RenderError."""
@@ -129,7 +143,10 @@ class Executor:
             if one.mesh is not None:
                 self._rasterize(one.mesh, program, made)
             elif one.shader.form == "compute":
+                started = time.perf_counter()
                 self._dispatch(plan, one, program, textures, made)
+                if self.device.target.software:  # which returns when it is done
+                    self._costs.learn(plan, one, time.perf_counter() - started)
             else:
                 self._draw(one.shader, program.vertices, textures, made)
             error = self.device.context.error
@@ -142,6 +159,8 @@ class Executor:
             for surface in missing:
                 lease.spoil(surface.key)
             raise
+        for texture in made:
+            texture.cost = self._costs.of(plan, one)
         self.counters.passes += 1
 
     def _dispatch(
@@ -158,13 +177,13 @@ class Executor:
                 texture.handle.use(unit)
         for unit, texture in enumerate(made):
             texture.handle.bind_to_image(first + unit, read=False, write=True)
-        across, down = one.groups
+        across, down, blocks = one.groups
         width, height = plan.surfaces[one.targets[0]].size
         bands = -(-width * height // BAND_PIXELS) if self.device.target.software else 1
         step = -(-down // bands)
         for row in range(0, down, step):
             program.set("first_row", row)
-            program.handle.run(across, min(step, down - row))
+            program.handle.run(across, min(step, down - row), blocks)
         self.device.context.memory_barrier()
 
     def _draw(
@@ -224,13 +243,14 @@ class Executor:
         assert texture is not None, f"surface {number} is gone before its last reader"
         return texture
 
-    def download(self, plan: Plan, number: int) -> Array:
-        """The pixels of a surface as [height, width, channels]."""
+    def download(self, plan: Plan, number: int, arrays: Arrays) -> Array:
+        """The pixels of a surface as [height, width, channels], in one of the `arrays`."""
         surface = plan.surfaces[number]
         width, height = surface.size
         if self.device.target.software:  # llvmpipe may read a texture before the draws into it are done
             self.device.context.finish()
-        pixels = np.empty((height, width, surface.components), np.float16 if surface.depth == "f2" else np.float32)
+        shape = (height, width, surface.components)
+        pixels = arrays.take(shape, np.float16 if surface.depth == "f2" else np.float32)
         self.resident(plan, number).handle.read_into(pixels)
         return pixels[..., : surface.channels]
 

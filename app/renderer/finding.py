@@ -8,6 +8,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
+from msgspec import structs
+
 from ...nodes import Node
 from ...presets import paths as presets
 from ..compiler.named import CONFIG, path_texts
@@ -160,7 +162,7 @@ def pointed(graph: Graph, found: Sequence[Found]) -> Graph:
             ends[name] = replace(ends[name], file=here[item.used.owner], layer=item.used.layer)
     color = graph.settings.color
     if config := here.get(CONFIG):
-        color = replace(color, config=config)
+        color = structs.replace(color, config=config)
     return replace(graph, inputs=ends, settings=replace(graph.settings, color=color))
 
 

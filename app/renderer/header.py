@@ -8,7 +8,6 @@ from __future__ import annotations
 import shlex
 from collections.abc import Mapping, Sequence
 from hashlib import blake2b
-from importlib import metadata
 from typing import Any
 
 from .. import document, media
@@ -16,6 +15,7 @@ from ..compiler import Pass, Plan, Target
 from ..errors import HalationError
 from ..graph import Graph
 from ..graph.paths import inlined
+from ..version import VERSION
 from .destinations import Destination, Writing
 from .engine import Wanted
 from .sources import Hashes, Source, said
@@ -24,17 +24,25 @@ PREFIX = "halation:"
 _KEY = "halation:key"
 
 
+def whole(graph: Graph) -> str:
+    """A graph and its groups as one text."""
+    return document.dumps(inlined(graph))
+
+
 def header(
-    graph: Graph, target: Target, wanted: Wanted, frames: tuple[int, int], writing: Writing, file: Destination,
+    graph: str, target: Target, wanted: Wanted, frames: tuple[int, int], writing: Writing, file: Destination,
     plan: Plan, sources: Sequence[Source], hashes: Hashes,
 ) -> dict[str, Any]:
-    """What a file says: metadata of what was read passes through, and how to make it again is added."""
+    """What a file says: metadata of what was read passes through, and how to make it again is added.
+
+    The graph is the text of `whole`.
+    """
     found: dict[str, Any] = {}
     for path in dict.fromkeys(item.path for item in sources if item.is_picture):
         found = media.read_metadata(path) | found
     found = {name: item for name, item in found.items() if not name.startswith(PREFIX)}
-    found["halation:graph"] = document.dumps(inlined(graph))
-    found["halation:version"] = metadata.version("halation")
+    found["halation:graph"] = graph
+    found["halation:version"] = VERSION
     found["halation:renderer"] = target.renderer
     found["halation:settings"] = settings(wanted, target, writing, file, frames if plan.memories else None)
     if color := media.color_digest(file.encoding.color):
@@ -67,7 +75,7 @@ def settings(
 
 
 def frame_key(
-    graph: Graph, wanted: Wanted, plan: Plan, file: Destination, writing: Writing, sources: Sequence[Source],
+    graph: str, wanted: Wanted, plan: Plan, file: Destination, writing: Writing, sources: Sequence[Source],
     hashes: Hashes,
 ) -> str:
     """What tells whether a file is still what would be written: it is equal only where all bytes of pixels are.
@@ -78,12 +86,12 @@ def frame_key(
     before = ""
     if plan.memories:
         led = [(item.owner, hashes.of_all(item.files.values())) for item in sources if item.files]
-        before = _digest(document.dumps(inlined(graph)), led, wanted.scale, wanted.size, plan.target.form)
+        before = _digest(graph, led, wanted.scale, wanted.size, plan.target.form)
     keys = _content_keys(plan, contents, before)
     pixels = {layer: keys[plan.outputs[name]] for layer, name in file.layers.items()}
     seen = (file.view, writing.display, writing.look, writing.space, media.color_digest(file.encoding.color))
     how = (file.path.suffix, *seen, writing.compression, writing.precision)
-    return _digest(metadata.version("halation"), sorted(pixels.items()), sorted(file.kinds.items()), how)
+    return _digest(VERSION, sorted(pixels.items()), sorted(file.kinds.items()), how)
 
 
 def is_marked(file: Destination) -> bool:

@@ -1,7 +1,7 @@
 """Renderings from graph to files: what `halation render` does once its arguments are understood.
 
 While a frame is computed the next one's pictures are decoded and the last one's results are written, all in bounded
-memory: a few pictures ahead, two frames behind.
+memory: a few pictures ahead, two frames behind. What two frames have in common stays on the device in between.
 """
 
 from __future__ import annotations
@@ -9,33 +9,33 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
-from fractions import Fraction
+from dataclasses import replace
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
+
+from msgspec import Struct, field
 
 from .. import media
 from ..compiler import Pass, Plan
 from ..errors import HalationError, UsageError
 from ..graph import Graph
+from .behind import Behind
 from .decoding import Array
-from .destinations import Destination, Writing, check, destinations
+from .destinations import Destination, Writing, check, destinations, halves
 from .engine import Renderer, Wanted
-from .header import frame_key, header, is_marked, is_written
+from .header import frame_key, header, is_marked, is_written, whole
 from .reel import Reel
 from .sources import Hashes, Source, Sources
 from .textures import Lease
 from .videos import Videos
 
+if TYPE_CHECKING:
+    from fractions import Fraction
+from functools import cached_property
+
 __all__ = ["FrameReport", "Progress", "Report", "Writing", "run_job"]
 
-BEHIND = 2
-"""Frames whose results may wait to be written."""
-
-
-@dataclass(frozen=True)
-class FrameReport:
+class FrameReport(Struct, frozen=True):
     """What became of a frame. `passes` were executed for it; none where its files were `kept` as they were.
 
     A video is not among the files `written`: it is there when all frames are.
@@ -59,8 +59,7 @@ class Progress(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class Report:
+class Report(Struct, frozen=True):
     """What a job did. `seconds` are by stage; stages of different frames overlap."""
 
     frames: tuple[FrameReport, ...]
@@ -99,8 +98,7 @@ def run_job(
     )
 
 
-@dataclass(frozen=True)
-class _Task:
+class _Task(Struct, frozen=True):
     """One frame: its files, how it is made, and of what."""
 
     frame: int
@@ -114,20 +112,21 @@ class _Job:
         self, renderer: Renderer, graph: Graph, wanted: Wanted, writing: Writing, resume: bool,
         progress: Progress | None, frames: tuple[int, ...],
     ) -> None:
+        self._files = destinations(graph, wanted, writing, frames)
+        wanted = replace(wanted, halves=halves(self._files[frames[0]], writing))
         self._renderer, self._graph, self._wanted, self._writing = renderer, graph, wanted, writing
         self._resume, self._progress, self._frames = resume, progress, frames
         self._reel = Reel(renderer, graph, wanted)
         self._hashes = Hashes()
         self._sources = Sources(renderer.pictures, graph, renderer.pictures.bind(graph, wanted.bound))
-        self._writer = ThreadPoolExecutor(1, thread_name_prefix="write")
-        self._writes: deque[Future[FrameReport]] = deque()
+        self._behind = Behind[FrameReport]()
+        self._fault: HalationError | None = None
         self._reports: list[FrameReport] = []
         self._films = Videos(writing, self._rate)
         self.videos: tuple[Path, ...] = ()
         self.seconds = {"compile": 0.0, "render": 0.0, "write": 0.0}
 
     def run(self) -> list[FrameReport]:
-        self._files = destinations(self._graph, self._wanted, self._writing, self._frames)
         if self._resume and self._writing.videos:
             raise UsageError(
                 f"{self._writing.videos[0]}: a video is written anew as a whole: leave out --resume, or render "
@@ -137,24 +136,19 @@ class _Job:
             for folder in {file.path.parent for files in self._files.values() for file in files}:
                 media.sweep(folder)
         todo = deque(self._frames)
-        task, fault = self._next(todo), None
+        task = self._next(todo)
+        if task is not None:
+            self._renderer.runner.prepare(task.plan)
+        following = self._next(todo)
         while task is not None:
-            kept, passes = self._begun(task)
-            following = None
-            try:
-                following = self._next(todo)  # while the device is busy
-                if following is not None:
-                    self._renderer.runner.prepare(following.plan)
-            except HalationError as error:  # that frame cannot be made, this one can
-                fault = error
+            kept, passes = self._begun(task, following)
+            later = self._next(todo)  # while the device is busy
             self._write(task, self._taken(task, kept), passes)
-            task = following
-            if fault is not None:
-                break
-        while self._writes:
-            self._settle()
-        if fault is not None:
-            raise fault
+            task, following = following, later
+        for report in self._behind.rest():
+            self._finished(report)
+        if self._fault is not None:
+            raise self._fault
         started = time.perf_counter()
         self.videos = self._films.finish()
         self.seconds["write"] += time.perf_counter() - started
@@ -162,15 +156,28 @@ class _Job:
 
     def close(self) -> None:
         """Let what is being written come to its end."""
-        self._writer.shutdown(cancel_futures=True)
+        self._behind.close()
         self._films.abort()
         self._hashes.close()
         self._reel.close()
 
+    @cached_property
+    def _text(self) -> str:
+        """The graph as files say it."""
+        return whole(self._graph)
+
     # --- one frame ---------------------------------------------------------------------------------------------------
 
     def _next(self, todo: deque[int]) -> _Task | None:
-        """The next frame that must be rendered."""
+        """The next frame that must be rendered. One that cannot be made is the end: the ones before it can."""
+        try:
+            return self._planned(todo)
+        except HalationError as error:
+            self._fault = error
+            todo.clear()
+            return None
+
+    def _planned(self, todo: deque[int]) -> _Task | None:
         while todo:
             frame, started = todo.popleft(), time.perf_counter()
             plan, files = self._reel.plan(frame), self._files[frame]
@@ -190,17 +197,19 @@ class _Job:
             return False
         wanted = replace(self._wanted, frame=task.frame)
         keys = (
-            frame_key(self._graph, wanted, task.plan, file, self._writing, task.sources, self._hashes)
+            frame_key(self._text, wanted, task.plan, file, self._writing, task.sources, self._hashes)
             for file in task.files
         )
         return all(map(is_written, task.files, keys))
 
-    def _begun(self, task: _Task) -> tuple[Lease, int]:
+    def _begun(self, task: _Task, following: _Task | None) -> tuple[Lease, int]:
         """Send a frame's passes to the device: what will hold the outputs, and how many passes they were."""
         started, passes = time.perf_counter(), 0
         kept = self._renderer.runner.lease()
-        for run in self._reel.steps(task.frame, kept):
+        for run in self._reel.steps(task.frame, kept, following=following.frame if following else None):
             with run:
+                if following is not None:
+                    self._renderer.runner.prepare(following.plan, {surface.key for surface in task.plan.surfaces})
                 for done, one in enumerate(run, 1):
                     passes += 1
                     if self._progress is not None:
@@ -211,7 +220,7 @@ class _Job:
     def _taken(self, task: _Task, kept: Lease) -> dict[str, Array]:
         """Wait for the outputs of a frame."""
         started = time.perf_counter()
-        outputs = self._renderer.runner.download(task.plan)
+        outputs = self._renderer.runner.download(task.plan, self._behind.arrays)
         kept.close()
         self.seconds["render"] += time.perf_counter() - started
         return outputs
@@ -221,11 +230,11 @@ class _Job:
         wanted = replace(self._wanted, frame=task.frame)
         target, driver = self._renderer.device.target, self._renderer.device.driver
 
-        def write() -> FrameReport:
+        def write(outputs: Mapping[str, Array]) -> FrameReport:
             started = time.perf_counter()
             for file in task.files:
                 said = header(
-                    self._graph, target, wanted, self._reel.frames, self._writing, file, task.plan, task.sources,
+                    self._text, target, wanted, self._reel.frames, self._writing, file, task.plan, task.sources,
                     self._hashes,
                 )
                 said["halation:driver"] = driver
@@ -241,17 +250,14 @@ class _Job:
             pictures = (file.path for file in task.files if file.path not in self._writing.videos)
             return FrameReport(task.frame, tuple(pictures), passes)
 
-        self._writes.append(self._writer.submit(write))
-        while len(self._writes) > BEHIND or (self._writes and self._writes[0].done()):
-            self._settle()
+        self._behind.put(write, outputs)
+        for report in self._behind.written():
+            self._finished(report)
 
     def _rate(self) -> float | Fraction:
         """Frames per second of what is written."""
         pictures = self._renderer.pictures
         return pictures.rate(self._graph, pictures.bind(self._graph, self._wanted.bound))
-
-    def _settle(self) -> None:
-        self._finished(self._writes.popleft().result())
 
     def _finished(self, report: FrameReport) -> None:
         self._reports.append(report)

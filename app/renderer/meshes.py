@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import moderngl
 import numpy as np
+from msgspec import Struct
 
 from ..compiler import ATTRIBUTES, Mesh
 
 MAX_MESHES = 16
 
 
-@dataclass(frozen=True)
-class _Buffers:
+class _Buffers(Struct, frozen=True):
     vertices: moderngl.Buffer
     indices: moderngl.Buffer
 

@@ -12,7 +12,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from .device import Device, open_device
+from .device import Device
+from .opening import open_device
 
 _SET = {
     "LIBGL_ALWAYS_SOFTWARE": "1", "GALLIUM_DRIVER": "llvmpipe", "GALLIUM_OVERRIDE_CPU_CAPS": "sse4.1",

@@ -7,10 +7,10 @@ import signal
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 
 import moderngl
 import numpy as np
+from msgspec import Struct, field
 
 from ..compiler import FIRST_TABLE, Pass, Shader
 from ..errors import ShaderError
@@ -23,8 +23,7 @@ MAX_PROGRAMS = 512
 """Programs kept: more than any graph needs, and an end to hours of editing."""
 
 
-@dataclass
-class Program:
+class Program(Struct):
     """One compiled program and the values its uniforms have now."""
 
     handle: moderngl.Program | moderngl.ComputeShader

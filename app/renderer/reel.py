@@ -9,10 +9,14 @@ from ..compiler import Memory, Plan
 from ..graph import Graph, Port
 from .decoding import Array
 from .engine import Renderer, Wanted
-from .run import Run, Timings
+from .run import Run, Timings, carried
 from .textures import Lease
+from .tiles import TiledRun
 
-KEPT_PLANS = 8
+KEPT_PLANS = 16
+
+CARRIED_BYTES = 2**29
+"""What may be kept of one frame for the next, beyond what nodes remember."""
 
 Memories = Mapping[Port, Memory]
 
@@ -74,18 +78,24 @@ class Reel:
             return None
         return at + 2 - begin, frame + 1 - begin
 
-    def steps(self, frame: int, kept: Lease, timings: Timings | None = None) -> Iterator[Run]:
-        """What runs to make a frame, one after the other; the last one is the frame itself, its outputs `kept`."""
+    def steps(
+        self, frame: int, kept: Lease, timings: Timings | None = None, following: int | None = None
+    ) -> Iterator[Run | TiledRun]:
+        """What runs to make a frame, one after the other; the last one is the frame itself, its outputs `kept`.
+
+        What the frame `following` would make again stays on the device until that has been made.
+        """
         runner, begin = self.renderer.runner, self.begin(frame)
         for at in self.lead(frame):
             plan, lease = self._plan(begin, at), runner.lease()
-            yield runner.steps(plan, lease, plan.remembered)
+            yield runner.steps(plan, lease, (*plan.remembered, *_carried(plan, self._plan(begin, at + 1))))
             self._hold(lease)
         plan, lease = self.plan(frame), runner.lease()
         # Of a picture that is there, the history may have gone: whoever needs that is led up to it.
         remembered = () if self._is_there(plan) else plan.remembered
-        yield runner.steps(plan, kept, (*plan.outputs.values(), *remembered), timings=timings)
-        for number in plan.remembered:
+        on = () if following is None else _carried(plan, self.plan(following))
+        yield runner.steps(plan, kept, (*plan.outputs.values(), *remembered, *on), timings=timings)
+        for number in (*plan.remembered, *on):
             if plan.surfaces[number].key in runner.textures:
                 lease.take(plan.surfaces[number].key)
         self._hold(lease)
@@ -114,7 +124,7 @@ class Reel:
         return all(plan.surfaces[number].key in textures for number in plan.outputs.values())
 
     def _hold(self, lease: Lease) -> None:
-        """Keep what a frame remembered until the next one has been made."""
+        """Keep what a frame remembered, and has in common with the next one, until that has been made."""
         before, self._held = self._held, lease
         before.close()
 
@@ -142,3 +152,15 @@ class Reel:
             if not self._memories[begin, at]:
                 return {}
         return self._memories[begin, frame - 1]
+
+
+def _carried(plan: Plan, following: Plan) -> tuple[int, ...]:
+    """The surfaces of a plan that stay for the next one: what that would make again, as far as there is room."""
+    found: list[int] = []
+    nbytes = 0
+    for number in carried(plan, following):
+        nbytes += plan.surfaces[number].nbytes
+        if nbytes > CARRIED_BYTES:
+            break
+        found.append(number)
+    return tuple(found)

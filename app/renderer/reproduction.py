@@ -6,7 +6,6 @@ import os
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from importlib import metadata
 from pathlib import Path
 
 import numpy as np
@@ -17,12 +16,14 @@ from ..graph.fence import ROOT
 from ..media import color_digest
 from ..media.compare import CODE, Compared, compare
 from ..media.stored import stored
+from ..version import VERSION
 from .decoding import Array
 from .destinations import Writing
-from .device import Device, open_device
+from .device import Device
 from .engine import Renderer, Wanted
 from .finding import Found, pointed
 from .job import run_job
+from .opening import open_device
 from .pinned import open_pinned
 from .recipe import Recipe
 
@@ -146,7 +147,7 @@ def _graph(recipe: Recipe, found: Sequence[Found]) -> Graph:
 def _differences(recipe: Recipe, device: Device, color: str) -> list[Difference]:
     """What is not as it was, of what says so."""
     now = {
-        "version": (recipe.version, metadata.version("halation")),
+        "version": (recipe.version, VERSION),
         "renderer": (recipe.renderer, device.target.renderer),
         "driver": (recipe.driver, device.driver),
         "passes": (recipe.form or "", device.target.form),

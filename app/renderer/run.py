@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Container, Iterable
 from types import TracebackType
 
-from ..compiler import Pass, Plan, Upload
+from ..compiler import Pass, Plan
 from ..errors import HalationError
 from .decoding import Decoding
+from .decoding import Wanted as Awaited
 from .executor import Executor
-from .textures import Lease, Textures
+from .textures import Lease
 
 Timings = list[tuple[Pass, float]]
 """Passes and the seconds that each took on the device."""
 
-Decode = Callable[[Iterable[tuple[Upload, str]]], Decoding]
+Decode = Callable[[Iterable[Awaited]], Decoding]
 
 
 class Run:
@@ -136,15 +137,15 @@ class Run:
                 raise
 
 
-def needed_passes(plan: Plan, wanted: Iterable[int], textures: Textures) -> list[int]:
-    """The passes that must run, for the surfaces `wanted`, because nobody has their pixels; in order."""
+def needed_passes(plan: Plan, wanted: Iterable[int], given: Container[str]) -> list[int]:
+    """The passes that must run for the surfaces `wanted`, since these keys are not `given`; in order."""
     makers = {number: index for index, one in enumerate(plan.passes) for number in one.targets}
     passes: set[int] = set()
     todo = list(wanted)
     while todo:
         number = todo.pop()
         index = makers.get(number)
-        if index is None or index in passes or plan.surfaces[number].key in textures:
+        if index is None or index in passes or plan.surfaces[number].key in given:
             continue
         passes.add(index)
         todo.extend(plan.passes[index].textures)
@@ -160,10 +161,22 @@ def _count_readers(plan: Plan, needed: list[int], wanted: tuple[int, ...]) -> di
     return found
 
 
-def needed_uploads(
-    plan: Plan, needed: list[int], wanted: tuple[int, ...], textures: Textures
-) -> list[tuple[Upload, str]]:
-    """What must be decoded, in the order in which passes want it, with the keys of the pixels."""
-    reads = dict.fromkeys((*(number for index in needed for number in plan.passes[index].textures), *wanted))
-    uploads = {upload.surface: (upload, plan.surfaces[upload.surface].key) for upload in plan.uploads}
-    return [uploads[number] for number in reads if number in uploads and uploads[number][1] not in textures]
+def needed_uploads(plan: Plan, needed: list[int], wanted: tuple[int, ...], given: Container[str]) -> list[Awaited]:
+    """What must be decoded, in the order in which passes want it, since these keys are not `given`."""
+    uploads = {upload.surface: (upload, plan.surfaces[upload.surface]) for upload in plan.uploads}
+    return [uploads[number] for number in _reads(plan, needed, wanted)
+            if number in uploads and uploads[number][1].key not in given]
+
+
+def carried(plan: Plan, following: Plan) -> tuple[int, ...]:
+    """The surfaces of a plan that the next one would read, so that it need not make them again, or has as outputs."""
+    known = {surface.key: number for number, surface in enumerate(plan.surfaces)}
+    wanted = tuple(dict.fromkeys((*following.outputs.values(), *following.remembered)))
+    needed = needed_passes(following, wanted, known)
+    keys = (following.surfaces[number].key for number in _reads(following, needed, wanted))
+    return tuple(known[key] for key in keys if key in known)
+
+
+def _reads(plan: Plan, needed: list[int], wanted: tuple[int, ...]) -> dict[int, None]:
+    """The surfaces that passes read, and those that are `wanted`."""
+    return dict.fromkeys((*(number for index in needed for number in plan.passes[index].textures), *wanted))

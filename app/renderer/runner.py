@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
+from functools import partial
 
-from ..compiler import Plan, Upload
-from ..errors import UsageError
-from .decoding import AHEAD, Array, Decoding, Loader
+from ..compiler import Plan
+from ..errors import DeviceError, UsageError
+from .arrays import Arrays
+from .decoding import Array, Decoded, Decoding, Loader, decode, within_reach
+from .decoding import Wanted as Awaited
 from .device import Device
 from .executor import Executor
 from .run import Run, Timings, needed_passes, needed_uploads
 from .textures import Lease, Texture
+from .tiles import TiledRun
 
 
 class Runner:
@@ -22,7 +26,9 @@ class Runner:
         self._executor = Executor(device, budget)
         self.programs, self.textures = self._executor.programs, self._executor.textures
         self.counters = self._executor.counters
-        self._begun: dict[str, Future[Array]] = {}
+        self._begun: dict[str, Future[Decoded]] = {}
+        self._whole: dict[tuple[str, ...], dict[str, Array]] = {}
+        """Outputs that were made tile by tile, by their keys."""
         self._threads = ThreadPoolExecutor(max_workers=2, thread_name_prefix="decode")
 
     def run(self, plan: Plan) -> dict[str, Array]:
@@ -38,30 +44,55 @@ class Runner:
 
     def steps(
         self, plan: Plan, kept: Lease, wanted: Iterable[int] | None = None, *, timings: Timings | None = None
-    ) -> Run:
+    ) -> Run | TiledRun:
         """Run one pass per step, so that a caller can stop in between.
 
         At the end `kept` leases the surfaces `wanted`, by default the outputs. With `timings`, every pass is waited for
-        and what it took is added to them.
+        and what it took is added to them. A plan that does not fit is run tile by tile: its outputs are not leased but
+        wait in memory for `download`, and it is not timed. Raises DeviceError for that.
         """
         if self._executor.closed:
             raise UsageError("this renderer is closed: make another one")
+        if plan.tiling is not None:
+            if timings is not None:
+                raise DeviceError(f"{plan.tiling.why}; render smaller with --scale or --size")
+            return TiledRun(self, self._load, plan, partial(self._whole.__setitem__, _known(plan)))
         surfaces = plan.outputs.values() if wanted is None else wanted
         with self.device.current():
             return Run(self._executor, plan, kept, self._decode, surfaces, timings)
 
-    def prepare(self, plan: Plan, wanted: Iterable[int] | None = None) -> None:
-        """Begin to decode what a plan will want soon."""
-        surfaces = tuple(plan.outputs.values() if wanted is None else wanted)
-        passes = needed_passes(plan, surfaces, self.textures)
-        for upload, key in needed_uploads(plan, passes, surfaces, self.textures)[:AHEAD]:
-            if key not in self._begun:
-                self._begun[key] = self._threads.submit(self._load, upload.picture)
+    def timed(self, plan: Plan) -> Timings:
+        """Run to the end, waiting for every pass, and say what each took. The pixels are not kept."""
+        kept, taken = self.lease(), Timings()
+        try:
+            with self.steps(plan, kept, timings=taken) as run:
+                for _ in run:
+                    pass
+        finally:
+            kept.close()
+        return taken
 
-    def download(self, plan: Plan) -> dict[str, Array]:
-        """The outputs of a plan that has run, while they are leased, as [height, width, channels]."""
+    def prepare(self, plan: Plan, given: Container[str] = ()) -> None:
+        """Begin to decode what a plan will want soon; `given` are the keys of what will be there by then."""
+        if plan.tiling is not None:
+            return
+        there = {one.key for one in plan.surfaces if one.key in self.textures or one.key in given}
+        surfaces = tuple(plan.outputs.values())
+        passes = needed_passes(plan, surfaces, there)
+        for upload, surface in within_reach(needed_uploads(plan, passes, surfaces, there)):
+            if surface.key not in self._begun:
+                self._begun[surface.key] = self._threads.submit(decode, self._load, upload.picture)
+
+    def download(self, plan: Plan, arrays: Arrays | None = None) -> dict[str, Array]:
+        """The outputs of a plan that has run, while they are leased, as [height, width, channels].
+
+        They are float16 where the plan keeps halves. `arrays` lend what they are written to, to be given back.
+        """
+        if plan.tiling is not None:
+            return self._whole.pop(_known(plan))
+        arrays = arrays or Arrays()
         with self.device.current():
-            return {name: self._executor.download(plan, number) for name, number in plan.outputs.items()}
+            return {name: self._executor.download(plan, number, arrays) for name, number in plan.outputs.items()}
 
     def lease(self) -> Lease:
         """Keeps pixels on the device, none as yet."""
@@ -79,5 +110,10 @@ class Runner:
         with self.device.current():
             self._executor.close()
 
-    def _decode(self, uploads: Iterable[tuple[Upload, str]]) -> Decoding:
-        return Decoding(self._threads, self._load, uploads, self._begun)
+    def _decode(self, wanted: Iterable[Awaited]) -> Decoding:
+        return Decoding(self._threads, self._load, wanted, self._begun)
+
+
+def _known(plan: Plan) -> tuple[str, ...]:
+    """The keys of the outputs."""
+    return tuple(plan.surfaces[number].key for number in plan.outputs.values())

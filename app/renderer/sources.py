@@ -5,11 +5,12 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from threading import Lock
 from typing import TYPE_CHECKING
+
+from msgspec import Struct, field
 
 from .. import media
 from ..compiler import Picture, Plan, named_files
@@ -23,8 +24,7 @@ if TYPE_CHECKING:
     from ..media.pictures import Pictures
 
 
-@dataclass(frozen=True)
-class Source:
+class Source(Struct, frozen=True):
     """A file that a frame reads.
 
     `owner` is who reads it: an input of the graph as `inputs.beauty`, a node for its pixels as `read`, another value

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import product
 from math import ceil
 from pathlib import Path
 
 import numpy as np
+from msgspec import structs
 
 from ...nodes import Kind, Socket
 from ..errors import UsageError
@@ -151,7 +152,7 @@ def _alone(renderer: Renderer, cell: Cell, swept: Swept) -> tuple[Path, ...]:
     assert swept.written is not None
     ((_, folder),) = swept.written.files
     file = folder / f"{cell.file_stem}{swept.ending}"
-    writing = replace(swept.written, files=((swept.output, file),))
+    writing = structs.replace(swept.written, files=((swept.output, file),))
     return run_job(renderer, cell.graph, swept.wanted, writing, (cell.frame,)).written
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
 
 import moderngl
+from msgspec import Struct
 
 from ..compiler import Surface
 from ..errors import DeviceError
@@ -14,8 +14,11 @@ Kind = tuple[int, int, int, str]
 """Width, height, components, depth."""
 
 
-@dataclass(eq=False)
-class Texture:
+_SMALLEST = 2**16
+"""What a texture counts for at least among those that may go: one of few pixels takes more than these."""
+
+
+class Texture(Struct, eq=False):
     """A texture on the device, and a framebuffer for it once a fragment pass draws to it alone."""
 
     handle: moderngl.Texture
@@ -24,6 +27,8 @@ class Texture:
     framebuffer: moderngl.Framebuffer | None = None
     freed: int = 0
     """The round in which it was last in use."""
+    cost: float = 0.0
+    """Seconds that it would take to make its pixels again."""
 
     def release(self) -> None:
         """Give it back to the driver."""
@@ -35,6 +40,10 @@ class Texture:
 class Textures:
     """Every texture we own: results by key, of which those that nobody leases go when the budget is spent.
 
+    First goes what was not used for long and is made again soon: the rank of a result is what a byte of it costs, on
+    top of the rank of the last one that went (GreedyDual-Size: Cao and Irani 1997). At equal costs that is the least
+    recently used one.
+
     A freed texture waits for the next use, but not for long: `next_round` returns what a whole round did not want, so
     that pictures of ever other sizes do not pile up.
     """
@@ -44,8 +53,10 @@ class Textures:
         self.budget = budget
         self._results: dict[str, Texture] = {}
         self._leases: Counter[str] = Counter()
-        self._idle: dict[str, None] = {}
-        """Results that nobody leases, least recently used first."""
+        self._idle: dict[str, float] = {}
+        """Results that nobody leases, least recently used first, and their ranks."""
+        self._floor = 0.0
+        """The rank of the last one that went."""
         self._idle_bytes = 0
         self._free: dict[Kind, list[Texture]] = {}
         self._round = 0
@@ -110,10 +121,13 @@ class Textures:
         if self._leases[key] > 0:
             return
         del self._leases[key]
-        self._idle[key] = None
-        self._idle_bytes += self._results[key].nbytes
+        texture = self._results[key]
+        self._idle[key] = self._floor + texture.cost / max(texture.nbytes, _SMALLEST)
+        self._idle_bytes += texture.nbytes
         while self._idle_bytes > self.budget:
-            self.drop(next(iter(self._idle)))
+            gone = min(self._idle, key=self._idle.__getitem__)
+            self._floor = self._idle[gone]
+            self.drop(gone)
 
     def drop(self, key: str) -> None:
         """Forget these pixels: there is no room for them, or they were not finished."""

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from .. import media
 from .decoding import Array
 from .destinations import Destination, Writing
+
+if TYPE_CHECKING:
+    from fractions import Fraction
 
 
 class Videos:

@@ -11,12 +11,12 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from functools import cache
-from importlib import metadata
 from multiprocessing import get_context
 from threading import current_thread, main_thread
 
 from .. import renderer as engine
 from ..errors import RenderError
+from ..version import VERSION
 from .cases import Case
 from .results import Outcome, Session
 from .running import How, run_case
@@ -55,8 +55,7 @@ def run_cases(
     remark = "" if software or not how.deterministic else (
         f"no software rasterizer was found: {device} rendered, so only tolerances can be relied on"
     )
-    version = metadata.version("halation")
-    return Session(ordered, device, time.perf_counter() - started, how.deterministic and software, remark, version)
+    return Session(ordered, device, time.perf_counter() - started, how.deterministic and software, remark, VERSION)
 
 
 def _alone(cases: Iterable[Case], how: How) -> Generator[_Done, None, None]:

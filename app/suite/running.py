@@ -17,7 +17,7 @@ from ..errors import GraphError, HalationError
 from ..graph import Expression, Graph, Port, node_output, problems
 from ..graph.frames import Pattern
 from ..media.goldens import Stored, keep
-from ..media.pictures import split_layer
+from ..media.layers import split_layer
 from ..renderer import Reel, Renderer, Wanted
 from ..renderer.job import Writing, run_job
 from .cases import Case, Golden

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from .code import Code, CodeFault, Language, Written
 from .glsl import glsl_node, unprefixed
-from .isf import isf_node
 
 __all__ = ["Code", "CodeFault", "Language", "Written", "node_type", "unprefixed"]
 
@@ -12,5 +11,7 @@ __all__ = ["Code", "CodeFault", "Language", "Written", "node_type", "unprefixed"
 def node_type(code: Code) -> type[Written]:
     """The class of the nodes that this code describes; the same class for equal code. Raises CodeFault."""
     if code.language == "isf":
+        from .isf import isf_node
+
         return isf_node(code)
     return glsl_node(code)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import lru_cache
 from hashlib import blake2b
 from keyword import iskeyword
 from types import new_class
 from typing import Any, Literal, cast
+
+from msgspec import Struct
 
 from ...nodes import Draw, Drawn, Edge, Field, Filter, Image, Output, Pointwise, Socket, Value, Vector
 from ..glsl import COMMENT, Function, Text, blanked, guarded, parse, unified
@@ -29,8 +30,7 @@ _RESERVED = frozenset({"out", "pixel", "extent", "frame", "proxy", "grid", "node
 KEPT = 512
 
 
-@dataclass(frozen=True)
-class _Parameter:
+class _Parameter(Struct, frozen=True):
     """One parameter of the function: its type, its name, the line it stands in and what is said of it."""
 
     glsl: str

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from typing import get_args
+
+from msgspec import Struct
 
 from ...nodes import Edge, Unit
 from .code import CodeFault
@@ -24,8 +25,7 @@ HELP = (
 )
 
 
-@dataclass
-class Note:
+class Note(Struct):
     """What was said; `default` is text, empty for a picture."""
 
     default: str = ""

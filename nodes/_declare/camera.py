@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 Vector3 = tuple[float, float, float]
 
 
-@dataclass(frozen=True)
-class Camera:
+class Camera(Struct, frozen=True):
     """A perspective camera at one moment.
 
     `rows` are those of the 3 x 4 matrix that takes a place in the world (x, y, z, 1) to (u d, v d, d): u and v are

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Literal, Protocol
+
+from msgspec import Struct
 
 from .camera import Camera
 from .recolor import ColorChange
@@ -30,10 +31,11 @@ Kernel = Literal["nearest", "triangle", "catmull-rom", "mitchell", "lanczos"]
 """How pixels between pixels are made. Catmull-Rom and Mitchell: Mitchell and Netravali 1988; Lanczos has 3 lobes."""
 
 Argument = Socket | Drawn | Plain
+Overlap = int | tuple[int, int]
+"""Pixels to every side, or across and down."""
 
 
-@dataclass(frozen=True)
-class Stage:
+class Stage(Struct, frozen=True):
     """One shader of a program: GLSL 4.10 without `#version`. Messages count the lines of `text`, as those of `file`."""
 
     head: str
@@ -42,8 +44,7 @@ class Stage:
     file: str
 
 
-@dataclass(frozen=True)
-class ShaderText:
+class ShaderText(Struct, frozen=True):
     """A program of its own, which declares its uniforms and samplers.
 
     The fragment shader has a function `vec4 halation_pixel()`, the color at gl_FragCoord; row 0 is the top. A vertex
@@ -98,14 +99,25 @@ class Draw(Protocol):
 
     def __call__(
         self, function: str, /, *inputs: Socket, size: Size | None = None, edge: Edge = "clamp",
-        result: Socket | None = None, **arguments: Argument,
+        result: Socket | None = None, overlap: Overlap | Mapping[str, Overlap] | None = None, **arguments: Argument,
     ) -> Drawn:
         """Call `function` for every pixel of `size`.
 
         Inputs, and keyword arguments that are pixels, are read through accessors named after the socket or
         keyword: `image_at(ivec2)`, `image_near(vec2)` (bilinear, pixel positions, centers at .5) and
         `image_size`. The other keyword arguments are the function's parameters, in order.
+
+        `overlap` is how many pixels around its own the function reads at most, those that `near` mixes too, of all
+        pictures or of those that it names; of a picture of another size, around the pixel at the same part of it.
+        Without one, or of what is not named, it may read everything, and no part of a picture can be made alone.
         """
+        ...
+
+    def several(
+        self, function: str, results: tuple[Socket, ...], /, *inputs: Socket, size: Size | None = None,
+        edge: Edge = "clamp", overlap: Overlap | Mapping[str, Overlap] | None = None, **arguments: Argument,
+    ) -> tuple[Drawn, ...]:
+        """Draw with a `function` that has `out` parameters, last, for pictures of these types: all are made at once."""
         ...
 
     def point(self, function: str, /, *inputs: Socket, result: Socket | None = None, **arguments: Argument) -> Drawn:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import IntEnum
+
+from msgspec import Struct
 
 Triple = tuple[float, float, float]
 
@@ -20,8 +21,7 @@ class LightKind(IntEnum):
     SPHERE = 3
 
 
-@dataclass(frozen=True)
-class Light:
+class Light(Struct, frozen=True):
     """One light. Places are in the world; `direction` is where a spot or sun shines to.
 
     `intensity` is W/sr for point, spot and sphere (the light at a distance d is intensity / d^2), W/m^2 for a sun;

@@ -5,7 +5,6 @@ Friedman and Jones 2015, by Psyop's specification 1.2.0.
 
 from __future__ import annotations
 
-import csv
 import io
 import struct
 from collections.abc import Iterator, Mapping, Sequence
@@ -61,6 +60,8 @@ def listed(names: Sequence[str]) -> str:
 def _quoted(name: str) -> str:
     if name and name == name.strip() and not any(letter in name for letter in ',"\n\r'):
         return name
+    import csv
+
     text = io.StringIO()
     csv.writer(text, quoting=csv.QUOTE_ALL, lineterminator="").writerow([name.replace("\n", "?").replace("\r", "?")])
     return text.getvalue()
@@ -68,6 +69,8 @@ def _quoted(name: str) -> str:
 
 def _entries(pick: str, manifest: Mapping[str, int]) -> Iterator[str]:
     """What a list names; blanks around a name do not count unless the manifest has them."""
+    import csv
+
     for name in next(csv.reader([pick.replace("\n", ",")], skipinitialspace=True), list[str]()):
         if name.strip():
             yield name if name in manifest or name.removeprefix("-") in manifest else name.strip()

@@ -37,6 +37,8 @@ class Node:
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
         body = vars(cls)
+        if cls.__module__ == __name__ and "__annotations__" not in body:
+            return  # a kind of node, of which there are no instances
         cls.id = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls.__name__).lower()
         cls.category = cls.__module__.rpartition(".")[0].rpartition(".")[2]
         cls.function, cls.shader = cls.id, f"{cls.category}/{cls.id}"

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import Literal
+
+from msgspec import Struct, field
 
 WORKING_SPACE: Literal["working"] = "working"
 """The name of the space that pictures are in between nodes, whichever that is."""
 
 
-@dataclass(frozen=True)
-class ColorSettings:
+class ColorSettings(Struct, frozen=True):
     """How a graph manages color.
 
     `config`: a file of OpenColorIO, or one of its own such as `ocio://default`; without any it is what the environment
@@ -22,8 +22,7 @@ class ColorSettings:
     working: str = ""
 
 
-@dataclass(frozen=True)
-class SpaceChange:
+class SpaceChange(Struct, frozen=True):
     """From one color space to another, by names of the config or of OpenColorIO's own studio config."""
 
     source: str
@@ -31,8 +30,7 @@ class SpaceChange:
     color: ColorSettings = field(default_factory=ColorSettings)
 
 
-@dataclass(frozen=True)
-class LookupFile:
+class LookupFile(Struct, frozen=True):
     """A table or list of operations in a file: .cube, .3dl, .csp, .spi1d, .spi3d, .clf, .cc, .icc and others."""
 
     path: str

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from types import MappingProxyType
+
+from msgspec import Struct, field
 
 from .camera import Camera
 
 
-@dataclass(frozen=True)
-class Meaning:
+class Meaning(Struct, frozen=True):
     """How numbers of a layer are meant: times `scale` plus `offset`, channel by channel, they are of this kind.
 
     Depth is "planar", "radial", "inverse", "negative" or "normalized"; vectors refer to "world", "camera" (x right, y
@@ -22,8 +22,7 @@ class Meaning:
     offset: tuple[float, ...] = (0.0,)
 
 
-@dataclass(frozen=True)
-class Matte:
+class Matte(Struct, frozen=True):
     """A cryptomatte: what it tells apart ("object", "material", "asset" or ""), its layers, the most covering first.
 
     `ids` are those of its manifest by name, empty where the file has none: bits of the floats in the layers.
@@ -34,8 +33,7 @@ class Matte:
     ids: Mapping[str, int]
 
 
-@dataclass(frozen=True)
-class Render:
+class Render(Struct, frozen=True):
     """Names of layers and their meanings by role ("depth", "normal", ...), and the camera if anything tells it."""
 
     layers: Mapping[str, str]

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
+
+from msgspec import Struct
 
 StageName = Literal["stage", "corner", "blocks"]
 
 
-@dataclass(frozen=True)
-class BuiltInScene:
+class BuiltInScene(Struct, frozen=True):
     """One of the scenes that need no file."""
 
     name: StageName
 
 
-@dataclass(frozen=True)
-class SceneFile:
+class SceneFile(Struct, frozen=True):
     """Meshes of a file: glTF, OBJ, PLY, STL. `up` is the axis that points up in it; the world's is z."""
 
     path: str

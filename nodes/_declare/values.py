@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal, get_args, get_origin
+
+from msgspec import Struct
 
 from .curves import MAX_POINTS
 from .lights import LIGHT_NUMBERS
@@ -24,20 +25,18 @@ def working_factor(unit: Unit | None, scale: float, height: float) -> float:
     return {"px": scale, "height": height, "deg": math.pi / 180.0}.get(unit or "", 1.0)
 
 
-@dataclass(frozen=True)
-class Slider:
+class Slider(Struct, frozen=True):
     """How a number is edited: the soft range of the slider, the hard range that typing cannot leave, the unit."""
 
     low: float
     high: float
-    unit: Unit = field(kw_only=True)
-    minimum: float = field(default=float("-inf"), kw_only=True)
-    maximum: float = field(default=float("inf"), kw_only=True)
-    doc: str = field(default="", kw_only=True)
+    unit: Unit
+    minimum: float = float("-inf")
+    maximum: float = float("inf")
+    doc: str = ""
 
 
-@dataclass(frozen=True)
-class Doc:
+class Doc(Struct, frozen=True):
     """A sentence for the tooltip of a value that has no slider."""
 
     text: str
@@ -50,16 +49,14 @@ Holds = Literal["picture", "render", "table", "scene"]
 """What is in a file: pixels, layers of a render, a table of colors (.cube, .3dl, ...), or meshes (.glb, .obj, ...)."""
 
 
-@dataclass(frozen=True)
-class File:
+class File(Struct, frozen=True):
     """The value is a path of a picture, or of a table of colors. `layer` names the value that picks a layer of it."""
 
     layer: str = ""
     holds: Holds = "picture"
 
 
-@dataclass(frozen=True)
-class OfLayer:
+class OfLayer(Struct, frozen=True):
     """The value is about the layer of a render that has a role, "depth" say: a text names it, a choice what it holds.
 
     `path` is the value with the render's file.
@@ -69,31 +66,26 @@ class OfLayer:
     path: str = "path"
 
 
-@dataclass(frozen=True)
-class OfSpace:
+class OfSpace(Struct, frozen=True):
     """The value names a color space of the graph's config."""
 
 
-@dataclass(frozen=True)
-class Picks:
+class Picks(Struct, frozen=True):
     """The value is a list of names of a cryptomatte, as `picked` reads it; `layer` is the value that says of which."""
 
     layer: str
     path: str = "path"
 
 
-@dataclass(frozen=True)
-class Swatch:
+class Swatch(Struct, frozen=True):
     """The value is a scene-linear RGBA color, edited with a picker. Components may leave 0..1."""
 
 
-@dataclass(frozen=True)
-class Handle:
+class Handle(Struct, frozen=True):
     """The value is a position as a fraction of the picture (0,0 is its top left), dragged in the viewer."""
 
 
-@dataclass(frozen=True)
-class Curve:
+class Curve(Struct, frozen=True):
     """The value is a smooth curve through points `x0, y0, x1, y1, ...`, x growing within 0..1: see `curve_at`.
 
     `low` and `high` are the soft range of y, `minimum` and `maximum` its hard range.
@@ -101,17 +93,15 @@ class Curve:
 
     low: float = 0.0
     high: float = 1.0
-    minimum: float = field(default=float("-inf"), kw_only=True)
-    maximum: float = field(default=float("inf"), kw_only=True)
+    minimum: float = float("-inf")
+    maximum: float = float("inf")
 
 
-@dataclass(frozen=True)
-class Ramp:
+class Ramp(Struct, frozen=True):
     """The value is a color ramp of stops `t, r, g, b, a, ...`, scene-linear, t never falling: see `ramp_at`."""
 
 
-@dataclass(frozen=True)
-class Lights:
+class Lights(Struct, frozen=True):
     """The value is a list of lights, 16 numbers each: see `Light`."""
 
 
@@ -137,8 +127,7 @@ Uniform = float | int | bool | tuple[float, ...]
 """What a uniform of a shader may be set to."""
 
 
-@dataclass(frozen=True)
-class Value:
+class Value(Struct, frozen=True):
     """The declaration of one value, read from its annotation."""
 
     name: str

@@ -2,6 +2,9 @@ from typing import Annotated, Literal
 
 from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Slider
 
+_REACH = 25
+"""How far along an edge its tone is read, in pixels: the steps of the shader's longest search but the last one."""
+
 
 class Fxaa(Filter):
     """Smooth jagged edges of a finished picture, without any other layer: best after tone mapping.
@@ -28,6 +31,6 @@ class Fxaa(Filter):
     def passes(self, draw: Draw) -> Drawn:
         tone = draw.point("fxaa_tone", self.image, result=Field())
         return draw(
-            "fxaa", self.image, tone=tone,
+            "fxaa", self.image, tone=tone, overlap={"image": 2, "tone": _REACH},
             quality=self.quality, subpixel=self.subpixel, threshold=self.threshold, threshold_dark=self.threshold_dark,
         )

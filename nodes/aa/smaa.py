@@ -33,17 +33,18 @@ class Smaa(Filter):
         if self.detection == "luminance":
             tone = draw.point("smaa_tone", self.image, result=Field())
             edges = draw(
-                "smaa_edges", tone=tone, result=Vector(width=2), threshold=self.threshold, contrast=self.contrast
+                "smaa_edges", tone=tone, overlap=2, result=Vector(width=2), threshold=self.threshold,
+                contrast=self.contrast,
             )
         else:
             tones = draw.point("smaa_tones", self.image, result=Vector(width=3))
             edges = draw(
-                "smaa_color_edges", tones=tones, result=Vector(width=2), threshold=self.threshold,
+                "smaa_color_edges", tones=tones, overlap=2, result=Vector(width=2), threshold=self.threshold,
                 contrast=self.contrast,
             )
         reach, diagonal = _REACH[self.quality]
         weights = draw(
-            "smaa_weights", edges=edges, edge="black", result=Vector(width=4),
+            "smaa_weights", edges=edges, edge="black", overlap=max(reach, diagonal) + 3, result=Vector(width=4),
             reach=reach, diagonal=diagonal, corner_rounding=self.corner_rounding,
         )
-        return draw("smaa", self.image, weights=weights, edge="black")
+        return draw("smaa", self.image, weights=weights, edge="black", overlap=1)

@@ -25,8 +25,8 @@ class BilateralBlur(Filter):
         return "image" if self.sigma == 0.0 else None
 
     def passes(self, draw: Draw) -> Drawn:
+        radius = max(round(1.5 * self.sigma), 1)
         return draw(
             "bilateral_blur", image=self.image, guide=self.guide if draw.linked(self.guide) else self.image,
-            edge=self.edge, radius=max(round(1.5 * self.sigma), 1), sigma=self.sigma,
-            sigma_range=self.sigma_range,
+            edge=self.edge, overlap=radius, radius=radius, sigma=self.sigma, sigma_range=self.sigma_range,
         )

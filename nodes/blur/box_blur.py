@@ -57,15 +57,23 @@ class BoxBlur(Filter):
         size[axis] = (full + 2 * lead) // stride + 2
         blocks = draw(
             "box_blur_blocks", image=image, size=(size[0], size[1]), edge=self.edge, result=Vector(width=4),
-            axis=axis, first=shift - lead, stride=stride,
+            overlap=_along(axis, abs(shift) + lead + 3 * stride), axis=axis, first=shift - lead, stride=stride,
         )
         weights = (1.0 / count,) * count + (0.0,) * (1 - count % 2)
         size[axis] = full
         return draw(
             "box_blur", image=image, windows=draw.convolve(blocks, weights, "y" if axis else "x"),
             size=(size[0], size[1]), edge=self.edge, result=Vector(width=4) if apron else None,
+            overlap={
+                "image": _along(axis, abs(shift) + whole + 2 * stride + 3), "windows": _along(axis, lead // stride + 4)
+            },
             axis=axis, shift=shift, whole=whole, part=radius - whole, stride=stride, count=count, lead=lead,
         )
+
+
+def _along(axis: int, overlap: int) -> tuple[int, int]:
+    """An overlap along one axis."""
+    return (overlap, 0) if axis == 0 else (0, overlap)
 
 
 def _blocks(width: int) -> tuple[int, int]:

@@ -1,3 +1,4 @@
+import math
 from typing import Annotated
 
 from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider
@@ -26,6 +27,8 @@ class DirectionalBlur(Filter):
         return "image" if self.length == 0.0 else None
 
     def passes(self, draw: Draw) -> Drawn:
+        farthest = abs(self.length) * (0.5 + abs(self.shift))
         return draw(
-            "directional_blur", self.image, edge=self.edge, angle=self.angle, spread=self.length, shift=self.shift
+            "directional_blur", self.image, edge=self.edge, overlap=math.ceil(farthest) + 1, angle=self.angle,
+            spread=self.length, shift=self.shift,
         )

@@ -15,4 +15,7 @@ class Median(Filter):
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
     def passes(self, draw: Draw) -> Drawn:
-        return draw("median_3x3" if self.window == "3x3" else "median_5x5", self.image, edge=self.edge)
+        small = self.window == "3x3"
+        return draw(
+            "median_3x3" if small else "median_5x5", self.image, edge=self.edge, overlap=1 if small else 2
+        )

@@ -25,6 +25,6 @@ class Sanitize(Filter):
 
     def passes(self, draw: Draw) -> Drawn:
         return draw(
-            "sanitize", self.image, repair=self.repair, negative=self.negative, maximum=self.maximum,
+            "sanitize", self.image, overlap=1, repair=self.repair, negative=self.negative, maximum=self.maximum,
             limit_alpha=self.limit_alpha,
         )

@@ -1,3 +1,4 @@
+import math
 from typing import Annotated
 
 from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
@@ -25,4 +26,9 @@ class Bulge(Filter):
 
     def passes(self, draw: Draw) -> Drawn:
         center = (self.center[0] * draw.size[0], self.center[1] * draw.size[1])
-        return draw("bulge", self.image, edge=self.edge, strength=self.strength, radius=self.radius, center=center)
+        # x (1 - x^2)^2 is 0.287 at most.
+        farthest = 0.287 * abs(self.strength * self.radius)
+        return draw(
+            "bulge", self.image, edge=self.edge, overlap=math.ceil(farthest) + 2,
+            strength=self.strength, radius=self.radius, center=center,
+        )

@@ -1,3 +1,4 @@
+import math
 from typing import Annotated, Literal
 
 from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
@@ -31,7 +32,13 @@ class ChromaticAberration(Filter):
 
     def passes(self, draw: Draw) -> Drawn:
         center = (self.center[0] * draw.size[0], self.center[1] * draw.size[1])
+        # The farthest that light is thrown; a radial throw grows up to the farthest corner.
+        farthest = abs(self.amount)
+        if self.shape == "radial":
+            width, height = draw.size
+            corner = (max(center[0], width - center[0]), max(center[1], height - center[1]))
+            farthest *= math.hypot(*corner) / (0.5 * height)
         return draw(
-            "chromatic_aberration", self.image, edge=self.edge, shape=self.shape, amount=self.amount, angle=self.angle,
-            samples=self.samples, center=center,
+            "chromatic_aberration", self.image, edge=self.edge, overlap=math.ceil(farthest) + 1,
+            shape=self.shape, amount=self.amount, angle=self.angle, samples=self.samples, center=center,
         )

@@ -1,3 +1,4 @@
+import math
 from typing import Annotated, Literal
 
 from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, Slider
@@ -33,8 +34,14 @@ class Crt(Filter):
     )] = 3.0
 
     def passes(self, draw: Draw) -> Drawn:
+        # The barrel bends most in the corners.
+        width, height = draw.size
+        bent = abs(self.barrel) * (1.0 + (width / height) ** 2) / 2.0
+        across = bent * width + abs(self.jitter) + abs(self.chroma_delay)
+        overlap = (math.ceil(across) + 2, math.ceil(bent * height) + 2)
         return draw(
-            "crt", self.image, edge="black", barrel=self.barrel, jitter=self.jitter, chroma_delay=self.chroma_delay,
+            "crt", self.image, edge="black", overlap=overlap,
+            barrel=self.barrel, jitter=self.jitter, chroma_delay=self.chroma_delay,
             lines=self.lines, scanlines=self.scanlines, mask=self.mask, mask_strength=self.mask_strength,
             triad=self.triad,
         )

@@ -1,3 +1,4 @@
+import math
 from typing import Annotated
 
 from .._declare import Doc, Draw, Drawn, Edge, Filter, Fraction, Image, Slider
@@ -25,7 +26,9 @@ class Glitch(Filter):
         return "image" if self.amount == 0.0 or (self.shift, self.colors) == (0.0, 0.0) else None
 
     def passes(self, draw: Draw) -> Drawn:
+        farthest = math.ceil(2.0 * (abs(self.shift) + abs(self.colors)))
         return draw(
-            "glitch", self.image, edge=self.edge, amount=self.amount, shift=self.shift, colors=self.colors,
+            "glitch", self.image, edge=self.edge, overlap=(farthest + 1, 1),
+            amount=self.amount, shift=self.shift, colors=self.colors,
             band=self.band, hold=self.hold, seed=self.seed,
         )

@@ -1,3 +1,4 @@
+import math
 from typing import Annotated
 
 from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Slider
@@ -31,8 +32,10 @@ class HeatHaze(Filter):
         return "image" if self.amount == 0.0 else None
 
     def passes(self, draw: Draw) -> Drawn:
+        # A picture of heat may hold any number; without one nothing moves farther than the amount.
+        overlap = {"heat": 0} | ({} if draw.linked(self.heat) else {"image": math.ceil(abs(self.amount)) + 2})
         return draw(
-            "heat_haze", self.image, self.heat, edge=self.edge, amount=self.amount,
+            "heat_haze", self.image, self.heat, edge=self.edge, overlap=overlap, amount=self.amount,
             swirl=(self.size, self.size * self.stretch), rise=self.rise / self.rate, change=self.change / self.rate,
             seed=self.seed,
         )

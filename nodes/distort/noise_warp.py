@@ -1,3 +1,4 @@
+import math
 from typing import Annotated, Literal
 
 from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Slider, Vector
@@ -38,4 +39,7 @@ class NoiseWarp(Filter):
             "noise_warp_ways", result=Vector(width=2), kind=self.kind, wave=self.size, octaves=self.octaves,
             gain=self.gain, evolution=self.evolution, speed=self.speed, seed=self.seed,
         )
-        return draw("noise_warp", self.image, self.mask, edge=self.edge, ways=ways, amount=self.amount)
+        # A mask may hold any number; without one nothing moves farther than the amount.
+        far = math.ceil(abs(self.amount))
+        overlap = {"ways": 1, "mask": 0} | ({} if draw.linked(self.mask) else {"image": 2 * far + 3})
+        return draw("noise_warp", self.image, self.mask, edge=self.edge, overlap=overlap, ways=ways, amount=self.amount)

@@ -24,5 +24,9 @@ class Pixelate(Filter):
     def passes(self, draw: Draw) -> Drawn:
         wide, high = (max(side, 1.0) for side in self.size)
         grid = (math.ceil(draw.size[0] / wide), math.ceil(draw.size[1] / high))
-        squares = draw("pixelate_square", self.image, size=grid, side=(wide, high), sampling=self.sampling)
-        return draw("pixelate", squares=squares, side=(wide, high))
+        # Squares at the far edges are cut off, so each lies up to one side before its part of the picture.
+        overlap = (math.ceil(1.5 * wide) + 1, math.ceil(1.5 * high) + 1)
+        squares = draw(
+            "pixelate_square", self.image, size=grid, overlap=overlap, side=(wide, high), sampling=self.sampling
+        )
+        return draw("pixelate", squares=squares, overlap=2, side=(wide, high))

@@ -1,3 +1,4 @@
+import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
@@ -30,11 +31,12 @@ class Resize(Filter):
 
     def passes(self, draw: Draw) -> Drawn:
         before, after = draw.size_of(self.image), draw.size
+        across, down = (math.ceil(3.0 * max(a / b, 1.0)) + 2 for a, b in zip(before, after, strict=True))
         wide = draw(
-            "resize", self.image, size=(after[0], before[1]), edge=self.edge,
+            "resize", self.image, size=(after[0], before[1]), edge=self.edge, overlap=(across, 0),
             axis=0, shrink=before[0] / after[0], kernel=self.kernel,
         )
         return draw(
-            "resize", image=wide, size=after, edge=self.edge,
+            "resize", image=wide, size=after, edge=self.edge, overlap=(0, down),
             axis=1, shrink=before[1] / after[1], kernel=self.kernel,
         )

@@ -1,3 +1,4 @@
+import math
 from typing import Annotated, Literal
 
 from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
@@ -35,6 +36,7 @@ class Ripple(Filter):
     def passes(self, draw: Draw) -> Drawn:
         center = (self.center[0] * draw.size[0], self.center[1] * draw.size[1])
         return draw(
-            "ripple", self.image, edge=self.edge, shape=self.shape, motion=self.motion, angle=self.angle, center=center,
+            "ripple", self.image, edge=self.edge, overlap=math.ceil(abs(self.amplitude)) + 2, shape=self.shape,
+            motion=self.motion, angle=self.angle, center=center,
             wave=(self.amplitude, self.wavelength, self.phase, self.reach),
         )

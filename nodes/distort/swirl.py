@@ -1,3 +1,4 @@
+import math
 from typing import Annotated
 
 from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
@@ -23,4 +24,9 @@ class Swirl(Filter):
 
     def passes(self, draw: Draw) -> Drawn:
         center = (self.center[0] * draw.size[0], self.center[1] * draw.size[1])
-        return draw("swirl", self.image, edge=self.edge, angle=self.angle, radius=self.radius, center=center)
+        # x exp(-x^2) is 0.429 at most, and an arc no shorter than its chord.
+        farthest = 0.429 * abs(self.angle * self.radius)
+        return draw(
+            "swirl", self.image, edge=self.edge, overlap=math.ceil(farthest) + 2,
+            angle=self.angle, radius=self.radius, center=center,
+        )

@@ -36,12 +36,12 @@ class Canny(Filter):
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         tone = draw.blur(draw.point("canny_tone", self.image, result=Field()), self.sigma, self.edge)
-        gradient = draw("canny_gradient", tone=tone, edge=self.edge, result=Vector(width=2))
+        gradient = draw("canny_gradient", tone=tone, edge=self.edge, overlap=1, result=Vector(width=2))
         found = draw(
-            "canny_ridge", gradient=gradient, edge="black", result=Field(),
+            "canny_ridge", gradient=gradient, edge="black", overlap=1, result=Field(),
             low=min(self.low, self.high), high=max(self.low, self.high),
         )
         for _ in range(ceil(self.reach / _STEP)):
-            found = draw("canny_follow", state=found, edge="black", result=Field())
+            found = draw("canny_follow", state=found, edge="black", overlap=_STEP, result=Field())
         lines = draw.point("canny_lines", result=Field(), state=found)
         return {"out": draw.point("canny", self.image, lines=lines), "lines": lines}

@@ -1,3 +1,4 @@
+import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
@@ -58,18 +59,25 @@ class DifferenceOfGaussians(Filter):
         return {"out": draw.point("difference_of_gaussians", self.image, value=value, kind=self.kind), "value": value}
 
     def _guided(self, draw: Draw, tone: Drawn) -> tuple[Drawn, Drawn]:
-        changes = draw("difference_of_gaussians_changes", tone=tone, edge=self.edge, result=Vector(width=3))
+        changes = draw("difference_of_gaussians_changes", tone=tone, edge=self.edge, overlap=1, result=Vector(width=3))
         tensor = draw.blur(changes, self.smoothing, self.edge)
         blurs = draw(
             "difference_of_gaussians_across", tone=tone, tensor=tensor, edge=self.edge, result=Vector(width=2),
+            overlap={"tone": _walked(self.sigma * max(self.ratio, 0.0)), "tensor": 0},
             sigma=self.sigma, ratio=self.ratio,
         )
         if self.stroke > 0.0:
             blurs = draw(
                 "difference_of_gaussians_along", blurs=blurs, tensor=tensor, edge=self.edge, result=Vector(width=2),
-                stroke=self.stroke,
+                overlap=_walked(self.stroke), stroke=self.stroke,
             )
         return (
             draw.point("difference_of_gaussians_fine", result=Field(), blurs=blurs),
             draw.point("difference_of_gaussians_coarse", result=Field(), blurs=blurs),
         )
+
+
+def _walked(sigma: float) -> int:
+    """How far away samples of a Gaussian are taken, in pixels: see the shader."""
+    reach = 3.0 * max(sigma, 1e-3)
+    return math.ceil(reach + 0.5 * max(1.0, reach / 64.0)) + 1

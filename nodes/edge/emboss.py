@@ -32,6 +32,6 @@ class Emboss(Filter):
         tone = draw.point("emboss_tone", self.image, result=Field())
         relief = draw.blur(tone, self.softness, self.edge)
         return draw(
-            "emboss", self.image, relief=relief, edge=self.edge,
+            "emboss", self.image, relief=relief, edge=self.edge, overlap={"image": 0, "relief": 1},
             kind=self.kind, direction=self.direction, elevation=self.elevation, height=self.height,
         )

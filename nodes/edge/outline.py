@@ -33,8 +33,13 @@ class Outline(Filter):
         reach = ceil(self.width + 0.5 * self.softness) + 2
         columns = draw.point("outline_seeds", result=Vector(width=2), mask=mask)
         for level in reversed(range(ceil(log2(reach + 1)))):
-            columns = draw("outline_columns", seeds=columns, result=Vector(width=2), reach=2**level)
-        contour = draw("outline_distance", mask=mask, columns=columns, result=Field(), reach=reach)
+            columns = draw(
+                "outline_columns", seeds=columns, overlap=(0, 2**level), result=Vector(width=2), reach=2**level
+            )
+        contour = draw(
+            "outline_distance", mask=mask, columns=columns, overlap={"mask": reach + 1, "columns": (reach, 0)},
+            result=Field(), reach=reach,
+        )
         behind = self.position == "outside" and not draw.linked(self.mask)
         first, last = {
             "outside": (0.0, self.width), "inside": (-self.width, 0.0), "center": (-self.width / 2, self.width / 2)

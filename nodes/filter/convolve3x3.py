@@ -64,6 +64,6 @@ class Convolve3x3(Filter):
 
     def passes(self, draw: Draw) -> Drawn:
         return draw(
-            "convolve3x3", self.image, edge=self.edge,
+            "convolve3x3", self.image, edge=self.edge, overlap=1,
             kernel=self.weights(), bias=self.bias, filter_alpha=self.filter_alpha,
         )

@@ -33,10 +33,13 @@ class Curvature(Filter):
         if places is None and camera and draw.linked(self.depth):
             places = draw.point("curvature_place", self.depth, result=Vector(width=3), rays=camera.inverse)
         if places:
-            mean = draw("curvature_found", self.normal, places=places, result=field, reach=reach)
+            mean = draw(
+                "curvature_found", self.normal, places=places, overlap={"normal": reach, "places": 3 * reach},
+                result=field, reach=reach,
+            )
         else:
             mean = draw(
-                "curvature_alone", self.normal, result=field, reach=reach,
+                "curvature_alone", self.normal, overlap=reach, result=field, reach=reach,
                 right=camera.right if camera else (1.0, 0.0, 0.0), down=camera.down if camera else (0.0, -1.0, 0.0),
                 forward=camera.forward if camera else (0.0, 0.0, -1.0),
             )

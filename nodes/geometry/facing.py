@@ -17,4 +17,4 @@ class Facing(Filter):
         camera = draw.camera(self.camera)
         # As seen from far away, along -z.
         rays = camera.inverse if camera else (0.0,) * 10 + (-1.0, 0.0)
-        return draw("facing", self.normal, result=Field(), rays=rays)
+        return draw("facing", self.normal, overlap=1, result=Field(), rays=rays)

@@ -42,7 +42,7 @@ class GeometryEdges(Filter):
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         field = Field()
-        found = draw("geometry_edges_found", self.depth, self.normal, self.ids, result=Vector(width=3))
+        found = draw("geometry_edges_found", self.depth, self.normal, self.ids, overlap=1, result=Vector(width=3))
         edges = draw.point(
             "geometry_edges", result=field, found=found,
             amounts=(self.depth_amount, self.crease_amount, self.id_amount), gap=self.depth_threshold,
@@ -63,6 +63,11 @@ class GeometryEdges(Filter):
         reach = ceil(beyond) + 2
         columns = draw.point("geometry_edges_seeds", result=Vector(width=2), edges=edges)
         for level in reversed(range(ceil(log2(reach + 1)))):
-            columns = draw("geometry_edges_columns", seeds=columns, result=Vector(width=2), reach=2**level)
-        contour = draw("geometry_edges_distance", mask=edges, columns=columns, result=Field(), reach=reach)
+            columns = draw(
+                "geometry_edges_columns", seeds=columns, overlap=(0, 2**level), result=Vector(width=2), reach=2**level
+            )
+        contour = draw(
+            "geometry_edges_distance", mask=edges, columns=columns, overlap={"mask": reach + 1, "columns": (reach, 0)},
+            result=Field(), reach=reach,
+        )
         return draw.point("geometry_edges_line", result=Field(), contour=contour, beyond=beyond)

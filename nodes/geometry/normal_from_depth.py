@@ -25,9 +25,10 @@ class NormalFromDepth(Filter):
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         camera = draw.camera(self.camera)
         rows, rays = (camera.rows, camera.inverse) if camera else ((0.0,) * 12, (0.0,) * 12)
-        normal = draw("normal_from_depth", self.depth, edge="black", result=Vector(width=3), rows=rows)
+        normal = draw("normal_from_depth", self.depth, edge="black", overlap=2, result=Vector(width=3), rows=rows)
+        reach = max(round(self.reach), 1)
         curvature = draw(
-            "normal_from_depth_curvature", self.depth, normal=normal, edge="black", result=Field(), rays=rays,
-            reach=max(round(self.reach), 1),
+            "normal_from_depth_curvature", self.depth, normal=normal, edge="black", overlap=reach, result=Field(),
+            rays=rays, reach=reach,
         )
         return {"normal": normal, "curvature": curvature}

@@ -36,7 +36,8 @@ class RimLight(Filter):
         across, up = math.cos(self.angle), math.sin(self.angle)
         side = tuple(across * a - up * b for a, b in zip(right, down, strict=True))
         rim = draw(
-            "rim_light_rim", self.normal, result=Field(), rays=rays, power=self.power, focus=self.focus, side=side
+            "rim_light_rim", self.normal, overlap=1, result=Field(), rays=rays, power=self.power, focus=self.focus,
+            side=side,
         )
         gain = self.intensity * self.color[3]
         light = tuple(gain * part for part in self.color[:3])

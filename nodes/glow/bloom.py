@@ -89,10 +89,11 @@ class Bloom(Filter):
         """The glow of a level's light: half the size, spread there by the levels below, and back."""
         half = ((size[0] + 1) // 2, (size[1] + 1) // 2)
         steady = self.firefly and first
-        below = draw("bloom_shrink_steady" if steady else "bloom_shrink", image=light, size=half)
+        below = draw("bloom_shrink_steady" if steady else "bloom_shrink", image=light, size=half, overlap=3)
         if len(shares) > 1:
             below = self._spread(draw, below, half, shares[1:], first=False)
-        return draw("bloom_grow", image=below, level=light, size=size, share=shares[0])
+        overlap = {"image": 3, "level": 0}
+        return draw("bloom_grow", image=below, level=light, size=size, overlap=overlap, share=shares[0])
 
     def _shares(self) -> list[float]:
         """Of every level, the part of its glow that comes from the levels below it."""

@@ -80,7 +80,7 @@ class FilmHalation(Filter):
             "film_halation_light", self.image, threshold=self.threshold, knee=self.knee, limit=self.limit
         )
         if factor > 1:
-            light = draw("film_halation_shrink", image=light, size=size, factor=factor)
+            light = draw("film_halation_shrink", image=light, size=size, overlap=2 * factor, factor=factor)
         # What shrinking (a box) and enlarging (a tent) blur themselves.
         known = (factor**2 - 1.0) / 12.0 + factor**2 / 6.0 if factor > 1 else 0.0
         halo = draw.point("film_halation_none", light=light)
@@ -88,7 +88,7 @@ class FilmHalation(Filter):
             soft = draw.blur(light, math.sqrt(max((sigma * way) ** 2 - known, 0.0)) / factor)
             halo = draw.point("film_halation_add", halo=halo, soft=soft, share=tuple(share))
         if factor > 1:
-            halo = draw("film_halation_enlarge", image=halo, size=draw.size, factor=factor)
+            halo = draw("film_halation_enlarge", image=halo, size=draw.size, overlap=3, factor=factor)
         glow = draw.point("film_halation_glow", self.image, halo=halo, amount=self.amount, color=self.color)
         return {"out": draw.point("film_halation", self.image, glow=glow), "glow": glow}
 

@@ -67,12 +67,12 @@ class Streaks(Filter):
         size = (-(-draw.size[0] // factor), -(-draw.size[1] // factor))
         light = draw.point("streaks_light", self.image, threshold=self.threshold, knee=self.knee, limit=self.limit)
         if factor > 1:
-            light = draw("streaks_shrink", image=light, size=size, edge=self.edge, factor=factor)
+            light = draw("streaks_shrink", image=light, size=size, edge=self.edge, overlap=2 * factor, factor=factor)
         star = self._arm(draw, light, 0, self.length / factor)
         for arm in range(1, self.arms):
             star = draw.point("streaks_add", star=star, arm=self._arm(draw, light, arm, self.length / factor))
         if factor > 1:
-            star = draw("streaks_enlarge", image=star, size=draw.size, factor=factor)
+            star = draw("streaks_enlarge", image=star, size=draw.size, overlap=3, factor=factor)
         glow = draw.point("streaks_glow", self.image, star=star, share=1.0 / self.arms, tint=self.tint)
         return {"out": draw.point("streaks", self.image, glow=glow, intensity=self.intensity), "glow": glow}
 
@@ -85,7 +85,8 @@ class Streaks(Filter):
         while stride < _BEYOND * max(lengths):
             fade = tuple(_LEFT ** (stride / max(one, 1e-3)) for one in lengths)
             light = draw(
-                "streaks_pass", image=light, edge=self.edge, size=light.size, stride=_times(back, stride), fade=fade
+                "streaks_pass", image=light, edge=self.edge, size=light.size, overlap=_far(back, 3 * stride),
+                stride=_times(back, stride), fade=fade,
             )
             stride *= 4
         return light
@@ -93,3 +94,8 @@ class Streaks(Filter):
 
 def _times(vector: tuple[float, float], factor: float) -> tuple[float, float]:
     return vector[0] * factor, vector[1] * factor
+
+
+def _far(vector: tuple[float, float], factor: float) -> tuple[int, int]:
+    """How many pixels away samples lie that many steps along a vector."""
+    return math.ceil(abs(vector[0]) * factor) + 1, math.ceil(abs(vector[1]) * factor) + 1

@@ -92,8 +92,9 @@ class DepthOfField(Filter):
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         largest = self.max_blur / 2.0
         radius = self._radius(draw, largest)
-        kept = draw("depth_of_field_stays", self.image, radius=radius, edge="reflect")
-        clean = draw("depth_of_field_clean", self.image, radius=radius, kept=kept, edge="reflect")
+        kept, clean = draw.several(
+            "depth_of_field_apart", (Image(), Image()), self.image, radius=radius, edge="reflect"
+        )
         image = draw("depth_of_field_whole", self.image, clean=clean, kept=kept, radius=radius, edge="reflect")
         finest = min(_FINEST[self.quality], largest)
         levels = max(math.ceil(math.log2(largest / finest)), 0) if finest else 0
@@ -176,18 +177,15 @@ class DepthOfField(Filter):
                 "block": block, "side": side, "low": finest * block / 2.0,
                 "high": finest * block if level < levels else _ENDLESS,
             }
-            own = draw("depth_of_field_light", image=image, radius=radius, size=size, edge="reflect", **bounds)
-            extents = draw(
-                "depth_of_field_extents", radius=radius, size=size, result=Vector(width=3), edge="reflect", **bounds
+            own, extents = draw.several(
+                "depth_of_field_level", (Image(), Vector(width=3)), image=image, radius=radius, size=size,
+                edge="reflect", **bounds,
             )
             most = draw("depth_of_field_most", extents=extents, size=_blocks(size, tile), result=Field(), tile=tile)
             reach = draw("depth_of_field_reach", most=most, size=most.size, result=Field())
-            light, cover = (
-                draw(
-                    f"{name}_{what}", own=own, extents=extents, reach=reach, light=light, cover=cover, size=size,
-                    result=result, **bokeh,
-                )
-                for what, result in (("light", None), ("cover", Field()))
+            light, cover = draw.several(
+                name, (Image(), Field()), own=own, extents=extents, reach=reach, light=light, cover=cover, size=size,
+                **bokeh,
             )
         return light, cover
 
@@ -195,13 +193,9 @@ class DepthOfField(Filter):
         """What may lie behind what is near and blurred: all the rest, drawn in from where it is seen."""
         block = 2**levels
         size = _blocks(draw.size, block)
-        light = draw(
-            "depth_of_field_rest_light", image=image, radius=radius, size=size, edge="reflect", block=block,
-            finest=finest,
-        )
-        weight = draw(
-            "depth_of_field_rest_weight", radius=radius, size=size, edge="reflect", result=Field(), block=block,
-            finest=finest,
+        light, weight = draw.several(
+            "depth_of_field_kept_light", (Image(), Field()), image=image, radius=radius, size=size, edge="reflect",
+            block=block, finest=finest,
         )
         return draw(
             "depth_of_field_rest", image=image, light=light, weight=weight, size=size, reach=math.ceil(finest) + 1,

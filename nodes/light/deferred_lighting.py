@@ -31,6 +31,9 @@ TILE = 16
 FEW = 8
 """Up to so many lights, each pixel asks all of them: sorting them into tiles costs more than it saves."""
 
+_HERE = ("albedo", "material", "occlusion", "normal", "place")
+"""What a pixel is lit by that is its own; lights and what they reach may be read anywhere."""
+
 _BITS = 24
 """Lights to a channel of a texel: as many as a float holds exactly."""
 
@@ -107,7 +110,7 @@ class DeferredLighting(Filter):
             "deferred_lighting_place", self.depth, self.position, result=Vector(width=4), rays=rays, placed=placed
         )
         normal = self.normal if draw.linked(self.normal) else draw(
-            "deferred_lighting_normal", self.depth, edge="black", result=Vector(width=3), rows=rows
+            "deferred_lighting_normal", self.depth, edge="black", overlap=2, result=Vector(width=3), rows=rows
         )
         lights = [light for light in lights_of(self.lights) if light.on]
         lights += self._swarm(MAX_LIGHTS - len(lights))
@@ -120,7 +123,8 @@ class DeferredLighting(Filter):
         def lit(scattered: float, mirrored: float) -> Drawn:
             return draw(
                 "deferred_lighting_lit", self.albedo, self.material, self.occlusion, normal=normal, place=place,
-                lights=table, words=words, model=self.model, texels=texels, tiled=tiled, share=(scattered, mirrored),
+                lights=table, words=words, overlap=dict.fromkeys(_HERE, 0),
+                model=self.model, texels=texels, tiled=tiled, share=(scattered, mirrored),
                 mapped=draw.linked(self.material), metal=self.metal, roughness=self.roughness,
                 specular=self.specular, ambient=ambient, seen=camera is not None,
                 eye=camera.eye if camera else (0.0,) * 3,
@@ -135,7 +139,10 @@ class DeferredLighting(Filter):
         """Which lights can reach which tile: see the GLSL."""
         width, height = (-(-length // TILE) for length in draw.size)
         low, high = (
-            draw("deferred_lighting_corner", place=place, size=(width, height), result=Vector(width=4), side=side)
+            draw(
+                "deferred_lighting_corner", place=place, size=(width, height), overlap=2 * TILE,
+                result=Vector(width=4), side=side,
+            )
             for side in (1.0, -1.0)
         )
         balls = draw.table(tuple(part for light in lights for part in _ball(light, 1e18)), 1)

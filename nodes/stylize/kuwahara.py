@@ -37,11 +37,14 @@ class Kuwahara(Filter):
         tones = draw.point("kuwahara_tones", self.image, result=Vector(width=4))
         if self.kind == "classic":
             radius = ceil(self.radius - 0.5)
-            found = draw("kuwahara_quadrants", tones=tones, edge=self.edge, result=Vector(width=4), radius=radius)
+            found = draw(
+                "kuwahara_quadrants", tones=tones, edge=self.edge, overlap=radius, result=Vector(width=4), radius=radius
+            )
         else:
-            changes = draw("kuwahara_changes", tones=tones, edge=self.edge, result=Vector(width=3))
+            changes = draw("kuwahara_changes", tones=tones, edge=self.edge, overlap=1, result=Vector(width=3))
             found = draw(
                 "kuwahara_sectors", tones=tones, changes=draw.blur(changes, self.smoothing, self.edge), edge=self.edge,
-                result=Vector(width=4), kind=self.kind, radius=self.radius, sharpness=self.sharpness,
+                overlap={"tones": ceil(2.0 * self.radius), "changes": 0}, result=Vector(width=4),
+                kind=self.kind, radius=self.radius, sharpness=self.sharpness,
             )
         return draw.point("kuwahara", tones=found)

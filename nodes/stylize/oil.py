@@ -25,8 +25,9 @@ class Oil(Filter):
 
     def passes(self, draw: Draw) -> Drawn:
         tones = draw.point("oil_tones", self.image, result=Vector(width=4))
+        reach = ceil(self.radius)
         painted = draw(
-            "oil_dab", tones=tones, edge=self.edge, result=Vector(width=4),
-            reach=ceil(self.radius), radius=self.radius, levels=self.levels,
+            "oil_dab", tones=tones, edge=self.edge, overlap=reach, result=Vector(width=4),
+            reach=reach, radius=self.radius, levels=self.levels,
         )
         return draw.point("oil", tones=painted)

@@ -53,21 +53,19 @@ bool depth_of_field_edge(out vec4 own, out float owns, out vec4 sharp, out float
     return blurred && owns > 0.0;
 }
 
-// At the edge of what is sharp, its part of the pixel's light must not spread with the rest: it stays where it is.
-vec4 depth_of_field_stays() {
+// At the edge of what is sharp, its part of the pixel's light must not spread with the rest: it stays where it is. The
+// rest is clean. Edges of what is blurred would stay as a line around it: they take after their own surface.
+void depth_of_field_apart(out vec4 stays, out vec4 clean) {
     vec4 own, sharp;
     float owns, sharps;
-    if (depth_of_field_edge(own, owns, sharp, sharps) || owns == 0.0 || sharps == 0.0) return vec4(0.0);
-    vec4 change = sharp - own;
-    float size = dot(change, change);
-    return size > 0.0 ? change * clamp(dot(finite(image_at(pixel)) - own, change) / size, 0.0, 1.0) : vec4(0.0);
-}
-
-// What spreads. Edges of what is blurred would stay as a line around it: they take after their own surface.
-vec4 depth_of_field_clean() {
-    vec4 own, sharp;
-    float owns, sharps;
-    return depth_of_field_edge(own, owns, sharp, sharps) ? own : image_at(pixel) - kept_at(pixel);
+    bool blurred = depth_of_field_edge(own, owns, sharp, sharps);
+    stays = vec4(0.0);
+    if (!blurred && owns > 0.0 && sharps > 0.0) {
+        vec4 change = sharp - own;
+        float size = dot(change, change);
+        if (size > 0.0) stays = change * clamp(dot(finite(image_at(pixel)) - own, change) / size, 0.0, 1.0);
+    }
+    clean = blurred ? own : image_at(pixel) - (is_hole(stays) ? vec4(0.0) : stays);
 }
 
 // Whether what has one radius lies before what has another, and is blurred.
@@ -103,35 +101,27 @@ float depth_of_field_member(float radius, float side, float low, float high) {
     return depth_of_field_rise(radius, low) * (1.0 - depth_of_field_rise(radius, high));
 }
 
-// The light of a level on one side of the focus, in blocks of pixels.
-vec4 depth_of_field_light(int block, float side, float low, float high) {
-    vec4 sum = vec4(0.0);
+// A level on one side of the focus, in blocks of pixels: its light; how much of each block belongs to it, the radius
+// there, in blocks, and how much is nearer. Averaging and interpolating spreads light too, by 0.354 square blocks along
+// each axis: discs are drawn so much smaller that their second moment is right.
+void depth_of_field_level(int block, float side, float low, float high, out vec4 light, out vec3 extents) {
+    float count = 0.0, sum = 0.0, nearer = 0.0, whole = float(block * block);
+    light = vec4(0.0);
     for (int y = 0; y < block; ++y)
         for (int x = 0; x < block; ++x) {
             ivec2 at = block * pixel + ivec2(x, y);
-            sum += depth_of_field_member(radius_at(at), side, low, high) * image_at(at);
-        }
-    return sum / float(block * block);
-}
-
-// How much of each block belongs to a level, the radius there, in blocks, and how much is nearer. Averaging and
-// interpolating spreads light too, by 0.354 square blocks along each axis: discs are drawn so much smaller that their
-// second moment is right.
-vec3 depth_of_field_extents(int block, float side, float low, float high) {
-    float count = 0.0, sum = 0.0, nearer = 0.0;
-    for (int y = 0; y < block; ++y)
-        for (int x = 0; x < block; ++x) {
-            float radius = radius_at(block * pixel + ivec2(x, y));
-            float part = depth_of_field_member(radius, side, low, high);
+            float radius = radius_at(at), part = depth_of_field_member(radius, side, low, high);
+            light += part * image_at(at);
             count += part;
             sum += part * abs(radius);
             nearer += radius * side <= 0.0 ? 1.0 : 1.0 - depth_of_field_rise(radius, low);
         }
-    float whole = float(block * block);
-    if (count == 0.0) return vec3(0.0, 0.0, nearer / whole);
+    light /= whole;
+    extents = vec3(0.0, 0.0, nearer / whole);
+    if (count == 0.0) return;
     float radius = sum / count / float(block);
     float squared = radius * radius + 1.0 / (3.0 * whole) - 4.0 * 0.354;
-    return vec3(count / whole, sqrt(max(squared, depth_of_field_least * depth_of_field_least)), nearer / whole);
+    extents.xy = vec2(count / whole, sqrt(max(squared, depth_of_field_least * depth_of_field_least)));
 }
 
 // --- tiles: how far to look ---
@@ -245,34 +235,28 @@ float depth_of_field_scattered(int tile, int aperture, vec3 lens, vec2 stretch, 
 }
 
 // What is nearer, and so larger, covers first; what more there is fills up, but no pixel is covered more than once.
-vec4 depth_of_field_near_light(int tile, float finest, int aperture, vec3 lens, vec2 stretch) {
+void depth_of_field_near(
+    int tile, float finest, int aperture, vec3 lens, vec2 stretch, out vec4 made, out float covers
+) {
     vec4 sum;
     float covered = depth_of_field_scattered(tile, aperture, lens, stretch, -1.0, sum);
     vec2 at = (vec2(pixel) + 0.5) / 2.0;
-    float left = 1.0 - cover_near(at), part = min(depth_of_field_slack * covered, left);
-    return light_near(at) + (covered > 0.0 ? sum * (part / covered) : vec4(0.0));
-}
-
-float depth_of_field_near_cover(int tile, float finest, int aperture, vec3 lens, vec2 stretch) {
-    vec4 sum;
-    float covered = depth_of_field_scattered(tile, aperture, lens, stretch, -1.0, sum);
-    return min(cover_near((vec2(pixel) + 0.5) / 2.0) + depth_of_field_slack * covered, 1.0);
+    float before = cover_near(at), part = min(depth_of_field_slack * covered, 1.0 - before);
+    made = light_near(at) + (covered > 0.0 ? sum * (part / covered) : vec4(0.0));
+    covers = min(before + depth_of_field_slack * covered, 1.0);
 }
 
 // Beyond the focus the larger discs are the farther ones.
-vec4 depth_of_field_far_light(int tile, float finest, int aperture, vec3 lens, vec2 stretch) {
+void depth_of_field_far(
+    int tile, float finest, int aperture, vec3 lens, vec2 stretch, out vec4 made, out float covers
+) {
     vec4 sum;
     float covered = depth_of_field_scattered(tile, aperture, lens, stretch, 1.0, sum);
     vec2 at = (vec2(pixel) + 0.5) / 2.0;
     float part = min(depth_of_field_slack * covered, 1.0), more = cover_near(at);
     vec4 found = covered > 0.0 ? sum * (part / covered) : vec4(0.0);
-    return found + (more > 0.0 ? light_near(at) * (min(more, 1.0 - part) / more) : vec4(0.0));
-}
-
-float depth_of_field_far_cover(int tile, float finest, int aperture, vec3 lens, vec2 stretch) {
-    vec4 sum;
-    float covered = depth_of_field_scattered(tile, aperture, lens, stretch, 1.0, sum);
-    return min(cover_near((vec2(pixel) + 0.5) / 2.0) + depth_of_field_slack * covered, 1.0);
+    made = found + (more > 0.0 ? light_near(at) * (min(more, 1.0 - part) / more) : vec4(0.0));
+    covers = min(more + depth_of_field_slack * covered, 1.0);
 }
 
 // --- what is behind the near ---
@@ -281,21 +265,18 @@ float depth_of_field_kept(float radius, float finest) {
     return radius < 0.0 ? 1.0 - depth_of_field_rise(radius, finest) : 1.0;
 }
 
-vec4 depth_of_field_rest_light(int block, float finest) {
-    vec4 sum = vec4(0.0);
+void depth_of_field_kept_light(int block, float finest, out vec4 light, out float weight) {
+    light = vec4(0.0);
+    weight = 0.0;
     for (int y = 0; y < block; ++y)
         for (int x = 0; x < block; ++x) {
             ivec2 at = block * pixel + ivec2(x, y);
-            sum += depth_of_field_kept(radius_at(at), finest) * image_at(at);
+            float part = depth_of_field_kept(radius_at(at), finest);
+            light += part * image_at(at);
+            weight += part;
         }
-    return sum / float(block * block);
-}
-
-float depth_of_field_rest_weight(int block, float finest) {
-    float sum = 0.0;
-    for (int y = 0; y < block; ++y)
-        for (int x = 0; x < block; ++x) sum += depth_of_field_kept(radius_at(block * pixel + ivec2(x, y)), finest);
-    return sum / float(block * block);
+    light /= float(block * block);
+    weight /= float(block * block);
 }
 
 // Where nothing of it is seen, it is most like what is nearest; where that is too far away, like the picture itself.

@@ -3,8 +3,8 @@
     python killed.py COUNT WORDS...
 
 The moment is counted in changes of the folder, not in seconds: it then falls among the writes however slow the machine
-is. Prints how many were killed before they had ended, and how many times there was a file to look at. Modules are loaded once: every render is a fork of this process, which never touches OpenGL
-itself.
+is. Prints how many were killed before they had ended, and how many times there was a file to look at. Modules are
+loaded once: every render is a fork of this process, which never touches OpenGL itself.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ def main(count: int, words: list[str]) -> None:
 
     def ended(child: int, changes: int) -> bool:
         """Whether the child came to its end before the folder's listing had changed so many times."""
-        listing = os.listdir(folder)
+        listing = set(folder.iterdir())
         while changes:
             if os.waitpid(child, os.WNOHANG)[0]:
                 return True
-            if (now := os.listdir(folder)) != listing:
+            if (now := set(folder.iterdir())) != listing:
                 listing, changes = now, changes - 1
             time.sleep(0.0005)
         return False

@@ -61,6 +61,20 @@ def test_explain_what_if(cli, graphs, shot):
         assert cli("explain", path, *words).code == 2
 
 
+def test_explain_says_which_form_of_passes_and_why(cli, graphs):
+    path = graphs(**CHAIN)
+    assert cli("explain", path).out.splitlines()[0] == (
+        "target    none, GL 4.3, compute passes (planned without a device)"
+    )
+    here = cli("explain", path, "--form", "device")
+    line = r"target    \w.*, GL \d\.\d, (compute|fragment) passes \((by the table|measured): .+\)$"
+    assert re.match(line, here.out, re.M)
+    found = cli("explain", path, "--form", "device", "--json").json
+    assert found["target"] in here.out and found["why"] in here.out
+    ran = cli("bench", path, "-n", "1", "--warm-up", "0", "--json").json["device"]
+    assert f"{found['target']} " in ran and f"{found['form']} passes" in ran, "what explain says is what runs"
+
+
 def test_explain_as_graphviz(cli, graphs):
     result = cli("explain", graphs(**CHAIN), "--dot")
     assert result.code == 0 and result.out.startswith("digraph plan {") and result.out.rstrip().endswith("}")

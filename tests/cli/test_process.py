@@ -49,16 +49,21 @@ def halation(*words, **options):
     return subprocess.run([*HALATION, *map(str, words)], capture_output=True, text=True, timeout=100, **options)
 
 
-def loaded(*words):
-    """The top-level modules that a command leaves loaded."""
+def modules(*words):
+    """The modules that a command leaves loaded."""
     code = (
         "import sys; from halation.app.cli.program import run; code = run(sys.argv[1:]); "
-        "print('loaded', code, *{name.split('.')[0] for name in sys.modules})"
+        "print('loaded', code, *sys.modules)"
     )
     result = subprocess.run([sys.executable, "-c", code, *map(str, words)], capture_output=True, text=True, timeout=100)
     status, code, *names = result.stdout.splitlines()[-1].split()
     assert (status, code) == ("loaded", "0"), result.stderr
     return set(names)
+
+
+def loaded(*words):
+    """The top-level modules that a command leaves loaded."""
+    return {name.split(".")[0] for name in modules(*words)}
 
 
 WINDOWS = {"glfw", "imgui_bundle"}
@@ -74,6 +79,27 @@ def test_what_needs_no_pixels_loads_no_library_for_them(tmp_path):
     for words in (("--help",), ("--version",), ("render", "--help"), ("nodes",), ("check", path), ("explain", path),
                   ("fmt", path)):
         assert not loaded(*words) & (WINDOWS | PIXELS), words
+
+
+SELDOM = {
+    "importlib.metadata", "PyOpenColorIO", "av", "rich", "trimesh", "asyncio", "multiprocessing", "unittest",
+    *(f"halation.app.{name}" for name in (
+        "editor", "lint", "suite", "cli.edit", "cli.nodes", "cli.batch", "document.versions", "document.schema",
+        "graph.expressions.parser", "written.isf", "compiler.isf", "media.survey", "media.video", "media.video_file",
+        "media.meshes", "renderer.display", "renderer.probe", "renderer.sweep", "renderer.reproduction",
+    )),
+}
+"""What most renderings do without."""
+
+
+def test_a_rendering_loads_what_it_needs(ten, tmp_path):
+    assert not modules("render", ten, "-o", tmp_path / "out.exr") & SELDOM
+
+
+def test_a_command_loads_no_other_one(ten):
+    commands = {f"halation.app.cli.{path.stem}" for path in (Path(__file__).parents[2] / "app" / "cli").glob("*.py")}
+    shared = {f"halation.app.cli.{name}" for name in ("program", "options", "outcome", "parsing", "check")}
+    assert modules("check", ten) & commands == shared
 
 
 def test_render_loads_no_window_library(ten, tmp_path):

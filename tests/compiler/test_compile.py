@@ -40,10 +40,12 @@ def test_a_filter_ends_a_pass_and_what_follows_starts_one(plan):
     assert functions(plan(graph)) == [("exposure",), ("convolve x",), ("convolve y",), ("exposure",)]
 
 
-def test_what_two_read_is_not_fused_into_either(plan):
+def test_what_is_wanted_in_between_is_written_on_the_way(plan):
     graph = chain(Exposure(stops=1.0), Saturation(saturation=0.5))
     graph = graph.add_output("early", Output()).connect(Port("a", "out"), Port("outputs", "early"))
-    assert functions(plan(graph)) == [("exposure",), ("saturation",)]
+    made = plan(graph)
+    assert functions(made) == [("exposure", "saturation")]
+    assert sorted(made.passes[0].targets) == sorted(made.outputs.values())
 
 
 def test_neutral_and_muted_nodes_vanish(plan):

@@ -13,8 +13,11 @@ from random import Random
 import numpy as np
 import pytest
 from halation.app.errors import GraphError
-from halation.app.graph.expressions import FUNCTIONS, MAX_DEPTH, MAX_LENGTH, Expression, ExpressionError, written
+from halation.app.graph.expressions import Expression, ExpressionError
+from halation.app.graph.expressions.functions import FUNCTIONS
 from halation.app.graph.expressions.noise import mixed
+from halation.app.graph.expressions.parser import MAX_DEPTH, MAX_LENGTH
+from halation.app.graph.expressions.tokens import written
 
 VALUES = {
     "glow": 2.0, "count": 3, "on": True, "bloom.intensity": 0.25, "move.offset": (1.0, 2.0, 3.0), "my node.x": 7.0,

@@ -17,7 +17,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 FLOORS = (
-    "errors", "glsl", "written", "graph", "document", "compiler", "media", "lint", "renderer", "__init__",
+    "errors", "version", "glsl", "written", "graph", "document", "compiler", "media", "lint", "renderer", "__init__",
     "suite", "editor", "cli",
 )
 """Parts of app from the ground up. `__init__` is the public face of the engine, so it stands on the renderer."""
@@ -92,11 +92,14 @@ def test_app_imports_only_lower_floors() -> None:
 
 
 def test_nodes_import_the_standard_library_and_themselves() -> None:
-    assert not [
+    """And msgspec, whose frozen classes are made in a twentieth of the time of dataclasses: the vocabulary has many."""
+    wrong = [
         f"{name} imports {target}"
         for name, target in links()
         if name.startswith("nodes.") and target.split(".")[0] not in {"nodes", *sys.stdlib_module_names}
+        and not (name.startswith("nodes._declare.") and target.split(".")[0] == "msgspec")
     ]
+    assert not wrong
 
 
 def test_shaders_and_presets_know_nothing_of_the_rest() -> None:
@@ -166,7 +169,7 @@ def test_every_library_is_declared() -> None:
 @pytest.mark.parametrize(
     ("module", "absent"),
     [
-        ("halation.nodes", ("numpy", "moderngl", "msgspec")),
+        ("halation.nodes", ("numpy", "moderngl")),
         ("halation.app.cli", ("numpy", "moderngl", "OpenImageIO", "PyOpenColorIO", "glfw", "imgui_bundle")),
         ("halation.app.renderer", ("glfw", "imgui_bundle", "typer")),
     ],

@@ -14,7 +14,7 @@ from typing import get_args
 from halation.app import document
 from halation.app.cli.outcome import EXIT_CODES
 from halation.app.graph import Interpolation, problems
-from halation.app.graph.expressions import FUNCTIONS
+from halation.app.graph.expressions.functions import FUNCTIONS
 from halation.nodes import Pointwise, Temporal, catalogue
 
 ROOT = Path(__file__).parents[2]

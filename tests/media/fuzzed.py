@@ -33,7 +33,8 @@ def damaged(whole: bytes, number: int) -> bytes:
 
 def main(count: int, sources: list[Path]) -> int:
     from halation.app.errors import InputError
-    from halation.app.media import info, read, read_metadata, survey
+    from halation.app.media import info, read, read_metadata
+    from halation.app.media.survey import survey
     from halation.nodes import Kind
 
     refused = 0

@@ -15,6 +15,7 @@ import pytest
 from halation.app import media
 from halation.app.errors import InputError, OutputError
 from halation.app.graph.fence import fenced
+from halation.app.media.survey import survey
 from halation.nodes import Kind
 
 Make = Callable[..., Path]
@@ -139,7 +140,7 @@ def test_nothing_is_read_or_written_outside_of_a_fence(tmp_path: Path, make: Mak
     (inside / "shot.0001.exr").symlink_to(out)
     with fenced(inside):
         for path in (out, inside / ".." / out.name, inside / "link.exr", inside / "shot.0001.exr"):
-            for act in (media.info, media.read_metadata, media.survey, media.fingerprint, media.content_hash):
+            for act in (media.info, media.read_metadata, survey, media.fingerprint, media.content_hash):
                 with pytest.raises(InputError, match="lies outside of"):
                     act(path)
             with pytest.raises(InputError, match="lies outside of"):

@@ -9,11 +9,16 @@ import numpy as np
 import pytest
 from exr_files import read, write_exr
 from halation.app import media
+from halation.app.compiler import Surface
 from halation.app.errors import InputError
 from halation.app.graph import Graph, Input, Output, Port
 from halation.app.renderer import Renderer, Wanted, open_device
-from halation.app.renderer.decoding import AHEAD
-from halation.app.renderer.job import BEHIND, Writing, run_job
+from halation.app.renderer.arrays import Arrays
+from halation.app.renderer.behind import BEHIND, BEHIND_BYTES, Behind
+from halation.app.renderer.decoding import AHEAD, AHEAD_BYTES, within_reach
+from halation.app.renderer.job import Writing, run_job
+from halation.nodes import catalogue
+from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 
 FRAMES = range(1, 13)
@@ -130,3 +135,121 @@ def test_the_report_says_what_became_of_every_frame(engine, graph, shot):
     assert [path.name for path in report.written] == ["out.03.exr", "out.01.exr", "out.02.exr"]
     again = run_job(engine, graph, Wanted(), writing(shot), (1, 2, 4), resume=True)
     assert [item.kept for item in again.frames] == [True, True, False] and again.passes == 1
+
+
+def over_a_still(graph: Graph, shot: Path) -> Graph:
+    """The shot over a soft picture that stays the same."""
+    still = np.random.default_rng(3).random((8, 8, 4), np.float32)
+    write_exr(shot / "still.exr", {"Combined": still}, {"Combined": "float"})
+    graph = graph.add_input("still", Input(file="still.exr")).add("soft", GaussianBlur(sigma=2.0))
+    graph = graph.connect(Port("inputs", "still"), Port("soft", "image"))
+    graph = graph.add("both", catalogue()["merge"](mode="plus")).connect(Port("soft", "out"), Port("both", "b"))
+    return graph.connect(Port("light", "out"), Port("both", "a")).connect(Port("both", "out"), Port("outputs", "image"))
+
+
+class Watcher:
+    """Counts what is on the device after every frame."""
+
+    def __init__(self, engine: Renderer) -> None:
+        self.textures, self.results, self.bytes = engine.runner.textures, list[int](), list[int]()
+
+    def passed(self, *_):
+        pass
+
+    def finished(self, *_):
+        self.results.append(len(self.textures._results))
+        self.bytes.append(self.textures.allocated)
+
+
+def test_what_stays_the_same_is_kept_and_nothing_else(graph, shot):
+    """Without any budget: the still is read and blurred once, and no frame leaves anything behind."""
+    engine = Renderer(open_device(), budget=0)
+    whole, passes = over_a_still(graph, shot), engine.runner.counters
+    run_job(engine, whole, Wanted(), writing(shot), (1,))
+    alone, single = passes.passes, engine.runner.textures.peak
+    assert passes.uploads == 2 and not engine.runner.textures._results
+    seen = Watcher(engine)
+    run_job(engine, whole, Wanted(), writing(shot), tuple(FRAMES), progress=seen)
+    assert passes.passes == alone + alone + len(FRAMES) - 1 and passes.uploads == 2 + 1 + len(FRAMES)
+    assert max(seen.results) <= 2 and engine.runner.textures.peak <= single + 2 * 8 * 8 * 16
+    assert not engine.runner.textures._leases and not engine.runner.textures._results and not engine.runner._begun
+    engine.close()
+    fresh = Renderer(open_device(), budget=0)
+    for frame in (1, 7, 12):
+        found = fresh.render(whole, Wanted(frame=frame))["image"]
+        np.testing.assert_array_equal(read(shot / f"out.{frame:02d}.exr"), found)
+    fresh.close()
+
+
+def test_memory_does_not_grow_with_the_frames(graph, shot):
+    """What is on the device after the fourth frame is there after the last."""
+    engine = Renderer(open_device(), budget=0)
+    seen = Watcher(engine)
+    run_job(engine, over_a_still(graph, shot), Wanted(), writing(shot), tuple(FRAMES) * 4, progress=seen)
+    assert len(seen.bytes) == 4 * len(FRAMES)
+    assert max(seen.bytes[4:]) <= max(seen.bytes[:4]) and max(seen.results[4:]) <= max(seen.results[:4])
+    engine.close()
+
+
+def test_a_still_sequence_is_computed_once(graph, shot):
+    engine = Renderer(open_device(), budget=0)
+    run_job(engine, graph, Wanted({"image": shot / "in.03.exr"}), writing(shot), tuple(FRAMES))
+    assert engine.runner.counters.passes == 1 and values(shot) == [6.0] * len(FRAMES)
+    engine.close()
+
+
+def test_arrays_are_used_again(engine, graph, shot, monkeypatch):
+    """A handful for all frames, and none while it is still to be written."""
+    taken, lent, take, write = dict[int, np.ndarray](), set[int](), Arrays.take, media.write
+
+    def counted(self, shape, dtype):
+        array = take(self, shape, dtype)
+        assert id(array) not in lent
+        lent.add(id(array))
+        taken[id(array)] = array
+        return array
+
+    def slow(path, layers, **options):
+        threading.Event().wait(0.005)
+        write(path, layers, **options)
+        lent.difference_update(id(array if array.base is None else array.base) for array in layers.values())
+
+    monkeypatch.setattr(Arrays, "take", counted)
+    monkeypatch.setattr(media, "write", slow)
+    run_job(engine, graph, Wanted(), writing(shot), tuple(FRAMES))
+    assert len(taken) <= BEHIND + 2 and values(shot) == [2.0 * frame for frame in FRAMES]
+
+
+def test_arrays_of_other_sizes_are_not_mixed_up():
+    arrays = Arrays()
+    one, other = arrays.take((2, 3, 4), np.float32), arrays.take((2, 3, 4), np.float16)
+    arrays.give([one[..., :3], other])
+    assert arrays.take((2, 3, 4), np.float16) is other and arrays.take((3, 2, 4), np.float32) is not one
+    assert arrays.take((2, 3, 4), np.float32) is one and arrays.take((2, 3, 4), np.float32) is not one
+
+
+def large(nbytes: int) -> np.ndarray:
+    """So many bytes that take no memory."""
+    return np.broadcast_to(np.uint8(0), (nbytes,))
+
+
+@pytest.mark.parametrize(("nbytes", "most"), [(16, BEHIND), (BEHIND_BYTES // 2 + 1, 1), (2 * BEHIND_BYTES, 1)])
+def test_frames_wait_by_number_and_by_bytes(nbytes, most):
+    behind, gate = Behind[int](), threading.Event()
+    try:
+        for number in range(most):
+            behind.put(lambda _, number=number: (gate.wait(PATIENCE), number)[1], {"image": large(nbytes)})
+            assert list(behind.written()) == []
+        behind.put(lambda _: -1, {"image": large(nbytes)})
+        gate.set()
+        assert [*behind.written(), *behind.rest()] == [*range(most), -1]
+    finally:
+        behind.close()
+
+
+@pytest.mark.parametrize(("side", "most"), [(64, AHEAD), (4096, 1), (3000, 1), (2500, 2)])
+def test_pictures_are_read_ahead_by_number_and_by_bytes(side, most):
+    surface = Surface("", "", (side, side), 4, "f4", 0, 0, 1)
+    wanted = [(number, surface) for number in range(9)]
+    assert [number for number, _ in within_reach(wanted)] == list(range(most))
+    assert most == 1 or most * surface.nbytes <= AHEAD_BYTES

@@ -14,7 +14,8 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation.app.media.goldens import Stored
-from halation.app.renderer import Renderer, pinned
+from halation.app.renderer import Renderer
+from halation.app.renderer.pinned import pinned
 from halation.app.suite import crew
 from halation.app.suite.cases import Case
 from halation.app.suite.judging import unusable

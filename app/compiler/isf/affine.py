@@ -11,6 +11,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, cast
 
+from msgspec import Struct
+
 from ....nodes import Size
 from ..ir import Constant, Program, Shape
 
@@ -77,6 +79,8 @@ def _walk(item: Any, found: Anatomy) -> object:
     if dataclasses.is_dataclass(item) and not isinstance(item, type):
         fields = (one for one in dataclasses.fields(item) if one.compare)
         return type(item), tuple(_walk(getattr(item, one.name), found) for one in fields)
+    if isinstance(item, Struct):
+        return type(item), tuple(_walk(getattr(item, name), found) for name in item.__struct_fields__)
     if isinstance(item, tuple):
         return tuple(_walk(part, found) for part in cast("tuple[Any, ...]", item))
     return item

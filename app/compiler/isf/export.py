@@ -119,7 +119,7 @@ class _Export:
         size = (round(point.get(WIDTH, self.size[0])), round(point.get(HEIGHT, self.size[1])))
         bindings = {name: Picture(name, "", Kind.IMAGE, 4, in_memory=True) for name in self.pictures}
         request = Request({"made": self.target}, bindings, size, frame=round(point.get(FRAME, self.first)))
-        return lower(graph, request, self.library, _Bound(self.outside, size))
+        return lower(graph, request, self.library, _Bound(self.outside, size)).program
 
     def _knobs(self) -> dict[str, Knob]:
         width, height = (float(side) for side in self.size)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+
+from msgspec import field
 
 from ....nodes import Uniform
 from ...glsl import Text, words
@@ -24,7 +25,6 @@ _FINITE = re.compile(r"float finite\(float x\) \{.*?\n\}", re.DOTALL)
 _GLOBALS = ("pixel", "extent", "grid", "frame", "proxy")
 
 
-@dataclass
 class PassNames(Names):
     """Pictures are read through functions of their own; what would be a uniform is set at the start of the pass."""
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from imgui_bundle import imgui
+from msgspec import structs
 
 from ....nodes import Value
 from ...graph import Keys, Port
@@ -86,10 +85,12 @@ class KeyFields:
         time = Value("frame", "float", 1.0, low=float(first), high=float(max(last, first + 1)))
         rows: list[tuple[str, str, tuple[float, ...], Value]] = [("frame", "Frame", (key.frame,), time)]
         if key.parts and len(key.parts) <= 4:
-            kind = replace(declaration, type="int" if declaration.type == "int" else "float")
+            kind = structs.replace(declaration, type="int" if declaration.type == "int" else "float")
             rows.append(("value", "Value", key.value if isinstance(key.value, tuple) else (key.value,), kind))  # type: ignore
             if not frame.sheet and len(key.parts) == 1:
-                loose = replace(kind, type="float", unit=None, low=-_INF, high=_INF, minimum=-_INF, maximum=_INF)
+                loose = structs.replace(
+                    kind, type="float", unit=None, low=-_INF, high=_INF, minimum=-_INF, maximum=_INF,
+                )
                 rows += [
                     (side, label, handle, loose)
                     for side, label, handle in zip(SIDES, ("In", "Out"), keys.handles(at), strict=True)

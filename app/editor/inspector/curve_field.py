@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 
 from imgui_bundle import imgui
+from msgspec import structs
 
 from ....nodes import Plain, Value
 from ..theme.style import mix, u32, ui_scale
@@ -137,7 +138,7 @@ def _below(fields: Fields, id: str, value: tuple[float, ...], declaration: Value
     index = fields.point[1] if fields.point[0] == id else -1
     if 0 <= index < len(value) // 2:
         point = value[2 * index : 2 * index + 2]
-        part = replace(declaration, low=min(0.0, declaration.low), high=max(1.0, declaration.high))
+        part = structs.replace(declaration, low=min(0.0, declaration.low), high=max(1.0, declaration.high))
 
         def whole(edit: Edit) -> Edit | None:
             return replace(edit, value=changed(value, 2, index, edit.value)) if isinstance(edit.value, tuple) else None

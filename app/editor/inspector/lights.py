@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cache
 
+from msgspec import structs
+
 from ....nodes import LIGHT_NUMBERS, MAX_LIGHTS, Light, LightKind, Plain, Value, lights_of
 
 Numbers = tuple[float, ...]
@@ -33,13 +35,13 @@ class Part:
     def put(self, light: Light, plain: Plain) -> Light:
         """The light with another one. It always shines somewhere, and its inner angle is never the wider one."""
         if self.name == "color" and isinstance(plain, tuple):
-            return replace(light, color=plain[:3])
+            return structs.replace(light, color=plain[:3])
         if self.name == "direction" and isinstance(plain, tuple) and not any(plain):
             return light
-        made = replace(light, **{self.name: plain})
+        made = structs.replace(light, **{self.name: plain})
         if self.name == "inner":
-            return replace(made, outer=max(made.inner, made.outer))
-        return replace(made, inner=min(made.inner, made.outer)) if self.name == "outer" else made
+            return structs.replace(made, outer=max(made.inner, made.outer))
+        return structs.replace(made, inner=min(made.inner, made.outer)) if self.name == "outer" else made
 
     def unit(self, kind: LightKind) -> str | None:
         """What stands behind the number, where that is no unit of values."""
@@ -61,16 +63,16 @@ PARTS = (
         "intensity", "float", 0.0, low=-50.0, high=50.0, doc="How strong it is: W/sr, so that the light at a distance "
         "d is the intensity / d²; W/m² for a sun, the same everywhere. Below 0 it takes light away.",
     )),
-    Part("reach", replace(
+    Part("reach", structs.replace(
         _LENGTH, name="reach", doc="The distance at which it has faded to nothing; 0 is no end.",
     ), (_POINT, _SPOT, _SPHERE)),
-    Part("inner", replace(
+    Part("inner", structs.replace(
         _ANGLE, name="inner angle", doc="Half the angle of the cone in which it shines fully.",
     ), (_SPOT,)),
-    Part("outer", replace(
+    Part("outer", structs.replace(
         _ANGLE, name="outer angle", doc="Half the angle of the cone in which it shines at all.",
     ), (_SPOT,)),
-    Part("size", replace(
+    Part("size", structs.replace(
         _LENGTH, name="size", high=2.0, doc="The radius of the sphere: a larger one has wider reflections.",
     ), (_SPHERE,)),
 )
@@ -82,7 +84,7 @@ def parts_of(kind: LightKind) -> tuple[Part, ...]:
     """What a light of that kind has; each declares as its default what a new one has."""
     new = fresh(kind)
     return tuple(
-        replace(part, declaration=replace(part.declaration, default=part.of(new)))
+        replace(part, declaration=structs.replace(part.declaration, default=part.of(new)))
         for part in PARTS if kind in part.kinds
     )
 
@@ -95,7 +97,7 @@ def fresh(kind: LightKind) -> Light:
 def turned(light: Light, kind: LightKind) -> Light:
     """The light as one of another kind; an intensity that was never touched becomes that of a new one."""
     untouched = light.intensity == fresh(light.kind).intensity
-    return replace(light, kind=kind, intensity=fresh(kind).intensity if untouched else light.intensity)
+    return structs.replace(light, kind=kind, intensity=fresh(kind).intensity if untouched else light.intensity)
 
 
 def count_of(numbers: Numbers) -> int:

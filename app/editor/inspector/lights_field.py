@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
+from msgspec import structs
 
 from ....nodes import MAX_LIGHTS, Light, LightKind, Plain, Value
 from ..theme.style import mix, u32, ui_scale, vec4
@@ -115,7 +116,7 @@ def _row(fields: Fields, id: str, value: Numbers, index: int, chosen: bool) -> E
     ink = palette.text if over_eye else palette.dim
     _centered((eye, rect[1], rect[2], rect[3]), icons.ICON_FA_EYE if light.on else icons.ICON_FA_EYE_SLASH, ink)
     imgui.set_cursor_pos((start.x, start.y + _row_height()))
-    return Edit(changed(value, index, replace(light, on=not light.on))) if switched else None
+    return Edit(changed(value, index, structs.replace(light, on=not light.on))) if switched else None
 
 
 def _face(fields: Fields, light: Light, index: int, rect: Rect) -> None:

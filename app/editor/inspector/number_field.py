@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from imgui_bundle import imgui
+from msgspec import structs
 
 from ....nodes import Plain, Value
 from ..theme.style import mix, u32, ui_scale
@@ -136,7 +137,7 @@ def row_of_numbers(
     """Numbers side by side; a name stands in each where there is room for it. Floats unless `keep_type`."""
     gap = imgui.get_style().item_inner_spacing.x * 0.5
     each = (width - gap * (len(names) - 1)) / len(names)
-    part, found = declaration if keep_type else replace(declaration, type="float"), None
+    part, found = declaration if keep_type else structs.replace(declaration, type="float"), None
     for index, name in enumerate(names, first):
         if index > first:
             imgui.same_line(0.0, gap)

@@ -7,8 +7,9 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from ...compiler import Plan
+from ...errors import DeviceError
 from ...graph import Port
-from ...renderer import Reel, Renderer, Run
+from ...renderer import Reel, Renderer, Run, TiledRun
 from .wishes import Wish
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ class Job:
         self.wish, self.ports, self.frame, self.ahead = wish, ports, frame, ahead
         self.timings: list[tuple[Pass, float]] | None = [] if timed else None
         self.plan: Plan | None = None
-        self.run: Run | None = None
+        self.run: Run | TiledRun | None = None
         self.began = time.perf_counter()
         self.passes = 0
         """Passes of runs that have ended."""
@@ -36,12 +37,12 @@ class Job:
         self.planned = (0, 0)
         """The same for plans."""
         self.kept = renderer.runner.lease()
-        self._runs: Iterator[Run] | None = None
+        self._runs: Iterator[Run | TiledRun] | None = None
         self._reel: Reel | None = None
         try:
             self._reel = wish.take.reel(ports)
             if self._reel is None:
-                plan = renderer.compile(wish.graph, wish.wanted(ports, frame))
+                plan = _fitting(renderer.compile(wish.graph, wish.wanted(ports, frame)))
                 if plan.memories:
                     self._reel = wish.take.begin(ports, Reel(renderer, wish.graph, wish.wanted(ports, frame)))
                 else:
@@ -77,7 +78,7 @@ class Job:
         if planned := self._reel.plan_next(self.frame):
             self.planned = planned
             return
-        self.plan = self._reel.plan(self.frame)
+        self.plan = _fitting(self._reel.plan(self.frame))
         self.lead = (-1, len(self._reel.lead(self.frame)))
         self._runs = self._reel.steps(self.frame, self.kept, self.timings)
         self._next()
@@ -89,3 +90,10 @@ class Job:
             return False
         self.run, self.lead = run, (self.lead[0] + 1, self.lead[1])
         return True
+
+
+def _fitting(plan: Plan) -> Plan:
+    """A plan whose pictures can be shown. Raises DeviceError for one that can only be rendered to files."""
+    if plan.tiling is not None:
+        raise DeviceError(f"{plan.tiling.why}: look at a smaller proxy, or render it to a file")
+    return plan

@@ -19,7 +19,7 @@ from watchfiles import watch
 
 from ....nodes import Node
 from ...graph import Graph, Group, Port
-from ...media.pictures import split_layer
+from ...media.layers import split_layer
 
 Kind = Literal["graph", "group", "picture", "code", "shader", "node"]
 _Key = tuple[Kind, Path]

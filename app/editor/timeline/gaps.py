@@ -11,7 +11,7 @@ from pathlib import Path
 from ...compiler import named_files
 from ...errors import HalationError
 from ...graph import Graph
-from ...media.pictures import split_layer
+from ...media.layers import split_layer
 from ...media.sequences import find_sequence
 from ..session import Session
 

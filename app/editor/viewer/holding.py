@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
+
+from msgspec import structs
 
 from ...graph import Port
 from .dome import RADIUS, direction_at, knob_of, middle_of
@@ -201,7 +203,7 @@ class Hold:
             case "sun":
                 knob = at[0] + self.offset[0], at[1] + self.offset[1]
                 direction = direction_at(sight, self.scale, lamp.camera, knob)
-                change(editor, lamp, replace(lamp.light, direction=direction))
+                change(editor, lamp, structs.replace(lamp.light, direction=direction))
             case _:
                 pass
 

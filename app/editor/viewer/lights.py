@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from msgspec import structs
 
 from ....nodes import Camera, Kind, Light, LightKind, lights_of
 from ...graph import Port, Unknown, signature
@@ -129,7 +131,7 @@ def _camera(editor: Editor) -> Camera | None:
 def put(editor: Editor, lamp: Lamp, to: Point, depth: float | None = None) -> None:
     """Put a light elsewhere on the picture, as far from the camera as it is, or at another depth."""
     u, v = (min(max(part, -1.0), 2.0) for part in to)
-    change(editor, lamp, replace(lamp.light, place=unproject(lamp.camera, u, v, depth or lamp.depth)))
+    change(editor, lamp, structs.replace(lamp.light, place=unproject(lamp.camera, u, v, depth or lamp.depth)))
 
 
 def drop(editor: Editor, lamp: Lamp, to: Point) -> None:
@@ -138,7 +140,7 @@ def drop(editor: Editor, lamp: Lamp, to: Point) -> None:
     if place is None:
         put(editor, lamp, to)
     else:
-        change(editor, lamp, replace(lamp.light, place=place))
+        change(editor, lamp, structs.replace(lamp.light, place=place))
 
 
 def turn(editor: Editor, lamp: Lamp, to: Point, depth: float) -> None:
@@ -147,7 +149,7 @@ def turn(editor: Editor, lamp: Lamp, to: Point, depth: float) -> None:
     direction = moved(unproject(lamp.camera, u, v, depth), lamp.light.place, -1.0)
     x, y, z = (round(part, 5) for part in direction)
     if any((x, y, z)):
-        change(editor, lamp, replace(lamp.light, direction=(x, y, z)))
+        change(editor, lamp, structs.replace(lamp.light, direction=(x, y, z)))
 
 
 def change(editor: Editor, lamp: Lamp, light: Light, merge: str = "") -> None:
@@ -180,7 +182,7 @@ def add(editor: Editor, to: Point) -> None:
     depths = [lamp.depth for lamp in lamps(editor)]
     deep = depths[-1] if depths else _DEFAULT_DEPTH
     place = _over(editor, camera, to, light) or unproject(camera, *to, deep)
-    made, at = added(numbers, chosen, replace(light, place=place))
+    made, at = added(numbers, chosen, structs.replace(light, place=place))
     if made == numbers:
         editor.say("there is no room for another light")
         return

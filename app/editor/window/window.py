@@ -12,7 +12,7 @@ from imgui_bundle import ImVec2, glfw_utils, hello_imgui, imgui
 import glfw  # isort: skip
 
 from ...compiler import Form
-from ...renderer.device import adopt
+from ...renderer.opening import adopt
 from ..actions.documents import ask_to_close
 from ..dialogs import Browse
 from ..editor import Editor

@@ -1,14 +1,11 @@
-"""Small safe formulas of time and of other values, read and computed by ourselves."""
+"""Small safe formulas of time and of other values, read and computed by ourselves.
+
+What reads and computes them is loaded with the first formula: most graphs have none.
+"""
 
 from __future__ import annotations
 
 from .expression import Expression
 from .fault import ExpressionError
-from .functions import FUNCTIONS, Function
-from .parser import MAX_DEPTH, MAX_LENGTH
-from .tokens import CONSTANTS, VARIABLES, Token, TokenKind, written
 
-__all__ = [
-    "CONSTANTS", "FUNCTIONS", "MAX_DEPTH", "MAX_LENGTH", "VARIABLES", "Expression", "ExpressionError", "Function",
-    "Token", "TokenKind", "written",
-]
+__all__ = ["Expression", "ExpressionError"]

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from ....nodes import Plain
-from .evaluate import Code, Scope
 from .fault import ExpressionError
-from .parser import MAX_LENGTH, parsed
-from .tokens import Token, segments, tokens, written
+
+if TYPE_CHECKING:
+    from .evaluate import Code
+    from .tokens import Token
 
 
-@dataclass(frozen=True)
-class Expression:
+class Expression(Struct, frozen=True, dict=True):
     """A text such as `0.5 + 0.1 * sin(time * tau)` or `glow * move.offset.x`. It is read once, when first needed.
 
     Beside arithmetic it knows `frame`, `time` in seconds, `rate` in frames per second, FUNCTIONS, and other values: a
@@ -26,6 +28,8 @@ class Expression:
 
     def at(self, frame: float, time: float, rate: float, value: Callable[[str], Plain]) -> Plain:
         """The value at a time; `value` gives that of a name. Raises ExpressionError, and what `value` raises."""
+        from .evaluate import Scope
+
         code = self._code
         if isinstance(code, ExpressionError):
             raise ExpressionError(code.text, code.position, code.sentence)
@@ -39,6 +43,9 @@ class Expression:
     @cached_property
     def tokens(self) -> tuple[Token, ...]:
         """The words of the text, for an editor to color; also of one that cannot be read. None if it is too long."""
+        from .parser import MAX_LENGTH
+        from .tokens import tokens
+
         return tuple(tokens(self.text)) if len(self.text) <= MAX_LENGTH else ()
 
     @cached_property
@@ -48,6 +55,8 @@ class Expression:
 
     def renamed(self, old: str, new: str) -> Expression:
         """With another name of a node, of a control, or of a value as `node.value`; nothing else changes."""
+        from .tokens import segments, written
+
         text, end = "", 0
         for token in self.tokens:
             if token.kind == "name" and (token.name == old or token.name.startswith(f"{old}.")):
@@ -62,6 +71,8 @@ class Expression:
 
     @cached_property
     def _code(self) -> Code | ExpressionError:
+        from .parser import parsed
+
         try:
             return parsed(self.text)
         except ExpressionError as error:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
 from types import MappingProxyType
+
+from msgspec import Struct
 
 from ..keys import rounded
 from .noise import noise, random
@@ -19,8 +20,7 @@ class NoValueError(Exception):
     """Why some numbers make no value, in words."""
 
 
-@dataclass(frozen=True)
-class Function:
+class Function(Struct, frozen=True):
     """A function: how it is written, what it is, and how many values it can take."""
 
     signature: str

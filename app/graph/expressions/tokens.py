@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Literal
+
+from msgspec import Struct
 
 TokenKind = Literal[
     "number", "name", "function", "constant", "variable", "word", "operator", "bracket", "unknown", "end"
@@ -33,8 +34,7 @@ _CALLED = re.compile(r"\s*\(")
 _SEGMENTS = re.compile(r"`((?:[^`]|``)+)`|([^.`]+)")
 
 
-@dataclass(frozen=True)
-class Token:
+class Token(Struct, frozen=True):
     """A word of the text from `start` to `end`. `name` is the dotted name without its quotes."""
 
     kind: TokenKind

@@ -1,0 +1,107 @@
+"""Rectangles of pictures, and which rectangle of one picture is read for a rectangle of another."""
+
+from __future__ import annotations
+
+import math
+
+from msgspec import Struct
+
+from ...nodes import Affine, Edge, Size
+
+Span = tuple[int, int]
+"""Pixels along an axis: the first, and the one after the last."""
+
+_FAR = 2**30
+"""Outside of every picture."""
+
+
+class Region(Struct, frozen=True):
+    """Pixels of a picture: from (x, y), the top left one, on."""
+
+    x: int
+    y: int
+    width: int
+    height: int
+
+    @staticmethod
+    def whole(size: Size) -> Region:
+        """All of a picture."""
+        return Region(0, 0, *size)
+
+    @staticmethod
+    def of(across: Span, down: Span) -> Region:
+        """By what it covers along both axes."""
+        return Region(across[0], down[0], across[1] - across[0], down[1] - down[0])
+
+    @property
+    def size(self) -> Size:
+        return (self.width, self.height)
+
+    @property
+    def start(self) -> tuple[int, int]:
+        """Its top left pixel."""
+        return (self.x, self.y)
+
+    @property
+    def across(self) -> Span:
+        return (self.x, self.x + self.width)
+
+    @property
+    def down(self) -> Span:
+        return (self.y, self.y + self.height)
+
+    def with_(self, other: Region) -> Region:
+        """The smallest one that holds both."""
+        spans = zip((self.across, self.down), (other.across, other.down), strict=True)
+        across, down = ((min(one[0], two[0]), max(one[1], two[1])) for one, two in spans)
+        return Region.of(across, down)
+
+
+class Around(Struct, frozen=True):
+    """Where a function reads a picture: `matrix` leads from the middle of its own pixel to a place, and it looks at
+    pixels up to `radius` away from the one there, along each axis."""
+
+    matrix: Affine
+    radius: tuple[float, float]
+
+    @staticmethod
+    def pixel(own: Size, read: Size, radius: tuple[float, float]) -> Around:
+        """Around the same pixel; in a picture of another size, around the one at the same part of it."""
+        return Around((read[0] / own[0], 0.0, 0.0, 0.0, read[1] / own[1], 0.0), radius)
+
+    def read(self, region: Region) -> tuple[Span, Span]:
+        """What is read for a region, beyond the edges of the picture too."""
+        a, b, x, c, d, y = self.matrix
+        corners = [
+            (i, j) for i in (region.x + 0.5, region.x + region.width - 0.5)
+            for j in (region.y + 0.5, region.y + region.height - 0.5)
+        ]
+        return (
+            _reached([a * i + b * j + x for i, j in corners], self.radius[0]),
+            _reached([c * i + d * j + y for i, j in corners], self.radius[1]),
+        )
+
+
+def inside(span: Span, length: int, edge: Edge) -> Span:
+    """The pixels of a row of `length` that are read where a span beyond its ends is asked for."""
+    first, end = span
+    if first >= 0 and end <= length:
+        return span
+    low, high = min(max(first, 0), length - 1), max(min(end, length), 1)
+    if edge in ("clamp", "black"):
+        return low, high
+    if edge == "wrap" or first < -length or end > 2 * length:
+        return 0, length
+    turn = 1 if edge == "mirror" else 0
+    if first < 0:
+        high = max(high, min(turn - first, length))
+    if end > length:
+        low = min(low, max(2 * length - turn - end, 0))
+    return low, high
+
+
+def _reached(places: list[float], radius: float) -> Span:
+    low, high = min(places) - radius, max(places) + radius
+    if not (low > -_FAR and high < _FAR):  # or no number at all
+        return (-_FAR, _FAR)
+    return (math.floor(low), math.floor(high) + 1)

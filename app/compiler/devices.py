@@ -1,0 +1,89 @@
+"""Which form of passes suits a device: the one asked for, the one in a table, or the one that was faster on it.
+
+Pure: what is to be known of a device comes as text and numbers, so every choice can be tested without one.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from ..errors import DeviceError
+from .target import Form
+
+COMPUTE = 430
+"""The OpenGL that has compute shaders."""
+
+_SOFTWARE = re.compile("llvmpipe|softpipe|swiftshader|swrast|lavapipe|software|basic render", re.IGNORECASE)
+
+_TABLE: tuple[tuple[re.Pattern[str], Form, str], ...] = (
+    (_SOFTWARE, "compute", "a software rasterizer loads from images for a third of what samplers cost it"),
+    (
+        re.compile(r"\b(H20|H100|H200|H800|GH200)\b"), "compute",
+        "few units of this chip can draw, and all of them compute",
+    ),
+)
+"""Renderers by name, the form that suits them, and why. What is not here is measured: chips of one maker differ.
+
+Of a Hopper chip's processing clusters two can draw (NVIDIA H100 Tensor Core GPU Architecture, 2022).
+"""
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """A form, and in a few words who chose it and why."""
+
+    form: Form
+    why: str
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Seconds that the same passes took in either form; infinite where the driver refused them."""
+
+    compute: float
+    fragment: float
+
+    @property
+    def telling(self) -> bool:
+        """True if the numbers can be compared: clocks of some drivers stand still."""
+        return min(self.compute, self.fragment) > 0.0 and math.isfinite(min(self.compute, self.fragment))
+
+
+def is_software(renderer: str) -> bool:
+    """True if that is no GPU."""
+    return _SOFTWARE.search(renderer) is not None
+
+
+def choose(renderer: str, version: int, asked: Form | None, measure: Callable[[], Measured | None]) -> Chosen:
+    """The form of passes on a device. `measure` is called only where neither a person nor the table says.
+
+    Raises DeviceError for compute passes on an OpenGL without them.
+    """
+    number = f"{version / 100:.1f}"
+    if asked == "compute" and version < COMPUTE:
+        raise DeviceError(
+            f"{renderer} offers OpenGL {number}, but compute passes need {COMPUTE / 100:.1f}: use fragment passes"
+        )
+    if asked:
+        return Chosen(asked, "asked for")
+    if version < COMPUTE:
+        return Chosen("fragment", f"by the table: OpenGL {number} has no compute passes")
+    for words, form, why in _TABLE:
+        if words.search(renderer):
+            return Chosen(form, f"by the table: {why}")
+    found = measure()
+    if found is None or not found.telling:
+        return Chosen("compute", "by the table: nothing could be measured, and blurs load less in compute passes")
+    form = "compute" if found.compute <= found.fragment else "fragment"
+    return Chosen(form, f"measured: {_compared(found, form)}")
+
+
+def _compared(found: Measured, form: Form) -> str:
+    better, worse = sorted((found.compute, found.fragment))
+    other = "fragment" if form == "compute" else "compute"
+    if math.isinf(worse):
+        return f"the driver refuses {other} passes"
+    return f"{better * 1e3:.2f} ms against {worse * 1e3:.2f} in {other} passes"

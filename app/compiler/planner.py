@@ -1,0 +1,128 @@
+"""From graph to plan: the stages in a row, and what of the last plans holds for the next."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from msgspec import Struct, structs
+
+from ..graph import Graph, color_settings
+from .expand import written_texts
+from .fuse import fuse
+from .ir import Picture, Read
+from .library import Library, installed
+from .lower import lower
+from .outside import Outside
+from .plan import Plan
+from .regions import focused
+from .relower import relower
+from .request import Request
+from .rewrites import rewritten
+from .schedule import Scheduled, formats, reschedule, schedule
+from .steps import Lowered
+from .target import NULL, Precision, Target
+from .tiling import tile
+from .working import library_for
+
+KEPT = 4
+"""Plans that a planner remembers: someone who works on a graph looks at few things in turn."""
+
+
+class Compiled(Struct, frozen=True):
+    """A plan, how it came to be, and what was asked for besides a frame and what inputs are bound to."""
+
+    asked: tuple[object, ...]
+    lowered: Lowered
+    scheduled: Scheduled
+    tiled: bool
+
+
+class Planner:
+    """Compiles graphs one after the other. What holds of the plans before is not found out again.
+
+    The plan is always the one that `compile_graph` makes. Bound pixels are not held on to.
+    """
+
+    def __init__(self) -> None:
+        self._known: list[Compiled] = []
+
+    def plan(
+        self, graph: Graph, request: Request, outside: Outside, *, target: Target = NULL,
+        precision: Precision | None = None, library: Library | None = None, fusion: bool = True,
+    ) -> Plan:
+        """Compile what `request` wants of `graph` for `target`: see `compile_graph`."""
+        library, precision = graph_library(graph, outside, library), precision or target.precision
+        asked = (
+            dict(request.targets), request.size, request.scale, request.halves, request.region, target, precision, fusion,
+        )
+        lowered = scheduled = tiling = None
+        tiled = True
+        for known in self._known:
+            if known.asked != asked or known.lowered.library is not library:
+                continue
+            lowered = relower(known.lowered, graph, request, outside)
+            if lowered is not None:
+                if request.region is None:  # which part of a picture is read may depend on numbers
+                    scheduled, tiled = reschedule(known.scheduled, lowered.program, library), known.tiled
+                self._known.remove(known)
+                break
+        lowered = lowered or lower(graph, request, library, outside)
+        if scheduled is None:
+            passes = fuse(lowered.program, target, enabled=fusion)
+            passes = rewritten(lowered.program, passes, target, library) if fusion else passes
+            program = lowered.program if request.region is None else focused(lowered.program, passes, request.region)
+            scheduled, tiled = schedule(program, passes, library, target, precision, request.halves), True
+        if tiled:  # what fitted as it was still does if nothing but numbers changed
+            tiling = tile(
+                scheduled.program, scheduled.passes, scheduled.texels, library, target, precision, request.halves,
+                scheduled.keys,
+            )
+        self._known = [Compiled(asked, lowered, scheduled, tiling is not None), *self._known][:KEPT]
+        return _with_pixels(replace(scheduled.plan, tiling=tiling), request.bindings)
+
+
+def compile_graph(
+    graph: Graph, request: Request, outside: Outside, *, target: Target = NULL, precision: Precision | None = None,
+    library: Library | None = None, fusion: bool = True,
+) -> Plan:
+    """Compile what `request` wants of `graph` for `target`.
+
+    Raises GraphError for a graph that cannot be rendered, InputError (from `outside`) for a file that cannot
+    be read, DeviceError for one that is too large, ShaderError for a node and its GLSL that do not agree.
+    """
+    return Planner().plan(
+        graph, request, outside, target=target, precision=precision, library=library, fusion=fusion
+    )
+
+
+def examine(graph: Graph, request: Request, outside: Outside, target: Target = NULL) -> None:
+    """Raise what `compile_graph` would raise, in half of the time: no program is written."""
+    library = graph_library(graph, outside)
+    program = lower(graph, request, library, outside).program
+    passes, precision = fuse(program, target), target.precision
+    texels = formats(program, passes, target, precision, request.halves)
+    tile(program, passes, texels, library, target, precision, request.halves)
+
+
+def graph_library(graph: Graph, outside: Outside, library: Library | None = None) -> Library:
+    """The shaders that a graph can use: the installed ones for its working space, and its own."""
+    working = outside.working(color_settings(graph)) if graph.settings.color.working else None
+    return library_for(library or installed(), working).including(written_texts(graph))
+
+
+def _with_pixels(plan: Plan, bindings: Mapping[str, Picture]) -> Plan:
+    """A plan that has the pixels that are bound to inputs."""
+    pixels = {item.path: item.pixels for item in bindings.values() if item.in_memory}
+
+    def filled(picture: Picture) -> Picture:
+        there = not picture.in_memory or picture.pixels is not None
+        return picture if there else replace(picture, pixels=pixels.get(picture.path))
+
+    uploads = tuple(replace(item, picture=filled(item.picture)) for item in plan.uploads)
+    if plan.tiling is None:
+        return replace(plan, uploads=uploads)
+    program = plan.tiling.program
+    ops = tuple(replace(op, picture=filled(op.picture)) if isinstance(op, Read) else op for op in program.ops)
+    tiling = structs.replace(plan.tiling, program=replace(program, ops=ops))
+    return replace(plan, uploads=uploads, tiling=tiling)

@@ -1,0 +1,107 @@
+"""What either form of passes takes on a device that no table knows: measured at the first start, then kept in a file.
+
+The file is in the cache folder of the user, one for each renderer and version of its driver. All processes go by it, so
+that frames which several of them render, today and tomorrow, are of one form.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import asdict, replace
+from hashlib import blake2b
+from pathlib import Path
+from typing import get_args
+
+from ...nodes import Size, catalogue
+from ..compiler import Form, Request, compile_graph
+from ..compiler.devices import Measured
+from ..document.disk import read_text, write_text
+from ..errors import HalationError
+from ..graph import Graph, Port, Settings
+from ..graph.fence import outside
+from ..media.pictures import Pictures
+from .device import Device
+from .runner import Runner
+
+SIZE = (1024, 1024)
+TURNS = 5
+ENOUGH = 0.1
+"""Seconds of passes after which no further turn is taken: what is slow can be told apart sooner."""
+
+VERSION = 1
+"""Goes up when other passes are measured, or the compiler makes something else of them."""
+
+
+def kept_or_measured(device: Device, folder: Path | None = None) -> Measured | None:
+    """What is kept of the device; else it is measured and kept. None where it cannot be kept.
+
+    `folder` is by default that of the user.
+    """
+    path = (folder or _folder()) / f"{_digest(device)}.json"
+    if outside(path):
+        return None
+    if (known := _read(path)) is not None:
+        return known
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        found = measured(device)
+        known = _read(path)  # another process may have been quicker
+        if known is None:
+            said = {"renderer": device.target.renderer, "driver": device.driver, **asdict(found)}
+            write_text(path, json.dumps(said, indent=1) + "\n")
+    except (OSError, HalationError):
+        return None
+    return known or found
+
+
+def measured(device: Device, size: Size = SIZE, turns: int = TURNS) -> Measured:
+    """Seconds that noise, which is arithmetic, and its blur, which is reading, take in either form.
+
+    Both forms take turns, after a first one that counts for nothing: it compiles, and wakes the device up.
+    """
+    nodes = catalogue()
+    graph = Graph(settings=Settings(size)).add("noise", nodes["noise"]()).add("blur", nodes["gaussian_blur"]())
+    graph = graph.connect(Port("noise", "out"), Port("blur", "image"))
+    request, pictures = Request({"out": Port("blur", "out")}), Pictures()
+    fastest, spent = dict.fromkeys(get_args(Form), math.inf), 0.0
+    runners = {
+        form: Runner(replace(device, target=replace(device.target, form=form)), pictures.load, 0) for form in fastest
+    }
+    try:
+        for turn in range(turns + 1):
+            for form, runner in list(runners.items()):
+                plan = compile_graph(graph, request, pictures, target=runner.device.target)
+                try:
+                    seconds = sum(taken for _, taken in runner.timed(plan))
+                except HalationError:  # the driver refuses these passes: the others are left
+                    fastest[form] = math.inf
+                    runners.pop(form).close()
+                    continue
+                if turn:
+                    fastest[form], spent = min(fastest[form], seconds), spent + seconds
+            if spent > ENOUGH:
+                break
+    finally:
+        for runner in runners.values():
+            runner.close()
+    return Measured(**fastest)
+
+
+def _folder() -> Path:
+    import platformdirs
+
+    return platformdirs.user_cache_path("halation", appauthor=False) / "passes"
+
+
+def _digest(device: Device) -> str:
+    known = f"{VERSION}\0{device.target.renderer}\0{device.driver}"
+    return blake2b(known.encode(), digest_size=12).hexdigest()
+
+
+def _read(path: Path) -> Measured | None:
+    try:
+        found = json.loads(read_text(path))
+        return Measured(float(found["compute"]), float(found["fragment"]))
+    except (HalationError, ValueError, KeyError, TypeError):  # it is not there, or nobody can read it: measure again
+        return None

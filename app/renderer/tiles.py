@@ -1,0 +1,203 @@
+"""A plan that does not fit, run tile by tile."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterable, Mapping, Set
+from dataclasses import replace
+from types import TracebackType
+from typing import Protocol
+
+import numpy as np
+
+from ...nodes import Kind
+from ..compiler import Held, Pass, Picture, Plan, Read, Ref, Region, Stage, Upload, tile_plan
+from ..errors import HalationError
+from .decoding import Array, Loader
+from .run import Run, carried
+from .textures import Lease
+
+
+class Runs(Protocol):
+    """Runs plans that fit: see `Runner`."""
+
+    def steps(self, plan: Plan, kept: Lease, wanted: Iterable[int] | None = None) -> Run | TiledRun:
+        """Begin to run a plan."""
+        ...
+
+    def download(self, plan: Plan) -> dict[str, Array]:
+        """The outputs of a plan that has run."""
+        ...
+
+    def lease(self) -> Lease:
+        """Keeps pixels on the device."""
+        ...
+
+
+class TiledRun:
+    """Executes a plan tile by tile, one pass per `next`. When it ends, `finished` is given the outputs by name.
+
+    What is read anywhere is put together in memory before; so are the outputs. Like a `Run`, one that is dropped must
+    be closed.
+    """
+
+    def __init__(
+        self, runner: Runs, load: Loader, plan: Plan, finished: Callable[[dict[str, Array]], None]
+    ) -> None:
+        assert plan.tiling is not None
+        self.plan, self._tiling = plan, plan.tiling
+        self._runner, self._finished = runner, finished
+        self._pictures = _Pictures(load)
+        self._passes = self._run()
+        self.total = self._tiling.total
+        """Passes that run."""
+        self.done = 0
+        self.ended = False
+
+    @property
+    def ready(self) -> bool:
+        """True: nothing is decoded before it is wanted."""
+        return True
+
+    def __iter__(self) -> TiledRun:
+        return self
+
+    def __next__(self) -> Pass:
+        """Execute the next pass. Raises the errors of `app.errors`, which end the run."""
+        try:
+            one = next(self._passes)
+        except BaseException:
+            self.ended = True
+            raise
+        self.done += 1
+        return one
+
+    def __enter__(self) -> TiledRun:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Hand back what this run still holds."""
+        self.ended = True
+        self._passes.close()
+
+    # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _run(self) -> Generator[Pass, None, None]:
+        tiling = self._tiling
+        made: dict[int, Held] = {}
+        for number, stage in enumerate(tiling.stages[: len(tiling.before)]):
+            arrays = yield from self._stage(stage, made)
+            made |= self._held(stage, arrays)
+            self._forget(made, tiling.stages[number + 1 :])
+        outputs = {
+            name: _pixels(made[ref.op], ref.output) for name, ref in tiling.program.outputs.items() if ref.op in made
+        }
+        for number, stage in enumerate(tiling.last, len(tiling.before)):
+            outputs |= yield from self._stage(stage, made)
+            self._forget(made, tiling.stages[number + 1 :])
+        self._finished({name: outputs[name] for name in tiling.program.outputs})
+
+    def _stage(self, stage: Stage, made: Mapping[int, Held]) -> Generator[Pass, None, dict[str, Array]]:
+        """Make the pictures of a stage: [height, width, channels] by name."""
+        width, height = self._tiling.program.shape(next(iter(stage.outputs.values()))).size
+        whole: dict[str, Array] = {}
+        before, plan = self._runner.lease(), self._plan(stage, 0, made)
+        try:
+            for number, tile in enumerate(stage.tiles):
+                # Each tile keeps what the next one would make again.
+                following = self._plan(stage, number + 1, made) if number + 1 < len(stage.tiles) else None
+                shared = carried(plan, following) if following else ()
+                kept = self._runner.lease()
+                try:
+                    with self._runner.steps(plan, kept, (*plan.outputs.values(), *shared)) as run:
+                        before.close()
+                        yield from run
+                    for name, pixels in self._runner.download(plan).items():
+                        if name not in whole:
+                            whole[name] = np.empty((height, width, pixels.shape[2]), pixels.dtype)
+                        # Others may read more of an output than the tile.
+                        there = plan.surfaces[plan.outputs[name]].window or Region.whole((width, height))
+                        own = Region(tile.x - there.x, tile.y - there.y, *tile.size)
+                        whole[name][_slices(tile)] = pixels[_slices(own)]
+                    for surface in plan.outputs.values():
+                        if surface not in shared:
+                            kept.give(plan.surfaces[surface].key)
+                finally:
+                    before, plan = kept, following or plan
+        finally:
+            before.close()
+        return whole
+
+    def _plan(self, stage: Stage, number: int, made: Mapping[int, Held]) -> Plan:
+        """How a tile is made of pixels that are in memory."""
+        plan = tile_plan(self._tiling, stage, number, made)
+        return replace(plan, uploads=tuple(map(self._pictures.read, plan.uploads)))
+
+    def _held(self, stage: Stage, arrays: Mapping[str, Array]) -> dict[int, Held]:
+        """What a stage made, in place of the operations that would make it again."""
+        program, keys = self._tiling.program, self._tiling.keys
+        found: dict[int, Held] = {}
+        for index in dict.fromkeys(ref.op for ref in stage.outputs.values()):
+            op = program.ops[index]
+            refs = [Ref(index, output) for output in range(len(op.shapes))]
+            names = {ref: name for name, ref in stage.outputs.items()}
+            pixels = [arrays[names[ref]] if ref in names else None for ref in refs]
+            found[index] = Held(
+                op.shapes, op.owner, tuple(None if array is None else _picture(op.owner, array) for array in pixels),
+                tuple(array is not None and array.dtype == np.float16 for array in pixels),
+                tuple(keys.get(ref, "") for ref in refs),
+            )
+        return found
+
+    def _forget(self, made: dict[int, Held], later: Iterable[Stage]) -> None:
+        """Let go of what no later stage reads."""
+        read = {ref.op for stage in later for fused in stage.passes for ref in fused.reads}
+        read |= {ref.op for ref in self._tiling.program.outputs.values()}
+        for index in made.keys() - read:
+            del made[index]
+        ops = (self._tiling.program.ops[index] for index in read)
+        self._pictures.keep({op.picture for op in ops if isinstance(op, Read)})
+
+
+class _Pictures:
+    """The pixels of files, each decoded once."""
+
+    def __init__(self, load: Loader) -> None:
+        self._load = load
+        self._decoded: dict[Picture, Array] = {}
+
+    def read(self, upload: Upload) -> Upload:
+        """The same upload, of pixels that are in memory."""
+        picture = upload.picture
+        if picture.in_memory:
+            return upload
+        if picture not in self._decoded:
+            try:
+                self._decoded[picture] = self._load(picture)
+            except HalationError as error:
+                error.node = error.node or upload.node
+                raise
+        return replace(upload, picture=replace(picture, in_memory=True, pixels=self._decoded[picture]))
+
+    def keep(self, pictures: Set[Picture]) -> None:
+        """Let go of all others."""
+        for picture in self._decoded.keys() - pictures:
+            del self._decoded[picture]
+
+
+def _picture(owner: str, pixels: Array) -> Picture:
+    return Picture(owner, "", Kind.VECTOR, pixels.shape[2], in_memory=True, pixels=pixels)
+
+
+def _pixels(held: Held, output: int) -> Array:
+    picture = held.pictures[output]
+    assert picture is not None and isinstance(picture.pixels, np.ndarray)
+    return picture.pixels
+
+
+def _slices(region: Region) -> tuple[slice, slice]:
+    return slice(*region.down), slice(*region.across)

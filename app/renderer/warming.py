@@ -1,0 +1,48 @@
+"""Most of the time that opening OpenGL takes goes by while its driver is loaded, which others need not wait for."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+from threading import Thread
+from typing import Any
+
+EGL = "libEGL.so.1"
+GL = "libGL.so.1"
+_DEVICE = 0x313F
+"""EGL_PLATFORM_DEVICE_EXT."""
+
+
+def warm() -> None:
+    """Begin to load the driver of a context without a window on another thread, where that can be done.
+
+    Opening one later needs nothing of this, and reports what is wrong: here nothing is.
+    """
+    if sys.platform.startswith("linux"):
+        Thread(target=_load, name="warm", daemon=True).start()
+
+
+def _load() -> None:
+    """What glcontext will do first: choose a device, and begin with it. EGL remembers that, for all threads."""
+    try:
+        egl = ctypes.CDLL(EGL)
+    except OSError:
+        return
+    egl.eglGetProcAddress.restype = ctypes.c_void_p
+    query = _function(egl, b"eglQueryDevicesEXT", ctypes.c_uint, ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p)
+    display_of = _function(
+        egl, b"eglGetPlatformDisplayEXT", ctypes.c_void_p, ctypes.c_uint, ctypes.c_void_p, ctypes.c_void_p
+    )
+    place, devices, count = os.environ.get("GLCONTEXT_DEVICE_INDEX", "0"), (ctypes.c_void_p * 32)(), ctypes.c_int()
+    if query is None or display_of is None or not place.isdecimal():
+        return
+    if query(len(devices), ctypes.byref(devices), ctypes.byref(count)) and int(place) < count.value:
+        egl.eglInitialize.argtypes = (ctypes.c_void_p,) * 3
+        egl.eglInitialize(display_of(_DEVICE, devices[int(place)], None), None, None)
+
+
+def _function(egl: ctypes.CDLL, name: bytes, *types: Any) -> Any:
+    """A function of EGL that is an extension: what it returns and takes; None if it is not there."""
+    found = egl.eglGetProcAddress(name)
+    return ctypes.CFUNCTYPE(*types)(found) if found else None

@@ -1,0 +1,59 @@
+"""The reference compiler of Khronos takes every program: drivers are stricter than Mesa's, each in its own way.
+
+Skipped where glslangValidator is missing (Debian, Ubuntu: apt-get install glslang-tools).
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from collections.abc import Iterator
+
+import pytest
+from halation.app import document
+from halation.app.cli.specimen import drawn, planned
+from halation.app.compiler import NULL, Plan, Request, Target, compile_graph
+from halation.app.media.pictures import Pictures
+from halation.nodes import catalogue
+from halation.presets import paths
+
+VALIDATOR = shutil.which("glslangValidator")
+TARGETS = {
+    "gpu": Target("a card", 460, software=False, form="compute", precision="half"),
+    "mac": Target("a Mac", 410, software=False, form="fragment", precision="half"),
+    "software": NULL,
+}
+TOGETHER = 100
+"""Programs that are checked by one process."""
+
+
+def plans(target: Target) -> Iterator[Plan]:
+    for node in catalogue().values():
+        if drawn(node):
+            yield planned(node, (1920, 1080), target)
+    pictures = Pictures()
+    for path in paths():
+        yield compile_graph(document.load(path), Request(), pictures, target=target)
+
+
+@pytest.mark.skipif(VALIDATOR is None, reason="glslangValidator is not installed")
+@pytest.mark.parametrize("target", TARGETS.values(), ids=list(TARGETS))
+def test_the_reference_compiler_takes_all_programs(target, tmp_path):
+    found: dict[tuple[str, str], str] = {}
+    for plan in plans(target):
+        for one in plan.passes:
+            name = "_".join(one.functions)[:80]
+            found.setdefault((one.shader.source, "comp" if one.shader.form == "compute" else "frag"), name)
+            if one.shader.vertex:
+                found.setdefault((one.shader.vertex, "vert"), name)
+    assert len(found) > 200
+    files = []
+    for number, ((source, stage), name) in enumerate(found.items()):
+        files.append(tmp_path / f"{number}_{name.replace('/', '_')}.{stage}")
+        files[-1].write_text(source)
+    faults = []
+    for first in range(0, len(files), TOGETHER):
+        some = map(str, files[first : first + TOGETHER])
+        said = subprocess.run([str(VALIDATOR), *some], capture_output=True, text=True).stdout
+        faults += [line for line in said.splitlines() if not line.startswith(str(tmp_path))]
+    assert not faults, "\n".join(faults[:20])

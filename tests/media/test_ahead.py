@@ -1,0 +1,89 @@
+"""What is read ahead is what would be read, and nothing else is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from halation.app.compiler import Picture
+from halation.app.graph import Graph, Input, Output, Port
+from halation.app.media import read, write
+from halation.app.media.ahead import MOST, Ahead
+from halation.app.media.pictures import Pictures
+from halation.nodes import ColorSettings, Kind
+
+WANTED = (Kind.IMAGE, 4, "", ColorSettings())
+
+
+def graph(**inputs: Input) -> Graph:
+    """Every input is an output."""
+    links = {Port("outputs", name): Port("inputs", name) for name in inputs}
+    return Graph(inputs=inputs, outputs={name: Output(kind=end.kind) for name, end in inputs.items()}, links=links)
+
+
+@pytest.fixture
+def picture(tmp_path: Path) -> str:
+    path = tmp_path / "picture.exr"
+    pixels = np.random.default_rng(1).random((5, 7, 4), np.float32)
+    write(path, {"": pixels, "depth": pixels[..., :1]}, kinds={"": Kind.IMAGE, "depth": Kind.FIELD}, precision="float")
+    return str(path)
+
+
+def test_it_is_what_would_be_read(picture: str) -> None:
+    ahead = Ahead(graph(a=Input(), z=Input(Kind.FIELD)), {"a": picture, "z": f"{picture}:depth"})
+    pictures = Pictures(ahead=ahead)
+    for what in (Picture(picture, "", Kind.IMAGE, 4), Picture(picture, "depth", Kind.FIELD, 1)):
+        alone = read(what.path, what.layer, what.kind, what.width).array
+        for _ in range(2):  # read ahead, and read again
+            np.testing.assert_array_equal(pictures.load(what), alone, strict=True)
+
+
+def test_it_is_there_once(picture: str) -> None:
+    ahead = Ahead(graph(a=Input()), {"a": picture})
+    assert ahead.take((picture, "depth", *WANTED)) is None
+    assert ahead.take((picture, "", *WANTED)) is not None
+    assert ahead.take((picture, "", *WANTED)) is None
+
+
+def test_an_input_asks_for_a_layer_that_the_file_may_lack(picture: str) -> None:
+    """As `Pictures.bind` has it: a plain picture stands for any layer of color."""
+    made = graph(a=Input(layer="Combined"))
+    bound = Pictures().bind(made, {"a": picture})["a"]
+    assert Ahead(made, {"a": picture}).take((bound.path, bound.layer, *WANTED)) is not None
+
+
+def test_files_of_the_graph_are_beside_it(picture: str) -> None:
+    made = Graph(
+        inputs={"a": Input(file="picture.exr")}, outputs={"a": Output()}, folder=str(Path(picture).parent),
+        links={Port("outputs", "a"): Port("inputs", "a")},
+    )
+    assert Ahead(made, {}).take((picture, "", *WANTED)) is not None
+
+
+def test_what_nobody_is_sure_to_want_is_not_read(picture: str, tmp_path: Path) -> None:
+    made = graph(a=Input(file=picture), b=Input(file=picture), c=Input())
+    other = tmp_path / "other.exr"
+    other.write_bytes(Path(picture).read_bytes())
+    ahead = Ahead(made, {"a": str(other), "c": str(tmp_path / "picture.####.exr")})
+    assert ahead.take((picture, "", *WANTED)) is None  # b follows a to the other file
+    assert ahead.take((str(tmp_path / "picture.####.exr"), "", *WANTED)) is None
+    assert ahead.take((str(other), "", *WANTED)) is not None
+    idle = Graph(inputs={"a": Input()}, outputs={"a": Output()})
+    assert Ahead(idle, {"a": picture}).take((picture, "", *WANTED)) is None
+
+
+def test_few_pictures_wait(picture: str, tmp_path: Path) -> None:
+    names = [f"a{number}" for number in range(MOST + 2)]
+    files = {name: str(tmp_path / f"{name}.exr") for name in names}
+    for file in files.values():
+        Path(file).write_bytes(Path(picture).read_bytes())
+    ahead = Ahead(graph(**{name: Input() for name in names}), files)
+    assert [ahead.take((file, "", *WANTED)) is None for file in files.values()] == [False] * MOST + [True] * 2
+
+
+def test_a_damaged_file_is_found_out_by_who_wants_it(tmp_path: Path) -> None:
+    path = tmp_path / "damaged.exr"
+    path.write_bytes(b"no picture")
+    for layer in ("", "Combined"):
+        Ahead(graph(a=Input(layer=layer)), {"a": str(path)})

@@ -1,0 +1,87 @@
+"""What the forms of passes take on a device: measured once, then kept."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import pytest
+from halation.app.compiler.devices import Measured
+from halation.app.errors import ShaderError
+from halation.app.graph.fence import fenced
+from halation.app.renderer import calibration, open_device
+from halation.app.renderer.calibration import kept_or_measured, measured
+from halation.app.renderer.runner import Runner
+
+SMALL = (64, 48)
+
+
+@pytest.fixture(scope="module")
+def device():
+    made = open_device()
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def counted(monkeypatch):
+    """Numbers instead of a clock, a new pair each time; how often it was looked at."""
+    seen = []
+
+    def fake(device):
+        seen.append(device.target.renderer)
+        return Measured(1.0 / len(seen), 0.25)
+
+    monkeypatch.setattr(calibration, "measured", fake)
+    return seen
+
+
+def test_both_forms_run_and_take_time(device):
+    found = measured(device, SMALL, 2)
+    assert found.telling and 0.0 < found.compute < 60.0 and 0.0 < found.fragment < 60.0
+
+
+def test_a_form_that_the_driver_refuses_takes_forever(device, monkeypatch):
+    run = Runner.timed
+
+    def refusing(self, plan):
+        if self.device.target.form == "compute":
+            raise ShaderError("noise", "noise.glsl", 1, "no")
+        return run(self, plan)
+
+    monkeypatch.setattr(Runner, "timed", refusing)
+    found = measured(device, SMALL, 1)
+    assert found.compute == float("inf") and found.telling
+
+
+def test_a_device_is_measured_once(device, counted, tmp_path):
+    first = kept_or_measured(device, tmp_path / "new")
+    assert first == Measured(1.0, 0.25) == kept_or_measured(device, tmp_path / "new")
+    other = replace(device, target=replace(device.target, renderer="another card"))
+    assert kept_or_measured(other, tmp_path / "new") == Measured(0.5, 0.25)
+    assert counted == [device.target.renderer, "another card"]
+    files = list((tmp_path / "new").iterdir())
+    assert {json.loads(file.read_text())["renderer"] for file in files} == set(counted)
+
+
+@pytest.mark.parametrize("text", ["", "{", "[]", "{\"compute\": 1}", '{"compute": "x", "fragment": 1}'])
+def test_a_file_that_makes_no_sense_is_measured_again(device, counted, tmp_path, text):
+    kept_or_measured(device, tmp_path)
+    file = next(tmp_path.iterdir())
+    file.write_text(text)
+    assert kept_or_measured(device, tmp_path) == Measured(0.5, 0.25) == kept_or_measured(device, tmp_path)
+
+
+def test_what_cannot_be_kept_is_not_measured(device, counted, tmp_path):
+    (tmp_path / "file").write_text("")
+    (tmp_path / "inside").mkdir()
+    assert kept_or_measured(device, tmp_path / "file" / "below") is None
+    with fenced(tmp_path / "inside"):
+        assert kept_or_measured(device, tmp_path / "outside") is None
+    assert not counted
+
+
+def test_the_software_rasterizer_is_never_measured(counted):
+    made = open_device()
+    made.close()
+    assert made.target.software and made.target.why.startswith("by the table") and not counted

@@ -1,0 +1,55 @@
+"""What results cost, as far as it is known."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+from conftest import graph_of
+from halation.app.renderer import Renderer, Wanted
+from halation.app.renderer.costs import Costs
+from halation.nodes.blur.gaussian_blur import GaussianBlur
+from halation.nodes.color.exposure import Exposure
+
+
+def planned(renderer: Renderer, node, side: int = 32):
+    inputs = {"image": np.ones((side, side, 4), np.float32)}
+    return renderer.compile(graph_of(node, inputs), Wanted(inputs))
+
+
+def test_what_was_measured_holds_for_every_size(renderer):
+    costs, light = Costs(True), Exposure(stops=1.0)
+    small, large = planned(renderer, light), planned(renderer, light, 64)
+    for seconds in (0.5, 0.001):  # a program is finished when it first runs
+        costs.learn(small, small.passes[0], seconds)
+    assert costs.of(small, small.passes[0]) == pytest.approx(0.001)
+    assert costs.of(large, large.passes[0]) == pytest.approx(0.004)
+    costs.learn(large, large.passes[0], 0.008)
+    assert costs.of(small, small.passes[0]) == pytest.approx(0.002)
+
+
+def test_before_that_it_is_estimated_by_what_is_read(renderer):
+    costs = Costs(True)
+    point, blur = planned(renderer, Exposure(stops=1.0)), planned(renderer, GaussianBlur(sigma=3.0))
+    cheap, dear = (max(costs.of(plan, one) for one in plan.passes) for plan in (point, blur))
+    assert 0.0 < cheap < dear
+    costs.learn(point, point.passes[0], 0.5)
+    assert costs.of(point, point.passes[0]) == cheap
+
+
+def test_a_file_costs_what_it_took_to_decode(renderer):
+    engine = Renderer(renderer.device)
+    load = engine.runner._load
+
+    def slow(picture):
+        time.sleep(0.05)
+        return load(picture)
+
+    engine.runner._load = slow
+    plan = planned(engine, Exposure(stops=0.7))
+    engine.runner.run(plan)
+    numbers = plan.uploads[0].surface, plan.outputs["out"]
+    picture, result = (engine.runner.texture(plan.surfaces[number].key) for number in numbers)
+    assert picture.cost >= 0.05 and result.cost > 0.0
+    engine.close()
