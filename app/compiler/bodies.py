@@ -7,7 +7,10 @@ from .ir import BLOCK, Accessor, Convolve, Reduce, Ref
 from .names import Names
 
 OUTPUTS = 8
-"""Pixels that one invocation of a convolution makes: each pixel read is used for all of them."""
+"""Pixels that one invocation of a long convolution makes: each pixel read is used for all of them."""
+
+WRITTEN = 4
+"""Those of one whose taps are written out. Eight would be hardly faster, and take the driver long to compile."""
 
 SHORT = (9, 17, 25, 33)
 """Classes of taps of convolutions that are written out: longer ones would take the driver long to compile."""
@@ -75,6 +78,11 @@ def convolution(names: Names, op: Convolve) -> list[str]:
 def is_short(op: Convolve) -> bool:
     """Whether all taps are written out."""
     return len(op.weights) <= SHORT[-1]
+
+
+def count_of(op: Convolve) -> int:
+    """How many pixels one invocation makes."""
+    return WRITTEN if is_short(op) else OUTPUTS
 
 
 def strip(names: Names, op: Convolve, count: int) -> list[str]:

@@ -50,7 +50,7 @@ def emit(program: Program, fused: Fused, library: Library, target: Target, texel
     names = Names(program, {ref: number for number, ref in enumerate(fused.reads)}, target.form, by_image)
     _look_through(names, fused)
     halves = [texels[ref].endswith("16f") for ref in fused.writes]
-    strip, convolve = forms.strip_of(program, fused), forms.convolution_in(program, fused)
+    count, convolve = forms.count_of(program, fused, library), forms.convolution_in(program, fused)
     parts = parts_of(program, fused, names, library)
     early, late, files, asked = _included_texts(program, fused, parts, library)
     names.uniform("ivec2", root.size, "grid")
@@ -63,7 +63,7 @@ def emit(program: Program, fused: Fused, library: Library, target: Target, texel
         for ref, result, half in zip(fused.writes, parts.results, halves, strict=True)
     ]
     compute = target.form == "compute"
-    main = forms.main(names, strip, convolve, parts.body, stored) if compute else _fragment(names, parts.body, stored)
+    main = forms.main(names, count, convolve, parts.body, stored) if compute else _fragment(names, parts.body, stored)
     lines = [
         *_preamble(target),
         *(f"uniform {glsl} {name};" for name, glsl, _ in names.uniforms),
@@ -75,7 +75,7 @@ def emit(program: Program, fused: Fused, library: Library, target: Target, texel
         Shader("\n".join(lines) + "\n", target.form, files, by_image),
         tuple((name, value) for name, _, value in names.uniforms),
         bodies.padded_weights(convolve, target.form) if convolve else (),
-        forms.groups(strip, program.held(fused.writes[0])),
+        forms.groups(convolve, count, program.held(fused.writes[0])),
     )
 
 

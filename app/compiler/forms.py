@@ -9,19 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from msgspec import Struct
-
 from ...nodes import Size, glsl_type
 from . import bodies
 from .fuse import Fused
-from .ir import Call, Convolve, Gather, Program
+from .ir import Call, Convolve, Gather, Op, Program
+from .library import Library
 from .names import Names
 
 LOCAL_SIZE = 64
 """Invocations of a work group: neighbors across the row of pixels that each makes."""
 
-ROWS = 4
-"""Pixels of a column that one invocation makes: more would not fit into registers."""
+ROWS = 2
+"""Pixels of a column that one invocation makes. Four would be a tenth faster, and take the driver long to compile."""
 
 BLOCK = 8
 """Work groups side by side whose columns are convolved before those of the next block: what a strip reads again of the
@@ -29,25 +28,12 @@ rows that the one above it has read is then still in the nearest cache.
 """
 
 
-class Strip(Struct, frozen=True):
-    """The pixels that one invocation makes: so many along an axis (0 is x), block after block if there are `blocks`."""
-
-    axis: int = 1
-    count: int = 1
-    blocks: bool = False
-
-
-SINGLE = Strip()
-
-
-def strip_of(program: Program, fused: Fused) -> Strip:
-    """How many pixels an invocation of a compute pass should make."""
+def count_of(program: Program, fused: Fused, library: Library) -> int:
+    """How many pixels an invocation of a compute pass should make. Functions with loops share nothing."""
     convolve = convolution_in(program, fused)
     if convolve is not None:
-        return Strip(convolve.axis, bodies.OUTPUTS, blocks=convolve.axis == 1)
-    ops = [program.ops[index] for index in fused.members]
-    light = all(isinstance(op, Call) or (isinstance(op, Gather) and op.light) for op in ops)
-    return Strip(1, ROWS) if light else SINGLE
+        return bodies.count_of(convolve)
+    return ROWS if all(_is_straight(program.ops[index], library) for index in fused.members) else 1
 
 
 def convolution_in(program: Program, fused: Fused) -> Convolve | None:
@@ -56,59 +42,62 @@ def convolution_in(program: Program, fused: Fused) -> Convolve | None:
     return next(found, None)
 
 
-def groups(strip: Strip, size: Size) -> tuple[int, int, int]:
-    """Work groups that cover a picture: all of the first axis run one after another, then those of the second."""
-    width, height = size
-    if strip.axis == 0:
-        return (-(-width // strip.count), -(-height // LOCAL_SIZE), 1)
-    across, down = -(-width // LOCAL_SIZE), -(-height // strip.count)
-    return (min(across, BLOCK), down, -(-across // BLOCK)) if strip.blocks else (across, down, 1)
+def _is_straight(op: Op, library: Library) -> bool:
+    if isinstance(op, Call):
+        return not op.program and library.straight(op.shader, op.function, op.owner)
+    return isinstance(op, Gather) and op.light
+
+
+def groups(convolve: Convolve | None, count: int, size: Size) -> tuple[int, int, int]:
+    """Work groups that cover a picture: side by side across the rows of pixels, along them, and blocks of those."""
+    axis = convolve.axis if convolve else 1
+    along, across = -(-size[axis] // count), -(-size[1 - axis] // LOCAL_SIZE)
+    block = across if convolve is None else min(across, BLOCK) if axis == 1 else 1
+    return (block, along, -(-across // block))
 
 
 def main(
-    names: Names, strip: Strip, convolve: Convolve | None, body: Sequence[str], texels: Sequence[str]
+    names: Names, count: int, convolve: Convolve | None, body: Sequence[str], texels: Sequence[str]
 ) -> list[str]:
     """The entry point of a compute pass.
 
     `body` are the statements that make one pixel, `texels` what is stored of it. With a convolution, its value of that
-    pixel is called `convolved`.
+    pixel is called `convolved`, and pixels are made `along` its axis.
     """
+    lines = [
+        "void main() {",
+        "uint across = (gl_WorkGroupID.z * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x"
+        " + gl_LocalInvocationID.x;",
+        f"ivec2 first = {_place(f'int(gl_WorkGroupID.y + first_row) * {count}', 'int(across)', convolve)};",
+        # What is made beyond the end of a row is stored nowhere.
+        f"if (any(greaterThanEqual(first, {names.room}))) return;",
+        *([f"first += {names.start};"] if names.start else []), "pixel = first; extent = grid;",
+    ]
     at = f"pixel - {names.start}" if names.start else "pixel"
-    lines = ["void main() {", *_first(names, strip), "pixel = first; extent = grid;"]
-    if strip.count == 1:
+    if count == 1:
         stores = (f"imageStore(o{number}, {at}, {texel});" for number, texel in enumerate(texels))
         return [*lines, *body, *stores, "}"]
     results = [f"r{number}" for number in range(len(texels))]
-    step = f"pixel.{'xy'[strip.axis]} += 1;"
+    step = "pixel += along;" if convolve else "++pixel.y;"
     of = [f"{glsl_type(names.shape(convolve.image).channels)} convolved"] if convolve else []
     made = [
         f"void made({', '.join([*of, *(f'out vec4 {name}' for name in results)])}) {{", *body,
         *(f"{name} = {texel};" for name, texel in zip(results, texels, strict=True)), "}",
     ]
     if convolve:
-        lines += bodies.strip(names, convolve, strip.count)
-    for k in range(strip.count):
+        lines += bodies.strip(names, convolve, count)
+    for k in range(count):
         own = [f"{name}_{k}" for name in results]
         given = [f"s{k}"] if convolve else []
         lines.append(f"vec4 {', '.join(own)}; made({', '.join([*given, *own])}); {step}")
     lines.append("pixel = first;")
-    # All reads before all writes: only then are they known to read the same. What lies outside is stored nowhere.
-    for k in range(strip.count):
+    # All reads before all writes: only then are they known to read the same.
+    for k in range(count):
         stores = (f"imageStore(o{number}, {at}, {name}_{k});" for number, name in enumerate(results))
         lines.append(f"{' '.join(stores)} {step}")
     return [*made, *lines, "}"]
 
 
-def _first(names: Names, strip: Strip) -> list[str]:
-    """The first pixel of an invocation. What it makes beyond the last row is stored nowhere."""
-    if strip.axis == 0:
-        along, across = "gl_WorkGroupID.x", "gl_WorkGroupID.y + first_row"
-    else:
-        block = f"gl_WorkGroupID.z * {BLOCK}u + " if strip.blocks else ""
-        along, across = "gl_WorkGroupID.y + first_row", f"{block}gl_WorkGroupID.x"
-    first = (f"({along}) * {strip.count}u", f"({across}) * {LOCAL_SIZE}u + gl_LocalInvocationID.x")
-    lines = [
-        f"ivec2 first = ivec2({', '.join(first if strip.axis == 0 else first[::-1])});",
-        f"if (any(greaterThanEqual(first, {names.room}))) return;",
-    ]
-    return [*lines, f"first += {names.start};"] if names.start else lines
+def _place(along: str, across: str, convolve: Convolve | None) -> str:
+    """A pixel by where it is along its row of pixels, and across; both axes of a convolution share a program."""
+    return f"along * ({along}) + along.yx * {across}" if convolve else f"ivec2({across}, {along})"

@@ -2,8 +2,7 @@
 
 A pointwise operation joins its reader when nothing else reads it, both have the same size, and the pass stays
 within the device's limits. Reductions take their producer in too: they read every pixel exactly once. So does an
-operation that looks around, if it is light, join a pointwise reader, and so does a convolution, which is then stored as
-what its reader makes of it; what these read themselves must be a texture.
+operation that looks around, if it is light, join a pointwise reader; what it reads itself must be a texture.
 """
 
 from __future__ import annotations
@@ -12,7 +11,7 @@ from collections.abc import Iterable
 
 from msgspec import Struct
 
-from .ir import Call, Constant, Convolve, Gather, History, Op, Program, Read, Reduce, Ref
+from .ir import Call, Constant, Gather, History, Op, Program, Read, Reduce, Ref
 from .target import Target
 
 MAX_MEMBERS = 48
@@ -54,7 +53,7 @@ def fuse(program: Program, target: Target, *, enabled: bool = True, gathers: boo
         outputs = [Ref(index, number) for number in range(len(op.shapes))]
         roots = {home[reader] for ref in outputs for reader in readers.get(ref, ())}
         root = roots.pop() if len(roots) == 1 else index
-        joins = isinstance(op, Call) or (gathers and _looks_around(op))
+        joins = isinstance(op, Call) or (gathers and isinstance(op, Gather) and op.light)
         joins = joins and root != index and not kept.intersection(outputs) and _at_its_pixel(ops, outputs, readers)
         if enabled and joins:
             joined = _joined(reads[root], outputs, op)
@@ -111,8 +110,6 @@ def _joined(outer: Iterable[Ref], made: list[Ref], op: Op) -> dict[Ref, None]:
 
 def count_uniforms(op: Op) -> int:
     """Floats of uniforms that an operation takes at most: each is rounded up to four, and every output has a seam."""
-    if isinstance(op, Convolve):
-        return 24
     if not isinstance(op, (Call, Gather)):
         return 0
     constants = [item.operand for item in op.parameters if isinstance(item.operand, Constant)]
@@ -127,20 +124,6 @@ def count_tables(ops: tuple[Op, ...], members: Iterable[int]) -> int:
     return sum(len(op.tables) for op in (ops[index] for index in members) if isinstance(op, Call))
 
 
-def convolves_at_most(ops: Iterable[Op], inputs: int) -> bool:
-    """Whether one pass can do all this: one that convolves looks around in no other way, and reads nothing else.
-
-    It makes its pixels in a row, which suits nothing else that reads: measured on the software rasterizer.
-    """
-    ways = [isinstance(op, Convolve) for op in ops if isinstance(op, (Convolve, Gather))]
-    return not any(ways) or (len(ways) == 1 and inputs == 1)
-
-
-def _looks_around(op: Op) -> bool:
-    """True for what reads around its pixel and may be computed within the pass that reads it."""
-    return (isinstance(op, Gather) and op.light) or (isinstance(op, Convolve) and op.stride == 1)
-
-
 def _fits(ops: tuple[Op, ...], op: Op, members: list[int], inputs: int, target: Target) -> bool:
     """Whether `op` can be part of the pass that these are members of, the root first."""
     reader = ops[members[0]]
@@ -149,8 +132,6 @@ def _fits(ops: tuple[Op, ...], op: Op, members: list[int], inputs: int, target: 
     elif isinstance(reader, Reduce) and isinstance(op, Call):
         same_size = ops[reader.image.op].size == op.size
     else:
-        return False
-    if not convolves_at_most([op, *(ops[index] for index in members)], inputs):
         return False
     return same_size and len(members) < MAX_MEMBERS and inputs <= target.max_inputs
 

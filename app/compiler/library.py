@@ -14,10 +14,11 @@ from ..glsl import Function, Text, parse
 
 _ACCESSOR = re.compile(r"\w+_(?:at|near|raw|size)")
 
-_DEAR = frozenset({"for", "while", "do", "pow", "exp", "log", "log2", "sin", "cos", "tan", "asin", "acos", "atan"})
+_LOOPS = frozenset({"for", "while", "do"})
+_DEAR = _LOOPS | frozenset({"pow", "exp", "log", "log2", "sin", "cos", "tan", "asin", "acos", "atan"})
 
 Lines = tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...], frozenset[str]]
-"""Lines of the files that a pass includes before and after its own functions; the files; the words that matter in them."""
+"""Lines of the files that a pass includes before and after its own functions; the files; words that matter in them."""
 
 KEPT = 1024
 """Passes of which the files that they include are known."""
@@ -35,7 +36,9 @@ class Library:
         default_factory=dict[tuple[str, ...], tuple[Text, ...]], compare=False, repr=False
     )
     _light: dict[tuple[str, str], bool] = field(default_factory=dict[tuple[str, str], bool], compare=False, repr=False)
-    _cheap: dict[tuple[str, str], bool] = field(default_factory=dict[tuple[str, str], bool], compare=False, repr=False)
+    _used: dict[tuple[str, str], frozenset[str]] = field(
+        default_factory=dict[tuple[str, str], frozenset[str]], compare=False, repr=False
+    )
     _lines: dict[Hashable, Lines] = field(default_factory=dict[Hashable, Lines], compare=False, repr=False)
     _larger: dict[frozenset[str], Library] = field(
         default_factory=dict[frozenset[str], "Library"], compare=False, repr=False
@@ -95,12 +98,20 @@ class Library:
 
     def cheap(self, shader: str, function: str, asker: str) -> bool:
         """True for a function that costs less than a picture that is stored and read: it has no loops and no powers."""
-        if (shader, function) not in self._cheap:
+        return self._words(shader, function, asker).isdisjoint(_DEAR)
+
+    def straight(self, shader: str, function: str, asker: str) -> bool:
+        """True for a function without loops."""
+        return self._words(shader, function, asker).isdisjoint(_LOOPS)
+
+    def _words(self, shader: str, function: str, asker: str) -> frozenset[str]:
+        """All words of a function and of those that it calls."""
+        if (shader, function) not in self._used:
             found = frozenset({function})
             for text in reversed(self.closure((shader,), asker)):
                 found |= text.only(found).words if found & text.functions.keys() else frozenset[str]()
-            self._cheap[shader, function] = found.isdisjoint(_DEAR)
-        return self._cheap[shader, function]
+            self._used[shader, function] = found
+        return self._used[shader, function]
 
     def _is_light(self, shader: str, function: str, asker: str) -> bool:
         if self._text(shader, asker).outside:
@@ -111,7 +122,7 @@ class Library:
             if text.name != shader and any(_ACCESSOR.fullmatch(word) for word in called):
                 return False
             needed |= called
-        return needed.isdisjoint(("for", "while", "do"))
+        return needed.isdisjoint(_LOOPS)
 
     def _with(self, added: Mapping[str, Text], key: frozenset[str]) -> Library:
         """This library with other files over its own, known by what `key` says of them."""

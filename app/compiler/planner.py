@@ -54,7 +54,8 @@ class Planner:
         """Compile what `request` wants of `graph` for `target`: see `compile_graph`."""
         library, precision = graph_library(graph, outside, library), precision or target.precision
         asked = (
-            dict(request.targets), request.size, request.scale, request.halves, request.region, target, precision, fusion,
+            dict(request.targets), request.size, request.scale, request.halves, request.region, target, precision,
+            fusion,
         )
         lowered = scheduled = tiling = None
         tiled = True

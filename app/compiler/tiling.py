@@ -28,6 +28,10 @@ from .tiles import Stage, Tiling
 LEAST = 8
 """Pixels across a tile, at least: smaller ones would be all overlap."""
 
+SMALL = 16
+"""What has so many times fewer pixels than the largest picture is made whole, even if it need not be: blurs and glows
+look far around in small pictures, and tiles of the large ones then need little around them."""
+
 USUAL = 2**31
 """Bytes for a tile where nobody says how many there are."""
 
@@ -70,16 +74,18 @@ def tile_plan(tiling: Tiling, stage: Stage, number: int, made: Mapping[int, Held
 def _too_much(program: Program, passes: Sequence[Fused], texels: Mapping[Ref, str], target: Target) -> str:
     """What cannot be held, in a sentence; "" if all can."""
     for ref in texels:
-        if max(program.held(ref)) > target.max_size:
+        size, owner = program.held(ref), program.ops[ref.op].owner
+        if max(size) > target.max_size:
             return (
-                f"node '{program.ops[ref.op].owner}': {_sized(program.held(ref))} pixels is more than the {target.max_size} that {target.renderer} can "
+                f"node '{owner}': {_sized(size)} pixels is more than the {target.max_size} that {target.renderer} can "
                 "hold on a side"
             )
     if not target.memory:
         return ""
     nbytes = peak(program, passes, texels) + sum(_nbytes(program, texels, ref) for ref in _carried(program, passes))
-    return f"{size_text(nbytes)} is more than the {size_text(target.memory)} that may be used" \
-        if nbytes > target.memory else ""
+    if nbytes <= target.memory:
+        return ""
+    return f"{size_text(nbytes)} of textures and pictures is more than the {size_text(target.memory)} that may be used"
 
 
 def _carried(program: Program, passes: Sequence[Fused]) -> set[Ref]:
@@ -125,6 +131,7 @@ class _Work:
     ) -> None:
         self.program, self.passes, self.texels, self.target = program, passes, texels, target
         self.makers = {ref: fused for fused in passes for ref in fused.writes}
+        self.largest = max(_area(program.shape(ref).size) for ref in texels)
         self.cuts = tuple(fused for fused in passes if self._is_cut(fused))
         self.held = {ref for fused in self.cuts for ref in fused.writes}
         self.nbytes = 0
@@ -149,10 +156,20 @@ class _Work:
         """True for a pass whose pictures are made as a whole before others read them."""
         if any(isinstance(op, Reduce) or made_whole(op) for op in self._ops(fused)):
             return True
+        if self._is_small(fused.writes[0]) and not self._stays_small(fused):
+            return True
         return any(
             reads_all(self.program, op, ref) and self.program.shape(ref).size != (1, 1)
             for other in self.passes for op in self._ops(other) for ref in op.reads() if ref in fused.writes
         )
+
+    def _is_small(self, ref: Ref) -> bool:
+        return SMALL * _area(self.program.shape(ref).size) <= self.largest
+
+    def _stays_small(self, fused: Fused) -> bool:
+        """True for a pass between small pictures: it is made together with those that shrink or enlarge."""
+        readers = [other for other in self.passes if not set(fused.writes).isdisjoint(other.reads)]
+        return all(map(self._is_small, (*fused.reads, *(other.writes[0] for other in readers))))
 
     def _ops(self, fused: Fused) -> list[Op]:
         return [self.program.ops[index] for index in fused.members]
@@ -226,6 +243,10 @@ class _Work:
             f"node '{owner}': for a few pixels it needs more than the {self.target.max_size} that "
             f"{self.target.renderer} can hold on a side; render smaller with --scale or --size", node=owner,
         )
+
+
+def _area(size: Size) -> int:
+    return size[0] * size[1]
 
 
 def _grid(size: Size, tile: Size) -> tuple[Region, ...]:

@@ -98,6 +98,11 @@ class Runner:
         """Keeps pixels on the device, none as yet."""
         return Lease(self.textures)
 
+    def forget(self) -> None:
+        """Give back to the driver what nobody leases."""
+        with self.device.current():
+            self.textures.forget()
+
     def texture(self, key: str) -> Texture | None:
         """The texture that holds these pixels, if any does."""
         return self.textures.find(key)

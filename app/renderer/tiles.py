@@ -9,9 +9,10 @@ from typing import Protocol
 
 import numpy as np
 
-from ...nodes import Kind
+from ...nodes import Kind, Size
 from ..compiler import Held, Pass, Picture, Plan, Read, Ref, Region, Stage, Upload, tile_plan
 from ..errors import HalationError
+from .arrays import Arrays
 from .decoding import Array, Loader
 from .run import Run, carried
 from .textures import Lease
@@ -20,12 +21,16 @@ from .textures import Lease
 class Runs(Protocol):
     """Runs plans that fit: see `Runner`."""
 
+    def forget(self) -> None:
+        """Give back textures that nobody leases."""
+        ...
+
     def steps(self, plan: Plan, kept: Lease, wanted: Iterable[int] | None = None) -> Run | TiledRun:
         """Begin to run a plan."""
         ...
 
-    def download(self, plan: Plan) -> dict[str, Array]:
-        """The outputs of a plan that has run."""
+    def download(self, plan: Plan, arrays: Arrays | None = None) -> dict[str, Array]:
+        """The outputs of a plan that has run, in `arrays` that are lent."""
         ...
 
     def lease(self) -> Lease:
@@ -46,7 +51,7 @@ class TiledRun:
         assert plan.tiling is not None
         self.plan, self._tiling = plan, plan.tiling
         self._runner, self._finished = runner, finished
-        self._pictures = _Pictures(load)
+        self._pictures, self._arrays = _Pictures(load), Arrays()
         self._passes = self._run()
         self.total = self._tiling.total
         """Passes that run."""
@@ -116,17 +121,21 @@ class TiledRun:
                     with self._runner.steps(plan, kept, (*plan.outputs.values(), *shared)) as run:
                         before.close()
                         yield from run
-                    for name, pixels in self._runner.download(plan).items():
+                    made_here = self._runner.download(plan, self._arrays)
+                    for name, pixels in made_here.items():
                         if name not in whole:
                             whole[name] = np.empty((height, width, pixels.shape[2]), pixels.dtype)
                         # Others may read more of an output than the tile.
                         there = plan.surfaces[plan.outputs[name]].window or Region.whole((width, height))
                         own = Region(tile.x - there.x, tile.y - there.y, *tile.size)
                         whole[name][_slices(tile)] = pixels[_slices(own)]
+                    self._arrays.give(made_here.values())
                     for surface in plan.outputs.values():
                         if surface not in shared:
                             kept.give(plan.surfaces[surface].key)
                 finally:
+                    if following and _kinds(following) != _kinds(plan):
+                        self._runner.forget()  # else textures of other sizes would wait for their next use
                     before, plan = kept, following or plan
         finally:
             before.close()
@@ -197,6 +206,11 @@ def _pixels(held: Held, output: int) -> Array:
     picture = held.pictures[output]
     assert picture is not None and isinstance(picture.pixels, np.ndarray)
     return picture.pixels
+
+
+def _kinds(plan: Plan) -> set[tuple[Size, str]]:
+    """The sizes and formats of textures."""
+    return {(surface.size, surface.texel) for surface in plan.surfaces}
 
 
 def _slices(region: Region) -> tuple[slice, slice]:

@@ -75,9 +75,11 @@ vec3 merge_color(int mode, vec3 b, vec3 a) {
 }
 
 vec4 merge_blend(int mode, vec4 a, vec4 b) {
-    vec3 above = max(straight(a).rgb, 0.0), below = max(straight(b).rgb, 0.0), both;
-    if (mode >= MODE_HUE) both = merge_color(mode, below, above);
-    else for (int i = 0; i < 3; i++) both[i] = merge_channel(mode, below[i], above[i]);
+    vec3 above = max(straight(a).rgb, 0.0), below = max(straight(b).rgb, 0.0);
+    vec3 both = mode >= MODE_HUE ? merge_color(mode, below, above) : vec3(
+        merge_channel(mode, below.r, above.r), merge_channel(mode, below.g, above.g),
+        merge_channel(mode, below.b, above.b)
+    );
     vec3 rgb = a.rgb * (1.0 - b.a) + b.rgb * (1.0 - a.a) + a.a * b.a * both;
     return vec4(rgb, a.a + b.a - a.a * b.a);
 }

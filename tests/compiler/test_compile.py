@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from halation.app.compiler import dot, explain
-from halation.app.errors import DeviceError, GraphError
+from halation.app.errors import GraphError
 from halation.app.graph import Control, Graph, Group, Input, Output, Port, Settings
 from halation.nodes import Kind, catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
@@ -35,9 +37,9 @@ def test_pointwise_neighbors_share_a_pass(plan):
     assert len(plan(graph, fusion=False).passes) == 3
 
 
-def test_a_filter_ends_a_pass_and_what_follows_starts_one(plan):
+def test_a_filter_reads_a_texture_and_what_follows_is_part_of_its_last_pass(plan):
     graph = chain(Exposure(stops=1.0), GaussianBlur(sigma=2.0), Exposure(stops=-1.0))
-    assert functions(plan(graph)) == [("exposure",), ("convolve x",), ("convolve y",), ("exposure",)]
+    assert functions(plan(graph)) == [("exposure",), ("convolve x",), ("convolve y", "exposure")]
 
 
 def test_what_is_wanted_in_between_is_written_on_the_way(plan):
@@ -110,9 +112,10 @@ def test_data_keeps_32_bits_and_color_follows_the_precision(plan):
     assert made.surfaces[made.outputs["field"]].texel == "r32f"
 
 
-def test_too_large_is_an_error_with_numbers(plan):
-    with pytest.raises(DeviceError, match=r"'a'.*40000x23.*16384"):
-        plan(_checker(8.0), size=(40000, 23))
+def test_too_large_is_made_by_tiles_and_says_why_with_numbers(plan):
+    tiling = plan(_checker(8.0), size=(40000, 23)).tiling
+    assert re.search(r"'a'.*40000x23.*16384", tiling.why)
+    assert [region.size for region in tiling.last[0].tiles] == [(10000, 23)] * 4
 
 
 def group(values=None) -> Group:

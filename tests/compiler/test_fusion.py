@@ -75,7 +75,8 @@ def test_a_pass_convolves_once_and_looks_around_in_no_other_way(plan) -> None:
     }
     links = {
         "soft.image": "inputs.image", "softer.image": "inputs.image", "edges.image": "inputs.image",
-        "both.a": "soft.out", "both.b": "softer.out", "all.a": "both.out", "all.b": "edges.out", "outputs.out": "all.out",
+        "both.a": "soft.out", "both.b": "softer.out", "all.a": "both.out", "all.b": "edges.out",
+        "outputs.out": "all.out",
     }
     for one in passes(plan(graph(nodes, links))):
         assert len([name for name in one if name.startswith("convolve") or name == "edge_detect"]) <= 1, one

@@ -242,7 +242,7 @@ def test_what_a_plan_followed_is_forgotten():
     graph, planner = chain(Exposure(stops=1.0), GaussianBlur(sigma=3.0)), Planner()
     seen = []
     for stops in range(6):
-        planner.plan(graph.put(Port("a", "stops"), float(stops)), asked(graph), Headers(SIZE))
+        planner.plan(graph.put(Port("a", "stops"), stops + 1.0), asked(graph), Headers(SIZE))
         (known,) = planner._known
         seen += [weakref.ref(part) for part in (known.lowered, known.lowered.moments, known.lowered.builder)]
     del known

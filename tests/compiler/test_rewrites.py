@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from halation.app.compiler import Plan, Target
+from halation.app.compiler import Plan, Target, installed, parse
+from halation.app.errors import ShaderError
 from halation.app.graph import Graph, Input, Output, Port
 from halation.nodes import catalogue
 from random_graphs import random_graph
@@ -126,6 +127,27 @@ def test_a_value_changes_no_key_but_its_own(plan) -> None:
 
     one, other = keys(1.0), keys(2.0)
     assert one["tone"] == other["tone"] and one["bright"] != other["bright"]
+
+
+def focused() -> Graph:
+    """A lens, and no pictures but one."""
+    lens = NODES["depth_of_field"](max_blur=0.5, quality="draft")
+    links = {"lens.image": "inputs.image", "depth.image": "inputs.image", "lens.depth": "depth.out"}
+    return graph({"lens": lens, "depth": NODES["luminance"]()}, links, "lens")
+
+
+def test_what_a_function_makes_at_once_is_one_pass(plan) -> None:
+    made = plan(focused())
+    several = [one for one in made.passes if one.functions == ("depth_of_field_near",)]
+    assert several and all(len(one.targets) == 2 for one in several)
+    assert all(made.surfaces[one.targets[1]].channels == 1 for one in several)
+
+
+def test_a_function_must_make_what_it_is_drawn_for(plan) -> None:
+    text = installed().texts["lens/depth_of_field"]
+    other = parse(text.name, text.body.replace("out float covers", "out vec2 covers"), text.file)
+    with pytest.raises(ShaderError, match=r"makes \(vec4, vec2\) but is drawn for \(vec4, float\)"):
+        plan(focused(), library=installed().replacing(other, "other"))
 
 
 def test_random_graphs_have_merged_passes(plan) -> None:

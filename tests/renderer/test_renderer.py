@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import signal
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from conftest import graph_of
-from halation.app.compiler import Library, installed
+from halation.app.compiler import Library, Region, installed
 from halation.app.compiler.library import parse
 from halation.app.errors import DeviceError, ShaderError, UsageError
 from halation.app.graph import Graph, Input, Output, Port
@@ -123,14 +124,17 @@ def test_a_failed_allocation_is_one_sentence_with_numbers(engine, monkeypatch):
         engine.render(graph_of(Exposure(stops=1.0), {"image": PICTURE}), Wanted({"image": PICTURE}))
 
 
-def test_more_pixels_than_the_device_has_is_refused_by_the_driver(engine):
-    """The real thing: this rasterizer reports out of memory for its largest square, and only if asked."""
+def test_more_pixels_than_the_device_has_are_made_by_tiles(engine):
     limit = engine.device.target.max_size
     graph = Graph(inputs={"image": Input(Kind.IMAGE)}, outputs={"image": Output()})
     graph = graph.add("light", Exposure(stops=1.0)).connect(Port("inputs", "image"), Port("light", "image"))
     graph = graph.connect(Port("light", "out"), Port("outputs", "image"))
-    with pytest.raises(DeviceError, match=f"'.*': {limit + 1}x8 pixels is more than the {limit}"):
-        engine.render(graph, Wanted({"image": PICTURE}, size=(limit + 1, 8)))
+    wanted = Wanted({"image": PICTURE}, size=(limit + 1, 8))
+    pixels = engine.render(graph, wanted)["image"]
+    assert pixels.shape == (8, limit + 1, 4)
+    middle = Region(limit // 2 - 100, 0, 200, 8)
+    part = engine.render(graph, replace(wanted, region=middle))["image"]
+    np.testing.assert_array_equal(part, pixels[:, middle.x : middle.x + 200])
 
 
 def test_an_unknown_input_is_named_with_those_there_are(engine):

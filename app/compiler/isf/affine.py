@@ -14,6 +14,7 @@ from typing import Any, cast
 from msgspec import Struct
 
 from ....nodes import Size
+from ..areas import Around
 from ..ir import Constant, Program, Shape
 
 TOLERANCE = 1e-5
@@ -76,6 +77,8 @@ def _walk(item: Any, found: Anatomy) -> object:
     if isinstance(item, Shape):
         found.sizes.append(item.size)
         return item.channels, item.data, item.size == (1, 1)
+    if isinstance(item, Around):
+        return Around  # it matters for parts of a picture alone, which a shader of this format never makes
     if dataclasses.is_dataclass(item) and not isinstance(item, type):
         fields = (one for one in dataclasses.fields(item) if one.compare)
         return type(item), tuple(_walk(getattr(item, one.name), found) for one in fields)

@@ -9,12 +9,13 @@ from ..fuse import Fused
 from ..ir import Program
 from ..library import Library
 from ..target import Target
+from .absorb import absorb
 from .merge import alone, merge
 from .recompute import recompute
 
 __all__ = ["REWRITES", "alone", "rewritten"]
 
-REWRITES = (recompute, merge)
+REWRITES = (recompute, merge, absorb)
 """In this order."""
 
 

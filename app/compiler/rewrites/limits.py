@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ..fuse import MAX_MEMBERS, MAX_UNIFORMS, Fused, convolves_at_most, count_tables, count_uniforms
+from ..fuse import MAX_MEMBERS, MAX_UNIFORMS, Fused, count_tables, count_uniforms
 from ..ir import Call, Op, Program, Ref
 from ..target import Target
 
@@ -17,7 +17,7 @@ def fits(program: Program, one: Fused, target: Target) -> bool:
     most = target.max_images if target.form == "compute" else target.max_targets
     return (
         reads + count_tables(program.ops, one.members) <= target.max_inputs and writes <= most
-        and len(one.members) <= MAX_MEMBERS and convolves_at_most((program.ops[index] for index in one.members), reads)
+        and len(one.members) <= MAX_MEMBERS
         and sum(count_uniforms(program.ops[index]) for index in one.members) <= MAX_UNIFORMS
     )
 
