@@ -33,7 +33,10 @@ SMALL = 16
 look far around in small pictures, and tiles of the large ones then need little around them."""
 
 USUAL = 2**31
-"""Bytes for a tile where nobody says how many there are."""
+"""Bytes of textures for a tile where nobody says how much memory may be used."""
+
+MOST_PIXELS = 2**32
+"""Of a picture. It is put together in memory: a larger one is a mistake."""
 
 
 def tile(
@@ -51,6 +54,9 @@ def tile(
         return None
     if program.windows:
         raise DeviceError(f"{why}: choose a smaller region")
+    for ref in texels:
+        if _area(program.shape(ref).size) > MOST_PIXELS:
+            raise DeviceError(f"{why}, and too many to be made in parts; render smaller with --scale or --size")
     _check(program, passes, target)
     work = _Work(program, passes, texels, target)
     before, last = work.before(), work.last()
@@ -182,19 +188,20 @@ class _Work:
         pictures = self._pictures(passes, outputs.values())
         tile = size
         while True:
-            tiles = _grid(size, tile)
             found = [self._windows(passes, outputs.values(), region) for region in _sample(size, tile)]
-            nbytes = pictures + max(
+            textures = max(
                 peak(replace(self.program, windows=one, outputs=outputs, memories={}), passes, self.texels)
                 for one in found
             )
-            fits = self._fits(found, nbytes)
+            nbytes = pictures + textures
+            fits = self._fits(found, textures, nbytes)
             if fits or whole or max(tile) <= LEAST:
                 break
             tile = _smaller(tile, self._too_wide(found))
         if not fits and (self.target.memory or any(self._too_wide(found))):
             self._refuse(found, nbytes)
         self.nbytes = max(self.nbytes, nbytes)
+        tiles = _grid(size, tile)
         all_ = [self._windows(passes, outputs.values(), region) for region in tiles]
         return Stage(MappingProxyType(outputs), passes, tiles, _parts(self.program, all_))
 
@@ -220,8 +227,10 @@ class _Work:
         reads = {ref for fused in passes for ref in fused.reads if ref not in self.makers or ref in self.held}
         return sum(_nbytes(self.program, self.texels, ref) for ref in reads | set(refs))
 
-    def _fits(self, found: Sequence[Mapping[Ref, Region]], nbytes: int) -> bool:
-        return nbytes <= (self.target.memory or USUAL) and self._too_wide(found) == (False, False)
+    def _fits(self, found: Sequence[Mapping[Ref, Region]], textures: int, nbytes: int) -> bool:
+        """Whether tiles of so many bytes of textures, and of so many in all, can be made one after another."""
+        fits = nbytes <= self.target.memory if self.target.memory else textures <= USUAL
+        return fits and self._too_wide(found) == (False, False)
 
     def _too_wide(self, found: Sequence[Mapping[Ref, Region]]) -> tuple[bool, bool]:
         """Whether a window is wider, or higher, than the device can hold."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Generator, Iterable, Mapping, Set
 from dataclasses import replace
 from types import TracebackType
@@ -11,11 +12,24 @@ import numpy as np
 
 from ...nodes import Kind, Size
 from ..compiler import Held, Pass, Picture, Plan, Read, Ref, Region, Stage, Upload, tile_plan
-from ..errors import HalationError
+from ..compiler.explain import size_text
+from ..compiler.ir import Program
+from ..errors import DeviceError, HalationError
 from .arrays import Arrays
 from .decoding import Array, Loader
 from .run import Run, carried
 from .textures import Lease
+
+
+def _check_memory(program: Program) -> None:
+    """Raise DeviceError for outputs that this machine cannot hold: they are put together in memory."""
+    shapes = [program.shape(ref) for ref in program.outputs.values()]
+    nbytes = sum(shape.size[0] * shape.size[1] * shape.channels * 4 for shape in shapes)
+    if hasattr(os, "sysconf") and nbytes > (most := os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")):
+        raise DeviceError(
+            f"the outputs take {size_text(nbytes)} of memory, and this machine has {size_text(most)}; "
+            "render smaller with --scale or --size"
+        )
 
 
 class Runs(Protocol):
@@ -93,6 +107,7 @@ class TiledRun:
 
     def _run(self) -> Generator[Pass, None, None]:
         tiling = self._tiling
+        _check_memory(tiling.program)
         made: dict[int, Held] = {}
         for number, stage in enumerate(tiling.stages[: len(tiling.before)]):
             arrays = yield from self._stage(stage, made)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 
 import moderngl
@@ -156,9 +157,15 @@ def test_an_opengl_that_is_too_old(fails, graphs, monkeypatch):
     assert fails(5, "render", graphs()).startswith("Old Card offers OpenGL 3.3, but at least 4.1 is needed: ")
 
 
-def test_more_pixels_than_the_device_can_hold(fails, graphs):
-    said = fails(5, "render", graphs(), "--size", "99999x16")
-    assert "99999x16" in said and "--scale or --size" in said
+def test_more_pixels_than_can_be_made_in_parts(fails, graphs):
+    said = fails(5, "render", graphs(), "--size", "99999x99999")
+    assert "99999x99999" in said and "--scale or --size" in said
+
+
+def test_more_pixels_than_this_machine_can_hold(fails, graphs, monkeypatch):
+    pages = os.sysconf
+    monkeypatch.setattr(os, "sysconf", lambda name: 100 if name == "SC_PHYS_PAGES" else pages(name))
+    assert fails(5, "render", graphs(), "--size", "99999x16").startswith("the outputs take ")
 
 
 def test_a_shader_that_the_driver_refuses(fails, graphs, monkeypatch):
@@ -167,7 +174,7 @@ def test_a_shader_that_the_driver_refuses(fails, graphs, monkeypatch):
 
     code = "vec4 exposure(vec4 image, float stops) {\n    return image * stosp;\n}\n"
     library = compiler.Library({**compiler.installed().texts, "color/exposure": parse("color/exposure", code)})
-    monkeypatch.setattr(compiler, "installed", lambda: library)
+    monkeypatch.setattr(compiler.planner, "installed", lambda: library)
     said = fails(5, "render", graphs())
     assert said.startswith("node 'light': shaders/color/exposure.glsl, line 2: ") and "stosp" in said
 
