@@ -50,7 +50,7 @@ def emit(program: Program, fused: Fused, library: Library, target: Target, texel
     names = Names(program, {ref: number for number, ref in enumerate(fused.reads)}, target.form, by_image)
     _look_through(names, fused)
     halves = [texels[ref].endswith("16f") for ref in fused.writes]
-    count, convolve = forms.count_of(program, fused, library), forms.convolution_in(program, fused)
+    count, convolve = forms.count_of(program, fused, library), root if isinstance(root, Convolve) else None
     parts = parts_of(program, fused, names, library)
     early, late, files, asked = _included_texts(program, fused, parts, library)
     names.uniform("ivec2", root.size, "grid")
@@ -155,12 +155,9 @@ def parts_of(program: Program, fused: Fused, names: Names, library: Library) -> 
             line for guest in guests for item in guest.accessors
             for line in bodies.accessor(names, item, guest.op.edge)
         ]
-        convolve = forms.convolution_in(program, fused)
-        around, before = _convolved(names, convolve) if convolve else ([], [])
         body, values = _calls(program, fused, names, library)
-        shaders = [*(["primitive/edges"] if guests or convolve else []), *shaders]
-        results = [values[ref] for ref in fused.writes]
-        return Parts(shaders, functions + around, before + body, results, guests=guests)
+        shaders = [*(["primitive/edges"] if guests else []), *shaders]
+        return Parts(shaders, functions, body, [values[ref] for ref in fused.writes], guests=guests)
     if isinstance(root, Reduce):
         body, values = _calls(program, fused, names, library)
         functions = bodies.source(names, root, body, values[root.image]) + bodies.reduction(names, root)
@@ -258,7 +255,7 @@ def _calls(program: Program, fused: Fused, names: Names, library: Library) -> tu
     values: dict[Ref, str] = {}
     members = [program.ops[index] for index in fused.members]
     # A root that reduces wants its picture at every pixel; what looks around reads through its accessors.
-    wanted = {ref for op in members if not isinstance(op, (Gather, Convolve)) for ref in op.reads()}
+    wanted = {ref for op in members if not isinstance(op, Gather) for ref in op.reads()}
     for number, ref in enumerate(fused.reads):
         if ref not in wanted:
             continue
@@ -266,14 +263,12 @@ def _calls(program: Program, fused: Fused, names: Names, library: Library) -> tu
         lines.append(f"{glsl_type(names.shape(ref).channels)} a{number} = {names.load(ref, 'pixel')};")
     for number, index in enumerate(fused.members):
         op = program.ops[index]
-        if not isinstance(op, (Call, Gather, Convolve)):
+        if not isinstance(op, (Call, Gather)):
             continue
         outputs = [f"v{number}_{output}" for output in range(len(op.shapes))]
         types = [glsl_type(shape.channels) for shape in op.shapes]
-        arguments = [] if isinstance(op, Convolve) else [names.argument(item, values) for item in op.parameters]
-        if isinstance(op, Convolve):
-            lines.append(f"{types[0]} {outputs[0]} = convolved;")
-        elif isinstance(op, Gather):
+        arguments = [names.argument(item, values) for item in op.parameters]
+        if isinstance(op, Gather):
             lines.append(f"{types[0]} {outputs[0]} = {_gathered(op, arguments, library, f'g{number}_')};")
         elif len(outputs) == 1:
             lines.append(f"{types[0]} {outputs[0]} = {op.function}({', '.join(arguments)});")

@@ -30,16 +30,10 @@ rows that the one above it has read is then still in the nearest cache.
 
 def count_of(program: Program, fused: Fused, library: Library) -> int:
     """How many pixels an invocation of a compute pass should make. Functions with loops share nothing."""
-    convolve = convolution_in(program, fused)
-    if convolve is not None:
-        return bodies.count_of(convolve)
+    root = program.ops[fused.root]
+    if isinstance(root, Convolve):
+        return bodies.count_of(root)
     return ROWS if all(_is_straight(program.ops[index], library) for index in fused.members) else 1
-
-
-def convolution_in(program: Program, fused: Fused) -> Convolve | None:
-    """The convolution that is a member of a pass: there is one at most."""
-    found = (op for op in (program.ops[index] for index in fused.members) if isinstance(op, Convolve))
-    return next(found, None)
 
 
 def _is_straight(op: Op, library: Library) -> bool:
@@ -77,7 +71,7 @@ def main(
     if count == 1:
         stores = (f"imageStore(o{number}, {at}, {texel});" for number, texel in enumerate(texels))
         return [*lines, *body, *stores, "}"]
-    results = [f"r{number}" for number in range(len(texels))]
+    results = [f"texel{number}" for number in range(len(texels))]
     step = "pixel += along;" if convolve else "++pixel.y;"
     of = [f"{glsl_type(names.shape(convolve.image).channels)} convolved"] if convolve else []
     made = [

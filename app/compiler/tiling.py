@@ -56,7 +56,10 @@ def tile(
         raise DeviceError(f"{why}: choose a smaller region")
     for ref in texels:
         if _area(program.shape(ref).size) > MOST_PIXELS:
-            raise DeviceError(f"{why}, and too many to be made in parts; render smaller with --scale or --size")
+            raise DeviceError(
+                f"{why}, and too many to be made in parts; render smaller with --scale or --size",
+                node=program.ops[ref.op].owner,
+            )
     _check(program, passes, target)
     work = _Work(program, passes, texels, target)
     before, last = work.before(), work.last()

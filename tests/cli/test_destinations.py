@@ -108,7 +108,7 @@ def test_a_full_disk(fails, graphs, monkeypatch):
     def full(*_):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr(shutil, "copyfileobj", full)
+    monkeypatch.setattr(os, "posix_fallocate", full, raising=False)
     monkeypatch.setattr(shutil, "disk_usage", full)
     said = fails(1, "render", graphs())
     assert said.endswith("out.exr: cannot be written: the disk is full: make room or write elsewhere")
@@ -118,7 +118,7 @@ def test_interrupted_while_writing(fails, graphs, monkeypatch):
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(shutil, "copyfileobj", interrupted)
+    monkeypatch.setattr(os, "sendfile", interrupted, raising=False)
     monkeypatch.setattr(shutil, "disk_usage", interrupted)
     assert fails(130, "render", graphs()) == "interrupted; nothing unfinished was left behind"
 

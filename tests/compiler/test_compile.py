@@ -37,9 +37,9 @@ def test_pointwise_neighbors_share_a_pass(plan):
     assert len(plan(graph, fusion=False).passes) == 3
 
 
-def test_a_filter_reads_a_texture_and_what_follows_is_part_of_its_last_pass(plan):
+def test_a_filter_ends_a_pass_and_what_follows_starts_one(plan):
     graph = chain(Exposure(stops=1.0), GaussianBlur(sigma=2.0), Exposure(stops=-1.0))
-    assert functions(plan(graph)) == [("exposure",), ("convolve x",), ("convolve y", "exposure")]
+    assert functions(plan(graph)) == [("exposure",), ("convolve x",), ("convolve y",), ("exposure",)]
 
 
 def test_what_is_wanted_in_between_is_written_on_the_way(plan):

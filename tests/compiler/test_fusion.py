@@ -53,35 +53,6 @@ def test_the_last_step_of_a_blur_is_made_where_it_is_read(plan) -> None:
     assert passes(plan(graph(nodes, links)))[-1] == {"enlarge", "mix_images"}
 
 
-def test_a_convolution_is_stored_as_what_its_reader_makes_of_it(plan, run) -> None:
-    import numpy as np
-    from scipy.ndimage import gaussian_filter1d
-
-    nodes = {"blur": NODES["gaussian_blur"](sigma=2.0), "light": NODES["exposure"](stops=1.0)}
-    links = {"blur.image": "inputs.image", "light.image": "blur.out", "outputs.out": "light.out"}
-    assert passes(plan(graph(nodes, links))) == [{"convolve x"}, {"convolve y", "exposure"}]
-    picture = np.random.default_rng(2).random((23, 37, 4)).astype(np.float32)
-    wanted = picture.astype(float)
-    for axis in (0, 1):
-        wanted = gaussian_filter1d(wanted, 2.0, axis, mode="nearest")
-    wanted[..., :3] *= 2.0
-    assert np.abs(run(graph(nodes, links), {"image": picture}) - wanted).max() < 1e-5
-
-
-def test_a_pass_convolves_once_and_looks_around_in_no_other_way(plan) -> None:
-    nodes = {
-        "soft": NODES["gaussian_blur"](sigma=1.0), "softer": NODES["gaussian_blur"](sigma=2.0),
-        "edges": NODES["edge_detect"](), "both": NODES["merge"](mode="plus"), "all": NODES["merge"](mode="plus"),
-    }
-    links = {
-        "soft.image": "inputs.image", "softer.image": "inputs.image", "edges.image": "inputs.image",
-        "both.a": "soft.out", "both.b": "softer.out", "all.a": "both.out", "all.b": "edges.out",
-        "outputs.out": "all.out",
-    }
-    for one in passes(plan(graph(nodes, links))):
-        assert len([name for name in one if name.startswith("convolve") or name == "edge_detect"]) <= 1, one
-
-
 def test_several_of_one_kind_keep_their_names_apart(plan, run) -> None:
     """Two pictures, one function: each reads its own."""
     import numpy as np

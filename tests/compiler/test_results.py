@@ -45,7 +45,7 @@ def found(plan) -> dict[str, str]:
 
 def test_results_are_the_ports_whose_pixels_exist(plan):
     planned = plan(chain())
-    assert set(found(planned)) == {"inputs.image", "light.out", "color.out"}
+    assert set(found(planned)) == {"inputs.image", "light.out", "blur.out", "color.out"}
     assert planned.results[Port("color", "out")] == planned.outputs["image"]
     assert planned.surfaces[planned.results[Port("inputs", "image")]].key == next(
         planned.surfaces[upload.surface].key for upload in planned.uploads

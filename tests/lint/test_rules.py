@@ -193,12 +193,12 @@ def test_every_fault_of_reading_has_a_rule() -> None:
 
 def test_checking_refuses_what_compiling_refuses(tmp_path) -> None:
     """A graph with errors only in the whole: the exit code is that of the compiler."""
-    text = dumps(chain(("resize", {"scale": (64.0, 64.0)})))
+    text = dumps(chain(*[("resize", {"scale": (64.0, 64.0)})] * 2))
     made = loads(text)
     bound = {"beauty": Picture("beauty", "", Kind.IMAGE, 4, in_memory=True)}
     with pytest.raises(HalationError) as caught:
         compile_graph(made, Request(bindings=bound), Nowhere())
-    report = Checker(frozenset({"unbound-input"})).text(text, "big.json", str(tmp_path))
+    report = Checker(frozenset({"unbound-input", "filtering-twice"})).text(text, "big.json", str(tmp_path))
     assert [(one.problem.rule.name, one.code) for one in report.findings] == [("too-large", caught.value.exit_code)]
 
 

@@ -10,6 +10,7 @@ from geometry import CAMERA, ball
 from halation.nodes import Light, LightKind, look_at, numbers_of
 from halation.nodes.light import deferred_lighting as module
 from halation.nodes.light.deferred_lighting import DeferredLighting
+from msgspec import structs
 
 Array = np.ndarray
 
@@ -166,7 +167,7 @@ def test_lights_emission_and_alpha_add_up(render):
 @pytest.mark.parametrize("model", ["ggx", "phong"])
 def test_a_light_and_its_negative_cancel_out(render, model):
     inputs, lights = scene(*SIZE), tuple(LIGHTS.values())
-    against = tuple(Light(**{**vars(light), "intensity": -light.intensity}) for light in lights)
+    against = tuple(structs.replace(light, intensity=-light.intensity) for light in lights)
     once, twice = (render(gbuffer(inputs), many, model=model)["out"] for many in (lights, against))
     both = render(gbuffer(inputs), (*lights, *against), model=model)["out"]
     scale = np.abs(once[..., :3]).max()

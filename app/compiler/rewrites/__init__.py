@@ -9,13 +9,12 @@ from ..fuse import Fused
 from ..ir import Program
 from ..library import Library
 from ..target import Target
-from .absorb import absorb
 from .merge import alone, merge
 from .recompute import recompute
 
 __all__ = ["REWRITES", "alone", "rewritten"]
 
-REWRITES = (recompute, merge, absorb)
+REWRITES = (recompute, merge)
 """In this order."""
 
 
