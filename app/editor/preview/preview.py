@@ -142,7 +142,7 @@ class Preview:
         self._seconds.clear()
         self._timings = {}
         self._cameras.clear()
-        self._runner.textures.forget()
+        self._runner.forget()
 
     def close(self) -> None:
         """Give back all that is kept. The renderer stays open."""
