@@ -107,22 +107,22 @@ class Library:
     def _words(self, shader: str, function: str, asker: str) -> frozenset[str]:
         """All words of a function and of those that it calls."""
         if (shader, function) not in self._used:
-            found = frozenset({function})
-            for text in reversed(self.closure((shader,), asker)):
-                found |= text.only(found).words if found & text.functions.keys() else frozenset[str]()
-            self._used[shader, function] = found
+            self._used[shader, function] = frozenset[str]().union(*dict(self._uses(shader, function, asker)).values())
         return self._used[shader, function]
 
-    def _is_light(self, shader: str, function: str, asker: str) -> bool:
-        if self._text(shader, asker).outside:
-            return False
+    def _uses(self, shader: str, function: str, asker: str) -> Iterator[tuple[str, frozenset[str]]]:
+        """The files that a function may need, its own first, and the words of what it needs of each."""
         needed = frozenset({function})
         for text in reversed(self.closure((shader,), asker)):
             called = text.only(needed).words if needed & text.functions.keys() else frozenset[str]()
-            if text.name != shader and any(_ACCESSOR.fullmatch(word) for word in called):
-                return False
             needed |= called
-        return needed.isdisjoint(_LOOPS)
+            yield text.name, called
+
+    def _is_light(self, shader: str, function: str, asker: str) -> bool:
+        if self._text(shader, asker).outside or not self.straight(shader, function, asker):
+            return False
+        lent = (words for name, words in self._uses(shader, function, asker) if name != shader)
+        return not any(_ACCESSOR.fullmatch(word) for words in lent for word in words)
 
     def _with(self, added: Mapping[str, Text], key: frozenset[str]) -> Library:
         """This library with other files over its own, known by what `key` says of them."""

@@ -95,7 +95,7 @@ def _fill(part: Path, encode: Callable[[str], None], room: int) -> None:
         memory = os.memfd_create("halation")
         with open(memory, "rb") as source, part.open("r+b") as sink:  # noqa: PTH123 - a descriptor, not a path
             encode(f"/proc/self/fd/{memory}")
-            size = os.fstat(memory).st_size
+            size = _check_filled(memory)
             if _reserved(sink.fileno(), size):
                 done = 0
                 while done < size:
@@ -103,22 +103,21 @@ def _fill(part: Path, encode: Callable[[str], None], room: int) -> None:
             else:
                 shutil.copyfileobj(source, sink, 1 << 20)
                 sink.flush()
-                _settle(sink.fileno())
+                os.fsync(sink.fileno())
         return
     if shutil.disk_usage(part.parent).free < room + _MARGIN:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
     encode(str(part))
     with part.open("r+b") as sink:
-        _settle(sink.fileno())
+        os.fsync(sink.fileno())
+        _check_filled(sink.fileno())
 
 
 def _reserved(descriptor: int, size: int) -> bool:
     """Take the room on the disk: a full one is found out now and not after the rename. False where that is unknown.
 
-    An encoder that wrote nothing had no room either.
+    Then the file has to be synced, which finds it out as well, and takes as long as the disk does.
     """
-    if size == 0:
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
     try:
         os.posix_fallocate(descriptor, 0, size)
     except OSError as error:
@@ -128,8 +127,9 @@ def _reserved(descriptor: int, size: int) -> bool:
     return True
 
 
-def _settle(descriptor: int) -> None:
-    """Have the system report now what it would otherwise find out after the rename. Takes as long as the disk does."""
-    os.fsync(descriptor)
-    if os.fstat(descriptor).st_size == 0:
+def _check_filled(descriptor: int) -> int:
+    """The size of a file. An encoder that wrote nothing had no room."""
+    size = os.fstat(descriptor).st_size
+    if size == 0:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    return size

@@ -22,18 +22,17 @@ if TYPE_CHECKING:
     from .run import Run
     from .runner import Runner
     from .textures import Lease
-    from .tiles import TiledRun
 
 __all__ = [
     "DEFAULT_BUDGET", "Counters", "Device", "Display", "Drawable", "Handle", "Lease", "Look", "Nonfinite", "Probe",
-    "Reel", "Renderer", "Run", "Runner", "TiledRun", "Wanted", "describe", "first_nonfinite", "fitted",
+    "Reel", "Renderer", "Run", "Runner", "Wanted", "describe", "first_nonfinite", "fitted",
     "open_device", "open_pinned", "to_panel", "to_picture",
 ]
 
 _HOMES = MappingProxyType({
     "Counters": "executor", "DEFAULT_BUDGET": "engine", "Device": "device", "Display": "display",
     "Drawable": "display", "Handle": "display", "Lease": "textures", "Look": "look", "Nonfinite": "probe",
-    "Probe": "probe", "Reel": "reel", "Renderer": "engine", "Run": "run", "Runner": "runner", "TiledRun": "tiles",
+    "Probe": "probe", "Reel": "reel", "Renderer": "engine", "Run": "run", "Runner": "runner",
     "Wanted": "engine", "describe": "device", "first_nonfinite": "probe", "fitted": "look", "open_device": "opening",
     "open_pinned": "pinned", "to_panel": "look", "to_picture": "look",
 })

@@ -11,7 +11,6 @@ from .decoding import Array
 from .engine import Renderer, Wanted
 from .run import Run, Timings, carried
 from .textures import Lease
-from .tiles import TiledRun
 
 KEPT_PLANS = 16
 
@@ -80,7 +79,7 @@ class Reel:
 
     def steps(
         self, frame: int, kept: Lease, timings: Timings | None = None, following: int | None = None
-    ) -> Iterator[Run | TiledRun]:
+    ) -> Iterator[Run]:
         """What runs to make a frame, one after the other; the last one is the frame itself, its outputs `kept`.
 
         What the frame `following` would make again stays on the device until that has been made.

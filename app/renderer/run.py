@@ -1,7 +1,8 @@
-"""One plan under way, pass by pass."""
+"""Plans under way, pass by pass."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Container, Iterable
 from types import TracebackType
 
@@ -18,18 +19,60 @@ Timings = list[tuple[Pass, float]]
 Decode = Callable[[Iterable[Awaited]], Decoding]
 
 
-class Run:
-    """Executes a plan, one pass per `next`; when it ends, `kept` leases the textures of the surfaces `wanted`.
+class Run(ABC):
+    """A plan under way: one pass per `next`. Several may be, step by step. One that is dropped must be closed."""
 
-    What others have computed already is not computed again. Several runs may be under way at once, step by step. A
-    run that is dropped must be closed.
+    def __init__(self, plan: Plan) -> None:
+        self.plan = plan
+        self.done = 0
+        """Passes executed."""
+        self.ended = False
+
+    @property
+    @abstractmethod
+    def total(self) -> int:
+        """Passes that it executes."""
+        ...
+
+    @property
+    @abstractmethod
+    def ready(self) -> bool:
+        """False while the next step would wait for a file to be decoded."""
+        ...
+
+    def __iter__(self) -> Run:
+        return self
+
+    @abstractmethod
+    def __next__(self) -> Pass:
+        """Execute the next pass. Raises the errors of `app.errors`, which end the run."""
+        ...
+
+    def __enter__(self) -> Run:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    @abstractmethod
+    def close(self) -> None:
+        """Hand back what this run still holds."""
+        ...
+
+
+class WholeRun(Run):
+    """Executes a plan that fits; when it ends, `kept` leases the textures of the surfaces `wanted`.
+
+    What others have computed already is not computed again.
     """
 
     def __init__(
         self, executor: Executor, plan: Plan, kept: Lease, decode: Decode, wanted: Iterable[int],
         timings: Timings | None,
     ) -> None:
-        self.plan = plan
+        super().__init__(plan)
         self._executor, self._kept, self._timings = executor, kept, timings
         textures = executor.textures
         self._wanted = tuple(dict.fromkeys(wanted))
@@ -41,9 +84,6 @@ class Run:
         for key in self._readers:
             if key in textures:
                 self._lease.take(key)
-        self.done = 0
-        """Passes executed."""
-        self.ended = False
 
     @property
     def total(self) -> int:
@@ -52,18 +92,13 @@ class Run:
 
     @property
     def ready(self) -> bool:
-        """False while the next step would wait for a file to be decoded."""
         if self.ended:
             return True
         ends = self.done == self.total
         numbers = self._wanted if ends else self.plan.passes[self._needed[self.done]].textures
         return all(self._is_here(number) or self._decoding.ready(number) for number in numbers)
 
-    def __iter__(self) -> Run:
-        return self
-
     def __next__(self) -> Pass:
-        """Execute the next pass. Raises the errors of `app.errors`, which end the run."""
         if self.ended:
             raise StopIteration
         try:
@@ -77,16 +112,7 @@ class Run:
         self.close()
         raise StopIteration
 
-    def __enter__(self) -> Run:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
-
     def close(self) -> None:
-        """Hand back what this run still holds."""
         if self.ended:
             return
         self.ended = True

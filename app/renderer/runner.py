@@ -13,7 +13,7 @@ from .decoding import Array, Decoded, Decoding, Loader, decode, within_reach
 from .decoding import Wanted as Awaited
 from .device import Device
 from .executor import Executor
-from .run import Run, Timings, needed_passes, needed_uploads
+from .run import Run, Timings, WholeRun, needed_passes, needed_uploads
 from .textures import Lease, Texture
 from .tiles import TiledRun
 
@@ -44,7 +44,7 @@ class Runner:
 
     def steps(
         self, plan: Plan, kept: Lease, wanted: Iterable[int] | None = None, *, timings: Timings | None = None
-    ) -> Run | TiledRun:
+    ) -> Run:
         """Run one pass per step, so that a caller can stop in between.
 
         At the end `kept` leases the surfaces `wanted`, by default the outputs. With `timings`, every pass is waited for
@@ -59,7 +59,7 @@ class Runner:
             return TiledRun(self, self._load, plan, partial(self._whole.__setitem__, _known(plan)))
         surfaces = plan.outputs.values() if wanted is None else wanted
         with self.device.current():
-            return Run(self._executor, plan, kept, self._decode, surfaces, timings)
+            return WholeRun(self._executor, plan, kept, self._decode, surfaces, timings)
 
     def timed(self, plan: Plan) -> Timings:
         """Run to the end, waiting for every pass, and say what each took. The pixels are not kept."""

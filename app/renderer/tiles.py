@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Generator, Iterable, Mapping, Set
 from dataclasses import replace
-from types import TracebackType
 from typing import Protocol
 
 import numpy as np
@@ -21,17 +20,6 @@ from .run import Run, carried
 from .textures import Lease
 
 
-def _check_memory(program: Program) -> None:
-    """Raise DeviceError for outputs that this machine cannot hold: they are put together in memory."""
-    shapes = [program.shape(ref) for ref in program.outputs.values()]
-    nbytes = sum(shape.size[0] * shape.size[1] * shape.channels * 4 for shape in shapes)
-    if hasattr(os, "sysconf") and nbytes > (most := os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")):
-        raise DeviceError(
-            f"the outputs take {size_text(nbytes)} of memory, and this machine has {size_text(most)}; "
-            "render smaller with --scale or --size"
-        )
-
-
 class Runs(Protocol):
     """Runs plans that fit: see `Runner`."""
 
@@ -39,7 +27,7 @@ class Runs(Protocol):
         """Give back textures that nobody leases."""
         ...
 
-    def steps(self, plan: Plan, kept: Lease, wanted: Iterable[int] | None = None) -> Run | TiledRun:
+    def steps(self, plan: Plan, kept: Lease, wanted: Iterable[int] | None = None) -> Run:
         """Begin to run a plan."""
         ...
 
@@ -52,36 +40,32 @@ class Runs(Protocol):
         ...
 
 
-class TiledRun:
+class TiledRun(Run):
     """Executes a plan tile by tile, one pass per `next`. When it ends, `finished` is given the outputs by name.
 
-    What is read anywhere is put together in memory before; so are the outputs. Like a `Run`, one that is dropped must
-    be closed.
+    What is read anywhere is put together in memory before; so are the outputs.
     """
 
     def __init__(
         self, runner: Runs, load: Loader, plan: Plan, finished: Callable[[dict[str, Array]], None]
     ) -> None:
         assert plan.tiling is not None
-        self.plan, self._tiling = plan, plan.tiling
+        super().__init__(plan)
+        self._tiling = plan.tiling
         self._runner, self._finished = runner, finished
         self._pictures, self._arrays = _Pictures(load), Arrays()
         self._passes = self._run()
-        self.total = self._tiling.total
-        """Passes that run."""
-        self.done = 0
-        self.ended = False
+
+    @property
+    def total(self) -> int:
+        return self._tiling.total
 
     @property
     def ready(self) -> bool:
         """True: nothing is decoded before it is wanted."""
         return True
 
-    def __iter__(self) -> TiledRun:
-        return self
-
     def __next__(self) -> Pass:
-        """Execute the next pass. Raises the errors of `app.errors`, which end the run."""
         try:
             one = next(self._passes)
         except BaseException:
@@ -90,16 +74,7 @@ class TiledRun:
         self.done += 1
         return one
 
-    def __enter__(self) -> TiledRun:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self.close()
-
     def close(self) -> None:
-        """Hand back what this run still holds."""
         self.ended = True
         self._passes.close()
 
@@ -211,6 +186,17 @@ class _Pictures:
         """Let go of all others."""
         for picture in self._decoded.keys() - pictures:
             del self._decoded[picture]
+
+
+def _check_memory(program: Program) -> None:
+    """Raise DeviceError for outputs that this machine cannot hold: they are put together in memory."""
+    shapes = [program.shape(ref) for ref in program.outputs.values()]
+    nbytes = sum(shape.size[0] * shape.size[1] * shape.channels * 4 for shape in shapes)
+    if hasattr(os, "sysconf") and nbytes > (most := os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")):
+        raise DeviceError(
+            f"the outputs take {size_text(nbytes)} of memory, and this machine has {size_text(most)}; "
+            "render smaller with --scale or --size"
+        )
 
 
 def _picture(owner: str, pixels: Array) -> Picture:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ...compiler import Plan
 from ...errors import DeviceError
 from ...graph import Port
-from ...renderer import Reel, Renderer, Run, TiledRun
+from ...renderer import Reel, Renderer, Run
 from .wishes import Wish
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ class Job:
         self.wish, self.ports, self.frame, self.ahead = wish, ports, frame, ahead
         self.timings: list[tuple[Pass, float]] | None = [] if timed else None
         self.plan: Plan | None = None
-        self.run: Run | TiledRun | None = None
+        self.run: Run | None = None
         self.began = time.perf_counter()
         self.passes = 0
         """Passes of runs that have ended."""
@@ -37,7 +37,7 @@ class Job:
         self.planned = (0, 0)
         """The same for plans."""
         self.kept = renderer.runner.lease()
-        self._runs: Iterator[Run | TiledRun] | None = None
+        self._runs: Iterator[Run] | None = None
         self._reel: Reel | None = None
         try:
             self._reel = wish.take.reel(ports)
