@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Iterator, Mapping
-from functools import cache
-from importlib import resources
-from importlib.resources.abc import Traversable
+from functools import cache, cached_property
+from pathlib import Path
 
 from . import _declare
 from ._declare import *  # noqa: F403  (the vocabulary: `_declare.__all__` names it)
@@ -23,8 +22,11 @@ class Catalogue(Mapping[str, type[Node]]):
     """
 
     def __init__(self) -> None:
-        self._modules = {name: f".{folder.name}.{name}" for folder in _folders() for name in _files(folder)}
         self._found: dict[str, type[Node]] = {}
+
+    @cached_property
+    def _modules(self) -> dict[str, str]:
+        return {name: f".{folder.name}.{name}" for folder in _folders() for name in _files(folder)}
 
     def __getitem__(self, id: str) -> type[Node]:
         if id not in self._found:
@@ -56,17 +58,13 @@ def catalogue() -> Mapping[str, type[Node]]:
     return Catalogue()
 
 
-def _folders() -> list[Traversable]:
+def _folders() -> list[Path]:
     """The packages of nodes, without loading any."""
-    found = resources.files(__name__).iterdir()
-    return sorted((item for item in found if "." not in item.name and not item.name.startswith("_")), key=_name)
+    found = Path(__file__).parent.iterdir()
+    return sorted(item for item in found if "." not in item.name and not item.name.startswith("_"))
 
 
-def _files(folder: Traversable) -> list[str]:
+def _files(folder: Path) -> list[str]:
     """The nodes of a package."""
     names = [item.name for item in folder.iterdir()]
     return sorted(name.removesuffix(".py") for name in names if name.endswith(".py") and not name.startswith("_"))
-
-
-def _name(item: Traversable) -> str:
-    return item.name

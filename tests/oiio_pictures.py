@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import OpenImageIO as oiio
 
@@ -12,3 +14,14 @@ def buffer(pixels: np.ndarray) -> oiio.ImageBuf:
     made.set_pixels(oiio.ROI.All, pixels)
     made.specmod().alpha_channel = 3
     return made
+
+
+def stored(path: Path, array: np.ndarray, *, format: str = "half", tile: int = 0, **said: object) -> str:
+    """A file of an array, by OpenImageIO."""
+    spec = oiio.ImageSpec(array.shape[1], array.shape[0], array.shape[2], format)
+    spec.tile_width = spec.tile_height = tile
+    for name, item in said.items():
+        spec.attribute(name, item)
+    output = oiio.ImageOutput.create(str(path))
+    assert output.open(str(path), spec) and output.write_image(array) and output.close()
+    return str(path)

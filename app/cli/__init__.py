@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from io import TextIOWrapper
@@ -9,14 +10,18 @@ from pathlib import Path
 from typing import TextIO
 
 _INTERRUPTED = 130
+_YOUNG = 100_000
+"""Objects made since Python last looked for garbage that make it look again: modules that are being loaded are none."""
 
 
 def main() -> None:
     """Run the command line, and leave at once: nothing is left to tidy up that the system does not take back.
 
     Closed streams are replaced, lest the next file to be opened takes their place; names of files may hold bytes
-    that no encoding knows.
+    that no encoding knows. Matrices are small here: numpy's threads for large ones would only spin while they wait.
     """
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    gc.set_threshold(_YOUNG)
     sys.stdout, sys.stderr = sys.stdout or _nowhere(), sys.stderr or _nowhere()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):

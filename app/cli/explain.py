@@ -36,7 +36,7 @@ def explain(
 
     With --form device it says which form of passes the device here is given, and why.
     """
-    from dataclasses import replace
+    from msgspec.structs import replace
 
     from .. import compiler
     from ..errors import UsageError
@@ -53,6 +53,8 @@ def explain(
         parsing.scale(scale), frame if frame is not None else lazy.frames(opened_graph, inputs or ())[0],
     )
     target = replace(_target(way), memory=most)
+    # As if each went into an EXR of its own.
+    request = replace(request, by_rows=frozenset(request.targets or opened_graph.outputs))
     plan = compiler.compile_graph(opened_graph, request, lazy, target=target, precision=depth)
     if as_json:
         print_json(compiler.as_json(plan))
@@ -63,7 +65,7 @@ def explain(
 
 def _target(form: Form | Literal["device"]) -> Target:
     """What to plan for: the device that is here, or none."""
-    from dataclasses import replace
+    from msgspec.structs import replace
 
     if form != "device":
         from ..compiler import NULL

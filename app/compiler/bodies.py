@@ -9,11 +9,14 @@ from .names import Names
 OUTPUTS = 8
 """Pixels that one invocation of a long convolution makes: each pixel read is used for all of them."""
 
-WRITTEN = 4
-"""Those of one whose taps are written out. Eight would be hardly faster, and take the driver long to compile."""
+FEWER = 4
+"""Those of a short one. Eight would be hardly faster, and take the driver long to compile."""
 
 SHORT = (9, 17, 25, 33)
 """Classes of taps of convolutions that are written out: longer ones would take the driver long to compile."""
+
+SMALL = 2**18
+"""Pixels of pictures that are convolved in loops: writing taps out takes the driver longer than is ever saved."""
 
 MAX_WEIGHTS = 4096
 """Floats in the uniform block: GL promises 16 KB."""
@@ -54,7 +57,7 @@ def convolution_accessor(names: Names, op: Convolve) -> list[str]:
     """The accessor, the weights and the uniforms that all forms of a convolution share."""
     names.uniform("ivec2", (1, 0) if op.axis == 0 else (0, 1), "along")
     names.uniform("int", op.origin, "origin")
-    if names.form == "fragment" or not is_short(op):
+    if names.form == "fragment" or not is_written(op):
         names.uniform("int", len(op.weights), "taps")
     glsl = glsl_type(names.shape(op.image).channels)
     block = f"layout(std140) uniform Weights {{ vec4 weights[{MAX_WEIGHTS // 4}]; }};"
@@ -75,14 +78,15 @@ def convolution(names: Names, op: Convolve) -> list[str]:
     ]
 
 
-def is_short(op: Convolve) -> bool:
+def is_written(op: Convolve) -> bool:
     """Whether all taps are written out."""
-    return len(op.weights) <= SHORT[-1]
+    width, height = op.size
+    return op.stride > 1 or (len(op.weights) <= SHORT[-1] and width * height > SMALL)
 
 
 def count_of(op: Convolve) -> int:
-    """How many pixels one invocation makes."""
-    return WRITTEN if is_short(op) else OUTPUTS
+    """How many pixels one invocation makes. Those of a decimation by four have little in common."""
+    return OUTPUTS if len(op.weights) > SHORT[-1] else max(2 * FEWER // max(op.stride, 2), 1)
 
 
 def strip(names: Names, op: Convolve, count: int) -> list[str]:
@@ -95,11 +99,11 @@ def strip(names: Names, op: Convolve, count: int) -> list[str]:
         f"ivec2 p = first + along * (first * {op.stride - 1} + origin);",
         f"{glsl} t, {', '.join(f's{k} = {glsl}(0.0)' for k in range(count))};",
     ]
-    return lines + (_written_out(op, count) if is_short(op) else _sliding(count))
+    return lines + (_written_out(op, count) if is_written(op) else _sliding(count))
 
 
 def _written_out(op: Convolve, count: int) -> list[str]:
-    """Few taps: no loop, and every weight is where it is needed."""
+    """No loop, and every weight is where it is needed."""
     taps, lines = _class(op), list[str]()
     for tap in range((count - 1) * op.stride + taps):
         sums = [
@@ -111,7 +115,7 @@ def _written_out(op: Convolve, count: int) -> list[str]:
 
 
 def _sliding(count: int) -> list[str]:
-    """Many taps. Tap j adds weight j - k to pixel k; the last weights stay in registers, used in turn."""
+    """A loop. Tap j adds weight j - k to pixel k; the last weights stay in registers, used in turn."""
     lines = [
         f"float {', '.join(f'w{k} = 0.0' for k in range(count))};", "vec4 four;",
         f"for (int j = 0; j < taps + {count - 1}; j += {count}) {{",
@@ -135,7 +139,7 @@ def padded_weights(op: Convolve, form: str) -> tuple[float, ...]:
     """The uniform block's contents: strips run past the last weight, where zeros must lie."""
     count = len(op.weights)
     if form == "compute":
-        count = _class(op) if is_short(op) else -(-(count + OUTPUTS - 1) // OUTPUTS) * OUTPUTS
+        count = _class(op) if is_written(op) else -(-(count + OUTPUTS - 1) // OUTPUTS) * OUTPUTS
     return op.weights + (0.0,) * (-(-count // 4) * 4 - len(op.weights))
 
 

@@ -8,7 +8,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from ..errors import DeviceError
 from .target import Form
@@ -31,16 +32,14 @@ Of a Hopper chip's processing clusters two can draw (NVIDIA H100 Tensor Core GPU
 """
 
 
-@dataclass(frozen=True)
-class Chosen:
+class Chosen(Struct, frozen=True):
     """A form, and in a few words who chose it and why."""
 
     form: Form
     why: str
 
 
-@dataclass(frozen=True)
-class Measured:
+class Measured(Struct, frozen=True):
     """Seconds that the same passes took in either form; infinite where the driver refused them."""
 
     compute: float

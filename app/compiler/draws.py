@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
 from hashlib import blake2b
 from types import MappingProxyType
 from typing import Literal
 
-from msgspec import Struct
+from msgspec import Struct, field
 
 from ...nodes import (
     Affine,
@@ -27,6 +26,7 @@ from ...nodes import (
     Overlap,
     Pixels,
     Plain,
+    Reach,
     Render,
     Scene,
     ShaderText,
@@ -78,8 +78,7 @@ class Made(Struct, frozen=True):
         return self.shape.size
 
 
-@dataclass(frozen=True)
-class Fed:
+class Fed(Struct, frozen=True):
     """A node at a frame, and what it reads: inputs and wired values by name, and inputs at the frames it looks at."""
 
     path: str
@@ -303,6 +302,8 @@ class Recorder:
         """Where a function reads a picture that has this overlap."""
         if overlap is None or isinstance(operand, Constant):
             return None
+        if isinstance(overlap, Reach):
+            return Around(overlap.matrix, overlap.radius)
         radius = overlap if isinstance(overlap, tuple) else (overlap, overlap)
         return Around.pixel(own, self._builder.shape(operand).size, radius)
 

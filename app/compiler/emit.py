@@ -16,7 +16,7 @@ from . import bodies, forms
 from .foreign import foreign
 from .fuse import Fused
 from .ir import Accessor, Call, Convolve, Foreign, Gather, Program, Raster, Reduce, Ref, Shape
-from .library import Library, Lines
+from .library import ASKED, Library, Lines
 from .names import Names, convert, glsl_channels
 from .plan import LINES_PER_FILE, Shader
 from .raster import CHANNELS, fragment_lines, vertex_text
@@ -218,7 +218,7 @@ def _find_texts(program: Program, fused: Fused, parts: Parts, library: Library) 
         [line for text in some for line in _included(text, files, program, fused)] for some in around(texts, parts)
     )
     late += [line for guest in parts.guests for line in _as_guest(guest, files, program, fused)]
-    asked = frozenset[str]().union(*(text.words for text in texts)) & {"proxy", "frame"}
+    asked = frozenset[str]().union(*(text.words for text in texts)) & ASKED
     return (*early,), (*late,), (*files,), asked
 
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from itertools import chain
 from typing import Any
+
+from msgspec import Struct, field
 
 from ...nodes import Node, Socket
 from ..errors import GraphError
@@ -16,8 +17,7 @@ from ..written import Written
 MAX_DEPTH = 32
 
 
-@dataclass
-class Flat:
+class Flat(Struct):
     """A graph without groups. Node names are paths such as `glow/bloom`; an input's node is `<path>/inputs`."""
 
     nodes: dict[str, Node] = field(default_factory=dict[str, Node])

@@ -29,11 +29,15 @@ rows that the one above it has read is then still in the nearest cache.
 
 
 def count_of(program: Program, fused: Fused, library: Library) -> int:
-    """How many pixels an invocation of a compute pass should make. Functions with loops share nothing."""
-    root = program.ops[fused.root]
-    if isinstance(root, Convolve):
+    """How many pixels an invocation of a compute pass should make. Functions with loops share nothing.
+
+    Where several functions look around, what two rows share is lost again, since so much does not fit into registers.
+    """
+    ops = [program.ops[index] for index in fused.members]
+    if isinstance(root := ops[-1], Convolve):
         return bodies.count_of(root)
-    return ROWS if all(_is_straight(program.ops[index], library) for index in fused.members) else 1
+    looking = sum(isinstance(op, Gather) for op in ops)
+    return ROWS if looking < 2 and all(_is_straight(op, library) for op in ops) else 1
 
 
 def _is_straight(op: Op, library: Library) -> bool:
@@ -55,6 +59,9 @@ def main(
 ) -> list[str]:
     """The entry point of a compute pass.
 
+    What is made beyond the edges is stored nowhere. To leave before it is made would have the software rasterizer mask
+    everything, which is a tenth slower and takes a sixth longer to compile.
+
     `body` are the statements that make one pixel, `texels` what is stored of it. With a convolution, its value of that
     pixel is called `convolved`, and pixels are made `along` its axis.
     """
@@ -63,14 +70,13 @@ def main(
         "uint across = (gl_WorkGroupID.z * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x"
         " + gl_LocalInvocationID.x;",
         f"ivec2 first = {_place(f'int(gl_WorkGroupID.y + first_row) * {count}', 'int(across)', convolve)};",
-        # What is made beyond the end of a row is stored nowhere.
-        f"if (any(greaterThanEqual(first, {names.room}))) return;",
         *([f"first += {names.start};"] if names.start else []), "pixel = first; extent = grid;",
     ]
-    at = f"pixel - {names.start}" if names.start else "pixel"
+    at, start = (f"{name} - {names.start}" if names.start else name for name in ("pixel", "first"))
+    there = f"if (all(lessThan({start}, {names.room}))) {{"
     if count == 1:
         stores = (f"imageStore(o{number}, {at}, {texel});" for number, texel in enumerate(texels))
-        return [*lines, *body, *stores, "}"]
+        return [*lines, *body, there, *stores, "}", "}"]
     results = [f"texel{number}" for number in range(len(texels))]
     step = "pixel += along;" if convolve else "++pixel.y;"
     of = [f"{glsl_type(names.shape(convolve.image).channels)} convolved"] if convolve else []
@@ -84,12 +90,12 @@ def main(
         own = [f"{name}_{k}" for name in results]
         given = [f"s{k}"] if convolve else []
         lines.append(f"vec4 {', '.join(own)}; made({', '.join([*given, *own])}); {step}")
-    lines.append("pixel = first;")
+    lines += ["pixel = first;", there]
     # All reads before all writes: only then are they known to read the same.
     for k in range(count):
         stores = (f"imageStore(o{number}, {at}, {name}_{k});" for number, name in enumerate(results))
         lines.append(f"{' '.join(stores)} {step}")
-    return [*made, *lines, "}"]
+    return [*made, *lines, "}", "}"]
 
 
 def _place(along: str, across: str, convolve: Convolve | None) -> str:

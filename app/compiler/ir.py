@@ -6,10 +6,10 @@ Operations are values: two that are equal compute the same pixels, so adding one
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from types import MappingProxyType
+from typing import ClassVar
 
-from msgspec import Struct
+from msgspec import Struct, field
 from msgspec.structs import force_setattr
 
 from ...nodes import Camera, ColorSettings, Edge, Kind, ShaderText, Size
@@ -18,9 +18,10 @@ from ..written import unprefixed
 from .areas import Around, Region
 from .raster import Mesh
 from .recolor import ColorProgram, Table
+from .record import Record
 
 
-class Shape(Struct, frozen=True):
+class Shape(Struct, frozen=True, gc=False):
     """What a picture in the making looks like. `data` (depth, ids, measurements) always keeps 32 bits."""
 
     size: Size
@@ -67,7 +68,7 @@ class Choice(Struct, frozen=True):
 Operand = Ref | Constant
 
 
-class Parameter(Struct, frozen=True):
+class Parameter(Struct, frozen=True, gc=False):
     """One argument of a GLSL function. A wired value is clamped to its hard range, then brought to working units."""
 
     glsl: str
@@ -77,7 +78,7 @@ class Parameter(Struct, frozen=True):
     high: float = float("inf")
 
 
-class Accessor(Struct, frozen=True):
+class Accessor(Struct, frozen=True, gc=False):
     """A picture that a function reads anywhere, or only `around` a place, through `<name>_at` and `<name>_near`."""
 
     name: str
@@ -86,13 +87,14 @@ class Accessor(Struct, frozen=True):
     around: Around | None = None
 
 
-@dataclass(frozen=True)
-class Picture:
+class Picture(Record, frozen=True):
     """Pixels from outside: a layer of a file, or an array bound to an input (then `path` is the input's name).
 
     `frame` is that of a video, whose file holds all of them; of a picture it is 1. `pixels` is that array, which the
     compiler never looks at: a plan has all that it needs to run. `space` is what color in a file is in, "" to find out;
-    `color` says how colors are managed. With a folder `within` the file must lie in it, links followed.
+    `color` says how colors are managed. With a folder `within` the file must lie in it, links followed. Rows of it can
+    be read alone if it is `by_rows`; `rows` are those that are read, the first and the one after the last, None
+    for all.
     """
 
     path: str
@@ -100,19 +102,24 @@ class Picture:
     kind: Kind
     width: int
     in_memory: bool = False
-    pixels: object = field(default=None, compare=False, repr=False)
+    pixels: object = None
     frame: int = 1
     space: str = ""
     color: ColorSettings = field(default_factory=ColorSettings)
     within: str = ""
+    by_rows: bool = False
+    rows: tuple[int, int] | None = None
+
+    aside: ClassVar[frozenset[str]] = frozenset({"pixels"})
 
 
-@dataclass(frozen=True)
-class Op:
+class Op(Record, frozen=True):
     """One operation. `owner` is the node it came from, as a path through groups."""
 
     shapes: tuple[Shape, ...]
-    owner: str = field(compare=False)
+    owner: str
+
+    aside: ClassVar[frozenset[str]] = frozenset({"owner"})
 
     def reads(self) -> Iterator[Ref]:
         """Every picture it reads, in order."""
@@ -133,8 +140,7 @@ class Op:
         return type(self).__name__.lower()
 
 
-@dataclass(frozen=True)
-class Read(Op):
+class Read(Op, frozen=True):
     """Pixels uploaded from outside."""
 
     picture: Picture
@@ -142,16 +148,14 @@ class Read(Op):
     half: bool
 
 
-@dataclass(frozen=True)
-class History(Op):
+class History(Op, frozen=True):
     """Pixels that a node remembered of the frame before, known by their key."""
 
     key: str
     half: bool
 
 
-@dataclass(frozen=True)
-class Held(Op):
+class Held(Op, frozen=True):
     """What an operation made before: by output, the pixels (None where nobody needs them) and their key."""
 
     pictures: tuple[Picture | None, ...]
@@ -159,8 +163,7 @@ class Held(Op):
     keys: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class Call(Op):
+class Call(Op, frozen=True):
     """A pointwise GLSL function. Several shapes are several `out` parameters. `choices` become macros for its file.
 
     With a `program` the function stands there and not in the library.
@@ -185,8 +188,7 @@ class Call(Op):
         return (item.operand for item in self.parameters if isinstance(item.operand, Ref))
 
 
-@dataclass(frozen=True)
-class Gather(Op):
+class Gather(Op, frozen=True):
     """A GLSL function that reads its pictures anywhere."""
 
     shader: str
@@ -195,7 +197,7 @@ class Gather(Op):
     parameters: tuple[Parameter, ...]
     edge: Edge = "clamp"
     choices: tuple[tuple[str, tuple[str, ...]], ...] = ()
-    light: bool = field(default=False, kw_only=True)
+    light: bool = False
     """Cheap enough to be computed within the pass that reads it: see `Library.light`."""
 
     @property
@@ -206,8 +208,7 @@ class Gather(Op):
         return (item.operand for item in self.accessors if isinstance(item.operand, Ref))
 
 
-@dataclass(frozen=True)
-class Convolve(Op):
+class Convolve(Op, frozen=True):
     """out[i] = sum over j of weights[j] * image[i * stride + origin + j], along one axis (0 is x)."""
 
     image: Ref
@@ -225,8 +226,7 @@ class Convolve(Op):
         return iter((self.image,))
 
 
-@dataclass(frozen=True)
-class Reduce(Op):
+class Reduce(Op, frozen=True):
     """Sum or maximum over blocks of `BLOCK` x `BLOCK` pixels."""
 
     image: Ref
@@ -236,8 +236,7 @@ class Reduce(Op):
         return iter((self.image,))
 
 
-@dataclass(frozen=True)
-class Foreign(Op):
+class Foreign(Op, frozen=True):
     """A program that is no function of ours: its pictures by sampler, its uniforms by name."""
 
     text: ShaderText
@@ -252,8 +251,7 @@ class Foreign(Op):
         return (ref for _, ref in self.pictures)
 
 
-@dataclass(frozen=True)
-class Raster(Op):
+class Raster(Op, frozen=True):
     """Meshes, drawn into the channels of `CHANNELS`. `cameras` and `motions` are rows: now, before, after."""
 
     mesh: Mesh
@@ -296,8 +294,7 @@ class Builder:
         return self.ops[ref.op].shapes[ref.output]
 
 
-@dataclass(frozen=True)
-class Program:
+class Program(Struct, frozen=True):
     """All operations in an order in which each comes after what it reads, and the pictures wanted by name."""
 
     ops: tuple[Op, ...]

@@ -4,18 +4,25 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 from functools import cache, cached_property
-from importlib import resources
-from importlib.resources.abc import Traversable
+from hashlib import blake2b
+from pathlib import Path
+from typing import ClassVar
 
+from msgspec import field
+
+from ...shaders import folder
 from ..errors import ShaderError
 from ..glsl import Function, Text, parse
+from .record import Record
 
 _ACCESSOR = re.compile(r"\w+_(?:at|near|raw|size)")
 
 _LOOPS = frozenset({"for", "while", "do"})
 _DEAR = _LOOPS | frozenset({"pow", "exp", "log", "log2", "sin", "cos", "tan", "asin", "acos", "atan"})
+
+ASKED = frozenset({"proxy", "frame"})
+"""The uniforms that functions may ask for."""
 
 Lines = tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...], frozenset[str]]
 """Lines of the files that a pass includes before and after its own functions; the files; words that matter in them."""
@@ -27,21 +34,20 @@ LARGER = 8
 """Libraries kept that hold code of graphs as well: more than are open at once."""
 
 
-@dataclass(frozen=True)
-class Library:
+class Library(Record, frozen=True):
     """Shader texts by name, such as `color/exposure` or `lib/color`."""
 
     texts: Mapping[str, Text]
-    _closures: dict[tuple[str, ...], tuple[Text, ...]] = field(
-        default_factory=dict[tuple[str, ...], tuple[Text, ...]], compare=False, repr=False
-    )
-    _light: dict[tuple[str, str], bool] = field(default_factory=dict[tuple[str, str], bool], compare=False, repr=False)
-    _used: dict[tuple[str, str], frozenset[str]] = field(
-        default_factory=dict[tuple[str, str], frozenset[str]], compare=False, repr=False
-    )
-    _lines: dict[Hashable, Lines] = field(default_factory=dict[Hashable, Lines], compare=False, repr=False)
-    _larger: dict[frozenset[str], Library] = field(
-        default_factory=dict[frozenset[str], "Library"], compare=False, repr=False
+    _closures: dict[tuple[str, ...], tuple[Text, ...]] = field(default_factory=dict[tuple[str, ...], tuple[Text, ...]])
+    _light: dict[tuple[str, str], bool] = field(default_factory=dict[tuple[str, str], bool])
+    _used: dict[tuple[str, str], frozenset[str]] = field(default_factory=dict[tuple[str, str], frozenset[str]])
+    _asked: dict[tuple[str, str], frozenset[str]] = field(default_factory=dict[tuple[str, str], frozenset[str]])
+    _digests: dict[tuple[str, ...], str] = field(default_factory=dict[tuple[str, ...], str])
+    _lines: dict[Hashable, Lines] = field(default_factory=dict[Hashable, Lines])
+    _larger: dict[frozenset[str], Library] = field(default_factory=dict[frozenset[str], "Library"])
+
+    aside: ClassVar[frozenset[str]] = frozenset(
+        {"_closures", "_light", "_used", "_asked", "_digests", "_lines", "_larger"}
     )
 
     def including(self, texts: Iterable[Text]) -> Library:
@@ -95,6 +101,22 @@ class Library:
         if (shader, function) not in self._light:
             self._light[shader, function] = self._is_light(shader, function, asker)
         return self._light[shader, function]
+
+    def asked(self, shader: str, function: str, asker: str) -> frozenset[str]:
+        """The uniforms that a function asks for."""
+        if (shader, function) not in self._asked:
+            needed = frozenset({function})
+            for text in reversed(self.closure((shader,), asker)):
+                needed |= text.only(needed).words
+            self._asked[shader, function] = needed & ASKED
+        return self._asked[shader, function]
+
+    def digest(self, names: tuple[str, ...], asker: str) -> str:
+        """A hash of files and all they include."""
+        if names not in self._digests:
+            bodies = "\0".join(text.body for text in self.closure(names, asker))
+            self._digests[names] = blake2b(bodies.encode(), digest_size=16).hexdigest()
+        return self._digests[names]
 
     def cheap(self, shader: str, function: str, asker: str) -> bool:
         """True for a function that costs less than a picture that is stored and read: it has no loops and no powers."""
@@ -173,12 +195,12 @@ class Layered(Mapping[str, Text]):
 class Texts(Mapping[str, Text]):
     """Shader files of a folder by name; each is read when it is asked for."""
 
-    def __init__(self, folder: Traversable) -> None:
+    def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._read: dict[str, Text] = {}
 
     @cached_property
-    def _files(self) -> dict[str, Traversable]:
+    def _files(self) -> dict[str, Path]:
         return dict(_walk(self._folder, ""))
 
     def __getitem__(self, name: str) -> Text:
@@ -196,7 +218,7 @@ class Texts(Mapping[str, Text]):
         return name in self._files
 
 
-def _walk(folder: Traversable, prefix: str) -> Iterator[tuple[str, Traversable]]:
+def _walk(folder: Path, prefix: str) -> Iterator[tuple[str, Path]]:
     for item in folder.iterdir():
         if "." not in item.name:
             yield from _walk(item, f"{prefix}{item.name}/")
@@ -207,4 +229,4 @@ def _walk(folder: Traversable, prefix: str) -> Iterator[tuple[str, Traversable]]
 @cache
 def installed() -> Library:
     """The library that ships with Halation."""
-    return Library(Texts(resources.files(f"{__name__.partition('.')[0]}.shaders")))
+    return Library(Texts(folder()))

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import singledispatch
 
 from msgspec import structs
+from msgspec.structs import replace
 
 from .ir import (
     Accessor,

@@ -20,6 +20,8 @@ class Probed(Struct, frozen=True):
     size: Size
     half: bool
     fingerprint: str
+    by_rows: bool = False
+    """Whether rows of it can be read alone."""
 
 
 class Frame(Struct, frozen=True):

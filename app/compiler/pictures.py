@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from functools import cached_property
 
 from msgspec import structs
+from msgspec.structs import replace
 
 from ...nodes import ColorChange, Kind, LookupFile, Missing, Render, Scene, SceneFile, Size, Socket
 from ..errors import HalationError
@@ -74,7 +74,7 @@ class Pictures:
             socket = make_socket(picture.kind, picture.width)
             return self.converted(Constant(nothing(socket)), socket, wanted, owner)
         # What is bound is known by its fingerprint. Its pixels come with the request: nothing else holds on to them.
-        picture = replace(picture, pixels=None)
+        picture = replace(picture, pixels=None, by_rows=probed.by_rows)
         ref = self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half))
         return self.fit(ref, wanted, owner)
 

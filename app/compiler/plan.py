@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Literal
+from typing import ClassVar, Literal
 
-from msgspec import Struct
+from msgspec import Struct, field
 
 from ...nodes import Camera, Size, Uniform
 from ..graph import Port
@@ -14,6 +13,7 @@ from .areas import Region
 from .ir import Memory, Picture
 from .raster import Mesh
 from .recolor import Table
+from .record import Record
 from .target import Form, Target
 from .tiles import Tiling
 
@@ -36,8 +36,7 @@ def texture_bytes(size: Size, texel: str) -> int:
     return size[0] * size[1] * len(letters) * bits // 8
 
 
-@dataclass(frozen=True)
-class Surface:
+class Surface(Struct, frozen=True):
     """A picture on the device. `key` is equal only where the pixels are; `slot` is the texture it lives in.
 
     Three channels are stored as four: nothing else is sure to be renderable. `first` and `last` are the passes
@@ -87,8 +86,7 @@ class Shader(Struct, frozen=True):
         return (self.files[number], row) if number < len(self.files) else (self.files[0], line)
 
 
-@dataclass(frozen=True)
-class Upload:
+class Upload(Struct, frozen=True):
     """Pixels from outside go into a surface."""
 
     surface: int
@@ -98,8 +96,7 @@ class Upload:
     """The size of the picture, of which the surface may hold a part."""
 
 
-@dataclass(frozen=True)
-class Pass:
+class Pass(Record, frozen=True):
     """One draw or dispatch. Textures are bound in order as t0, t1, ...; targets as o0, o1, ...
 
     `groups` are work groups of a compute pass. `weights` fill its uniform block, if any. `tables` are bound from unit
@@ -116,12 +113,13 @@ class Pass:
     groups: tuple[int, int, int]
     tables: tuple[Table, ...] = ()
     mesh: Mesh | None = None
-    writers: Mapping[str, str] = field(default_factory=dict[str, str], compare=False, repr=False)
+    writers: Mapping[str, str] = field(default_factory=dict[str, str])
     """The node behind each file of code that users wrote."""
 
+    aside: ClassVar[frozenset[str]] = frozenset({"writers"})
 
-@dataclass(frozen=True)
-class Plan:
+
+class Plan(Struct, frozen=True):
     """What to upload, what to run in which order, and what to hand back by name."""
 
     target: Target
@@ -158,3 +156,10 @@ class Plan:
     def peak_bytes(self) -> int:
         """Texture memory needed at once."""
         return sum(self.slots)
+
+    @property
+    def held_bytes(self) -> int:
+        """What a frame takes at once, of which the memory of the target is enough: textures, and the pictures that are
+        read and made."""
+        outside = {*(upload.surface for upload in self.uploads), *self.outputs.values()}
+        return self.peak_bytes + sum(self.surfaces[number].nbytes for number in outside)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+import gc
+from collections.abc import Container, Generator, Mapping
+from contextlib import contextmanager
 
-from msgspec import Struct, structs
+from msgspec import Struct
+from msgspec.structs import replace
 
 from ..graph import Graph, color_settings
 from .expand import written_texts
@@ -30,12 +32,27 @@ KEPT = 4
 
 
 class Compiled(Struct, frozen=True):
-    """A plan, how it came to be, and what was asked for besides a frame and what inputs are bound to."""
+    """A plan of whole pictures, how it came to be, and what was asked for besides a frame, a region and bindings."""
 
     asked: tuple[object, ...]
     lowered: Lowered
     scheduled: Scheduled
     tiled: bool
+    """False where it is known to fit."""
+    part: Scheduled | None
+    """The plan of the last region."""
+
+
+@contextmanager
+def _uncollected() -> Generator[None]:
+    """Nobody looks for garbage meanwhile: most of what a plan is made of lives on, and all other plans with it."""
+    before = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if before:
+            gc.enable()
 
 
 class Planner:
@@ -47,40 +64,53 @@ class Planner:
     def __init__(self) -> None:
         self._known: list[Compiled] = []
 
+    @_uncollected()
     def plan(
         self, graph: Graph, request: Request, outside: Outside, *, target: Target = NULL,
         precision: Precision | None = None, library: Library | None = None, fusion: bool = True,
+        there: Container[str] = (),
     ) -> Plan:
-        """Compile what `request` wants of `graph` for `target`: see `compile_graph`."""
+        """Compile what `request` wants of `graph` for `target`: see `compile_graph`.
+
+        `there` are the keys of pictures that need not be made: for a region they are read as they are.
+        """
         library, precision = graph_library(graph, outside, library), precision or target.precision
         asked = (
-            dict(request.targets), request.size, request.scale, request.halves, request.region, target, precision,
+            dict(request.targets), request.size, request.scale, request.halves, request.by_rows, target, precision,
             fusion,
         )
-        lowered = scheduled = tiling = None
+        lowered = scheduled = tiling = part = None
         tiled = True
         for known in self._known:
             if known.asked != asked or known.lowered.library is not library:
                 continue
             lowered = relower(known.lowered, graph, request, outside)
             if lowered is not None:
-                if request.region is None:  # which part of a picture is read may depend on numbers
-                    scheduled, tiled = reschedule(known.scheduled, lowered.program, library), known.tiled
+                scheduled, tiled = reschedule(known.scheduled, lowered.program, library), known.tiled
+                part = known.part
                 self._known.remove(known)
                 break
         lowered = lowered or lower(graph, request, library, outside)
         if scheduled is None:
             passes = fuse(lowered.program, target, enabled=fusion)
             passes = rewritten(lowered.program, passes, target, library) if fusion else passes
-            program = lowered.program if request.region is None else focused(lowered.program, passes, request.region)
-            scheduled, tiled = schedule(program, passes, library, target, precision, request.halves), True
-        if tiled:  # what fitted as it was still does if nothing but numbers changed
+            scheduled, tiled = schedule(lowered.program, passes, library, target, precision, request.halves), True
+        wanted = scheduled
+        if request.region is not None:  # which part of a picture is read may depend on numbers: it is found anew
+            made = {ref for ref, key in scheduled.keys.items() if key in there}
+            program = focused(lowered.program, scheduled.passes, request.region, made)
+            same = part is not None and part.passes is scheduled.passes and part.program.windows == program.windows
+            wanted = reschedule(part, program, library) if part is not None and same else None
+            wanted = wanted or schedule(program, scheduled.passes, library, target, precision, request.halves)
+            part = wanted
+        if tiled or wanted is not scheduled:  # what fitted as it was still does if nothing but numbers changed
             tiling = tile(
-                scheduled.program, scheduled.passes, scheduled.texels, library, target, precision, request.halves,
-                scheduled.keys,
+                wanted.program, wanted.passes, wanted.texels, library, target, precision, request.halves, wanted.keys,
+                request.by_rows,
             )
-        self._known = [Compiled(asked, lowered, scheduled, tiling is not None), *self._known][:KEPT]
-        return _with_pixels(replace(scheduled.plan, tiling=tiling), request.bindings)
+        tiled = tiling is not None if wanted is scheduled else tiled
+        self._known = [Compiled(asked, lowered, scheduled, tiled, part), *self._known][:KEPT]
+        return _with_pixels(replace(wanted.plan, tiling=tiling), request.bindings)
 
 
 def compile_graph(
@@ -125,5 +155,5 @@ def _with_pixels(plan: Plan, bindings: Mapping[str, Picture]) -> Plan:
         return replace(plan, uploads=uploads)
     program = plan.tiling.program
     ops = tuple(replace(op, picture=filled(op.picture)) if isinstance(op, Read) else op for op in program.ops)
-    tiling = structs.replace(plan.tiling, program=replace(program, ops=ops))
+    tiling = replace(plan.tiling, program=replace(program, ops=ops))
     return replace(plan, uploads=uploads, tiling=tiling)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from typing import ClassVar
+
+from .record import Record
 
 ATTRIBUTES: Mapping[str, int] = {
     "place": 3, "normal": 3, "uv": 2, "albedo": 3, "emission": 3, "metal_rough": 2, "object_material_moving": 3,
@@ -22,13 +24,14 @@ CHANNELS: Mapping[str, tuple[int, bool, str]] = {
 """What is drawn: channels, whether it is data, and the GLSL that computes it. Where nothing is, all is 0."""
 
 
-@dataclass(frozen=True)
-class Mesh:
+class Mesh(Record, frozen=True):
     """Triangles: float32 [vertices, floats of ATTRIBUTES], uint32 [3 * triangles]. Equal digests, equal triangles."""
 
     digest: str
-    vertices: object = field(compare=False, repr=False)
-    indices: object = field(compare=False, repr=False)
+    vertices: object
+    indices: object
+
+    aside: ClassVar[frozenset[str]] = frozenset({"vertices", "indices"})
 
 
 def vertex_text(library: str) -> str:

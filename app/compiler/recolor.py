@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from typing import ClassVar
 
 from ..glsl import Text
+from .record import Record
 
 
-@dataclass(frozen=True)
-class Table:
+class Table(Record, frozen=True):
     """Numbers that GLSL reads through a sampler: float32 [height, width, channels] or [depth, height, width, channels].
 
     `linear` tables are interpolated by the sampler; all are clamped at their edges. Tables of the same sampler are the
@@ -17,16 +17,19 @@ class Table:
 
     sampler: str
     linear: bool
-    values: object = field(compare=False, repr=False)
+    values: object
+
+    aside: ClassVar[frozenset[str]] = frozenset({"values"})
 
 
-@dataclass(frozen=True)
-class ColorProgram:
+class ColorProgram(Record, frozen=True):
     """GLSL 4.00 that declares `vec4 <function>(vec4)`, on straight color, and the samplers of `tables`.
 
     Programs of the same function are the same.
     """
 
     function: str
-    text: Text = field(compare=False, repr=False)
+    text: Text
     tables: tuple[Table, ...]
+
+    aside: ClassVar[frozenset[str]] = frozenset({"text"})

@@ -6,48 +6,57 @@ runs; what reads anywhere needs all. So a picture can be made tile by tile, each
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence, Set
 from types import MappingProxyType
+
+from msgspec.structs import replace
 
 from ...nodes import Edge
 from .areas import Region, Span, inside
 from .fuse import Fused
-from .ir import BLOCK, Accessor, Call, Convolve, Foreign, Gather, Op, Program, Raster, Reduce, Ref
+from .ir import BLOCK, Accessor, Call, Convolve, Foreign, Gather, History, Op, Program, Raster, Reduce, Ref
 
 
-def needed(program: Program, passes: Sequence[Fused], wanted: Mapping[Ref, Region]) -> dict[Ref, Region]:
+def needed(
+    program: Program, passes: Sequence[Fused], wanted: Mapping[Ref, Region], there: Set[Ref] = frozenset()
+) -> dict[Ref, Region]:
     """The region of every texture of these passes, so that the regions `wanted` can be made.
 
-    A pass makes the same region of all that it writes.
+    A pass makes the same region of all that it writes. What is `there` stays whole, as does all that it was made of:
+    so it is still what it was.
     """
     found = dict(wanted)
     for fused in reversed(passes):
         made = [ref for ref in fused.writes if ref in found]
         if not made:
             continue
+        known = all(ref in there for ref in made)
         size = program.shape(made[0]).size
-        whole = any(made_whole(program.ops[index]) for index in fused.members)
+        whole = known or any(made_whole(program.ops[index]) for index in fused.members)
         region = Region.whole(size) if whole else _joined([found[ref] for ref in made])
         found |= {ref: region if program.shape(ref).size == size else Region.whole(program.shape(ref).size)
                   for ref in fused.writes}
         for ref, part in _read(program, fused, region).items():
+            part = Region.whole(program.shape(ref).size) if known else part
             found[ref] = found[ref].with_(part) if ref in found else part
     return found
 
 
-def focused(program: Program, passes: Sequence[Fused], region: Region) -> Program:
+def focused(program: Program, passes: Sequence[Fused], region: Region, there: Set[Ref] = frozenset()) -> Program:
     """The same program, which makes only a region of its outputs, as far as that lies in them.
 
-    The parts that it makes may be larger, where something else reads an output; what is remembered is whole.
+    The parts that it makes may be larger, where something else reads an output. What is remembered is whole, and so is
+    what is `there` already.
     """
     wanted: dict[Ref, Region] = {}
     for ref in program.outputs.values():
         width, height = program.shape(ref).size
         wanted[ref] = Region.of(inside(region.across, width, "clamp"), inside(region.down, height, "clamp"))
     wanted |= {ref: Region.whole(program.shape(ref).size) for ref in program.memories.values()}
-    found = needed(program, passes, wanted)
-    parts = {ref: part for ref, part in found.items() if part.size != program.shape(ref).size}
+    found = needed(program, passes, wanted, there)
+    made = {ref for fused in passes for ref in fused.writes}
+    kept = {ref for ref in found if ref not in made and (ref in there or isinstance(program.ops[ref.op], History))}
+    parts = {ref: part for ref, part in found.items() if ref not in kept and part.size != program.shape(ref).size}
     return replace(program, windows=MappingProxyType(parts))
 
 

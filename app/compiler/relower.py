@@ -13,8 +13,9 @@ anew, as it is where anything about the graph but values changed.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from types import MappingProxyType
+
+from msgspec.structs import replace
 
 from ..errors import HalationError
 from ..graph import Graph

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from types import MappingProxyType
+
+from msgspec import Struct, field
 
 from ...nodes import Size
 from ..errors import UsageError
@@ -14,8 +15,7 @@ from .areas import Region
 from .ir import Memory, Picture
 
 
-@dataclass(frozen=True)
-class Request:
+class Request(Struct, frozen=True):
     """What is wanted of a graph.
 
     `targets` are outputs of nodes or of the graph by the name they shall have; empty means every graph output.
@@ -35,6 +35,8 @@ class Request:
 
     region: Region | None = None
     """The part of every output that is wanted, in pixels as they are rendered; None for all. See `regions.focused`."""
+    by_rows: frozenset[str] = frozenset()
+    """Targets, or outputs, that are taken by rows, from the top down, where they are made by tiles."""
 
     def __post_init__(self) -> None:
         if not 0.0 < self.scale < math.inf:

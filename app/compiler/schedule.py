@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from types import MappingProxyType
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from ...nodes import Size
 from ..errors import DeviceError
@@ -14,7 +14,7 @@ from ..graph import Port
 from .emit import Emitted, emit
 from .fuse import Fused, kept_refs
 from .ir import Call, Foreign, Gather, Held, History, Memory, Op, Program, Raster, Read, Ref, Shape
-from .keys import Mark, keys_of, marks_of, update
+from .keys import Mark, Marks, keys_of, update
 from .library import Library
 from .numbers import differing
 from .plan import Depth, Pass, Plan, Surface, Upload, texel, texture_bytes
@@ -44,9 +44,8 @@ def schedule(
     texels = formats(program, passes, target, precision, halves)
     needed = dict.fromkeys(texels)
     emitted = [emit(program, fused, library, target, texels) for fused in passes]
-    marks = tuple(
-        marks_of(program, fused, item, library, target, texels) for fused, item in zip(passes, emitted, strict=True)
-    )
+    deciding = Marks(program, library, target, texels)
+    marks = tuple(deciding.of(fused, item) for fused, item in zip(passes, emitted, strict=True))
     keys = keys_of(program, marks, needed)
     first, last = _lives(program, passes)
     slots, sizes = _slots(program, needed, texels, first, last)
@@ -78,7 +77,7 @@ def reschedule(known: Scheduled, program: Program, library: Library) -> Schedule
     if changed is None:
         return None
     plan, target, numbers = known.plan, known.plan.target, {ref: number for number, ref in enumerate(known.texels)}
-    moved = program.frame != known.program.frame
+    moved, deciding = program.frame != known.program.frame, Marks(program, library, target, known.texels)
     passes, marks, surfaces, keys = [*plan.passes], [*known.marks], [*plan.surfaces], dict(known.keys)
     others = [
         number for number, fused in enumerate(known.passes)
@@ -89,7 +88,7 @@ def reschedule(known: Scheduled, program: Program, library: Library) -> Schedule
         fused = known.passes[number]
         item = emit(program, fused, library, target, known.texels)
         passes[number] = _pass(program, fused, item, numbers, library)
-        marks[number] = marks_of(program, fused, item, library, target, known.texels)
+        marks[number] = deciding.of(fused, item)
     sources = [ref for ref in numbers if ref.op in changed]
     for ref in update(keys, program, sources, marks, others):
         if ref in numbers:
@@ -171,13 +170,19 @@ def _depth(format: str) -> Depth:
 
 
 def _lives(program: Program, passes: Sequence[Fused]) -> tuple[dict[Ref, int], dict[Ref, int]]:
-    """The pass that makes each surface, or that reads an upload first; and the pass that reads it last."""
+    """The pass that makes each surface, or that reads an upload first; and the pass that reads it last.
+
+    What was remembered of the frame before is there from the first pass to the last.
+    """
     first: dict[Ref, int] = {}
     last: dict[Ref, int] = {}
     for index, fused in enumerate(passes):
         for ref in (*fused.writes, *fused.reads):
             first.setdefault(ref, index)
             last[ref] = index
+    for ref in first:
+        if isinstance(program.ops[ref.op], History):
+            first[ref], last[ref] = 0, len(passes)
     for ref in kept_refs(program):
         first.setdefault(ref, len(passes))
         last[ref] = len(passes)

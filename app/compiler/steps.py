@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from msgspec import Struct, field
 
@@ -41,8 +40,7 @@ class Step(Struct):
     """True if the number of the frame decided."""
 
 
-@dataclass(frozen=True)
-class Lowered:
+class Lowered(Struct, frozen=True, weakref=True):
     """A program, and how it came to be."""
 
     program: Program

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Literal
+from typing import ClassVar, Literal
+
+from .record import Record
 
 Form = Literal["fragment", "compute"]
 Precision = Literal["half", "float"]
 
 
-@dataclass(frozen=True)
-class Target:
+class Target(Record, frozen=True):
     """A GL implementation: its name, version (410, 430, ...), limits, and what suits it.
 
     `form` is how passes are emitted, and `why` who chose that: see `devices`. `precision` is how color intermediates
@@ -28,7 +28,9 @@ class Target:
     precision: Precision = "float"
     memory: int = 0
     """Bytes that textures and pictures may take at once; 0 for as many as there are."""
-    why: str = field(default="", compare=False)
+    why: str = ""
+
+    aside: ClassVar[frozenset[str]] = frozenset({"why"})
 
     @property
     def loads_images(self) -> bool:

@@ -28,7 +28,8 @@ class Stage(Struct, frozen=True):
 class Tiling(Struct, frozen=True):
     """What is made before, because something may read all of it for one pixel, and at last the outputs.
 
-    `nbytes` is what textures and pictures take at once, at most. `why` says in a sentence what does not fit.
+    `nbytes` is what textures and pictures take at once, at most. `why` says in a sentence what does not fit. Outputs
+    `by_rows` are handed over whenever all tiles of some rows are made.
     """
 
     program: Program
@@ -41,6 +42,7 @@ class Tiling(Struct, frozen=True):
     last: tuple[Stage, ...]
     nbytes: int
     why: str
+    by_rows: frozenset[str] = frozenset()
 
     @property
     def stages(self) -> tuple[Stage, ...]:

@@ -7,17 +7,19 @@ each with many small plans, which share their programs.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from itertools import product
 from types import MappingProxyType
+
+from msgspec.structs import replace
 
 from ...nodes import Size
 from ..errors import DeviceError
 from .areas import Region
 from .explain import size_text
 from .fuse import Fused
-from .ir import Held, Op, Program, Read, Reduce, Ref
+from .ir import Held, History, Op, Program, Read, Reduce, Ref
 from .library import Library
 from .plan import Plan, texture_bytes
 from .regions import made_whole, needed, reads_all
@@ -33,7 +35,11 @@ SMALL = 16
 look far around in small pictures, and tiles of the large ones then need little around them."""
 
 USUAL = 2**31
-"""Bytes of textures for a tile where nobody says how much memory may be used."""
+"""Bytes of textures for a tile where nobody says how much memory may be used; more, where much of it is needed for a
+single pixel."""
+
+MOST_TILES = 2**16
+"""Of a picture: more are so small that they would be mostly overlap."""
 
 MOST_PIXELS = 2**32
 """Of a picture. It is put together in memory: a larger one is a mistake."""
@@ -42,10 +48,11 @@ MOST_PIXELS = 2**32
 def tile(
     program: Program, passes: tuple[Fused, ...], texels: Mapping[Ref, str], library: Library, target: Target,
     precision: Precision, halves: frozenset[str], keys: Mapping[Ref, str] = MappingProxyType({}),
+    by_rows: frozenset[str] = frozenset(),
 ) -> Tiling | None:
     """How to run passes tile by tile, None where they fit as they are.
 
-    `texels` and `keys` are the formats and the keys of all pictures.
+    `texels` and `keys` are the formats and the keys of all pictures. The outputs `by_rows` need not be put together.
 
     Raises DeviceError where they do not fit that way either.
     """
@@ -61,11 +68,11 @@ def tile(
                 node=program.ops[ref.op].owner,
             )
     _check(program, passes, target)
-    work = _Work(program, passes, texels, target)
+    work = _Work(program, passes, texels, target, by_rows)
     before, last = work.before(), work.last()
     # What an output was rounded to as a part of the whole, it is rounded to in a tile.
     rounded = frozenset(name for name in halves if texels[program.outputs[name]].endswith("16f"))
-    return Tiling(program, library, target, precision, rounded, keys, before, last, work.nbytes, why)
+    return Tiling(program, library, target, precision, rounded, keys, before, last, work.nbytes, why, work.by_rows)
 
 
 def tile_plan(tiling: Tiling, stage: Stage, number: int, made: Mapping[int, Held]) -> Plan:
@@ -91,13 +98,21 @@ def _too_much(program: Program, passes: Sequence[Fused], texels: Mapping[Ref, st
             )
     if not target.memory:
         return ""
-    nbytes = peak(program, passes, texels) + sum(_nbytes(program, texels, ref) for ref in _carried(program, passes))
+    nbytes = peak(program, passes, texels) + sum(_nbytes(program, texels, ref) for ref in _outside(program, passes))
+    nbytes += _remembered(program, texels)
     if nbytes <= target.memory:
         return ""
     return f"{size_text(nbytes)} of textures and pictures is more than the {size_text(target.memory)} that may be used"
 
 
-def _carried(program: Program, passes: Sequence[Fused]) -> set[Ref]:
+def _remembered(program: Program, texels: Mapping[Ref, str]) -> int:
+    """What nodes remember is there twice: of this frame, and of the one before, which may not be read."""
+    kept = sum(_nbytes(program, texels, ref) for ref in program.memories.values())
+    read = sum(_nbytes(program, texels, ref) for ref in texels if isinstance(program.ops[ref.op], History))
+    return max(kept - read, 0)
+
+
+def _outside(program: Program, passes: Sequence[Fused]) -> set[Ref]:
     """What is not only on the device: pictures that are read from files, and outputs."""
     reads = {ref for fused in passes for ref in fused.reads if isinstance(program.ops[ref.op], Read)}
     return reads | set(program.outputs.values())
@@ -136,13 +151,15 @@ class _Work:
     """Finds the stages of a program."""
 
     def __init__(
-        self, program: Program, passes: tuple[Fused, ...], texels: Mapping[Ref, str], target: Target
+        self, program: Program, passes: tuple[Fused, ...], texels: Mapping[Ref, str], target: Target,
+        by_rows: frozenset[str],
     ) -> None:
         self.program, self.passes, self.texels, self.target = program, passes, texels, target
         self.makers = {ref: fused for fused in passes for ref in fused.writes}
         self.largest = max(_area(program.shape(ref).size) for ref in texels)
         self.cuts = tuple(fused for fused in passes if self._is_cut(fused))
         self.held = {ref for fused in self.cuts for ref in fused.writes}
+        self.by_rows = frozenset(name for name in by_rows if program.outputs[name] not in self.held)
         self.nbytes = 0
 
     def before(self) -> tuple[Stage, ...]:
@@ -165,7 +182,7 @@ class _Work:
         """True for a pass whose pictures are made as a whole before others read them."""
         if any(isinstance(op, Reduce) or made_whole(op) for op in self._ops(fused)):
             return True
-        if self._is_small(fused.writes[0]) and not self._stays_small(fused):
+        if self._is_small(fused.writes[0]) and self._is_light(fused) and not self._stays_small(fused):
             return True
         return any(
             reads_all(self.program, op, ref) and self.program.shape(ref).size != (1, 1)
@@ -174,6 +191,11 @@ class _Work:
 
     def _is_small(self, ref: Ref) -> bool:
         return SMALL * _area(self.program.shape(ref).size) <= self.largest
+
+    def _is_light(self, fused: Fused) -> bool:
+        """True for a pass whose pictures leave room for much else."""
+        nbytes = sum(_nbytes(self.program, self.texels, ref) for ref in fused.writes)
+        return not self.target.memory or 8 * nbytes <= self.target.memory
 
     def _stays_small(self, fused: Fused) -> bool:
         """True for a pass between small pictures: it is made together with those that shrink or enlarge."""
@@ -188,25 +210,37 @@ class _Work:
         passes = self._needed(outputs.values(), own)
         size = self.program.shape(next(iter(outputs.values()))).size
         whole = any(made_whole(op) for fused in passes for op in self._ops(fused))
-        pictures = self._pictures(passes, outputs.values())
         tile = size
+        usual = max(USUAL, 2 * self._textures(passes, outputs, size, (LEAST, LEAST))[1])
         while True:
-            found = [self._windows(passes, outputs.values(), region) for region in _sample(size, tile)]
-            textures = max(
-                peak(replace(self.program, windows=one, outputs=outputs, memories={}), passes, self.texels)
-                for one in found
-            )
-            nbytes = pictures + textures
-            fits = self._fits(found, textures, nbytes)
+            found, textures = self._textures(passes, outputs, size, tile)
+            nbytes = self._pictures(passes, outputs, found, tile) + textures
+            fits = self._fits(found, textures, nbytes, usual)
             if fits or whole or max(tile) <= LEAST:
                 break
             tile = _smaller(tile, self._too_wide(found))
         if not fits and (self.target.memory or any(self._too_wide(found))):
             self._refuse(found, nbytes)
         self.nbytes = max(self.nbytes, nbytes)
+        if math.prod(-(-side // one) for side, one in zip(size, tile, strict=True)) > MOST_TILES:
+            owner, memory = self.program.ops[next(iter(outputs.values())).op].owner, self.target.memory
+            within = f"within {size_text(memory)} its" if memory else "its"
+            more = "give more with --memory, or render" if memory else "render"
+            raise DeviceError(
+                f"node '{owner}': {within} {_sized(size)} pixels can only be made in tiles of {_sized(tile)}, which "
+                f"takes too long; {more} smaller with --scale or --size", node=owner,
+            )
         tiles = _grid(size, tile)
         all_ = [self._windows(passes, outputs.values(), region) for region in tiles]
         return Stage(MappingProxyType(outputs), passes, tiles, _parts(self.program, all_))
+
+    def _textures(
+        self, passes: Sequence[Fused], outputs: dict[str, Ref], size: Size, tile: Size
+    ) -> tuple[list[dict[Ref, Region]], int]:
+        """The windows of tiles of this size, and what textures take at most."""
+        found = [self._windows(passes, outputs.values(), region) for region in _sample(size, tile)]
+        programs = (replace(self.program, windows=one, outputs=outputs, memories={}) for one in found)
+        return found, max(peak(program, passes, self.texels) for program in programs)
 
     def _needed(self, refs: Iterable[Ref], own: Fused | None) -> tuple[Fused, ...]:
         """The passes that make pictures of what stages before made; `own` is the stage's own one."""
@@ -225,14 +259,29 @@ class _Work:
     def _windows(self, passes: Sequence[Fused], refs: Iterable[Ref], region: Region) -> dict[Ref, Region]:
         return needed(self.program, passes, dict.fromkeys(refs, region))
 
-    def _pictures(self, passes: Sequence[Fused], refs: Iterable[Ref]) -> int:
-        """Bytes of the whole pictures that are held meanwhile: what was read or made before, and what is made."""
-        reads = {ref for fused in passes for ref in fused.reads if ref not in self.makers or ref in self.held}
-        return sum(_nbytes(self.program, self.texels, ref) for ref in reads | set(refs))
+    def _pictures(
+        self, passes: Sequence[Fused], outputs: Mapping[str, Ref], found: Sequence[Mapping[Ref, Region]], tile: Size
+    ) -> int:
+        """Bytes of the pictures that are held meanwhile: what was read or made before, and what is made.
 
-    def _fits(self, found: Sequence[Mapping[Ref, Region]], textures: int, nbytes: int) -> bool:
+        Of files that are read by rows, and outputs that are handed over by rows, those of a tile: of outputs twice,
+        since they are encoded.
+        """
+        held = {ref for fused in passes for ref in fused.reads if ref not in self.makers or ref in self.held}
+        rows = {
+            ref: max(windows[ref].height for windows in found if ref in windows) for ref in held
+            if self.target.memory and isinstance(op := self.program.ops[ref.op], Read) and op.picture.by_rows
+        }
+        rows |= {ref: 2 * tile[1] for name, ref in outputs.items() if name in self.by_rows}
+        total = 0
+        for ref in held | set(outputs.values()):
+            height = self.program.shape(ref).size[1]
+            total += _nbytes(self.program, self.texels, ref) * min(rows.get(ref, height), height) // height
+        return total
+
+    def _fits(self, found: Sequence[Mapping[Ref, Region]], textures: int, nbytes: int, usual: int) -> bool:
         """Whether tiles of so many bytes of textures, and of so many in all, can be made one after another."""
-        fits = nbytes <= self.target.memory if self.target.memory else textures <= USUAL
+        fits = nbytes <= self.target.memory if self.target.memory else textures <= usual
         return fits and self._too_wide(found) == (False, False)
 
     def _too_wide(self, found: Sequence[Mapping[Ref, Region]]) -> tuple[bool, bool]:

@@ -8,8 +8,7 @@ have the same edge mode; another one says that the frame in between does matter.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
-from typing import get_args
+from typing import ClassVar, get_args
 
 from ...nodes import Affine, Edge, Kernel
 from .areas import Around
@@ -27,13 +26,14 @@ _ROUNDING = 1.0
 """Pixels by which a place may be off in floats of 32 bits."""
 
 
-@dataclass(frozen=True)
-class Placed(Gather):
+class Placed(Gather, frozen=True):
     """A picture moved, turned and scaled. `matrix` says where its pixels lie in the one that it reads."""
 
     matrix: Affine = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
-    chain: tuple[str, ...] = field(default=(), compare=False)
+    chain: tuple[str, ...] = ()
     """The nodes whose matrices were multiplied, the first one first."""
+
+    aside: ClassVar[frozenset[str]] = frozenset({"owner", "chain"})
 
     @property
     def owners(self) -> tuple[str, ...]:
@@ -65,7 +65,7 @@ def place(builder: Builder, image: Ref, owner: str, shape: Shape, matrix: Affine
         Placed(
             (shape,), owner, "primitive/place", "place",
             (Accessor("image", "vec4", image, Around(matrix, (across, down))),), parameters, edge,
-            (("kernel", kernels),), matrix, chain,
+            (("kernel", kernels),), matrix=matrix, chain=chain,
         )
     )
 

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from .loops import COUNTER, MOST_ROUNDS, guarded
 from .text import COMMENT, Function, Text, blanked, parse, unified, words
 
-__all__ = [
-    "COMMENT", "COUNTER", "MOST_ROUNDS", "Function", "Text", "blanked", "guarded", "parse", "unified", "words",
-]
+__all__ = ["COMMENT", "Function", "Text", "blanked", "parse", "unified", "words"]

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from functools import cached_property
 from types import MappingProxyType
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 _INCLUDE = re.compile(r'^[ \t]*#include[ \t]+"([^"]+)"[^\n]*$', re.MULTILINE)
@@ -35,8 +36,7 @@ class Function(Struct, frozen=True):
     """All words of its body: what it calls is among them."""
 
 
-@dataclass(frozen=True)
-class Text:
+class Text(Struct, frozen=True, dict=True):
     """One GLSL file without comments and `#include` lines (their lines stay, empty, so that numbers hold).
 
     `file` is what messages call it. `includes` are the lines of what it includes, by name. `functions` are by name;
@@ -50,7 +50,10 @@ class Text:
     functions: Mapping[str, Function]
     all_functions: tuple[Function, ...]
     words: frozenset[str]
-    _cuts: dict[frozenset[str], Text] = field(default_factory=dict[frozenset[str], "Text"], compare=False, repr=False)
+
+    @cached_property
+    def _cuts(self) -> dict[frozenset[str], Text]:
+        return {}
 
     def only(self, entries: frozenset[str]) -> Text:
         """The text without functions that `entries` do not need: another draw may need other accessors.
@@ -77,7 +80,7 @@ class Text:
             if one.name not in needed:
                 blank = _BLANK.sub(" ", text[one.start : one.end])
                 text = text[: one.start] + blank + text[one.end :]
-        return replace(self, body=text, words=words(text), _cuts={})
+        return replace(self, body=text, words=words(text))
 
     @property
     def outside(self) -> frozenset[str]:

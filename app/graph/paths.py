@@ -84,13 +84,13 @@ def _code(item: Node, change: Change) -> Node:
     """The same node with the file that its code is in, if it is in one, somewhere else."""
     if not isinstance(item, Written) or not item.code.file:
         return item
-    kind = node_type(replace(item.code, file=change(item.code.file)))
+    kind = node_type(structs.replace(item.code, file=change(item.code.file)))
     return kind(**{name: getattr(item, name) for name in item.values})
 
 
 def _inlined(item: Item, folder: str) -> Item:
     if isinstance(item, Written) and item.code.file and not (item.code.vertex or "IMPORTED" in item.code.text):
-        kind = node_type(replace(item.code, file=""))
+        kind = node_type(structs.replace(item.code, file=""))
         return kind(**{name: getattr(item, name) for name in item.values})
     if not isinstance(item, Group):
         return item

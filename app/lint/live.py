@@ -10,7 +10,7 @@ from ..graph import Graph, Problem, problems
 from ..graph.problems import differ_in_nodes, rechecked
 from .allowing import allowed
 from .rules import data, filtering, light
-from .sheet import Sheet, bodies
+from .sheet import Sheet, bodies, is_one_of
 
 _CHECKS = (*filtering.CHECKS, *light.CHECKS, *data.CHECKS)
 
@@ -53,7 +53,7 @@ def _same_roles(graph: Graph, before: Graph) -> bool:
 
 
 def _same_role(new: Node, old: Node) -> bool:
-    if isinstance(new, filtering.FILTERS):  # hints name their numbers
+    if is_one_of(new, filtering.FILTERS):  # hints name their numbers
         return False
     texts = (name for name, value in new.values.items() if value.type in ("path", "text", "choice"))
     same = type(new) is type(old) and all(getattr(new, name) == getattr(old, name) for name in texts)

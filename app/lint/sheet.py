@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Set
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, TypeGuard
 
 from ...nodes import Node
 from ..compiler import Library, installed
@@ -64,6 +64,11 @@ class Sheet:
 
     def _neutral(self, id: str, item: Node) -> bool:
         return id not in self.moving and len(item.outputs) == 1 and item.identity() is not None
+
+
+def is_one_of(item: Item | None, types: Set[str]) -> TypeGuard[Node]:
+    """True for a node of one of these types, which need not be loaded for that."""
+    return isinstance(item, Node) and item.id in types
 
 
 class Check(NamedTuple):

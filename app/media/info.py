@@ -37,6 +37,9 @@ _CHANNELS = 4
 """How many numbers a pixel takes while it is converted: so many copies of so many channels."""
 
 _DTYPES = {"half": "float16", "uint8": "uint8", "uint16": "uint16", "uint": "uint32"}
+_BY_ROWS = ("openexr", "tiff")
+"""Formats that need not be decoded from their beginning."""
+
 _FAULTS = (
     ("subsampled", "stores color at a lower resolution than brightness, which cannot be read: save it as plain RGB"),
     ("not an openexr file", "is not an EXR file, whatever its name says: check what wrote it"),
@@ -48,13 +51,17 @@ _FAULTS = (
 
 
 class ImageInfo(Struct, frozen=True):
-    """The header of a file. `size` is the display window, upright; `fingerprint` changes when the file does."""
+    """The header of a file. `size` is the display window, upright; `fingerprint` changes when the file does.
+
+    `by_rows`: rows of it can be read alone, since its pixels are stored upright, all of them, and not as a stream.
+    """
 
     path: str
     size: Size
     layers: tuple[Layer, ...]
     fingerprint: str
     format: str
+    by_rows: bool = False
 
 
 def info(path: str | Path) -> ImageInfo:
@@ -172,15 +179,17 @@ def described(handle: oiio.ImageInput, path: str) -> ImageInfo:
     size = _size(main)
     _check_size(size, path)
     parts: list[Part] = []
-    index = 0
+    index, whole = 0, True
     while handle.seek_subimage(index, 0):
         spec = handle.spec()
         if spec.deep:
             raise InputError(f"{path}: holds deep samples, which cannot be read: flatten it first")
         if _size(spec) == size:
             parts.append(_part(index, spec))
+            whole = whole and _is_whole(spec)
         index += 1
-    return ImageInfo(path, size, layers_of(parts), fingerprint(path), handle.format_name())
+    by_rows = whole and handle.format_name() in _BY_ROWS
+    return ImageInfo(path, size, layers_of(parts), fingerprint(path), handle.format_name(), by_rows)
 
 
 def described_video(facts: Facts) -> ImageInfo:
@@ -238,6 +247,12 @@ def text(name: str) -> str:
 def _size(spec: oiio.ImageSpec) -> Size:
     width, height = spec.full_width or spec.width, spec.full_height or spec.height
     return (height, width) if spec.get_int_attribute("Orientation", 1) > 4 else (width, height)
+
+
+def _is_whole(spec: oiio.ImageSpec) -> bool:
+    """True if there are pixels for all of the display window and nothing else, and it is upright."""
+    shown = (spec.full_x, spec.full_y, spec.full_width or spec.width, spec.full_height or spec.height)
+    return (spec.x, spec.y, spec.width, spec.height) == shown and spec.get_int_attribute("Orientation", 1) == 1
 
 
 def fault(message: str) -> str:

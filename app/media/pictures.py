@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from hashlib import blake2b
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -30,17 +29,17 @@ if TYPE_CHECKING:
     """What fills a graph input: a path, `path:layer`, an array [h, w] or [h, w, c], the value of a Number or Color."""
 
 
-@dataclass
 class Pictures:
-    """Probes and loads what the pictures of one graph stand for. `repaired` counts broken pixels by path."""
+    """Probes and loads what the pictures of one graph stand for. `ahead` reads some of them already."""
 
-    repaired: dict[str, int] = field(default_factory=dict[str, int])
-    look: Callable[[str, Mapping[str, str]], Render] | None = None
-    """Finds out what a render holds, where that is not to be waited for."""
-    ahead: Ahead | None = None
-    """What reads some of them already."""
-    _infos: dict[str, ImageInfo] = field(default_factory=dict[str, "ImageInfo"], repr=False)
-    _marks: dict[str, str] = field(default_factory=dict[str, str], repr=False)
+    def __init__(self, ahead: Ahead | None = None) -> None:
+        self.ahead = ahead
+        self.repaired: dict[str, int] = {}
+        """Broken pixels by path."""
+        self.look: Callable[[str, Mapping[str, str]], Render] | None = None
+        """Finds out what a render holds, where that is not to be waited for."""
+        self._infos: dict[str, ImageInfo] = {}
+        self._marks: dict[str, str] = {}
 
     def bind(self, graph: Graph, inputs: Mapping[str, Binding]) -> dict[str, Picture]:
         """Pictures for graph inputs by name. Raises UsageError for a name that the graph does not have."""
@@ -102,7 +101,7 @@ class Pictures:
         color = picture.kind in (Kind.IMAGE, Kind.COLOR) and not layer.data
         mark = _converted(picture) if color else ""
         half = layer.half and not (mark and _changes(picture, layer.full))
-        return Probed(header.size, half, header.fingerprint + mark)
+        return Probed(header.size, half, header.fingerprint + mark, header.by_rows)
 
     def load(self, picture: Picture) -> Array:
         """Its pixels as [height, width, channels] of float16 or float32."""
@@ -112,6 +111,8 @@ class Pictures:
             pixels: Any = picture.pixels
             array = np.array(pixels, np.float32) if isinstance(pixels, tuple) else pixels
             return widened(array, picture.kind, picture.width)
+        if picture.rows is not None:
+            return self._load_rows(picture, *picture.rows)
         from .read import read
 
         what = (picture.path, picture.layer, picture.kind, picture.width)
@@ -152,6 +153,17 @@ class Pictures:
 
             self._infos[path] = info(path)
         return self._infos[path]
+
+    def _load_rows(self, picture: Picture, first: int, end: int) -> Array:
+        """Rows of a file; what is repaired counts as often as it is read."""
+        from .bands import read_rows
+        from .read import Want
+
+        want = Want(picture.layer, picture.kind, picture.width, picture.space, picture.color)
+        pixels = read_rows(picture.path, want, first, end)
+        if pixels.repaired:
+            self.repaired[picture.path] = self.repaired.get(picture.path, 0) + pixels.repaired
+        return pixels.array
 
     def _siblings(self, graph: Graph, bound: Mapping[str, Picture]) -> dict[str, Picture]:
         """Inputs whose default is another layer of a file that was replaced follow it to the new file.

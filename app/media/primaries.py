@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...nodes import ColorSettings
-from ..compiler import Working
 from .file_space import GAMUTS
 from .managed import LINEAR_REC709, Managed, Space, managed, studio
+
+if TYPE_CHECKING:
+    from ..compiler import Working
 
 _CLOSE = 2e-4
 
@@ -35,6 +38,8 @@ def chromaticities(manager: Managed, space: Space) -> tuple[float, ...]:
 
 @lru_cache(maxsize=16)
 def _working(manager: Managed) -> Working | None:
+    from ..compiler import Working  # what reads files has no need of it
+
     rec709 = Space("Linear Rec.709 (sRGB)", False)
     to = _matrix(manager, manager.working, manager.find(LINEAR_REC709) or rec709)
     if np.allclose(to, np.eye(3), atol=_CLOSE):

@@ -21,7 +21,7 @@ from .info import fingerprint as marked
 from .layers import Layer
 from .managed import DEFAULT_COLOR, managed
 
-_READ_AS = {"float16": "half", "uint8": "uint8", "uint16": "uint16", "uint32": "uint"}
+READ_AS = {"float16": "half", "uint8": "uint8", "uint16": "uint16", "uint32": "uint"}
 _ALPHA = ("a", "alpha")
 _AS_IT_IS = {(*"rgb", alpha) for alpha in _ALPHA}
 
@@ -88,7 +88,7 @@ def read_many(path: str | Path, wants: Sequence[Want], frame: int = 1) -> list[P
         made: list[Pixels] = []
         for want, layer, block in zip(wants, layers, blocks, strict=True):
             handle.seek_subimage(layer.part, 0)
-            made.append(_pixels(block, layer, want, handle.spec(), header))
+            made.append(pixels_of(block, layer, want, handle.spec(), header))
         return made
 
 
@@ -108,7 +108,7 @@ def _read_video(path: str, wants: Sequence[Want], frame: int) -> list[Pixels]:
         spec = oiio.ImageSpec(block.shape[1], block.shape[0], block.shape[2], "float")
         spec.attribute("oiio:ColorSpace", encoding)
         spec.attribute("oiio:UnassociatedAlpha", 1)
-        made.append(_pixels(_select(block, layer.indices, 0), layer, want, spec, header))
+        made.append(pixels_of(select(block, layer.indices, 0), layer, want, spec, header))
     return made
 
 
@@ -121,7 +121,7 @@ def _decode(handle: oiio.ImageInput, header: ImageInfo, layers: Sequence[Layer])
     for (part, dtype), indices in spans.items():
         check_memory(header.path, header.size, max(indices) + 1 - min(indices))
         try:
-            block = handle.read_image(part, 0, min(indices), max(indices) + 1, _READ_AS.get(dtype, "float"))
+            block = handle.read_image(part, 0, min(indices), max(indices) + 1, READ_AS.get(dtype, "float"))
         except (MemoryError, ValueError) as error:
             width, height = header.size
             raise InputError(f"{header.path}: {width}x{height} pixels do not fit into memory") from error
@@ -129,16 +129,17 @@ def _decode(handle: oiio.ImageInput, header: ImageInfo, layers: Sequence[Layer])
             raise InputError(f"{header.path}: {fault(handle.geterror() or 'corrupt')}")
         decoded[part, dtype] = np.asarray(block)
     keys = [(layer.part, layer.format) for layer in layers]
-    return [_select(decoded[key], layer.indices, min(spans[key])) for key, layer in zip(keys, layers, strict=True)]
+    return [select(decoded[key], layer.indices, min(spans[key])) for key, layer in zip(keys, layers, strict=True)]
 
 
-def _select(block: Array, indices: Sequence[int], first: int) -> Array:
+def select(block: Array, indices: Sequence[int], first: int) -> Array:
+    """Channels at these places in a part, of a block that begins with the one at `first`."""
     wanted = [index - first for index in indices]
     run = list(range(wanted[0], wanted[0] + len(wanted)))
     return block[..., run[0] : run[-1] + 1] if wanted == run else block[..., wanted]
 
 
-def _pixels(block: Array, layer: Layer, want: Want, spec: oiio.ImageSpec, header: ImageInfo) -> Pixels:
+def pixels_of(block: Array, layer: Layer, want: Want, spec: oiio.ImageSpec, header: ImageInfo) -> Pixels:
     """The array that a socket wants, from the channels of its layer."""
     if want.kind in (Kind.IMAGE, Kind.COLOR):
         array = _data_image(block, layer) if layer.data else _image(block, layer, spec, header, want)

@@ -34,7 +34,7 @@ _STORED = {"uint8": "uint8", "uint16": "uint16", "float32": "float"}
 Precision = Literal["half", "float"]
 
 
-class _Part(Struct, frozen=True):
+class Part(Struct, frozen=True):
     """What one part of a file will be."""
 
     spec: oiio.ImageSpec
@@ -66,7 +66,7 @@ def write(
     format = _checked(path, {name: kinds[name] for name in layers}, sizes, compression, encoding)
     metadata = metadata or {}
     if format == "openexr":
-        parts = _exr_parts(layers, kinds, precision, compression, encoding)
+        parts = exr_parts(layers, kinds, precision, compression, encoding)
     else:
         shown = shown_layer(path, {name: kinds[name] for name in layers})
         parts = [_picture(layers[shown], format, precision, compression, encoding)]
@@ -119,10 +119,11 @@ def _format(path: Path) -> str:
     raise UsageError(f"{path}: {said}: use one of {', '.join(_FORMATS)}")
 
 
-def _exr_parts(
+def exr_parts(
     layers: Mapping[str, Array], kinds: Mapping[str, Kind], precision: Precision, compression: str, encoding: Encoding
-) -> list[_Part]:
-    parts: list[_Part] = []
+) -> list[Part]:
+    """The parts of an EXR that holds these layers, and the numbers that go into them."""
+    parts: list[Part] = []
     for name, array in layers.items():
         color = kinds[name] in (Kind.IMAGE, Kind.COLOR)
         half = _halved(kinds[name], precision)
@@ -139,7 +140,7 @@ def _exr_parts(
             array = encoding.numbers(array)
         if half:
             array = as_half(array)
-        parts.append(_Part(spec, np.ascontiguousarray(array)))
+        parts.append(Part(spec, np.ascontiguousarray(array)))
     return parts
 
 
@@ -174,7 +175,7 @@ def shown_layer(path: str | Path, kinds: Mapping[str, Kind]) -> str:
     return shown[0]
 
 
-def _picture(array: Array, format: str, precision: Precision, compression: str, encoding: Encoding) -> _Part:
+def _picture(array: Array, format: str, precision: Precision, compression: str, encoding: Encoding) -> Part:
     """The one picture of a format that holds no layers."""
     if array.shape[2] < 3:
         array = array[..., :1].repeat(3, axis=2)
@@ -198,10 +199,10 @@ def _picture(array: Array, format: str, precision: Precision, compression: str, 
         spec.attribute("oiio:UnassociatedAlpha", 1)
     if format == "png" and encoding.shown_as != "srgb_rec709_scene":
         spec.attribute(TAG, encoding.shown_as)
-    return _Part(spec, np.ascontiguousarray(array))
+    return Part(spec, np.ascontiguousarray(array))
 
 
-def _encoder(path: str | Path, format: str, parts: Sequence[_Part]) -> Callable[[str], None]:
+def _encoder(path: str | Path, format: str, parts: Sequence[Part]) -> Callable[[str], None]:
     def encode(file: str) -> None:
         output = oiio.ImageOutput.create(format)
         if output is None:

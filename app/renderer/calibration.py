@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import asdict, replace
 from hashlib import blake2b
 from pathlib import Path
 from typing import get_args
+
+from msgspec.structs import asdict, replace
 
 from ...nodes import Size, catalogue
 from ..compiler import Form, Request, compile_graph

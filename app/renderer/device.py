@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from dataclasses import dataclass, field, replace
 from functools import cached_property
 from threading import current_thread, get_ident
 
 import moderngl
 import numpy as np
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from ..compiler import Target
 from ..compiler.devices import is_software
@@ -19,8 +20,7 @@ OLDEST = 410
 """macOS stops at OpenGL 4.1."""
 
 
-@dataclass(frozen=True)
-class Device:
+class Device(Struct, frozen=True, dict=True):
     """An OpenGL context and what the compiler needs to know of it."""
 
     context: moderngl.Context

@@ -23,10 +23,17 @@ Handle = moderngl.Texture
 
 
 class Drawable(Protocol):
-    """A result that can be drawn. `key` changes whenever its pixels do; `full_size` is its size at scale 1."""
+    """A result that can be drawn. `key` changes whenever its pixels do; `full_size` is its size at scale 1.
+
+    It has `size` pixels as it is; the texture holds them all, or a part from pixel `start` on.
+    """
 
     @property
     def texture(self) -> Handle: ...
+    @property
+    def size(self) -> Size: ...
+    @property
+    def start(self) -> tuple[int, int]: ...
     @property
     def full_size(self) -> Size: ...
     @property
@@ -161,14 +168,16 @@ class Display:
         program = self._programs.get(view, look.color, texels=True)
         program.set("a", 0)
         program.set("a_channels", a.channels)
+        program.set("a_part", (*a.start, *a.size))
         program.set("viewed_first", (x, y))
         _settings(program, (1, 1), a.full_size, look)
         program.draw()
 
     def _place(self, program: ViewProgram, name: str, unit: int, item: Drawable, panel: Size, look: Look) -> None:
         item.texture.use(unit)
-        size = item.texture.size
+        size = item.size
         program.set(name, unit)
+        program.set(f"{name}_part", (*item.start, *size))
         program.set(f"{name}_origin", origin(look, panel, item.full_size))
         program.set(f"{name}_step", tuple(size[axis] / (item.full_size[axis] * look.zoom) for axis in (0, 1)))
         program.set(f"{name}_channels", item.channels)
@@ -178,9 +187,9 @@ def _enlarged(panel: Size, item: Drawable, covered: Rect, look: Look) -> Rect | 
     """The texels that cover these pixels of a panel, if they are clearly fewer."""
     found: list[tuple[int, int]] = []
     for axis, corner in enumerate(origin(look, panel, item.full_size)):
-        step = item.texture.size[axis] / (item.full_size[axis] * look.zoom)
+        step = item.size[axis] / (item.full_size[axis] * look.zoom)
         first, last = ((covered[axis] - corner) * step, (covered[axis] + covered[axis + 2] - corner) * step)
-        low, high = max(0, math.floor(first) - 1), min(item.texture.size[axis], math.ceil(last) + 1)
+        low, high = max(0, math.floor(first) - 1), min(item.size[axis], math.ceil(last) + 1)
         if step > ENLARGED:
             return None
         found.append((low, max(1, high - low)))
@@ -201,7 +210,7 @@ def _covered(panel: Size, items: list[Drawable], look: Look) -> Rect | None:
 
 
 def _mark(item: Drawable | None) -> object:
-    return item and (item.key, item.texture.glo, item.texture.size, item.full_size, item.channels)
+    return item and (item.key, item.texture.glo, item.start, item.size, item.full_size, item.channels)
 
 
 def _settings(program: ViewProgram, panel: Size, picture: Size, look: Look) -> None:

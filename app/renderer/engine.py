@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING
+
+from msgspec import Struct, field
 
 from ...nodes import Size
 from ..compiler import Library, Memory, Plan, Planner, Precision, Region, Request
@@ -23,8 +24,7 @@ if TYPE_CHECKING:
 DEFAULT_BUDGET = 512 * 2**20
 
 
-@dataclass(frozen=True)
-class Wanted:
+class Wanted(Struct, frozen=True):
     """What to render of a graph.
 
     `inputs` are bound to graph inputs by name, or what makes them for a frame; `targets` are node or graph outputs by
@@ -45,11 +45,16 @@ class Wanted:
 
     region: Region | None = None
     """The part of every output that is computed, in pixels of it: a surface's `window` says what came of that."""
+    by_rows: frozenset[str] = frozenset()
+    """Those that are taken by rows, from the top down, where they are made by tiles: see `Run.rows`."""
 
     @property
     def bound(self) -> dict[str, Binding]:
         """What the inputs are at this frame."""
         return {name: item(self.frame) if callable(item) else item for name, item in self.inputs.items()}
+
+
+_ALL = Wanted()
 
 
 class Renderer:
@@ -72,24 +77,24 @@ class Renderer:
         self._fusion = fusion
         self._planner = Planner()
 
-    def compile(self, graph: Graph, wanted: Wanted = Wanted(), *, fusion: bool = True) -> Plan:
+    def compile(self, graph: Graph, wanted: Wanted = _ALL, *, fusion: bool = True) -> Plan:
         """Plan the rendering of what is wanted of `graph`. Raises the errors of `app.errors`."""
         bindings = self.pictures.bind(graph, wanted.bound)
         request = Request(
             wanted.targets, bindings, wanted.size, wanted.scale, wanted.frame, wanted.memories, wanted.halves,
-            wanted.region,
+            wanted.region, wanted.by_rows,
         )
         return self._planner.plan(
             graph, request, self.pictures, target=self.device.target, precision=wanted.precision,
-            library=self.library, fusion=fusion and self._fusion,
+            library=self.library, fusion=fusion and self._fusion, there=self.runner.textures,
         )
 
-    def frames(self, graph: Graph, wanted: Wanted = Wanted()) -> tuple[int, int]:
+    def frames(self, graph: Graph, wanted: Wanted = _ALL) -> tuple[int, int]:
         """The first and last frame of a graph: as it says, else those of the first sequence it reads, else of keys."""
         named = {name: item for name, item in wanted.inputs.items() if not callable(item)}
         return self.pictures.frames(graph, self.pictures.bind(graph, named))
 
-    def render(self, graph: Graph, wanted: Wanted = Wanted()) -> dict[str, Array]:
+    def render(self, graph: Graph, wanted: Wanted = _ALL) -> dict[str, Array]:
         """Every wanted output by name as [height, width, channels], scene-linear. Raises the errors of `app.errors`.
 
         One frame alone: nodes with a memory have none. See `Reel`.

@@ -9,11 +9,11 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from msgspec import Struct, field
+from msgspec.structs import replace
 
 from .. import media
 from ..compiler import Pass, Plan
@@ -26,6 +26,7 @@ from .engine import Renderer, Wanted
 from .header import frame_key, header, is_marked, is_written, whole
 from .reel import Reel
 from .sources import Hashes, Source, Sources
+from .strips import Strips, written_by_rows
 from .textures import Lease
 from .videos import Videos
 
@@ -113,7 +114,9 @@ class _Job:
         progress: Progress | None, frames: tuple[int, ...],
     ) -> None:
         self._files = destinations(graph, wanted, writing, frames)
-        wanted = replace(wanted, halves=halves(self._files[frames[0]], writing))
+        first = self._files[frames[0]]
+        by_rows = written_by_rows(first) if renderer.device.target.memory else frozenset[str]()
+        wanted = replace(wanted, halves=halves(first, writing), by_rows=by_rows)
         self._renderer, self._graph, self._wanted, self._writing = renderer, graph, wanted, writing
         self._resume, self._progress, self._frames = resume, progress, frames
         self._reel = Reel(renderer, graph, wanted)
@@ -123,6 +126,7 @@ class _Job:
         self._fault: HalationError | None = None
         self._reports: list[FrameReport] = []
         self._films = Videos(writing, self._rate)
+        self._strips: Strips | None = None
         self.videos: tuple[Path, ...] = ()
         self.seconds = {"compile": 0.0, "render": 0.0, "write": 0.0}
 
@@ -158,6 +162,8 @@ class _Job:
         """Let what is being written come to its end."""
         self._behind.close()
         self._films.abort()
+        if self._strips is not None:
+            self._strips.abort()
         self._hashes.close()
         self._reel.close()
 
@@ -205,8 +211,11 @@ class _Job:
     def _begun(self, task: _Task, following: _Task | None) -> tuple[Lease, int]:
         """Send a frame's passes to the device: what will hold the outputs, and how many passes they were."""
         started, passes = time.perf_counter(), 0
+        self._hashes.begin(task.sources)
         kept = self._renderer.runner.lease()
+        self._strips = Strips(task.plan, task.files, self._writing, lambda file: self._said(task, file))
         for run in self._reel.steps(task.frame, kept, following=following.frame if following else None):
+            run.rows = self._strips.take
             with run:
                 if following is not None:
                     self._renderer.runner.prepare(following.plan, {surface.key for surface in task.plan.surfaces})
@@ -225,19 +234,25 @@ class _Job:
         self.seconds["render"] += time.perf_counter() - started
         return outputs
 
+    def _said(self, task: _Task, file: Destination) -> dict[str, Any]:
+        """What a file says of itself."""
+        wanted, device = replace(self._wanted, frame=task.frame), self._renderer.device
+        said = header(
+            self._text, device.target, wanted, self._reel.frames, self._writing, file, task.plan, task.sources,
+            self._hashes,
+        )
+        said["halation:driver"] = device.driver
+        return said
+
     def _write(self, task: _Task, outputs: Mapping[str, Array], passes: int) -> None:
-        self._hashes.begin(task.sources)
-        wanted = replace(self._wanted, frame=task.frame)
-        target, driver = self._renderer.device.target, self._renderer.device.driver
+        finished = self._strips.finish() if self._strips else frozenset[Path]()
 
         def write(outputs: Mapping[str, Array]) -> FrameReport:
             started = time.perf_counter()
             for file in task.files:
-                said = header(
-                    self._text, target, wanted, self._reel.frames, self._writing, file, task.plan, task.sources,
-                    self._hashes,
-                )
-                said["halation:driver"] = driver
+                if file.path in finished:
+                    continue
+                said = self._said(task, file)
                 layers = {layer: outputs[name] for layer, name in file.layers.items()}
                 if file.path in self._writing.videos:
                     self._films.add(file, layers, said)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from dataclasses import replace
 
 import moderngl
+from msgspec.structs import replace
 
 from ..compiler import Form
 from ..compiler.devices import choose

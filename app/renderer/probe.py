@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Iterator
-from dataclasses import dataclass, replace
 
 import moderngl
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import replace
 
 from ..compiler import installed
 from ..errors import UsageError
@@ -86,8 +87,7 @@ def _read(framebuffer: moderngl.Framebuffer, rect: Rect, components: int) -> Arr
     return pixels
 
 
-@dataclass(frozen=True)
-class Nonfinite:
+class Nonfinite(Struct, frozen=True):
     """A pixel (x, y; row 0 on top) that is NaN or infinite, and the first node, in order, that has one."""
 
     path: str

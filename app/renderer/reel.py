@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+
+from msgspec.structs import replace
 
 from ..compiler import Memory, Plan
 from ..graph import Graph, Port
@@ -156,10 +157,12 @@ class Reel:
 def _carried(plan: Plan, following: Plan) -> tuple[int, ...]:
     """The surfaces of a plan that stay for the next one: what that would make again, as far as there is room."""
     found: list[int] = []
-    nbytes = 0
+    nbytes, most, memory = 0, CARRIED_BYTES, plan.target.memory
+    if memory:  # of the frame before there may be as much
+        most = min(most, (memory - max(plan.held_bytes, following.held_bytes)) // 2)
     for number in carried(plan, following):
         nbytes += plan.surfaces[number].nbytes
-        if nbytes > CARRIED_BYTES:
+        if nbytes > most:
             break
         found.append(number)
     return tuple(found)

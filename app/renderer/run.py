@@ -8,13 +8,16 @@ from types import TracebackType
 
 from ..compiler import Pass, Plan
 from ..errors import HalationError
-from .decoding import Decoding
+from .decoding import Array, Decoding
 from .decoding import Wanted as Awaited
 from .executor import Executor
 from .textures import Lease
 
 Timings = list[tuple[Pass, float]]
 """Passes and the seconds that each took on the device."""
+
+Rows = Callable[[str, int, Array], None]
+"""Takes rows of an output: its name, the first row, and [rows, width, channels], which is used again afterwards."""
 
 Decode = Callable[[Iterable[Awaited]], Decoding]
 
@@ -27,6 +30,8 @@ class Run(ABC):
         self.done = 0
         """Passes executed."""
         self.ended = False
+        self.rows: Rows | None = None
+        """Takes the outputs that the plan makes by rows; without it they are put together as all others are."""
 
     @property
     @abstractmethod

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Container, Iterable
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
+from weakref import WeakValueDictionary
+
+from msgspec import Struct
 
 from ..compiler import Plan
 from ..errors import DeviceError, UsageError
@@ -18,6 +21,12 @@ from .textures import Lease, Texture
 from .tiles import TiledRun
 
 
+class Outputs(Struct, frozen=True, eq=False, weakref=True):
+    """Pixels by name that are not on the device."""
+
+    pixels: dict[str, Array]
+
+
 class Runner:
     """Executes plans on one device, keeping programs, textures and results between them."""
 
@@ -27,8 +36,8 @@ class Runner:
         self.programs, self.textures = self._executor.programs, self._executor.textures
         self.counters = self._executor.counters
         self._begun: dict[str, Future[Decoded]] = {}
-        self._whole: dict[tuple[str, ...], dict[str, Array]] = {}
-        """Outputs that were made tile by tile, by their keys."""
+        self._whole: WeakValueDictionary[tuple[str, ...], Outputs] = WeakValueDictionary()
+        """What was made tile by tile, by the keys of the outputs, as long as somebody leases it."""
         self._threads = ThreadPoolExecutor(max_workers=2, thread_name_prefix="decode")
 
     def run(self, plan: Plan) -> dict[str, Array]:
@@ -48,15 +57,15 @@ class Runner:
         """Run one pass per step, so that a caller can stop in between.
 
         At the end `kept` leases the surfaces `wanted`, by default the outputs. With `timings`, every pass is waited for
-        and what it took is added to them. A plan that does not fit is run tile by tile: its outputs are not leased but
-        wait in memory for `download`, and it is not timed. Raises DeviceError for that.
+        and what it took is added to them. A plan that does not fit is run tile by tile: `kept` holds its outputs
+        in memory, and it is not timed. Raises DeviceError for that.
         """
         if self._executor.closed:
             raise UsageError("this renderer is closed: make another one")
         if plan.tiling is not None:
             if timings is not None:
                 raise DeviceError(f"{plan.tiling.why}; render smaller with --scale or --size")
-            return TiledRun(self, self._load, plan, partial(self._whole.__setitem__, _known(plan)))
+            return TiledRun(self, self._load, plan, partial(self._keep, plan, kept))
         surfaces = plan.outputs.values() if wanted is None else wanted
         with self.device.current():
             return WholeRun(self._executor, plan, kept, self._decode, surfaces, timings)
@@ -89,7 +98,7 @@ class Runner:
         They are float16 where the plan keeps halves. `arrays` lend what they are written to, to be given back.
         """
         if plan.tiling is not None:
-            return self._whole.pop(_known(plan))
+            return dict(self._whole[_known(plan)].pixels)
         arrays = arrays or Arrays()
         with self.device.current():
             return {name: self._executor.download(plan, number, arrays) for name, number in plan.outputs.items()}
@@ -114,6 +123,11 @@ class Runner:
         self._threads.shutdown(cancel_futures=True)
         with self.device.current():
             self._executor.close()
+
+    def _keep(self, plan: Plan, kept: Lease, pixels: dict[str, Array]) -> None:
+        """Have a lease hold what was made tile by tile."""
+        outputs = self._whole[_known(plan)] = Outputs(pixels)
+        kept.hold(outputs)
 
     def _decode(self, wanted: Iterable[Awaited]) -> Decoding:
         return Decoding(self._threads, self._load, wanted, self._begun)

@@ -193,6 +193,7 @@ class Lease:
     def __init__(self, textures: Textures) -> None:
         self._textures = textures
         self._keys: set[str] = set()
+        self._others: list[object] = []
 
     def make(self, surface: Surface) -> Texture:
         """A texture for `surface`, whose pixels are to be made. Raises DeviceError where there is no room."""
@@ -205,6 +206,10 @@ class Lease:
         if key not in self._keys:
             self._textures.lease(key)
             self._keys.add(key)
+
+    def hold(self, pixels: object) -> None:
+        """Keep these as well, which are not on the device."""
+        self._others.append(pixels)
 
     def give(self, key: str) -> None:
         """These pixels are not needed any more."""
@@ -220,5 +225,6 @@ class Lease:
 
     def close(self) -> None:
         """Hand everything back."""
+        self._others.clear()
         for key in list(self._keys):
             self.give(key)

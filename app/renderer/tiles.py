@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Generator, Iterable, Mapping, Set
-from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
+from msgspec.structs import replace
 
 from ...nodes import Kind, Size
 from ..compiler import Held, Pass, Picture, Plan, Read, Ref, Region, Stage, Upload, tile_plan
+from ..compiler.areas import Span
 from ..compiler.explain import size_text
 from ..compiler.ir import Program
 from ..errors import DeviceError, HalationError
@@ -43,7 +44,7 @@ class Runs(Protocol):
 class TiledRun(Run):
     """Executes a plan tile by tile, one pass per `next`. When it ends, `finished` is given the outputs by name.
 
-    What is read anywhere is put together in memory before; so are the outputs.
+    What is read anywhere is put together in memory before; so are the outputs, unless their rows are taken.
     """
 
     def __init__(
@@ -53,7 +54,7 @@ class TiledRun(Run):
         super().__init__(plan)
         self._tiling = plan.tiling
         self._runner, self._finished = runner, finished
-        self._pictures, self._arrays = _Pictures(load), Arrays()
+        self._pictures, self._arrays = _Pictures(load, by_rows=plan.tiling.target.memory > 0), Arrays()
         self._passes = self._run()
 
     @property
@@ -82,7 +83,8 @@ class TiledRun(Run):
 
     def _run(self) -> Generator[Pass, None, None]:
         tiling = self._tiling
-        _check_memory(tiling.program)
+        taken = tiling.by_rows if self.rows else frozenset[str]()
+        _check_memory(tiling.program, taken)
         made: dict[int, Held] = {}
         for number, stage in enumerate(tiling.stages[: len(tiling.before)]):
             arrays = yield from self._stage(stage, made)
@@ -94,31 +96,39 @@ class TiledRun(Run):
         for number, stage in enumerate(tiling.last, len(tiling.before)):
             outputs |= yield from self._stage(stage, made)
             self._forget(made, tiling.stages[number + 1 :])
-        self._finished({name: outputs[name] for name in tiling.program.outputs})
+        self._finished({name: outputs[name] for name in tiling.program.outputs if name not in taken})
 
     def _stage(self, stage: Stage, made: Mapping[int, Held]) -> Generator[Pass, None, dict[str, Array]]:
-        """Make the pictures of a stage: [height, width, channels] by name."""
-        width, height = self._tiling.program.shape(next(iter(stage.outputs.values()))).size
+        """Make the pictures of a stage: [height, width, channels] by name. What is taken by rows is not there."""
+        size = self._tiling.program.shape(next(iter(stage.outputs.values()))).size
+        taken = self._tiling.by_rows.intersection(stage.outputs) if self.rows else frozenset[str]()
         whole: dict[str, Array] = {}
-        before, plan = self._runner.lease(), self._plan(stage, 0, made)
+        before, plan = self._runner.lease(), tile_plan(self._tiling, stage, 0, made)
         try:
             for number, tile in enumerate(stage.tiles):
                 # Each tile keeps what the next one would make again.
-                following = self._plan(stage, number + 1, made) if number + 1 < len(stage.tiles) else None
+                last = number + 1 == len(stage.tiles)
+                following = None if last else tile_plan(self._tiling, stage, number + 1, made)
                 shared = carried(plan, following) if following else ()
                 kept = self._runner.lease()
                 try:
-                    with self._runner.steps(plan, kept, (*plan.outputs.values(), *shared)) as run:
+                    there = self._there(plan)
+                    with self._runner.steps(there, kept, (*plan.outputs.values(), *shared)) as run:
                         before.close()
                         yield from run
+                    del there
                     made_here = self._runner.download(plan, self._arrays)
                     for name, pixels in made_here.items():
+                        first = tile.y if name in taken else 0
                         if name not in whole:
-                            whole[name] = np.empty((height, width, pixels.shape[2]), pixels.dtype)
+                            height = tile.height if name in taken else size[1]
+                            whole[name] = np.empty((height, size[0], pixels.shape[2]), pixels.dtype)
                         # Others may read more of an output than the tile.
-                        there = plan.surfaces[plan.outputs[name]].window or Region.whole((width, height))
-                        own = Region(tile.x - there.x, tile.y - there.y, *tile.size)
-                        whole[name][_slices(tile)] = pixels[_slices(own)]
+                        window = plan.surfaces[plan.outputs[name]].window or Region.whole(size)
+                        own = Region(tile.x - window.x, tile.y - window.y, *tile.size)
+                        whole[name][_slices(Region(tile.x, tile.y - first, *tile.size))] = pixels[_slices(own)]
+                        if name in taken and self.rows and tile.across[1] == size[0]:
+                            self.rows(name, first, whole.pop(name))
                     self._arrays.give(made_here.values())
                     for surface in plan.outputs.values():
                         if surface not in shared:
@@ -131,10 +141,10 @@ class TiledRun(Run):
             before.close()
         return whole
 
-    def _plan(self, stage: Stage, number: int, made: Mapping[int, Held]) -> Plan:
-        """How a tile is made of pixels that are in memory."""
-        plan = tile_plan(self._tiling, stage, number, made)
-        return replace(plan, uploads=tuple(map(self._pictures.read, plan.uploads)))
+    def _there(self, plan: Plan) -> Plan:
+        """The same plan with the pixels that it reads."""
+        found = tuple(self._pictures.read(item, plan.surfaces[item.surface].window) for item in plan.uploads)
+        return replace(plan, uploads=found)
 
     def _held(self, stage: Stage, arrays: Mapping[str, Array]) -> dict[int, Held]:
         """What a stage made, in place of the operations that would make it again."""
@@ -163,24 +173,34 @@ class TiledRun(Run):
 
 
 class _Pictures:
-    """The pixels of files, each decoded once."""
+    """The pixels of files, each decoded once; or `by_rows`, the last rows that were read of those that can be."""
 
-    def __init__(self, load: Loader) -> None:
-        self._load = load
-        self._decoded: dict[Picture, Array] = {}
+    def __init__(self, load: Loader, *, by_rows: bool) -> None:
+        self._load, self._by_rows = load, by_rows
+        self._decoded: dict[Picture, tuple[Span, Array]] = {}
 
-    def read(self, upload: Upload) -> Upload:
-        """The same upload, of pixels that are in memory."""
+    def read(self, upload: Upload, window: Region | None) -> Upload:
+        """The same upload, of pixels that are in memory: all, or a window of them."""
         picture = upload.picture
         if picture.in_memory:
             return upload
-        if picture not in self._decoded:
+        everything = Region.whole(upload.whole)
+        window = window or everything
+        rows = window.down if self._by_rows and picture.by_rows else everything.down
+        (first, end), pixels = self._decoded.get(picture, ((0, 0), None))
+        if pixels is None or not first <= rows[0] <= rows[1] <= end:
+            pixels = None
+            self._decoded.pop(picture, None)  # there may be no room for both
             try:
-                self._decoded[picture] = self._load(picture)
+                pixels = self._load(replace(picture, rows=rows) if rows != everything.down else picture)
             except HalationError as error:
                 error.node = error.node or upload.node
                 raise
-        return replace(upload, picture=replace(picture, in_memory=True, pixels=self._decoded[picture]))
+            first, _ = rows
+            self._decoded[picture] = rows, pixels
+        if rows != everything.down:
+            pixels = pixels[window.y - first : window.down[1] - first, slice(*window.across)]
+        return replace(upload, picture=replace(picture, in_memory=True, pixels=pixels))
 
     def keep(self, pictures: Set[Picture]) -> None:
         """Let go of all others."""
@@ -188,9 +208,9 @@ class _Pictures:
             del self._decoded[picture]
 
 
-def _check_memory(program: Program) -> None:
-    """Raise DeviceError for outputs that this machine cannot hold: they are put together in memory."""
-    shapes = [program.shape(ref) for ref in program.outputs.values()]
+def _check_memory(program: Program, taken: Set[str]) -> None:
+    """Raise DeviceError for outputs that this machine cannot hold: all but those `taken` are put together in memory."""
+    shapes = [program.shape(ref) for name, ref in program.outputs.items() if name not in taken]
     nbytes = sum(shape.size[0] * shape.size[1] * shape.channels * 4 for shape in shapes)
     if hasattr(os, "sysconf") and nbytes > (most := os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")):
         raise DeviceError(

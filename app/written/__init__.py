@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from .code import Code, CodeFault, Language, Written
-from .glsl import glsl_node, unprefixed
+from .code import Code, CodeFault, Language, Written, unprefixed
 
 __all__ = ["Code", "CodeFault", "Language", "Written", "node_type", "unprefixed"]
 
@@ -14,4 +13,6 @@ def node_type(code: Code) -> type[Written]:
         from .isf import isf_node
 
         return isf_node(code)
+    from .glsl import glsl_node
+
     return glsl_node(code)

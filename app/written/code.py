@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import re
 from typing import ClassVar, Literal
+
+from msgspec import Struct
 
 from ...nodes import Node
 from ..glsl import Text
@@ -12,8 +14,7 @@ Language = Literal["glsl", "isf"]
 """GLSL as the house writes it, and the Interactive Shader Format. Both are types of nodes in documents."""
 
 
-@dataclass(frozen=True)
-class Code:
+class Code(Struct, frozen=True):
     """`text` stands in the graph, or in a `file` beside it (as the graph spells it).
 
     `vertex` is the vertex shader that lies beside a file in the Interactive Shader Format, if there is one.
@@ -45,3 +46,8 @@ class Written(Node):
     title: ClassVar[str]
     text: ClassVar[Text | None] = None
     """Its functions for the compiler's library, if they go there."""
+
+
+def unprefixed(message: str) -> str:
+    """A driver's message with names as the user wrote them."""
+    return re.sub(r"\bw[0-9a-f]{8}x?_(?=\w)", "", message)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 
-from ..glsl import COUNTER, MOST_ROUNDS, Function
+from ..glsl import Function
+from ..glsl.loops import COUNTER, MOST_ROUNDS
 
 _NAN = "uintBitsToFloat(0x7fc00000u)"
 

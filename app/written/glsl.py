@@ -13,7 +13,8 @@ from typing import Any, Literal, cast
 from msgspec import Struct
 
 from ...nodes import Draw, Drawn, Edge, Field, Filter, Image, Output, Pointwise, Socket, Value, Vector
-from ..glsl import COMMENT, Function, Text, blanked, guarded, parse, unified
+from ..glsl import COMMENT, Function, Text, blanked, parse, unified
+from ..glsl.loops import guarded
 from .code import Code, CodeFault, Written
 from .ending import ended
 from .notes import Note, read_note
@@ -191,11 +192,6 @@ def _renamed(source: str, text: Text, prefix: str) -> str:
     names |= {name for found in _DEFINED.finditer(plain) for name in found.groups() if name}
     known = re.compile(rf"\b({'|'.join(sorted(map(re.escape, names), key=len, reverse=True))})\b")
     return known.sub(lambda found: prefix + found[1], plain)
-
-
-def unprefixed(message: str) -> str:
-    """A driver's message with names as the user wrote them."""
-    return re.sub(r"\bw[0-9a-f]{8}x?_(?=\w)", "", message)
 
 
 def _entries(

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from .camera import Camera, look_at, orbit_camera
 from .curves import MAX_POINTS, curve_at, curve_knots, ramp_at, ramp_knots
-from .draw import Affine, Argument, Draw, Drawn, Kernel, Overlap, Pixels, ShaderText, Stage
+from .draw import Affine, Argument, Draw, Drawn, Kernel, Overlap, Pixels, Reach, ShaderText, Stage
 from .lights import LIGHT_NUMBERS, MAX_LIGHTS, Light, LightKind, lights_of, numbers_of
 from .mattes import float_bits, listed, matte_of, murmur3, picked, picked_names, toggled
 from .node import Filter, Node, Pointwise, Reader, Source, Temporal
@@ -65,10 +65,10 @@ __all__ = [
     "Camera", "Color", "ColorChange", "ColorSettings", "Curve", "Doc", "Draw", "Drawn", "Edge", "Field", "File",
     "FilePath", "Filter", "Fraction", "Handle", "Holds", "Image", "Kernel", "Kernel3x3", "Kind", "Light", "LightKind",
     "LightList", "Lights", "LookupFile", "Matte", "Meaning", "Missing", "Motion", "Node", "Number", "OfLayer",
-    "OfSpace", "Output", "Overlap", "Picks", "Pixels", "Plain", "Points", "Pointwise", "Position", "Ramp", "Reader",
-    "Render", "RenderPath", "Scene", "SceneFile", "ScenePath", "ShaderText", "Size", "Slider", "Socket", "Source",
-    "SpaceChange", "Stage", "StageName", "Stops", "Swatch", "TablePath", "Temporal", "Uniform", "Unit", "Value",
-    "Vector", "Viewpoint", "curve_at", "curve_knots", "float_bits", "glsl_type", "lights_of", "listed", "look_at",
-    "matte_of", "murmur3", "numbers_of", "orbit_camera", "picked", "picked_names", "ramp_at", "ramp_knots", "toggled",
-    "working_factor",
+    "OfSpace", "Output", "Overlap", "Picks", "Pixels", "Plain", "Points", "Pointwise", "Position", "Ramp", "Reach",
+    "Reader", "Render", "RenderPath", "Scene", "SceneFile", "ScenePath", "ShaderText", "Size", "Slider", "Socket",
+    "Source", "SpaceChange", "Stage", "StageName", "Stops", "Swatch", "TablePath", "Temporal", "Uniform", "Unit",
+    "Value", "Vector", "Viewpoint", "curve_at", "curve_knots", "float_bits", "glsl_type", "lights_of", "listed",
+    "look_at", "matte_of", "murmur3", "numbers_of", "orbit_camera", "picked", "picked_names", "ramp_at", "ramp_knots",
+    "toggled", "working_factor",
 ]

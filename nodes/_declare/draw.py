@@ -31,8 +31,29 @@ Kernel = Literal["nearest", "triangle", "catmull-rom", "mitchell", "lanczos"]
 """How pixels between pixels are made. Catmull-Rom and Mitchell: Mitchell and Netravali 1988; Lanczos has 3 lobes."""
 
 Argument = Socket | Drawn | Plain
-Overlap = int | tuple[int, int]
-"""Pixels to every side, or across and down."""
+
+
+class Reach(Struct, frozen=True):
+    """Pixels around a place, to which `matrix` leads from the middle of the pixel that is made; the function reads no
+    farther from it than `radius`, across and down."""
+
+    matrix: Affine
+    radius: tuple[int, int]
+
+    @staticmethod
+    def block(across: int, down: int, beside: int = 0) -> Reach:
+        """All pixels of a block, of which each becomes one, and so many beside it."""
+        matrix = (float(across), 0.0, 0.0, 0.0, float(down), 0.0)
+        return Reach(matrix, (-(-across // 2) + beside, -(-down // 2) + beside))
+
+    @staticmethod
+    def within(across: int, down: int, beside: int = 0) -> Reach:
+        """The one for the block that a pixel lies in, and so many beside it."""
+        return Reach((1.0 / across, 0.0, 0.0, 0.0, 1.0 / down, 0.0), (1 + beside, 1 + beside))
+
+
+Overlap = int | tuple[int, int] | Reach
+"""Pixels to every side, or across and down; in a picture of another size, of the pixel at the same part of it."""
 
 
 class Stage(Struct, frozen=True):
@@ -108,8 +129,8 @@ class Draw(Protocol):
         `image_size`. The other keyword arguments are the function's parameters, in order.
 
         `overlap` is how many pixels around its own the function reads at most, those that `near` mixes too, of all
-        pictures or of those that it names; of a picture of another size, around the pixel at the same part of it.
-        Without one, or of what is not named, it may read everything, and no part of a picture can be made alone.
+        pictures or of those that it names. Without one, or of what is not named, it may read everything, and no
+        part of a picture can be made alone.
         """
         ...
 

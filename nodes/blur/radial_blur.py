@@ -1,3 +1,4 @@
+import math
 from typing import Annotated, Literal
 
 from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
@@ -26,7 +27,13 @@ class RadialBlur(Filter):
         return "image" if (self.zoom if self.kind == "zoom" else self.angle) == 0.0 else None
 
     def passes(self, draw: Draw) -> Drawn:
+        sides = zip(self.center, draw.size, strict=True)
+        far = [max(abs(at), abs(1.0 - at)) * side for at, side in sides]
+        if self.kind == "zoom":
+            reach = [0.5 * self.zoom * one for one in far]
+        else:
+            reach = [min(0.5 * self.angle, 2.0) * math.hypot(*far)] * 2
         return draw(
-            "radial_blur", self.image, edge=self.edge,
+            "radial_blur", self.image, edge=self.edge, overlap=(math.ceil(reach[0]) + 2, math.ceil(reach[1]) + 2),
             kind=self.kind, zoom=self.zoom, angle=self.angle, center=self.center,
         )

@@ -1,3 +1,4 @@
+import math
 from typing import Annotated
 
 from .._declare import Doc, Draw, Drawn, Edge, Field, Filter, Image, Slider
@@ -38,12 +39,15 @@ class Glass(Filter):
     def passes(self, draw: Draw) -> Drawn:
         light = (self.index, self.dispersion)
         samples = self.samples if self.dispersion > 0.0 else 1
+        # However steep the glass is, light leaves it within the critical angle of what is grazed.
+        index = max(self.index + 0.5 * self.dispersion, 1.0)
+        reach = math.ceil(self.thickness * math.sqrt(index**2 - 1.0)) + 3
         if draw.linked(self.surface):
             return draw(
-                "glass", self.image, self.surface, edge=self.edge,
+                "glass", self.image, self.surface, edge=self.edge, overlap={"image": reach, "surface": 1},
                 relief=self.relief, thickness=self.thickness, light=light, samples=samples,
             )
         return draw(
-            "glass_hammered", self.image, edge=self.edge,
+            "glass_hammered", self.image, edge=self.edge, overlap=reach,
             relief=self.relief, thickness=self.thickness, light=light, samples=samples, bump=self.size, seed=self.seed,
         )

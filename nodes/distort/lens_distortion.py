@@ -1,6 +1,15 @@
+import math
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Position, Reach, Slider
+
+_ENDLESS = 1e9
+
+_STEPS = 512
+"""Of what a lens sees, from the axis to a corner."""
+
+_MISSED = 1e-3
+"""How far, in focal lengths, a point that is found may be from the one that is wanted."""
 
 
 class LensDistortion(Filter):
@@ -35,8 +44,35 @@ class LensDistortion(Filter):
 
     def passes(self, draw: Draw) -> Drawn:
         center = (self.center[0] * draw.size[0], self.center[1] * draw.size[1])
+        x, y = (max(abs(at), abs(side - at)) / self.focal for at, side in zip(center, draw.size, strict=True))
+        far, moved = self._bounds(x / self.zoom, y / self.zoom)
+        overlap = None
+        if moved is not None:
+            part, reach = 1.0 / self.zoom, math.ceil(moved * self.focal + 1.0 / self.zoom) + 2
+            matrix = (part, 0.0, center[0] * (1.0 - part), 0.0, part, center[1] * (1.0 - part))
+            overlap = Reach(matrix, (reach, reach))
         return draw(
-            "lens_distortion", self.image, edge=self.edge, direction=self.direction,
+            "lens_distortion", self.image, edge=self.edge, overlap=overlap, direction=self.direction,
             radial=(self.k1, self.k2, self.k3), tangential=(self.p1, self.p2), focal=self.focal, zoom=self.zoom,
-            center=center,
+            center=center, far=far,
         )
+
+    def _bounds(self, x: float, y: float) -> tuple[float, float | None]:
+        """How far from the axis straight points lie that are seen at most so far across and down, and how far they
+        move, all in focal lengths; None where nobody knows."""
+        radius = math.hypot(x, y)
+        if self.direction == "undistort":
+            pushed = sum(abs(k) * radius**power for k, power in ((self.k1, 3), (self.k2, 5), (self.k3, 7)))
+            return radius, pushed + 3.0 * radius**2 * (abs(self.p1) + abs(self.p2))
+        if self.p1 or self.p2 or self.edge != "black":  # what a bend hides that turns back lies anywhere
+            return _ENDLESS, None
+        step = radius / _STEPS
+        straight = seen = moved = 0.0
+        while seen < radius and straight < _STEPS * radius:
+            straight += step
+            square = straight * straight
+            before, seen = seen, straight * (1.0 + square * (self.k1 + square * (self.k2 + square * self.k3)))
+            moved = max(moved, abs(straight - seen))
+            if seen < before:
+                break
+        return straight + step, moved + 2.0 * step + _MISSED

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import RGBA, Doc, Draw, Drawn, Filter, Fraction, Image, Output, Position, Slider
+from .._declare import RGBA, Doc, Draw, Drawn, Filter, Fraction, Image, Output, Position, Reach, Slider
 
 _NO_LIMIT = 65504.0
 
@@ -68,7 +68,7 @@ class Ghosts(Filter):
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         half = (-(-draw.size[0] // 2), -(-draw.size[1] // 2))
         light = draw.point("ghosts_light", self.image, threshold=self.threshold, knee=self.knee, limit=self.limit)
-        light = draw("ghosts_shrink", image=light, size=half)
+        light = draw("ghosts_shrink", image=light, size=half, overlap=Reach.block(2, 2))
         center = (self.center[0] * draw.size[0] / 2.0, self.center[1] * draw.size[1] / 2.0)
         flare = draw(
             "ghosts_flare",
@@ -77,7 +77,7 @@ class Ghosts(Filter):
             size=half, edge="black", center=center, count=self.count, spread=self.spread, ghosts=self.ghosts,
             halo=self.halo, veil=self.veil, radius=self.radius / 2.0, chromatic=self.chromatic, colors=self.colors,
         )
-        flare = draw("ghosts_enlarge", image=flare, size=draw.size)
+        flare = draw("ghosts_enlarge", image=flare, size=draw.size, overlap=Reach.within(2, 2, 1))
         if draw.linked(self.dirt):
             dirt = draw.point("ghosts_dirt", self.image, dirt=self.dirt)
         else:

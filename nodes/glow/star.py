@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import RGBA, Doc, Draw, Drawn, Edge, Filter, Fraction, Image, Output, Slider
+from .._declare import RGBA, Doc, Draw, Drawn, Edge, Filter, Fraction, Image, Output, Reach, Size, Slider
 
 _NO_LIMIT = 65504.0
 
@@ -48,19 +48,31 @@ class Star(Filter):
         light = draw.point("star_light", self.image, threshold=self.threshold, knee=self.knee, limit=self.limit)
         # The star is the same at every quarter of a turn.
         angle = math.remainder(self.angle, math.pi / 2.0)
-        turned = abs(angle) > _SQUARE
+        turned, frame = abs(angle) > _SQUARE, draw.size
         if turned:
-            light = draw("star_turn", image=light, size=_frame(draw.size, angle), edge=self.edge, angle=-angle)
+            frame = _frame(draw.size, angle)
+            turn = _turn(frame, draw.size, -angle)
+            light = draw("star_turn", image=light, size=frame, edge=self.edge, overlap=turn, angle=-angle)
         u = draw.blur(light, (self.length, 0.0), self.edge)
         v = draw.blur(light, (0.0, self.length), self.edge)
         arms = draw.point("star_cross", u=u, v=v)
         if turned:
-            arms = draw("star_turn", image=arms, size=draw.size, edge=self.edge, angle=angle)
+            turn = _turn(draw.size, frame, angle)
+            arms = draw("star_turn", image=arms, size=draw.size, edge=self.edge, overlap=turn, angle=angle)
         glow = draw.point("star_glow", self.image, arms=arms, tint=self.tint)
         return {"out": draw.point("star", self.image, glow=glow, intensity=self.intensity), "glow": glow}
 
 
-def _frame(size: tuple[int, int], angle: float) -> tuple[int, int]:
+def _frame(size: Size, angle: float) -> Size:
     """What holds a picture of this size that is turned about its middle, with a pixel around it."""
     cos, sin = abs(math.cos(angle)), abs(math.sin(angle))
     return math.ceil(size[0] * cos + size[1] * sin) + 2, math.ceil(size[0] * sin + size[1] * cos) + 2
+
+
+def _turn(size: Size, read: Size, angle: float) -> Reach:
+    """Where a picture of this size lies in the other one, which is turned about its middle."""
+    cos, sin = math.cos(angle), math.sin(angle)
+    x, y = (0.5 * side for side in size)
+    return Reach(
+        (cos, -sin, 0.5 * read[0] - cos * x + sin * y, sin, cos, 0.5 * read[1] - sin * x - cos * y), (2, 2)
+    )

@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Position, Slider
+from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Position, Reach, Slider
 
 _NO_LIMIT = 65504.0
 
@@ -63,7 +63,9 @@ class SunBeams(Filter):
             threshold=self.threshold, knee=self.knee, limit=self.limit,
         )
         if factor > 1:
-            beams = draw("sun_beams_shrink", image=beams, size=size, factor=factor)
+            beams = draw(
+                "sun_beams_shrink", image=beams, size=size, overlap=Reach.block(factor, factor), factor=factor
+            )
         samples = _samples(source, size, self.length)
         shrink, fade = max(1.0 - self.length, _LEFT), max(1.0 - self.decay, _LEFT)
         # The longest steps first: they magnify, and what is magnified loses little to the bilinear samples after.
@@ -75,7 +77,9 @@ class SunBeams(Filter):
                 shrink=shrink ** (stride / samples), fade=fade ** (stride / samples),
             )
         if factor > 1:
-            beams = draw("sun_beams_enlarge", image=beams, size=draw.size, factor=factor)
+            beams = draw(
+                "sun_beams_enlarge", image=beams, size=draw.size, overlap=Reach.within(factor, factor, 1), factor=factor
+            )
         glow = draw.point("sun_beams_glow", self.image, beams=beams, tint=self.tint)
         return {"out": draw.point("sun_beams", self.image, glow=glow, intensity=self.intensity), "glow": glow}
 

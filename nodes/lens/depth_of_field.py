@@ -13,7 +13,9 @@ from .._declare import (
     Image,
     Number,
     Output,
+    Overlap,
     Position,
+    Reach,
     Size,
     Slider,
     Vector,
@@ -93,22 +95,27 @@ class DepthOfField(Filter):
         largest = self.max_blur / 2.0
         radius = self._radius(draw, largest)
         kept, clean = draw.several(
-            "depth_of_field_apart", (Image(), Image()), self.image, radius=radius, edge="reflect"
+            "depth_of_field_apart", (Image(), Image()), self.image, radius=radius, edge="reflect",
+            overlap={"image": 1, "radius": 2},
         )
-        image = draw("depth_of_field_whole", self.image, clean=clean, kept=kept, radius=radius, edge="reflect")
+        image = draw(
+            "depth_of_field_whole", self.image, clean=clean, kept=kept, radius=radius, edge="reflect",
+            overlap={"image": 1, "clean": 1, "kept": 1, "radius": 2},
+        )
         finest = min(_FINEST[self.quality], largest)
         levels = max(math.ceil(math.log2(largest / finest)), 0) if finest else 0
         tile = math.ceil(finest) + 1
         most = draw(
             "depth_of_field_most_sharp", radius=radius, size=_blocks(draw.size, tile), result=Field(), edge="reflect",
-            tile=tile, sharpest=finest if levels else _ENDLESS,
+            overlap=Reach.block(tile, tile), tile=tile, sharpest=finest if levels else _ENDLESS,
         )
-        reach = draw("depth_of_field_reach", most=most, size=most.size, result=Field())
+        reach = draw("depth_of_field_reach", most=most, size=most.size, overlap=1, result=Field())
+        looks: dict[str, Overlap] = {"image": tile, "kept": 0, "radius": tile, "reach": Reach.within(tile, tile)}
         stretch = (max(self.ratio, 1.0), max(1.0 / self.ratio, 1.0))
         bokeh = self._bokeh(draw, finest, stretch)
         if not levels:
             out = draw(
-                "depth_of_field_alone", image=image, kept=kept, radius=radius, reach=reach, **bokeh
+                "depth_of_field_alone", image=image, kept=kept, radius=radius, reach=reach, overlap=looks, **bokeh
             )
         else:
             # Averaging and interpolating spreads light along both axes, and makes smaller discs rounder.
@@ -120,9 +127,11 @@ class DepthOfField(Filter):
             near, hidden = self._layers(draw, image, radius, smaller, levels, finest, -1.0)
             far, filled = self._layers(draw, image, radius, smaller, levels, finest, 1.0)
             rest = self._rest(draw, image, radius, levels, finest)
+            looks |= dict.fromkeys(("near", "hidden", "far", "filled"), Reach.within(2, 2, 1))
+            looks["rest"] = Reach.within(2**levels, 2**levels, 1)
             out = draw(
                 "depth_of_field", image=image, kept=kept, radius=radius, reach=reach, near=near, hidden=hidden,
-                far=far, filled=filled, rest=rest, **bokeh, coarsest=2.0**levels,
+                far=far, filled=filled, rest=rest, overlap=looks, **bokeh, coarsest=2.0**levels,
             )
         return {"out": out, "coc": draw.point("depth_of_field_coc", result=Field(), radius=radius)}
 
@@ -133,7 +142,14 @@ class DepthOfField(Filter):
         bend = focal if self.convention == "thin lens" else 0.0
         sharp: Argument = 1.0 / self.focus_distance
         if self.focus == "point":
-            sharp = draw("depth_of_field_sharp", self.depth, size=(1, 1), result=Number(), point=self.focus_point)
+            x, y = (
+                min(max(at, 0.0), 1.0) * (side - 1) + 0.5
+                for at, side in zip(self.focus_point, draw.size_of(self.depth), strict=True)
+            )
+            sharp = draw(
+                "depth_of_field_sharp", self.depth, size=(1, 1), overlap=Reach((0.0, 0.0, x, 0.0, 0.0, y), (1, 1)),
+                result=Number(), point=self.focus_point,
+            )
         return draw.point(
             "depth_of_field_radius", self.depth, self.mask, result=Field(), sharp=sharp, scale=scale, bend=bend,
             largest=largest,
@@ -179,26 +195,33 @@ class DepthOfField(Filter):
             }
             own, extents = draw.several(
                 "depth_of_field_level", (Image(), Vector(width=3)), image=image, radius=radius, size=size,
-                edge="reflect", **bounds,
+                edge="reflect", overlap=Reach.block(block, block), **bounds,
             )
-            most = draw("depth_of_field_most", extents=extents, size=_blocks(size, tile), result=Field(), tile=tile)
-            reach = draw("depth_of_field_reach", most=most, size=most.size, result=Field())
+            most = draw(
+                "depth_of_field_most", extents=extents, size=_blocks(size, tile), overlap=Reach.block(tile, tile),
+                result=Field(), tile=tile,
+            )
+            reach = draw("depth_of_field_reach", most=most, size=most.size, overlap=1, result=Field())
             light, cover = draw.several(
                 name, (Image(), Field()), own=own, extents=extents, reach=reach, light=light, cover=cover, size=size,
-                **bokeh,
+                overlap={
+                    "own": tile, "extents": tile, "reach": Reach.within(tile, tile), "light": Reach.within(2, 2, 1),
+                    "cover": Reach.within(2, 2, 1),
+                }, **bokeh,
             )
         return light, cover
 
     def _rest(self, draw: Draw, image: Drawn, radius: Drawn, levels: int, finest: float) -> Drawn:
         """What may lie behind what is near and blurred: all the rest, drawn in from where it is seen."""
         block = 2**levels
-        size = _blocks(draw.size, block)
+        size, reach = _blocks(draw.size, block), math.ceil(finest) + 1
         light, weight = draw.several(
             "depth_of_field_kept_light", (Image(), Field()), image=image, radius=radius, size=size, edge="reflect",
-            block=block, finest=finest,
+            overlap=Reach.block(block, block), block=block, finest=finest,
         )
         return draw(
-            "depth_of_field_rest", image=image, light=light, weight=weight, size=size, reach=math.ceil(finest) + 1,
+            "depth_of_field_rest", image=image, light=light, weight=weight, size=size,
+            overlap={"image": Reach.block(block, block, 1), "light": reach, "weight": reach}, reach=reach,
             block=float(block),
         )
 

@@ -1,7 +1,7 @@
 import math
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Image, Pixels, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Field, Filter, Image, Pixels, Reach, Slider, Vector
 
 
 class MotionBlur(Filter):
@@ -47,33 +47,42 @@ class MotionBlur(Filter):
         # Around the frame, things get half as far from their place; those on bent paths a little farther.
         reach = self.max_length * (0.75 if self.phase == "centered" else 1.0)
         tile = max(math.ceil(reach), 1) + 1
+        # Stops may lie half a step before and after the shutter is open; a parabola gets so much farther by then.
+        looks = math.ceil(reach * (1.0 + 4.0 / self.samples + 2.0 / self.samples**2)) + 4
+        block, within = Reach.block(tile, tile), Reach.within(tile, tile)
         width, height = draw.size
         across, down = math.ceil(width / tile), math.ceil(height / tile)
-        layer = draw("motion_blur_layer", self.velocity, self.depth, result=Vector(width=2))
+        layer = draw("motion_blur_layer", self.velocity, self.depth, overlap=2, result=Vector(width=2))
         velocity: Pixels = self.velocity
         fronts: Pixels = self.image
         if draw.linked(self.depth):
-            velocity = draw("motion_blur_clean", self.velocity, self.depth, layer=layer, result=vector)
-            fronts = draw("motion_blur_front", self.image, layer=layer)
+            velocity = draw(
+                "motion_blur_clean", self.velocity, self.depth, layer=layer, overlap=2, result=vector
+            )
+            fronts = draw("motion_blur_front", self.image, layer=layer, overlap=2)
         paths = draw.point(
             "motion_blur_path", velocity=velocity, result=vector, path=self.path, times=times, longest=self.max_length,
             reach=reach,
         )
         rows = draw(
-            "motion_blur_fastest", paths=paths, size=(across, height), result=vector, axis=0, count=tile, times=times
+            "motion_blur_fastest", paths=paths, size=(across, height), overlap=Reach.block(tile, 1), result=vector,
+            axis=0, count=tile, times=times,
         )
         tiles = draw(
-            "motion_blur_fastest", paths=rows, size=(across, down), result=vector, axis=1, count=tile, times=times
+            "motion_blur_fastest", paths=rows, size=(across, down), overlap=Reach.block(1, tile), result=vector,
+            axis=1, count=tile, times=times,
         )
-        around = draw("motion_blur_around", tiles=tiles, size=(across, down), result=vector, times=times)
+        around = draw("motion_blur_around", tiles=tiles, size=(across, down), overlap=1, result=vector, times=times)
         spread = draw(
-            "motion_blur_spread", paths=paths, tiles=tiles, size=(across, down), result=Field(), tile=tile, times=times
+            "motion_blur_spread", paths=paths, tiles=tiles, size=(across, down), overlap={"paths": block, "tiles": 0},
+            result=Field(), tile=tile, times=times,
         )
         variety = draw(
-            "motion_blur_variety", tiles=tiles, around=around, spread=spread, size=(across, down), result=Field(),
-            times=times,
+            "motion_blur_variety", tiles=tiles, around=around, spread=spread, size=(across, down), overlap=1,
+            result=Field(), times=times,
         )
         return draw(
             "motion_blur", self.image, fronts=fronts, layer=layer, paths=paths, around=around, variety=variety,
+            overlap={"image": 0, "fronts": looks, "layer": looks, "paths": looks, "around": within, "variety": within},
             times=times, tile=tile, samples=self.samples,
         )

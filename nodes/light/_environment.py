@@ -1,5 +1,7 @@
 """What lights from all sides share."""
 
+import math
+
 from .._declare import Draw, Drawn, Pixels, Size, Vector
 
 DATA = Vector(width=4)
@@ -12,7 +14,10 @@ _IRRADIANCE = (64, 32)
 
 def shrunk(draw: Draw, id: str, environment: Pixels, size: Size) -> Drawn:
     """The surroundings at another size, by a function of node `id`: every pixel is the mean of what it covers."""
-    return draw(f"{id}_sky", environment=environment, size=size, result=DATA)
+    across, down = (
+        math.ceil(0.5 * there / here) + 1 for there, here in zip(draw.size_of(environment), size, strict=True)
+    )
+    return draw(f"{id}_sky", environment=environment, size=size, overlap=(across, down), result=DATA)
 
 
 def irradiance(draw: Draw, id: str, sky: Drawn) -> Drawn:

@@ -1,7 +1,8 @@
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Vector, Viewpoint
+from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Overlap, Slider, Vector, Viewpoint
 from ._environment import DATA, SKY, irradiance, shrunk
 
 _MIRROR = (1024, 512)
@@ -13,6 +14,11 @@ _LOBES = ((0.25, (256, 128)), (0.5, (128, 64)), (0.75, (64, 32)), (1.0, (32, 16)
 """Roughness, and the size at which the surroundings are blurred by it."""
 
 _SHARES = (64, 32)
+
+_HERE: Mapping[str, Overlap] = MappingProxyType(
+    dict.fromkeys(("normal", "albedo", "roughness", "metallic", "occlusion"), 0)
+)
+"""What is read at the pixel itself; the surroundings are read anywhere."""
 
 
 class ImageBasedLight(Filter):
@@ -62,12 +68,13 @@ class ImageBasedLight(Filter):
             for roughness, size in _LOBES
         ]
         diffuse = draw(
-            "image_based_light_diffuse", self.normal, self.albedo, self.metallic, self.occlusion,
+            "image_based_light_diffuse", self.normal, self.albedo, self.metallic, self.occlusion, overlap=_HERE,
             sky=irradiance(draw, "image_based_light", skies[3]), intensity=self.intensity, rotation=self.rotation,
             up=self.up,
         )
         reflection = draw(
             "image_based_light_reflection", self.normal, self.albedo, self.roughness, self.metallic, self.occlusion,
+            overlap=_HERE,
             level0=mirror, level1=lobes[0], level2=lobes[1], level3=lobes[2], level4=lobes[3],
             shares=draw("image_based_light_shares", size=_SHARES, result=Vector(width=2)), rays=rays,
             intensity=self.intensity, rotation=self.rotation, up=self.up, specular=self.specular,

@@ -2,11 +2,13 @@ from collections.abc import Mapping
 from math import ceil
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Number, Output, Position, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Number, Output, Position, Reach, Slider, Vector
 
 _BINS = 128
 _FOLD = 32
 """Rows of a table that one draw adds up."""
+_LONGEST = 8192
+"""Pixels of a row that one draw looks at: more may not be on the device."""
 
 
 class AutoExposure(Filter):
@@ -75,11 +77,26 @@ class AutoExposure(Filter):
     def _histogram(self, draw: Draw, light: Drawn) -> Drawn:
         """A table of bins by rows of the picture, four bins to a pixel; then its rows are added up."""
         place = draw.point("auto_exposure_place", light=light, result=Vector(width=2))
-        bins, rows = Vector(width=4), light.size[1]
-        table = draw("auto_exposure_row", place=place, size=(_BINS // 4, rows), result=bins)
+        bins, (width, rows) = Vector(width=4), light.size
+        table: Drawn | None = None
+        for first in range(0, width, _LONGEST):
+            end = min(first + _LONGEST, width)
+            piece = Reach((0.0, 0.0, 0.5 * (first + end), 0.0, 1.0, 0.0), (ceil(0.5 * (end - first)), 0))
+            row = draw(
+                "auto_exposure_row", place=place, size=(_BINS // 4, rows), overlap=piece, result=bins, first=first,
+                end=end,
+            )
+            table = row if table is None else draw(
+                "auto_exposure_both", one=table, other=row, size=row.size, overlap=0, result=bins
+            )
+        assert table is not None
+        part: Reach | None = Reach.block(1, _FOLD)
         while rows > 1:
             rows = ceil(rows / _FOLD)
-            table = draw("auto_exposure_fold", table=table, size=(_BINS // 4, rows), result=bins, count=_FOLD)
+            table = draw(
+                "auto_exposure_fold", table=table, size=(_BINS // 4, rows), overlap=part, result=bins, count=_FOLD,
+            )
+            part = None  # what is left is made as a whole, so that not all rows are needed at once
         low = min(self.low, self.high, 0.999)
         return draw(
             "auto_exposure_percentiles", table=table, size=(1, 1), result=Number(),

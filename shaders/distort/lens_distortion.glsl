@@ -22,8 +22,8 @@ mat2 lens_distortion_slope(vec2 p, vec3 radial, vec2 tangential) {
 }
 
 // The inverse by Newton's method, from the middle outward so that it stays on the branch that the lens shows. Beyond
-// where a bend turns back, nothing is seen.
-vec2 lens_distortion_straighten(vec2 seen, vec3 radial, vec2 tangential) {
+// where a bend turns back, which is not `far` from the axis, nothing is seen.
+vec2 lens_distortion_straighten(vec2 seen, vec3 radial, vec2 tangential, float far) {
     const int steps = 4, refinements = 4;
     vec2 p = vec2(0.0);
     for (int i = 0; i < steps + refinements; ++i) {
@@ -33,22 +33,22 @@ vec2 lens_distortion_straighten(vec2 seen, vec3 radial, vec2 tangential) {
         p += inverse(slope) * (wanted - lens_distortion_bend(p, radial, tangential));
     }
     float missed = distance(lens_distortion_bend(p, radial, tangential), seen);
-    return missed < 1e-3 && determinant(lens_distortion_slope(p, radial, tangential)) > 1e-3
+    return missed < 1e-3 && length(p) < far && determinant(lens_distortion_slope(p, radial, tangential)) > 1e-3
          ? p : vec2(lens_distortion_nowhere);
 }
 
 vec2 lens_distortion_source(
-    vec2 at, int direction, vec3 radial, vec2 tangential, float focal, float zoom, vec2 center
+    vec2 at, int direction, vec3 radial, vec2 tangential, float focal, float zoom, vec2 center, float far
 ) {
     vec2 p = (at - center) / (focal * zoom);
-    p = direction == DIRECTION_DISTORT ? lens_distortion_straighten(p, radial, tangential)
+    p = direction == DIRECTION_DISTORT ? lens_distortion_straighten(p, radial, tangential, far)
                                        : lens_distortion_bend(p, radial, tangential);
     return center + p * focal;
 }
 
-vec4 lens_distortion(int direction, vec3 radial, vec2 tangential, float focal, float zoom, vec2 center) {
+vec4 lens_distortion(int direction, vec3 radial, vec2 tangential, float focal, float zoom, vec2 center, float far) {
     vec2 at = vec2(pixel) + 0.5;
-    vec2 here = lens_distortion_source(at, direction, radial, tangential, focal, zoom, center);
+    vec2 here = lens_distortion_source(at, direction, radial, tangential, focal, zoom, center, far);
     // The slope at the point is as good as differences, and the inverse is costly.
     vec2 p = direction == DIRECTION_DISTORT ? (here - center) / focal : (at - center) / (focal * zoom);
     mat2 slope = lens_distortion_slope(p, radial, tangential);
@@ -58,7 +58,7 @@ vec4 lens_distortion(int direction, vec3 radial, vec2 tangential, float focal, f
     vec4 sum = vec4(0.0);
     for (int i = 0; i < n * n; ++i) {
         vec2 from = at + footprint_at(i, n);
-        sum += image_near(lens_distortion_source(from, direction, radial, tangential, focal, zoom, center));
+        sum += image_near(lens_distortion_source(from, direction, radial, tangential, focal, zoom, center, far));
     }
     return finite(sum / float(n * n));
 }

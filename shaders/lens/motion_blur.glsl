@@ -121,12 +121,22 @@ vec4 motion_blur_front() {
 
 // --- paths ---
 
+// How far along either axis a path leads from its place before it turns back, if it does while the shutter is open.
+float motion_blur_turn(vec4 path, vec2 times) {
+    vec2 even = path.xy + path.zw, bend = path.zw - path.xy, far = vec2(0.0);
+    for (int axis = 0; axis < 2; ++axis) {
+        float when = bend[axis] != 0.0 ? -0.5 * even[axis] / bend[axis] : times.x;
+        if (when > times.x && when < times.y) far[axis] = abs(motion_blur_place(path, when)[axis]);
+    }
+    return max(far.x, far.y);
+}
+
 // The path of a pixel, shortened to `longest`, and so that nothing gets farther from its place than `reach`.
 vec4 motion_blur_path(vec4 velocity, int path, vec2 times, float longest, float reach) {
     vec4 safe = is_finite(velocity) ? clamp(velocity, -1e5, 1e5) * proxy : vec4(0.0);
     if (path == PATH_STRAIGHT || safe.zw == vec2(0.0)) safe.zw = safe.xy;
     vec2 far = vec2(length(motion_blur_place(safe, times.x)), length(motion_blur_place(safe, times.y)));
-    return safe * min(1.0, min(longest / max(far.x + far.y, 1e-9), reach / max(max(far.x, far.y), 1e-9)));
+    return safe * min(1.0, min(longest / max(far.x + far.y, 1e-9), reach / max(max(max(far.x, far.y), motion_blur_turn(safe, times)), 1e-9)));
 }
 
 vec4 motion_blur_faster(vec4 a, vec4 b, vec2 times) {

@@ -31,14 +31,16 @@ vec2 auto_exposure_place(vec2 light) {
 }
 
 // Four bins of the histogram of one row.
-vec4 auto_exposure_row() {
+vec4 auto_exposure_row(int first, int end) {
     vec4 bins = float(4 * pixel.x) + vec4(0.0, 1.0, 2.0, 3.0), sum = vec4(0.0);
-    for (int x = 0; x < place_size.x; ++x) {
+    for (int x = first; x < end; ++x) {
         vec2 found = place_at(ivec2(x, pixel.y));
         sum += found.y * max(1.0 - abs(found.x - bins), 0.0);
     }
     return sum;
 }
+
+vec4 auto_exposure_both() { return one_at(pixel) + other_at(pixel); }
 
 vec4 auto_exposure_fold(int count) {
     vec4 sum = vec4(0.0);

@@ -8,10 +8,12 @@
 uniform sampler2D a;
 uniform vec2 a_origin, a_step;
 uniform int a_channels;
+uniform ivec4 a_part;
 #if COMPARE != COMPARE_OFF
 uniform sampler2D b;
 uniform vec2 b_origin, b_step;
 uniform int b_channels;
+uniform ivec4 b_part;
 #endif
 
 #if VIEWED
@@ -63,12 +65,12 @@ vec3 warned(vec3 shown, Sampled found, vec2 at) {
 
 void main() {
     vec2 at = gl_FragCoord.xy;
-    Sampled found = sampled(a, a_origin, a_step, a_channels, at);
+    Sampled found = sampled(a, a_part, a_origin, a_step, a_channels, at);
 #if COMPARE == COMPARE_WIPE
     float across = dot(at - wipe_point, wipe_normal);
-    if (across > 0.0) found = sampled(b, b_origin, b_step, b_channels, at);
+    if (across > 0.0) found = sampled(b, b_part, b_origin, b_step, b_channels, at);
 #elif COMPARE == COMPARE_DIFFERENCE
-    Sampled other = sampled(b, b_origin, b_step, b_channels, at);
+    Sampled other = sampled(b, b_part, b_origin, b_step, b_channels, at);
     found.value = vec4(abs(found.value.rgb - other.value.rgb), channels == ALPHA ? abs(found.value.a - other.value.a) : 1.0);
     found.broken = found.broken || other.broken;
     found.inside = found.inside || other.inside;

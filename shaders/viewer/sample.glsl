@@ -1,6 +1,8 @@
 #include "lib/finite.glsl"
 
 // A picture at one pixel of a panel: the nearest texel, or the mean of all that the pixel covers.
+// `part` is the first texel that the texture holds, and how many the picture has: where some are missing, the pixel is
+// outside.
 
 struct Sampled {
     vec4 value;
@@ -20,8 +22,8 @@ void sampled_texel(sampler2D picture, ivec2 at, float weight, inout vec4 sum, in
     }
 }
 
-Sampled sampled(sampler2D picture, vec2 origin, vec2 texels, int components, vec2 at) {
-    ivec2 size = textureSize(picture, 0);
+Sampled sampled(sampler2D picture, ivec4 part, vec2 origin, vec2 texels, int components, vec2 at) {
+    ivec2 size = part.zw;
     vec2 center = (at - origin) * texels;
     Sampled found = Sampled(vec4(0.0), all(greaterThanEqual(center, vec2(0.0))) && all(lessThan(center, vec2(size))), false);
     float total = 0.0;
@@ -31,11 +33,13 @@ Sampled sampled(sampler2D picture, vec2 origin, vec2 texels, int components, vec
         ivec2 first = ivec2(mix(low, center, enlarged));
         ivec2 last = ivec2(mix(ceil(high) - 1.0, center, enlarged));
         ivec2 stride = max((last - first + MOST) / MOST, 1);
+        found.inside = all(greaterThanEqual(first, part.xy)) && all(lessThan(last, part.xy + textureSize(picture, 0)));
+        if (!found.inside) last = first - 1;
         for (int y = first.y; y <= last.y; y += stride.y)
             for (int x = first.x; x <= last.x; x += stride.x) {
                 vec2 covered = min(high, vec2(x, y) + 1.0) - max(low, vec2(x, y));
                 vec2 weight = mix(covered, vec2(1.0), enlarged);
-                sampled_texel(picture, ivec2(x, y), weight.x * weight.y, found.value, total, found.broken);
+                sampled_texel(picture, ivec2(x, y) - part.xy, weight.x * weight.y, found.value, total, found.broken);
             }
     }
     found.value = total > 0.0 ? found.value / total : vec4(0.0);

@@ -3,6 +3,9 @@
 - `frame`: seconds of Python per frame with 100 nodes on the canvas (at most 0.004 is wanted)
 - `drag`: pictures per second while an exposure at the end of ten nodes at 1920x1080 is dragged (10 or more), and
   seconds of all processors for each: a busy machine shows fewer pictures, but they cost the same
+- `zoomed`: milliseconds, and those of all processors, from a changed value to its picture at 1920x1080 and 3840x2160
+  without a proxy, where 640x360 pixels are seen: these alone, the whole picture, and the ratios. Drawing the window is
+  not in it
 - `idle`: share of one core while nothing happens (below 0.1)
 - `start`: seconds from the start of the process to the first picture, with warm caches (below 1.5)
 """
@@ -22,9 +25,12 @@ from typing import Any
 
 sys.path.append(str(Path(__file__).parents[1]))
 
+import numpy as np
 from gui_driver import Ui, drive, headless
 from halation.app import document
+from halation.app.editor.preview import Glimpse, Preview
 from halation.app.graph import Graph, Output, Port
+from halation.app.renderer import Display, Renderer
 from halation.nodes import Kind, catalogue
 from imgui_bundle import ImVec2, immapp
 
@@ -32,6 +38,7 @@ _TEN = (
     "exposure", "saturation", "grade", "gaussian_blur", "vignette", "exposure", "clip", "saturation", "bloom",
     "exposure",
 )
+_STACK = ("exposure", "gaussian_blur", "vignette", "tone_map", "grade", "saturation")
 _CAST = (
     "exposure", "grade", "saturation", "vignette", "clip", "gaussian_blur", "tone_map", "bloom", "edge_detect",
     "mix_images",
@@ -117,6 +124,46 @@ def drag(folder: Path) -> dict[str, float]:
     return found
 
 
+def zoomed(folder: Path) -> dict[str, Any]:
+    """The first of six nodes, a blur and the last one, each changed while a ninth or a thirty-sixth is seen."""
+    found: dict[str, Any] = {}
+    renderer = Renderer()
+    for width, height in ((1920, 1080), (3840, 2160)):
+        box = (0.3, 0.3, 0.3 + 640 / width, 0.3 + 360 / height)
+        glimpse, graph = Glimpse(box, (width, height), frozenset("A")), chain(list(_STACK), (width, height))
+        preview, value = Preview(renderer, Display(renderer.device)), 1.0
+        preview.thumbnailing = False
+        for word in ("n0.stops", "n1.sigma", "n5.saturation"):
+            steps = {part: list[tuple[float, float]]() for part in (True, False)}
+            for turn, part in enumerate((True, False) * 7):
+                preview.glimpse = None
+                while preview.work(60.0):
+                    time.sleep(0.001)
+                preview.glimpse = glimpse if part else None
+                for step in range(4):
+                    value += 0.003
+                    graph = graph.set(Port.parse(word), value)
+                    taken = _until_seen(preview, graph)
+                    assert preview.seen("A").partial == part
+                    if turn > 1 and step:  # before, programs are compiled and caches filled
+                        steps[part].append(taken)
+            parts, wholes = (np.median(steps[part], axis=0) for part in (True, False))
+            figures = {"part": parts, "whole": wholes, "ratio": parts / wholes}
+            found[f"{width}x{height} {word}"] = {name: one.round(3).tolist() for name, one in figures.items()}
+        preview.close()
+    renderer.close()
+    return found
+
+
+def _until_seen(preview: Preview, graph: Graph) -> tuple[float, float]:
+    """Milliseconds until what can be seen of a graph is there, and those of all processors."""
+    began, used = time.perf_counter(), time.process_time()
+    preview.want(graph, {"A": Port("outputs", "image")})
+    while preview.busy and not preview.completing:
+        preview.work(0.0)
+    return (time.perf_counter() - began) * 1e3, (time.process_time() - used) * 1e3
+
+
 def idle(folder: Path) -> float:
     """Processor time per second of doing nothing, without the test engine, which never rests."""
     window = headless(folder, folder / "ten.json", size=(1600, 1000))
@@ -165,7 +212,7 @@ def start(folder: Path) -> float:
 
 def main() -> None:
     """Measure what the words name, or everything."""
-    figures = {"frame": frame, "drag": drag, "idle": idle, "start": start}
+    figures = {"frame": frame, "drag": drag, "zoomed": zoomed, "idle": idle, "start": start}
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         os.environ["HALATION_STATE"] = str(folder / "state")

@@ -25,6 +25,7 @@ from halation.app.graph import Graph
 from halation.app.media.compare import flip
 from halation.app.renderer import Device, Reel, Renderer, Wanted
 from halation.app.renderer.bench import bench, held
+from msgspec import structs
 
 Say = Callable[[str], None]
 DRY_PRESETS = 3
@@ -63,7 +64,8 @@ def measure_work(results: Results, device: Device, given: argparse.Namespace, sa
 
 def engine(device: Device, form: Form) -> Renderer:
     """A renderer with another form of passes on the same context."""
-    return Renderer(replace(device, target=replace(device.target, form=form, why="measured here")), budget=0)
+    target = structs.replace(device.target, form=form, why="measured here")
+    return Renderer(structs.replace(device, target=target), budget=0)
 
 
 def take(

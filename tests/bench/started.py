@@ -36,12 +36,16 @@ class Ended:
         return {}
 
 
+WARM = {"PYTHONDONTWRITEBYTECODE": ""}
+"""Programs in Python keep the bytecode that their first run made, as installed ones have it."""
+
+
 def run(command: Sequence[str], environment: Mapping[str, str] | None = None, patience: float = 600.0) -> Ended:
     """Start a program, wait for its end and say what it took; after `patience` seconds it is ended."""
     with tempfile.TemporaryFile() as out:
         started = time.perf_counter()
         process = subprocess.Popen(
-            command, env={**os.environ, **(environment or {})}, stdin=subprocess.DEVNULL, stdout=out,
+            command, env={**os.environ, **WARM, **(environment or {})}, stdin=subprocess.DEVNULL, stdout=out,
             stderr=subprocess.STDOUT, start_new_session=True,
         )
         timer = threading.Timer(patience, os.killpg, (process.pid, signal.SIGKILL))

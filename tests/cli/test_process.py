@@ -82,11 +82,13 @@ def test_what_needs_no_pixels_loads_no_library_for_them(tmp_path):
 
 
 SELDOM = {
-    "importlib.metadata", "PyOpenColorIO", "av", "rich", "trimesh", "asyncio", "multiprocessing", "unittest",
+    "importlib.metadata", "importlib.resources", "PyOpenColorIO", "av", "rich", "trimesh", "asyncio", "multiprocessing",
+    "unittest", "unicodedata", "zipfile",
     *(f"halation.app.{name}" for name in (
         "editor", "lint", "suite", "cli.edit", "cli.nodes", "cli.batch", "document.versions", "document.schema",
-        "graph.expressions.parser", "written.isf", "compiler.isf", "media.survey", "media.video", "media.video_file",
-        "media.meshes", "renderer.display", "renderer.probe", "renderer.sweep", "renderer.reproduction",
+        "graph.expressions.parser", "glsl.loops", "written.glsl", "written.isf", "compiler.isf", "media.survey",
+        "media.video", "media.video_file", "media.meshes", "renderer.display", "renderer.probe", "renderer.sweep",
+        "renderer.reproduction",
     )),
 }
 """What most renderings do without."""
@@ -94,6 +96,12 @@ SELDOM = {
 
 def test_a_rendering_loads_what_it_needs(ten, tmp_path):
     assert not modules("render", ten, "-o", tmp_path / "out.exr") & SELDOM
+
+
+def test_checking_loads_the_nodes_of_the_graph_alone(ten):
+    """Rules know the others by name."""
+    found = (re.fullmatch(r"halation\.nodes\.[a-z]\w*\.([a-z]\w*)", name) for name in modules("check", ten))
+    assert {match[1] for match in found if match} == {type for type, _, _ in TEN.values()}
 
 
 def test_a_command_loads_no_other_one(ten):

@@ -82,6 +82,7 @@ def test_built_in_views_from_another_working_space(light):
 class Picture:
     def __init__(self, texture):
         self.texture, self.full_size, self.channels, self.key = texture, texture.size, 4, "k"
+        self.size, self.start = texture.size, (0, 0)
 
 
 def test_the_viewer_shows_the_same(color, light):

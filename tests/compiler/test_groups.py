@@ -219,6 +219,7 @@ def test_more_outputs_than_the_device_writes_at_once_is_an_error(plan, limits):
 
     from halation.app.compiler import NULL
     from halation.app.errors import DeviceError
+    from msgspec import structs
 
     with pytest.raises(DeviceError, match=r"node 'c': none writes 1 pictures at once, not 2"):
-        plan(replace(GENERATOR, settings=SETTINGS), target=replace(NULL, **limits))
+        plan(replace(GENERATOR, settings=SETTINGS), target=structs.replace(NULL, **limits))

@@ -35,7 +35,7 @@ def check_lives(plan: Plan) -> None:
 @settings(max_examples=60, deadline=None)
 @given(SEEDS, st.booleans(), st.sampled_from(["compute", "fragment"]))
 def test_slots_never_overlap_in_life(plan, seed, fusion, form):
-    from dataclasses import replace
+    from msgspec.structs import replace
 
     check_lives(plan(random_graph(seed), fusion=fusion, target=replace(NULL, form=form)))
 
@@ -86,7 +86,7 @@ def test_keys_tell_different_pixels_apart(plan, seed):
 
 @pytest.mark.parametrize("limit", [2, 4, 8])
 def test_a_pass_stays_within_the_device_limits(plan, limit):
-    from dataclasses import replace
+    from msgspec.structs import replace
 
     for seed in range(20):
         target = replace(NULL, form="fragment", max_samplers=limit)

@@ -10,7 +10,7 @@ from random import Random
 import numpy as np
 import pytest
 from edited_graphs import edited, some_graph
-from halation.app.compiler import NULL, Picture, Planner, Probed, Request, compile_graph
+from halation.app.compiler import NULL, Picture, Planner, Probed, Region, Request, compile_graph
 from halation.app.compiler import planner as planning
 from halation.app.compiler.fuse import fuse
 from halation.app.compiler.lower import lower
@@ -28,24 +28,25 @@ from halation.nodes.merge.mix_images import MixImages
 from headers import Headers
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from msgspec import structs
 from random_graphs import random_graph
 
 SIZE = (37, 23)
 
 
-def asked(graph: Graph, frame: int = 1, memories=None) -> Request:
+def asked(graph: Graph, frame: int = 1, memories=None, region: Region | None = None) -> Request:
     """A request with every input bound, but single values with a default."""
     bindings = {
         name: Picture(name, "", item.kind, item.socket().channels, in_memory=True)
         for name, item in graph.inputs.items() if item.default is None or not item.socket().single
     }
-    return Request(bindings=bindings, frame=frame, memories=memories or {})
+    return Request(bindings=bindings, frame=frame, memories=memories or {}, region=region)
 
 
-def outcome(plan, graph: Graph, frame: int, memories):
+def outcome(plan, graph: Graph, frame: int, memories, region: Region | None = None):
     """A plan with all that it says, or what is wrong."""
     try:
-        made = plan(graph, asked(graph, frame, memories), Headers(SIZE))
+        made = plan(graph, asked(graph, frame, memories, region), Headers(SIZE))
     except HalationError as error:
         return type(error), f"{error}", error.node
     return made, repr(made)
@@ -80,12 +81,15 @@ def turned(rng: Random, graph: Graph) -> Graph:
 @settings(max_examples=40, deadline=None)
 @given(st.integers(0, 2**20))
 def test_it_is_the_plan_that_is_made_from_the_start(seed):
+    """Of the whole picture, and of a region."""
     rng = Random(seed)
     graph = some_graph(seed) if seed % 3 == 0 else random_graph(seed, rng.randint(3, 12))
-    planner, frame, memories = Planner(), 1, {}
+    planner, frame, memories, region = Planner(), 1, {}, None
     for _ in range(6):
-        plain = outcome(compile_graph, graph, frame, memories)
-        assert outcome(planner.plan, graph, frame, memories) == plain
+        plain = outcome(compile_graph, graph, frame, memories, region)
+        assert outcome(planner.plan, graph, frame, memories, region) == plain
+        if rng.random() < 0.4:
+            region = rng.choice([None, Region(3, 4, 9, 7), Region(21, 9, 12, 14)])
         if rng.random() < 0.4:
             frame, memories = frame + 1, getattr(plain[0], "memories", {})
         for _ in range(rng.choice([0, 1, 1, 2])):
@@ -98,7 +102,7 @@ def test_numbers_decide_nothing_about_passes(seed):
     graph = random_graph(seed, 12)
     library = graph_library(graph, Headers(SIZE))
     program = lower(graph, asked(graph), library, Headers(SIZE)).program
-    blank = dataclasses.replace(program, ops=tuple(map(without, program.ops)))
+    blank = structs.replace(program, ops=tuple(map(without, program.ops)))
     passes = fuse(program, NULL)
     assert fuse(blank, NULL) == passes
     assert rewritten(blank, passes, NULL, library) == rewritten(program, passes, NULL, library)

@@ -147,6 +147,13 @@ def test_parts_without_pixels_do_without_numpy(part: str) -> None:
     assert not {name for name, target in links() if name.startswith(f"app.{part}") and target.split(".")[0] == "numpy"}
 
 
+@pytest.mark.parametrize("part", ["glsl", "compiler"])
+def test_what_each_command_loads_has_no_dataclasses(part: str) -> None:
+    """Making one takes forty times as long as making a struct. What exports is seldom loaded."""
+    users = {name for name, target in links() if target == "dataclasses" and name.startswith(f"app.{part}.")}
+    assert not {name for name in users if not name.startswith("app.compiler.isf.")}
+
+
 def test_no_module_is_part_of_a_cycle() -> None:
     inside = {name: {target for target in imports(name) if target in MODULES} for name in MODULES}
     try:
@@ -172,6 +179,7 @@ def test_every_library_is_declared() -> None:
         ("halation.nodes", ("numpy", "moderngl")),
         ("halation.app.cli", ("numpy", "moderngl", "OpenImageIO", "PyOpenColorIO", "glfw", "imgui_bundle")),
         ("halation.app.renderer", ("glfw", "imgui_bundle", "typer")),
+        ("halation.app.media.ahead", ("halation.app.compiler", "moderngl")),
     ],
 )
 def test_importing_stays_light(module: str, absent: tuple[str, ...]) -> None:

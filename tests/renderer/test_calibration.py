@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 
 import pytest
 from halation.app.compiler.devices import Measured
@@ -12,6 +11,7 @@ from halation.app.graph.fence import fenced
 from halation.app.renderer import calibration, open_device
 from halation.app.renderer.calibration import kept_or_measured, measured
 from halation.app.renderer.runner import Runner
+from msgspec.structs import replace
 
 SMALL = (64, 48)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import moderngl
 import numpy as np
@@ -23,6 +23,8 @@ class Result:
     full_size: tuple[int, int]
     channels: int
     key: str
+    size: tuple[int, int]
+    start: tuple[int, int] = (0, 0)
 
 
 @pytest.fixture
@@ -45,7 +47,8 @@ def result(renderer: Renderer):
         padded[..., :channels] = array
         with renderer.device.current():
             made.append(renderer.device.context.texture((width, height), stored, padded, dtype="f4"))
-        return Result(made[-1], (round(width / scale), round(height / scale)), channels, f"{next(NUMBERS)}")
+        full = (round(width / scale), round(height / scale))
+        return Result(made[-1], full, channels, f"{next(NUMBERS)}", (width, height))
 
     yield uploaded
     with renderer.device.current():
@@ -311,6 +314,31 @@ def test_a_wipe_between_a_proxy_and_the_full_picture(result, shown):
 
 
 # --- upkeep ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("zoom", [3.7, 1.0, 0.4])
+@pytest.mark.parametrize("compare", ["off", "wipe", "difference"])
+def test_a_part_is_shown_where_it_lies_in_the_whole(result, shown, zoom, compare):
+    pixels = np.random.default_rng(5).random((40, 60, 4))
+    whole, other = result(pixels), result(pixels[::-1])
+    x, y, width, height = 12, 9, 31, 22
+    parts = [
+        replace(result(one[y : y + height, x : x + width]), size=(60, 40), full_size=(60, 40), start=(x, y))
+        for one in (pixels, pixels[::-1])
+    ]
+    look = {"zoom": zoom, "compare": compare, "wipe": (0.5, 0.4), "angle": 30.0, "pan": (3.0, 2.0)} | RAW
+    expected, got = shown(whole, (70, 50), other, **look), shown(parts[0], (70, 50), parts[1], **look)
+    there = ~(got == np.float32(RAW["surround"][0])).all(axis=2)
+    assert there.any()
+    np.testing.assert_array_equal(got[there], expected[there])
+    # Only what some texel is missing for is left out: what lies a pixel inside of the part is all there.
+    left, top = (panel / 2 + pan - size * zoom / 2 for panel, pan, size in ((70, 3.0, 60), (50, 2.0, 40)))
+    columns, rows = np.meshgrid((np.arange(70) + 0.5 - round(left)) / zoom, (np.arange(50) + 0.5 - round(top)) / zoom)
+    reach = max(1.0, 1.0 / zoom)
+    inner = (columns >= x + reach) & (columns < x + width - reach) & (rows >= y + reach) & (rows < y + height - reach)
+    assert there[inner].all() and inner.any()
+    outer = (columns < x) | (columns >= x + width) | (rows < y) | (rows >= y + height)
+    assert not there[outer].any() or compare == "wipe"  # its line is drawn everywhere
 
 
 def test_it_draws_only_what_changed(result, display):

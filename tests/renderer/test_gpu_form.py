@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from halation.app.renderer import Device, Renderer, Wanted, open_device
+from msgspec.structs import replace
 from random_graphs import pictures, random_graph
 
 

@@ -35,9 +35,8 @@ REGIONS = (Region(0, 0, 20, 13), Region(120, 60, 21, 9), Region(240, 0, 11, 131)
 
 
 ANYWHERE = frozenset({
-    "auto_exposure", "directional_occlusion", "displace", "distance_field", "eye_glare", "glass", "image_based_light",
-    "kaleidoscope", "kernel_glare", "lens_distortion", "luminance_statistics", "motion_blur", "photoreceptor_tone_map",
-    "polar", "radial_blur", "st_map", "star", "sun_beams",
+    "auto_exposure", "directional_occlusion", "displace", "distance_field", "eye_glare", "kaleidoscope", "kernel_glare",
+    "luminance_statistics", "photoreceptor_tone_map", "polar", "st_map", "sun_beams",
 })
 """Nodes that may read everything for a pixel, at their own values."""
 

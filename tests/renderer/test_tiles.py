@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import os
-from dataclasses import replace
+import re
+import weakref
+from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import graph_of
 from halation.app import document
-from halation.app.compiler import Region, explain, tiling
+from halation.app.compiler import Region, Request, examine, explain, tiling
 from halation.app.errors import DeviceError
 from halation.app.graph import Graph, Input, Output, Port
-from halation.app.renderer import Renderer, Wanted, open_device
-from halation.nodes import Kind, Temporal, catalogue
+from halation.app.media.pictures import Pictures
+from halation.app.renderer import Reel, Renderer, Wanted, open_device
+from halation.nodes import Camera, Filter, Kind, Reader, Temporal, catalogue, look_at
 from halation.presets import paths
+from msgspec.structs import replace
 from random_graphs import pictures, random_graph
 
 FORM = os.environ.get("HALATION_TEST_FORM")
@@ -91,6 +95,108 @@ def test_every_edge_has_the_same_bits(fitting, in_pieces, edge):
     same_bits(fitting.runner.run(plan), fitting.runner.run(replace(plan, tiling=None)))
 
 
+def deep(width: int, height: int) -> np.ndarray:
+    """A floor that goes far away, and boxes before it."""
+    depth = np.geomspace(30.0, 2.0, height)[:, None] * np.ones(width)
+    for x in range(5, width, 30):
+        depth[x % height : x % height + 20, x : x + 12] = 1.0 + x / 40.0
+    return depth.astype(np.float32)
+
+
+def moving(width: int, height: int) -> np.ndarray:
+    """Pixels from the frame before, and to the next: paths that are bent, some of which turn back."""
+    found = np.random.default_rng(3).normal(0.0, 30.0, (height // 16 + 1, width // 16 + 1, 4))
+    return found.repeat(16, 0).repeat(16, 1)[:height, :width].astype(np.float32)
+
+
+LENS = {"focal": 1.0, "center": (0.45, 0.55)}
+FAR_LOOKING = {
+    "depth of field": NODES["depth_of_field"](max_blur=0.04, f_number=0.7),
+    "small depth of field": NODES["depth_of_field"](max_blur=0.2, f_number=0.7, quality="draft", cat_eye=0.5),
+    "bladed depth of field": NODES["depth_of_field"](
+        max_blur=0.1, f_number=0.7, aperture="blades", ratio=1.5, focus="distance", quality="exact"
+    ),
+    "motion blur": NODES["motion_blur"](max_length=0.12),
+    "sparse motion blur": NODES["motion_blur"](max_length=0.06, samples=2, phase="start", shutter=300.0),
+    "glass": NODES["glass"](thickness=0.06),
+    "barrel": NODES["lens_distortion"](k1=-0.1, **LENS),
+    "folded barrel": NODES["lens_distortion"](k1=-0.45, zoom=0.7, **LENS),
+    "pincushion": NODES["lens_distortion"](k1=0.1, k2=-0.05, **LENS),
+    "straight": NODES["lens_distortion"](direction="undistort", k1=0.05, p1=0.02, zoom=1.3, edge="mirror", **LENS),
+    "star": NODES["star"](length=0.03, angle=0.5, threshold=0.5),
+    "zoom": NODES["radial_blur"](zoom=0.2),
+    "spin": NODES["radial_blur"](kind="spin", angle=0.2, center=(0.3, 1.2), edge="reflect"),
+    "ghosts": NODES["ghosts"](),
+    "sun beams": NODES["sun_beams"](quality="quarter", radius=1.0, threshold=0.5),
+    "histogram": NODES["auto_exposure"](),
+    "surroundings": NODES["image_based_light"](),
+}
+"""Nodes whose values say how far they look, which is not as far as the picture goes."""
+
+
+def cameras(node) -> dict[str, Camera]:
+    """One for every input that takes one."""
+    view = look_at((1.0, -5.0, 2.0), (0.0, 0.0, 0.0), (1.2, 2.0))
+    return {name: view for name, item in type(node).inputs.items() if item.kind is Kind.CAMERA}
+
+
+@pytest.mark.parametrize("name", FAR_LOOKING)
+def test_what_looks_far_has_the_same_bits(fitting, in_pieces, monkeypatch, name):
+    size, node = (120, 90), FAR_LOOKING[name]
+    monkeypatch.setattr(tiling, "LEAST", 36)
+    known = {
+        "image": noise(*size), "depth": deep(*size), "velocity": moving(*size), "surface": deep(*size) / 10.0,
+        "normal": noise(*size)[..., :3] - 0.5, "environment": noise(*size),
+    }
+    given = {socket: known[socket] for socket in type(node).inputs if socket in known}
+    plan = fitting.compile(graph_of(node, given | cameras(node)), Wanted(given, precision="float"))
+    assert plan.tiling is not None
+    same_bits(fitting.runner.run(plan), fitting.runner.run(replace(plan, tiling=None)))
+
+
+@pytest.mark.parametrize("name", FAR_LOOKING)
+def test_what_looks_far_goes_beyond_the_device(name):
+    node, outside = FAR_LOOKING[name], Pictures()
+    given = {
+        socket: np.ones((32, 32, item.channels), np.float32) for socket, item in type(node).inputs.items()
+        if item.kind is not Kind.CAMERA
+    }
+    graph = graph_of(node, given | cameras(node))
+    examine(graph, Request({}, outside.bind(graph, given), (24_000, 20_000)), outside)
+
+
+def refused(node) -> str:
+    """Why a node cannot be made of larger pictures than a device holds; "" if it can."""
+    outside, sockets = Pictures(), type(node).inputs
+    given = {
+        name: np.ones((32, 32, item.channels), np.float32) for name, item in sockets.items()
+        if item.kind is not Kind.CAMERA and not item.single
+    }
+    graph = graph_of(node, given | cameras(node))
+    try:
+        examine(graph, Request({}, outside.bind(graph, given), (24_000, 20_000)), outside)
+    except DeviceError as error:
+        return str(error)
+    return ""
+
+
+def test_the_manual_says_what_may_read_anywhere():
+    manual = Path(__file__).parents[2] / "docs" / "running.md"
+    rows = [line for line in manual.read_text().splitlines() if line.startswith("| ")]
+    said = {name for line in rows for name in re.findall(r"`(\w+)`", line.split("|")[1])}
+    nodes = [kind() for kind in NODES.values() if issubclass(kind, Filter) and not issubclass(kind, Reader | Temporal)]
+    drawn = [node for node in nodes if all(item.socket.kind is not Kind.CAMERA for item in type(node).outputs.values())]
+    found = {type(node).id for node in drawn if "it may need all" in refused(node)}
+    assert found and found <= said
+
+
+def test_long_rows_have_the_same_histogram(fitting, in_pieces):
+    """They are looked at piece by piece."""
+    given = {"image": noise(9000, 3)}
+    plan = fitting.compile(graph_of(NODES["auto_exposure"](), given), Wanted(given, precision="float"))
+    same_bits(fitting.runner.run(plan), fitting.runner.run(replace(plan, tiling=None)))
+
+
 def test_a_region_has_the_bits_that_it_has_in_the_whole(fitting):
     for seed in range(6):
         graph, wanted = random_graph(seed), Wanted(pictures(seed), precision="float")
@@ -140,6 +246,64 @@ def test_no_more_is_held_than_may_be():
     tight.close()
 
 
+def through(reel: Reel, frames: int) -> list[dict[str, np.ndarray]]:
+    """Frames one after the other; what each has in common with the next stays for that."""
+    made: list[dict[str, np.ndarray]] = []
+    for frame in range(1, frames + 1):
+        kept = reel.renderer.runner.lease()
+        for run in reel.steps(frame, kept, following=frame + 1):
+            with run:
+                list(run)
+        made.append(reel.renderer.runner.download(reel.plan(frame)))
+        kept.close()
+    return made
+
+
+def test_what_a_frame_remembers_is_counted_twice(fitting):
+    """Before a frame is done, what was remembered of the one before is still there."""
+    graph, wanted = chain(NODES["light_trails"]()), Wanted({"image": noise(100, 50)}, precision="float")
+    free = Reel(fitting, graph, wanted)
+    memory = free.plan(2).held_bytes
+    tight = limited(memory=memory)
+    for one, other in zip(through(Reel(tight, graph, wanted), 4), through(free, 4), strict=True):
+        same_bits(one, other)
+    assert tight.runner.textures.peak <= memory - 2 * 100 * 50 * 16
+    tight.close()
+    tighter = limited(memory=memory - 1)
+    with pytest.raises(DeviceError, match="node 'n0': what it remembers of a frame"):
+        Reel(tighter, graph, wanted).plan(1)
+    tighter.close()
+
+
+def test_nothing_is_carried_on_that_there_is_no_room_for(fitting):
+    """A still under noise that moves is made once where there is room, else in every frame."""
+    graph = chain(NODES["median"](), NODES["film_grain"](), *[NODES["gaussian_blur"](sigma=2.0)] * 2)
+    wanted = Wanted({"image": noise(300, 200)}, precision="float")
+    plan = Reel(fitting, graph, wanted).plan(1)
+    peaks: list[int] = []
+    for memory in (4 * plan.held_bytes, plan.held_bytes):
+        tight = limited(memory=memory)
+        through(Reel(tight, graph, wanted), 3)
+        peaks.append(tight.runner.textures.peak)
+        tight.close()
+    assert peaks[1] <= plan.peak_bytes and peaks[1] < peaks[0]
+
+
+def test_outputs_in_memory_go_with_their_lease(fitting, in_pieces):
+    """Whether they were downloaded or not."""
+    plan = fitting.compile(chain(NODES["exposure"](stops=1.0)), Wanted({"image": noise(60, 40)}))
+    kept, other = fitting.runner.lease(), fitting.runner.lease()
+    for lease in (kept, other):
+        with fitting.runner.steps(plan, lease) as run:
+            list(run)
+    kept.close()
+    alone = weakref.ref(fitting.runner.download(plan)["image"])
+    other.close()
+    assert alone() is None
+    with pytest.raises(KeyError):
+        fitting.runner.download(plan)
+
+
 # --- what cannot be --------------------------------------------------------------------------------------------------
 
 
@@ -161,6 +325,14 @@ def test_tiles_are_as_large_as_the_device_can_hold(fitting):
 def test_memory_that_no_tile_fits_into_is_refused():
     tight = limited(memory=2**16)
     with pytest.raises(DeviceError, match=r"only 64.0 KiB may be used; give more with --memory"):
+        tight.compile(chain(NODES["convolve3x3"]()), Wanted({"image": noise(100, 50)}))
+    tight.close()
+
+
+def test_tiles_that_are_too_many_are_refused(monkeypatch):
+    monkeypatch.setattr(tiling, "MOST_TILES", 5)
+    tight = limited(memory=2 * 100 * 50 * 16 + 2**15)  # both pictures, and small tiles
+    with pytest.raises(DeviceError, match=r"node 'n0': within 188.* its 100x50 pixels can only be made in tiles of"):
         tight.compile(chain(NODES["convolve3x3"]()), Wanted({"image": noise(100, 50)}))
     tight.close()
 

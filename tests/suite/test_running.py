@@ -19,6 +19,7 @@ from halation.app.renderer.pinned import pinned
 from halation.app.suite import crew
 from halation.app.suite.cases import Case
 from halation.app.suite.judging import unusable
+from msgspec import structs
 
 ALL = """
 [defaults]
@@ -291,7 +292,7 @@ def test_stopping_at_the_first_failure(cli, suite) -> None:
 def test_a_gpu_alone_is_told_of(cli, suite, monkeypatch, tmp_path) -> None:
     """Where no software rasterizer is, the tests go on with what there is."""
     real = crew._renderer(True).device
-    device = replace(real, target=replace(real.target, renderer="GPU 9000", software=False))
+    device = structs.replace(real, target=structs.replace(real.target, renderer="GPU 9000", software=False))
     monkeypatch.setattr(crew, "_renderer", lambda _: Renderer(device, budget=0))
     suite(ALL)
     cli("--update")

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from conftest import Run, graph_of
 from halation.app.errors import ShaderError
-from halation.app.glsl import COUNTER, blanked, guarded
+from halation.app.glsl import blanked
+from halation.app.glsl.loops import COUNTER, guarded
 from halation.app.renderer import Renderer, Wanted
 from halation.app.written import Code, node_type
 from hypothesis import HealthCheck, given, settings

@@ -6,7 +6,6 @@ its values are used for that.
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, cast
@@ -16,6 +15,7 @@ from msgspec import Struct
 from ....nodes import Size
 from ..areas import Around
 from ..ir import Constant, Program, Shape
+from ..record import Record
 
 TOLERANCE = 1e-5
 MAX_FACTOR = 4096
@@ -79,11 +79,10 @@ def _walk(item: Any, found: Anatomy) -> object:
         return item.channels, item.data, item.size == (1, 1)
     if isinstance(item, Around):
         return Around  # it matters for parts of a picture alone, which a shader of this format never makes
-    if dataclasses.is_dataclass(item) and not isinstance(item, type):
-        fields = (one for one in dataclasses.fields(item) if one.compare)
-        return type(item), tuple(_walk(getattr(item, one.name), found) for one in fields)
     if isinstance(item, Struct):
-        return type(item), tuple(_walk(getattr(item, name), found) for name in item.__struct_fields__)
+        aside = item.aside if isinstance(item, Record) else ()
+        names = (name for name in item.__struct_fields__ if name not in aside)
+        return type(item), tuple(_walk(getattr(item, name), found) for name in names)
     if isinstance(item, tuple):
         return tuple(_walk(part, found) for part in cast("tuple[Any, ...]", item))
     return item

@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, cast, get_args
 
+from msgspec import structs
+
 from ....nodes import Node, Plain
 from ...document.code import read_code, written_code
 from ...graph import Graph, Group, Item, Unknown
@@ -54,7 +56,7 @@ def code_of(item: Item | None, folder: str) -> Code | None:
         return None
     language, file, lines = cast("Language", item.type), item.raw.get("file"), item.raw.get("code")
     if isinstance(item, Broken) and item.code is not None:
-        return replace(item.code, file=file or "")
+        return structs.replace(item.code, file=file or "")
     if isinstance(file, str):
         try:
             return read_code(language, None, file, folder)
@@ -111,7 +113,8 @@ def texts(graph: Graph) -> dict[Path, str]:
 def refiled(graph: Graph, file: Path, text: str) -> Graph:
     """The graph with another text in a file of code; the very same one if no node has its code in it."""
     return _changed(graph, lambda body, id, item, code: (
-        coded(body, id, replace(code, text=text)) if _file(item, body.folder) == file and code.text != text else body
+        coded(body, id, structs.replace(code, text=text))
+        if _file(item, body.folder) == file and code.text != text else body
     ))
 
 
@@ -133,7 +136,7 @@ def reread(graph: Graph, file: Path) -> Graph:
 def kept(graph: Graph, drafts: Mapping[Path, str]) -> Graph:
     """The graph with code in it that differs from the file it belongs to, so that it is not lost with the graph."""
     return _changed(graph, lambda body, id, item, code: (
-        coded(body, id, replace(code, file="")) if _file(item, body.folder) in drafts else body
+        coded(body, id, structs.replace(code, file="")) if _file(item, body.folder) in drafts else body
     ))
 
 

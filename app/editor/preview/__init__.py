@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
+from .glimpses import Glimpse
 from .preview import Preview, Shown
 from .timing import Timing
 
-__all__ = ["Preview", "Shown", "Timing"]
+__all__ = ["Glimpse", "Preview", "Shown", "Timing"]

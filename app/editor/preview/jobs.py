@@ -7,9 +7,10 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from ...compiler import Plan
-from ...errors import DeviceError
+from ...errors import DeviceError, HalationError
 from ...graph import Port
 from ...renderer import Reel, Renderer, Run
+from .glimpses import Glimpse, Part, part_of
 from .wishes import Wish
 
 if TYPE_CHECKING:
@@ -19,13 +20,14 @@ if TYPE_CHECKING:
 class Job:
     """A frame of a wish, for some of its ports. Raises the errors of `app.errors`, from the first line on.
 
-    `ahead` is for a frame that nobody wants to see yet.
+    `ahead` is for a frame that nobody wants to see yet. With a `part`, no more is computed of the pictures.
     """
 
     def __init__(
-        self, renderer: Renderer, wish: Wish, ports: Mapping[str, Port], frame: int, timed: bool, ahead: bool = False
+        self, renderer: Renderer, wish: Wish, ports: Mapping[str, Port], frame: int, timed: bool, ahead: bool = False,
+        part: Part | None = None,
     ) -> None:
-        self.wish, self.ports, self.frame, self.ahead = wish, ports, frame, ahead
+        self.wish, self.ports, self.frame, self.ahead, self.part = wish, ports, frame, ahead, part
         self.timings: list[tuple[Pass, float]] | None = [] if timed else None
         self.plan: Plan | None = None
         self.run: Run | None = None
@@ -42,7 +44,8 @@ class Job:
         try:
             self._reel = wish.take.reel(ports)
             if self._reel is None:
-                plan = _fitting(renderer.compile(wish.graph, wish.wanted(ports, frame)))
+                region = part.region if part else None
+                plan = _fitting(renderer.compile(wish.graph, wish.wanted(ports, frame, region)))
                 if plan.memories:
                     self._reel = wish.take.begin(ports, Reel(renderer, wish.graph, wish.wanted(ports, frame)))
                 else:
@@ -90,6 +93,16 @@ class Job:
             return False
         self.run, self.lead = run, (self.lead[0] + 1, self.lead[1])
         return True
+
+
+def peek(renderer: Renderer, wish: Wish, glimpse: Glimpse) -> Job | None:
+    """What makes the part of a wish that can be seen; None where nothing is gained by that."""
+    ports = {name: wish.ports[name] for name in sorted(glimpse.names)}
+    try:
+        part = part_of(renderer, wish, ports, glimpse)
+        return Job(renderer, wish, ports, wish.frame, False, part=part) if part else None
+    except HalationError:  # is found again, and said, where all is made
+        return None
 
 
 def _fitting(plan: Plan) -> Plan:

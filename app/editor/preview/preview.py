@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -14,12 +14,14 @@ from ...errors import HalationError
 from ...graph import Graph, Port, color_settings
 from ...renderer import Display, Handle, Renderer
 from ..services.renders import Pending
-from .jobs import Job
+from .glimpses import Glimpse
+from .jobs import Job, peek
+from .rounds import Round
 from .shown import Shelf, Shown
 from .takes import Face, Take
-from .thumbnails import Subject, Thumbnails
-from .timing import Timing, key_of, timings_of
-from .wishes import Wish, kind_of, path_of
+from .thumbnails import Thumbnails, subjects_of
+from .timing import Stopwatch, Timing
+from .wishes import Wish
 
 if TYPE_CHECKING:
     from ...media.pictures import Binding
@@ -27,46 +29,26 @@ if TYPE_CHECKING:
 PATIENCE = 0.3
 """Seconds that a run may go on after the graph has changed: during a long drag, pictures would never come otherwise."""
 
-MOST_SECONDS = 4096
-"""Passes whose times are remembered."""
-
-
-@dataclass(eq=False)
-class _Round:
-    """The work on one wish: what is still to be compiled, and what went wrong so far."""
-
-    wish: Wish
-    queue: list[Mapping[str, Port]]
-    began: float
-    passes: int = 0
-    skimmed: bool = False
-    """True if its pictures were there, and nothing else was looked at."""
-    faults: dict[str, HalationError] = field(default_factory=dict[str, HalationError])
-    pending: Pending | None = None
-    """The render that the first of the queue waits for."""
-    broken: dict[str, str] = field(default_factory=dict[str, str])
-    """Why panels cannot show what they want, by name."""
-    timings: dict[str, Timing] = field(default_factory=dict[str, Timing])
-
 
 class Preview:
     """Computes what is wanted, keeps what is shown.
 
     `timed` measures passes as they run. While `paused` nothing is computed; wants are remembered. `thumbnailing` draws
     small pictures of nodes whose results happen to be there. While it `skims`, frames that are there are only shown.
-    `ahead` is a frame that is wanted soon: it is computed when nothing else is to be done.
+    `ahead` is a frame that is wanted soon: it is computed when nothing else is to be done. What a `glimpse` shows of
+    pictures is computed before the rest of them, which follows when the graph has stayed as it is for a moment.
     """
 
     def __init__(self, renderer: Renderer, display: Display) -> None:
         self.renderer, self._runner = renderer, renderer.runner
         self._thumbnails = Thumbnails(renderer, display)
         self._wish: Wish | None = None
-        self._round: _Round | None = None
+        self._round: Round | None = None
         self._job: Job | None = None
         self._shelf = Shelf(renderer.runner)
         self._seen: Graph | None = None
         """The last graph that was wanted: it may differ from the wish in its layout."""
-        self._seconds: dict[str, float] = {}
+        self._stopwatch = Stopwatch()
         self._timings: dict[str, Timing] = {}
         self._cameras: dict[Port, Camera] = {}
         self.faults: Mapping[str, str] = MappingProxyType({})
@@ -78,6 +60,7 @@ class Preview:
         self.thumbnailing = True
         self.skims = False
         self.ahead: int | None = None
+        self.glimpse: Glimpse | None = None
         self.patience = PATIENCE
         self.seconds = 0.0
         """How long the frame took that was finished last."""
@@ -139,7 +122,7 @@ class Preview:
         self._forget()
         self._shelf.keep(())
         self._thumbnails.clear()
-        self._seconds.clear()
+        self._stopwatch.clear()
         self._timings = {}
         self._cameras.clear()
         self._runner.forget()
@@ -153,8 +136,12 @@ class Preview:
     # --- what the editor asks ----------------------------------------------------------------------------------------
 
     def shown(self, name: str) -> Shown | None:
-        """What a panel shows: the last good picture, until the new one is ready."""
+        """The last good picture for a panel, until the new one is ready. It is whole."""
         return self._shelf.find(name)
+
+    def seen(self, name: str) -> Shown | None:
+        """The same, or the part of a newer one that can be seen."""
+        return self._shelf.find_part(name) or self._shelf.find(name)
 
     def fault(self, name: str) -> str | None:
         """Why a panel cannot show what it wants."""
@@ -178,6 +165,12 @@ class Preview:
         """True while a wanted picture is not ready."""
         working = self._job is not None and not self._job.ahead
         return self._is_behind() or working or bool(self._round and self._round.queue)
+
+    @property
+    def completing(self) -> bool:
+        """True while all that can be seen is ready, but not the rest."""
+        now, peeks = self._round, self._job is not None and self._job.part is not None
+        return now is not None and now.part is not None and self.busy and not (peeks or self._is_behind())
 
     @property
     def remembers(self) -> bool:
@@ -276,6 +269,8 @@ class Preview:
             return False
         if self._round.skimmed and not self.skims and self._job is None:
             self._round.skimmed, self._round.queue = False, [self._round.wish.ports]
+        if self._round.may_peek(self.glimpse) and not self.skims and self._peek(self._round):
+            return True
         if self._job is None:
             return self._compile(self._round)
         if not self._job.ready:
@@ -288,7 +283,7 @@ class Preview:
         job, ports = self._job, wish.ports
         if job is not None and job.ahead and job.frame == wish.frame and job.wish.take is wish.take:
             job.ahead, job.wish = False, wish
-            self._round = _Round(wish, [], time.perf_counter())
+            self._round = Round(wish, [], time.perf_counter())
             self._settle(self._round)
             return
         self._restart()
@@ -301,7 +296,7 @@ class Preview:
             if name in ports:
                 self._shelf.show(name, ports[name], wish, face)
         skimmed = bool(known and self.skims)
-        self._round = _Round(wish, [ports] if ports and not skimmed else [], time.perf_counter(), skimmed=skimmed)
+        self._round = Round(wish, [ports] if ports and not skimmed else [], time.perf_counter(), skimmed=skimmed)
         self._settle(self._round)
 
     def _may_restart(self, wish: Wish) -> bool:
@@ -309,13 +304,30 @@ class Preview:
         now, job = self._round, self._job
         if now is None or job is None or now.wish.ports != wish.ports or now.wish.scale != wish.scale or job.ahead:
             return True
+        if now.part is not None and job.part is None:
+            return True
         return time.perf_counter() - now.began > self.patience
 
-    def _compile(self, now: _Round) -> bool:
+    def _peek(self, now: Round) -> bool:
+        """Begin with what can be seen, where that is a part of what is still to be done."""
+        job, glimpse = self._job, self.glimpse
+        if glimpse is None or (job is not None and (job.ahead or job.part is not None)) or not (job or now.queue):
+            return False
+        now.tried, found = glimpse, peek(self.renderer, now.wish, glimpse)
+        if found is None or found.plan is None:
+            return False
+        if job is not None:
+            job.close()
+            now.queue.insert(0, job.ports)
+        self._job = found
+        self._cameras |= found.plan.cameras
+        return True
+
+    def _compile(self, now: Round) -> bool:
         """Begin with the next ports; False if there are none."""
         if self._looks_ahead and self.ahead is not None:
             ports, frame, ahead = now.wish.ports, self.ahead, True
-        elif not now.queue or (now.pending is not None and not now.pending.ready()):
+        elif not now.queue or now.waits:
             return False
         else:
             ports, frame, ahead = now.queue.pop(0), now.wish.frame, False
@@ -328,7 +340,7 @@ class Preview:
             self._cameras |= self._job.plan.cameras
         return True
 
-    def _step(self, now: _Round, job: Job) -> None:
+    def _step(self, now: Round, job: Job) -> None:
         try:
             done = job.step()
             if job.run is not None:
@@ -340,12 +352,18 @@ class Preview:
             self._ended(now, job.ports, job.frame if job.ahead else None, error)
             return
         if done and job.plan is not None:
-            self._job, self.seconds = None, time.perf_counter() - job.began
+            self._job = None
             now.passes += 0 if job.ahead else job.passes
+            if job.part is not None:
+                self._shelf.show_part(job.wish, job.ports, job.plan, job.part)
+                now.part = job.part
+                job.kept.close()
+                return
+            self.seconds = time.perf_counter() - job.began
             self._finished(now, job, job.plan)
             self._settle(now)
 
-    def _ended(self, now: _Round, ports: Mapping[str, Port], ahead: int | None, error: HalationError) -> bool:
+    def _ended(self, now: Round, ports: Mapping[str, Port], ahead: int | None, error: HalationError) -> bool:
         """What could not be done: it must wait, or be tried otherwise, or is wrong. False if it must wait."""
         if ahead is not None:
             now.wish.take.hopeless.add(ahead)
@@ -354,24 +372,16 @@ class Preview:
             now.pending = error
             return False
         else:
-            self._failed(now, ports, error)
+            now.failed(ports, error)
+            self._settle(now)
         return True
 
-    def _failed(self, now: _Round, ports: Mapping[str, Port], error: HalationError) -> None:
-        """One fault must not hide what else can be shown: try every port alone."""
-        if len(ports) > 1:
-            now.queue = [{name: port} for name, port in ports.items()] + now.queue
-            return
-        now.broken |= dict.fromkeys(ports, str(error))
-        now.faults |= dict.fromkeys(error.node.split(", "), error)
-        self._settle(now)
-
-    def _settle(self, now: _Round) -> None:
+    def _settle(self, now: Round) -> None:
         """What was wrong before is known to be over only when all has been tried."""
         self.errors = MappingProxyType({**(self.errors if now.queue else {}), **now.faults})
         self.faults = MappingProxyType({path: str(error) for path, error in self.errors.items()})
 
-    def _finished(self, now: _Round, job: Job, plan: Plan) -> None:
+    def _finished(self, now: Round, job: Job, plan: Plan) -> None:
         wish, faces = job.wish, dict[str, Face]()
         for name, port in job.ports.items():
             surface = plan.surfaces[plan.outputs[name]]
@@ -384,14 +394,7 @@ class Preview:
             return
         self._cameras |= plan.cameras
         if job.timings is not None:
-            self._seconds |= {key_of(plan, one): seconds for one, seconds in job.timings}
-            while len(self._seconds) > MOST_SECONDS:
-                self._seconds.pop(next(iter(self._seconds)))
-            now.timings |= timings_of(plan, self._seconds)
+            now.timings |= self._stopwatch.note(plan, job.timings)
             self._timings = now.timings
-        subjects: dict[str, Subject] = {}
-        for port, number in plan.results.items() if self.thumbnailing and not self.skims else ():
-            path, surface = path_of(port), plan.surfaces[number]
-            kind = kind_of(now.wish.graph, port, surface.channels)
-            subjects.setdefault(path, Subject(path, surface.key, kind, surface.channels, now.wish.mark(path)))
+        subjects = subjects_of(now.wish, plan) if self.thumbnailing and not self.skims else {}
         self._thumbnails.offer(subjects, color_settings(now.wish.graph))

@@ -6,10 +6,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from ....nodes import ColorSettings, Kind
+from ...compiler import Plan
 from ...media.managed import DEFAULT_COLOR
 from ...renderer import Display, Handle, Look, Probe, Renderer
 from ..services.coloring import Coloring
 from .data import are_normals, balanced, data_range
+from .wishes import Wish, kind_of, path_of
 
 LARGEST = (160, 90)
 RANGE_WIDTH = 64
@@ -35,6 +37,11 @@ class _Source:
     full_size: tuple[int, int]
     channels: int
     key: str
+    start: tuple[int, int] = (0, 0)
+
+    @property
+    def size(self) -> tuple[int, int]:
+        return self.texture.size
 
 
 @dataclass(frozen=True)
@@ -42,6 +49,16 @@ class _Drawn:
     texture: Handle
     key: str
     mark: object
+
+
+def subjects_of(wish: Wish, plan: Plan) -> dict[str, Subject]:
+    """What the nodes of a wish show when its plan has run, by path: of several outputs the first."""
+    found: dict[str, Subject] = {}
+    for port, number in plan.results.items():
+        path, surface = path_of(port), plan.surfaces[number]
+        kind = kind_of(wish.graph, port, surface.channels)
+        found.setdefault(path, Subject(path, surface.key, kind, surface.channels, wish.mark(path)))
+    return found
 
 
 class Thumbnails:

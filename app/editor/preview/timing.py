@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from ...compiler import Pass, Plan
+
+MOST_SECONDS = 4096
+"""Passes whose times are remembered."""
 
 
 @dataclass(frozen=True)
@@ -20,6 +23,24 @@ class Timing:
 def key_of(plan: Plan, one: Pass) -> str:
     """What stands for a pass: equal keys took equal work."""
     return plan.surfaces[one.targets[0]].key
+
+
+class Stopwatch:
+    """What passes took when they were timed last."""
+
+    def __init__(self) -> None:
+        self._seconds: dict[str, float] = {}
+
+    def note(self, plan: Plan, timings: Iterable[tuple[Pass, float]]) -> dict[str, Timing]:
+        """Passes of a plan have been timed: what is known of all its nodes."""
+        self._seconds |= {key_of(plan, one): seconds for one, seconds in timings}
+        while len(self._seconds) > MOST_SECONDS:
+            self._seconds.pop(next(iter(self._seconds)))
+        return timings_of(plan, self._seconds)
+
+    def clear(self) -> None:
+        """Forget it all."""
+        self._seconds.clear()
 
 
 def timings_of(plan: Plan, seconds: Mapping[str, float]) -> dict[str, Timing]:

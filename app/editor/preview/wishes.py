@@ -8,7 +8,7 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 from ....nodes import Kind, Size
-from ...compiler import Upstream
+from ...compiler import Region, Upstream
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Port
 from ...renderer import Wanted
@@ -34,9 +34,9 @@ class Wish:
     take: Take = field(default_factory=Take)
     """What is known of all frames of it."""
 
-    def wanted(self, ports: Mapping[str, Port], frame: int) -> Wanted:
+    def wanted(self, ports: Mapping[str, Port], frame: int, region: Region | None = None) -> Wanted:
         """The same for the renderer."""
-        return Wanted(self.bindings, ports, self.size, self.scale, frame)
+        return Wanted(self.bindings, ports, self.size, self.scale, frame, region=region)
 
     def follows(self, before: Wish) -> bool:
         """True where nothing but the frame differs."""

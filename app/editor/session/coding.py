@@ -8,6 +8,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from msgspec import structs
+
 from ...document.disk import read_text, write_text
 from ...errors import DocumentError, GraphError
 from ...graph import Graph
@@ -46,7 +48,7 @@ class Coding(State):
             raise GraphError(f"node '{id}' is not made of code")
         label = f"Edit code of {id}"
         if not code.file:
-            self.edit(label, coding.coded(graph, id, replace(code, text=text)), merge=merge)
+            self.edit(label, coding.coded(graph, id, structs.replace(code, text=text)), merge=merge)
             return
         self._check_ours()
         after = coding.refiled(root, self._path(graph, code), text)
@@ -56,7 +58,7 @@ class Coding(State):
     def inline_code(self, id: str) -> None:
         """Let the code of a node be part of the document; the file stays as it is."""
         code = self._code_in_file(id)
-        self.edit(f"Move code of {id} into the graph", coding.coded(self.graph, id, replace(code, file="")))
+        self.edit(f"Move code of {id} into the graph", coding.coded(self.graph, id, structs.replace(code, file="")))
 
     def export_code(self, id: str, path: str | Path) -> None:
         """Write the code of a node to a file, from which it comes from then on. Raises OutputError."""
@@ -64,10 +66,10 @@ class Coding(State):
         if code is None:
             raise GraphError(f"node '{id}' is not made of code")
         name = paths.relative(path, self.graph.folder)
-        after = coding.coded(self.graph, id, replace(code, file=name))
+        after = coding.coded(self.graph, id, structs.replace(code, file=name))
         self._check_ours()
         write_text(Path(path), code.text)
-        self._note(self._path(self.graph, replace(code, file=name)), code.text)
+        self._note(self._path(self.graph, structs.replace(code, file=name)), code.text)
         self.edit(f"Move code of {id} to {Path(path).name}", after)
 
     def save_code(self, id: str) -> Path:

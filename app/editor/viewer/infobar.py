@@ -58,7 +58,7 @@ def about(editor: Editor, side: str, shown: Shown | None, sight: Sight, seconds:
         words.append(Word(f"{sight.zoom * 100:.{0 if sight.zoom >= 0.1 else 1}f} %", palette.dim))
     if preview.paused:
         words.append(Word("paused", palette.warning))
-    elif preview.busy:
+    elif preview.busy and not preview.completing:
         done, total = preview.progress
         words.append(Word(f"{done}/{total}", palette.accent))
     elif seconds > 0.0 and shown is not None:

@@ -47,6 +47,14 @@ def range_of(state: ViewerState, meaning: Meaning, samples: Samples) -> tuple[fl
     return balanced(low, high) if meaning == "vector" else (low, high)
 
 
+def measures(state: ViewerState, kind: Kind) -> bool:
+    """True if it depends on the numbers of the whole picture how it is shown."""
+    meaning = state.meaning
+    if meaning == "auto":
+        return kind is not Kind.IMAGE
+    return meaning in ("field", "vector") and state.low == state.high
+
+
 def asked_view(graph: Graph, port: Port) -> str:
     """The view that an output of the graph asks for: also of what is linked to it, for it is the same picture."""
     for name, output in graph.outputs.items():

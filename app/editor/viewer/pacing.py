@@ -42,24 +42,24 @@ class Pace:
     scale: float = 1.0
     """The scale of the drag, now or last."""
     seconds: float = 0.0
-    """How long a picture of the chosen proxy takes, as measured or guessed last."""
+    """How long all of a picture of the chosen proxy takes, as measured or guessed last."""
     _finest: float = 1.0
     _dragging: bool = False
 
-    def at(self, finest: float, dragging: bool) -> float:
-        """The scale to render at now."""
+    def at(self, finest: float, dragging: bool, share: float = 1.0) -> float:
+        """The scale to render at now; `share` is the part of the picture that will be waited for."""
         if finest != self._finest:
             self.seconds *= (finest / self._finest) ** 2
             self.scale *= finest / self._finest
             self._finest = finest
         if dragging and not self._dragging:
-            self.scale = starting(finest, self.scale, self.seconds)
+            self.scale = starting(finest, self.scale, self.seconds * share)
         self._dragging = dragging
         return self.scale if dragging else finest
 
-    def took(self, scale: float, seconds: float) -> None:
-        """A picture at `scale` was finished after `seconds`."""
-        self.seconds = seconds * (self._finest / scale) ** 2
+    def took(self, scale: float, seconds: float, share: float = 1.0) -> None:
+        """A picture at `scale`, or a part of it, was finished after `seconds`."""
+        self.seconds = seconds * (self._finest / scale) ** 2 / share
         if self._dragging and scale == self.scale:
             self.scale = coarse(self._finest, scale, seconds)
 

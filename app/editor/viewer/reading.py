@@ -36,8 +36,11 @@ class Reader:
         )
 
     def pixel(self, probe: Probe, name: str, shown: Shown, pixel: Pixels) -> tuple[float, ...]:
-        """The numbers of one pixel, given at full size; `name` says what for."""
-        x, y = texel(pixel, shown.full_size, shown.texture.size)
+        """The numbers of one pixel, given at full size; `name` says what for. None where there are none as yet."""
+        (x, y), (left, top) = texel(pixel, shown.full_size, shown.size), shown.start
+        x, y = x - left, y - top
+        if not (0 <= x < shown.texture.size[0] and 0 <= y < shown.texture.size[1]):
+            return ()
         return self._kept(
             ("pixel", name), (_mark(shown), x, y), lambda: tuple(probe.pixel(shown.texture, x, y)[: shown.channels])
         )

@@ -43,7 +43,9 @@ def rows_of(editor: Editor, reader: Reader) -> list[tuple[str, str, tuple[float,
             if mark and name not in ("A", "B"):
                 continue
             at = _same_place(pixel, viewer.picture, one.full_size)
-            values = reader.pixel(editor.probe, f"table {mark} {name}", one, at)
+            newer = (editor.preview.seen(name) if name in ("A", "B") else None) or one
+            values = reader.pixel(editor.probe, f"table {mark} {name}", newer, at)
+            values = values or reader.pixel(editor.probe, f"table {mark} {name}", one, at)
             rows.append((f"{name} {mark}".strip(), f"{at[0]}, {at[1]}", values))
     box = viewer.measured or viewer.region
     if box is not None:

@@ -56,6 +56,11 @@ class _Now:
     view: str
     """The view that the picture asks for."""
 
+    @property
+    def is_whole(self) -> bool:
+        """True unless only a part is there of what is shown."""
+        return not any(shown is not None and shown.partial for shown in (self.a, self.b))
+
     def beside(self, editor: Editor) -> bool:
         """True if B is seen at the right of A."""
         return editor.viewer.compare == "beside" and self.a is not None and self.b is not None
@@ -82,8 +87,8 @@ class Viewer:
         """Everything, into the current window."""
         viewer, preview = editor.viewer, editor.preview
         port = editor.session.viewed("A")
-        b = preview.shown(B) if viewer.compares else None
-        now = _Now(preview.shown(A), b, asked_view(editor.session.graph, port) if port else "")
+        b = preview.seen(B) if viewer.compares else None
+        now = _Now(preview.seen(A), b, asked_view(editor.session.graph, port) if port else "")
         viewer.scene = orbited(editor.session)
         self._time(editor, now)
         inner, pad = imgui.internal.get_current_window().inner_rect, 4 * ui_scale()
@@ -153,10 +158,11 @@ class Viewer:
         if now.a is None:
             look = Look(surround=palette.surround)
         else:
-            shown = now.b if now.b is not None and viewer.compare == "toggle" and viewer.toggled else now.a
+            toggled = viewer.compare == "toggle" and viewer.toggled
+            name, shown = (B, now.b) if toggled and now.b is not None else (A, now.a)
 
             def samples():
-                return self._reader.small(editor.probe, shown)
+                return self._reader.small(editor.probe, editor.preview.shown(name) or shown)
 
             meaning = meaning_of(viewer, shown.kind, samples)
             viewer.span = range_of(viewer, meaning, samples) if shown.kind is not Kind.NUMBER else (0.0, 1.0)
@@ -180,9 +186,9 @@ class Viewer:
             lines.push_clip_rect((x, y), corner, True)
             draw_overlays(editor, sight)
             lines.pop_clip_rect()
-            if viewer.saving:
+            if viewer.saving and now.is_whole:
                 editor.attempt(lambda: ask_to_save(editor, now.a, now.b, look))  # type: ignore[arg-type]
-        viewer.saving = False
+        viewer.saving = viewer.saving and not now.is_whole
         return look
 
     def _draw_messages(self, editor: Editor, now: _Now, sight: Sight) -> None:
@@ -286,12 +292,13 @@ class Viewer:
     def _time(self, editor: Editor, now: _Now) -> None:
         """How long pictures take, for the line below and for the proxy of drags."""
         preview, moment = editor.preview, time.monotonic()
-        if preview.busy:
+        busy = preview.busy and not preview.completing
+        if busy:
             self._busy_since = moment if self._busy_since is None else self._busy_since
         else:
             self._busy_since = None
         key = f"{now.a.key} {now.a.revision}" if now.a is not None else ""
-        seconds = self._watch.lap(preview.busy and not preview.paused, key, moment)
+        seconds = self._watch.lap(busy and not preview.paused, key, moment)
         if seconds is not None and now.a is not None:
             self._seconds = seconds
-            editor.viewer.pace.took(now.a.scale, seconds)
+            editor.viewer.pace.took(now.a.scale, seconds, now.a.share)

@@ -5,7 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ...graph import INPUTS, Port
+from ..preview import Glimpse
+from .geometry import Sight
 from .ground import depths
+from .looking import measures
 
 if TYPE_CHECKING:
     from ..editor import Editor
@@ -20,8 +23,9 @@ def layer(name: str) -> str:
 
 def effective_scale(editor: Editor) -> float:
     """The chosen proxy, or a coarser one while a value is being dragged and pictures come too slowly."""
-    viewer = editor.viewer
-    return viewer.pace.at(viewer.proxy, editor.dragging and editor.store.now.proxy_while_dragging)
+    viewer, seen = editor.viewer, glimpse(editor)
+    share = seen.share(viewer.proxy) if seen else 1.0
+    return viewer.pace.at(viewer.proxy, editor.dragging and editor.store.now.proxy_while_dragging, share)
 
 
 def wanted(editor: Editor) -> tuple[dict[str, Port], float]:
@@ -31,8 +35,33 @@ def wanted(editor: Editor) -> tuple[dict[str, Port], float]:
     away things are where a handle asks for that.
     """
     session, viewer = editor.session, editor.viewer
-    sides = (A, B) if viewer.compares else (A,)
-    found = {side: port for side in sides if (port := session.viewed(side)) is not None}
+    found = _sides(editor)
     if viewer.table:
         found |= {layer(name): Port(INPUTS, name) for name in session.graph.inputs}
     return found | depths(editor), effective_scale(editor)
+
+
+def glimpse(editor: Editor) -> Glimpse | None:
+    """What can be seen of A, and of B where it is compared with; None where all is needed to show it.
+
+    So it is while frames are played, which are kept for the next time, and where numbers of the whole picture say how
+    it is shown.
+    """
+    viewer = editor.viewer
+    if viewer.zoom <= 0.0 or editor.timeline.playback.playing or editor.timeline.scrubbing:
+        return None
+    sides = {side: editor.preview.seen(side) for side in _sides(editor)}
+    for shown in sides.values():
+        if shown is None or shown.full_size != viewer.picture or measures(viewer, shown.kind):
+            return None
+    sight = Sight.of((0.0, 0.0), viewer.panel, viewer.picture, viewer.zoom, viewer.pan)
+    (left, top), (right, bottom) = sight.fraction((0.0, 0.0)), sight.fraction(viewer.panel)
+    left, top, right, bottom = max(left, 0.0), max(top, 0.0), min(right, 1.0), min(bottom, 1.0)
+    if not sides or left >= right or top >= bottom:
+        return None
+    return Glimpse((left, top, right, bottom), viewer.picture, frozenset(sides))
+
+
+def _sides(editor: Editor) -> dict[str, Port]:
+    sides = (A, B) if editor.viewer.compares else (A,)
+    return {side: port for side in sides if (port := editor.session.viewed(side)) is not None}

@@ -16,7 +16,7 @@ from ..edits import coding
 from ..services.reloading import NodeFiles, migrated, shader_folder
 from ..services.sequences import all_files
 from ..services.watching import Change, groups_of, pictures_of
-from ..viewer.wanted import wanted
+from ..viewer.wanted import glimpse, wanted
 
 FRAME_BUDGET = 0.012
 """Seconds of rendering per frame: the rest of a sixtieth is for drawing panels."""
@@ -61,6 +61,7 @@ class Heartbeat:
         preview.paused = editor.viewer.paused
         self._play(editor)
         ports, scale = wanted(editor)
+        preview.glimpse = glimpse(editor)
         place = editor.session.place
         flat = {name: Port("/".join((*place, port.node)), port.socket) for name, port in ports.items()}
         preview.want(editor.session.root, flat, bindings=editor.session.bindings, scale=scale,

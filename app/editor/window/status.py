@@ -11,6 +11,7 @@ from ..editor import Editor
 from ..theme.style import EM, vec4
 from ..toolkit.places import record
 from ..toolkit.words import dim, fitted, font, level_color
+from ..viewer.wanted import A
 from .hints import hints
 from .panels import DOCKED
 
@@ -73,6 +74,9 @@ def _figures(editor: Editor) -> str:
         parts.insert(0, f"{icons.ICON_FA_PAUSE} paused")
     elif lead := editor.preview.lead:
         parts.insert(0, f"{'pre-roll' if lead[0] == 'pre-roll' else 'planning'} {lead[1]} of {lead[2]}")
+    elif (seen := editor.preview.seen(A)) and seen.partial:
+        width, height = seen.texture.size
+        parts.insert(0, f"region {width}\u00d7{height}")
     elif editor.preview.busy:
         parts.insert(0, f"pass {done} of {total}")
     return "   ".join(parts)

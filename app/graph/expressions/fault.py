@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import unicodedata
-
 from ...errors import GraphError
 
 _SHOWN = 60
@@ -43,6 +41,8 @@ def _printable(text: str) -> str:
 
 def _width(text: str) -> int:
     """How many columns a terminal gives to a text (Unicode Standard Annex 11)."""
+    import unicodedata
+
     return sum(
         0 if unicodedata.combining(letter) else 2 if unicodedata.east_asian_width(letter) in "WF" else 1
         for letter in text

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from typing import TYPE_CHECKING, cast
 
-from ....nodes import Kind, Node
-from ....nodes.input.read_image import ReadImage
-from ....nodes.input.read_render import ReadRender
+from ....nodes import Kind
 from ...graph import INPUTS, Port, Problem
 from ...graph.rules import Rule
-from ..sheet import Check, Sheet
+from ..sheet import Check, Sheet, is_one_of
+
+if TYPE_CHECKING:
+    from ....nodes.input.read_image import ReadImage
 
 DATA_AS_COLOR = Rule(
     "data-as-color", "warning",
@@ -37,8 +39,7 @@ def find(sheet: Sheet) -> Iterator[Problem]:
     """Nodes of color right behind a layer of data."""
     for id in sheet.graph.nodes:
         item = sheet.works(id)
-        source = sheet.first(id) if isinstance(item, Node) and item.id in _COLOR else None
-        if isinstance(item, Node) and source and (what := _data(sheet, source)):
+        if is_one_of(item, _COLOR) and (source := sheet.first(id)) and (what := _data(sheet, source)):
             name = next(iter(item.inputs))
             sentence = f"'{id}' is about color, and '{source}' is data ({what}): link a picture to '{id}.{name}'"
             yield Problem(id, name, sentence, DATA_AS_COLOR, f"links.{id}.{name}")
@@ -51,9 +52,9 @@ def _data(sheet: Sheet, source: Port) -> str:
         layer = end.layer if end.layer or end.kind is Kind.IMAGE else source.socket
     else:
         item = sheet.graph.nodes[source.node]
-        if isinstance(item, ReadRender):
+        if is_one_of(item, {"read_render"}):
             return source.socket if source.socket in _OUTPUTS else ""
-        layer = item.layer if isinstance(item, ReadImage) else ""
+        layer = cast("ReadImage", item).layer if is_one_of(item, {"read_image"}) else ""
     return layer if _DATA.fullmatch(layer) else ""
 
 

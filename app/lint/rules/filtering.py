@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import hypot
+from typing import TYPE_CHECKING
 
 from ....nodes import Pointwise
-from ....nodes.blur.gaussian_blur import GaussianBlur
-from ....nodes.distort.resize import Resize
-from ....nodes.distort.transform import Transform
-from ...graph import Item, Port, Problem
+from ...graph import Port, Problem
 from ...graph.rules import Rule
 from ...written import Written
-from ..sheet import Check, Sheet
+from ..sheet import Check, Sheet, is_one_of
+
+if TYPE_CHECKING:
+    from ....nodes.distort.resize import Resize
+    from ....nodes.distort.transform import Transform
 
 FILTERING_TWICE = Rule(
     "filtering-twice", "warning",
@@ -23,13 +25,13 @@ FILTERING_TWICE = Rule(
 _PLACES = frozenset({"pixel", "extent"})
 """What a shader says whose result depends on where a pixel is."""
 
-FILTERS = (Transform, Resize, GaussianBlur)
+FILTERS = frozenset({"transform", "resize", "gaussian_blur"})
 
 
 def find(sheet: Sheet) -> Iterator[Problem]:
     """Nodes that filter what has just been filtered."""
     for id in sheet.graph.nodes:
-        if isinstance(sheet.works(id), FILTERS):
+        if is_one_of(sheet.works(id), FILTERS):
             before, between = _filtered(sheet, id)
             if before and (way_out := _way_out(sheet, before, between, id)):
                 sentence = f"'{before}' and '{id}' filter the picture twice: {way_out}"
@@ -42,7 +44,7 @@ def _filtered(sheet: Sheet, id: str) -> tuple[str, list[str]]:
     port = sheet.source(Port(id, "image"))
     while port and sheet.readers[port] == 1:
         item = sheet.works(port.node)
-        if isinstance(item, FILTERS):
+        if is_one_of(item, FILTERS):
             return port.node, between
         if not isinstance(item, Pointwise) or not (name := _picture(sheet, port.node, item)):
             break
@@ -60,6 +62,10 @@ def _picture(sheet: Sheet, id: str, item: Pointwise) -> str:
 
 def _way_out(sheet: Sheet, before: str, between: list[str], id: str) -> str:
     """What to do about two nodes that filter, or nothing where both are needed."""
+    from ....nodes.blur.gaussian_blur import GaussianBlur
+    from ....nodes.distort.resize import Resize
+    from ....nodes.distort.transform import Transform
+
     first, second = sheet.graph.nodes[before], sheet.graph.nodes[id]
     still = sheet.moving.isdisjoint((before, id))
     match first, second:
@@ -68,8 +74,8 @@ def _way_out(sheet: Sheet, before: str, between: list[str], id: str) -> str:
         case Resize(), Resize() if still and _same_way(first, second):
             wide, high = (a * b for a, b in zip(first.scale, second.scale, strict=True))
             return f"one resize by {wide:.4g}, {high:.4g} does both"
-        case (Resize() as resize, Transform()) | (Transform(), Resize() as resize):
-            if still and max(resize.scale) <= 1.0 and not _hard(first, second):
+        case (Resize() as resize, Transform() as transform) | (Transform() as transform, Resize() as resize):
+            if still and max(resize.scale) <= 1.0 and not _hard(resize, transform):
                 wide, high = resize.scale
                 return f"let the transform scale by {wide:.4g}, {high:.4g} too, and crop behind it"
         case GaussianBlur(), GaussianBlur() if still and not between and first.edge == second.edge:
@@ -80,9 +86,9 @@ def _way_out(sheet: Sheet, before: str, between: list[str], id: str) -> str:
     return ""
 
 
-def _hard(*items: Item) -> bool:
+def _hard(*items: Transform | Resize) -> bool:
     """True if pixels are meant to stay as they are."""
-    return any(isinstance(item, Transform | Resize) and item.kernel in ("nearest", "box") for item in items)
+    return any(item.kernel in ("nearest", "box") for item in items)
 
 
 def _same_way(first: Resize, second: Resize) -> bool:

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import PurePath
+from typing import TYPE_CHECKING, cast
 
-from ....nodes import Kind, Node
-from ....nodes.color.color_space import ColorSpace
-from ....nodes.color.lut_file import LutFile
-from ....nodes.input.read_image import ReadImage
-from ....nodes.tone.local_tone_map import LocalToneMap
-from ....nodes.tone.photoreceptor_tone_map import PhotoreceptorToneMap
-from ....nodes.tone.tone_map import ToneMap
+from ....nodes import Kind
 from ...graph import INPUTS, Group, Port, Problem, signature
 from ...graph.rules import Rule
 from ...written import Written
-from ..sheet import Check, Sheet
+from ..sheet import Check, Sheet, is_one_of
+
+if TYPE_CHECKING:
+    from ....nodes.input.read_image import ReadImage
 
 DISPLAY_LIGHT = Rule(
     "display-light", "warning",
@@ -29,7 +27,8 @@ CLIPPED_LIGHT = Rule(
     "Read an EXR of the same picture, or allow it where the file is all there is.",
 )
 
-_TONE = (ToneMap, LocalToneMap, PhotoreceptorToneMap)
+_TONE = frozenset({"tone_map", "local_tone_map", "photoreceptor_tone_map"})
+_RECODES = frozenset({"color_space", "lut_file"})
 _GLOWS = frozenset({"bloom", "bright_pass", "eye_glare", "ghosts", "kernel_glare", "star", "streaks"})
 _SPREADS = frozenset({"depth_of_field"})
 _LIGHT = _GLOWS | _SPREADS | {
@@ -50,13 +49,13 @@ def display_light(sheet: Sheet) -> Iterator[Problem]:
             continue
         pictures = [source for source in _pictures(sheet, id) if source]
         made = {maker[source] for source in pictures if source in maker}
-        if isinstance(item, Node) and item.id in _LIGHT and pictures and pictures[0] in maker:
+        if is_one_of(item, _LIGHT) and pictures and pictures[0] in maker:
             name, by = next(iter(item.inputs)), maker[pictures[0]]
             sentence = f"'{id}' works with light, but '{by}' has made its picture ready for the display: put it before"
             yield Problem(id, name, f"{sentence} '{by}'", DISPLAY_LIGHT, f"links.{id}.{name}")
         for name in _shown(sheet, id):
             maker[Port(id, name)] = id
-        keeps = not isinstance(item, ColorSpace | LutFile | Group) and getattr(item, "id", "") not in _LIGHT
+        keeps = not isinstance(item, Group) and not is_one_of(item, _LIGHT | _RECODES)
         if keeps and made and all(source in maker for source in pictures):
             outputs = signature(item).outputs
             maker |= {Port(id, name): min(made) for name, output in outputs.items() if output.kind is Kind.IMAGE}
@@ -66,7 +65,7 @@ def clipped_light(sheet: Sheet) -> Iterator[Problem]:
     """Nodes that need light above white, right behind a file that has none."""
     for id in sheet.graph.nodes:
         item = sheet.works(id)
-        if isinstance(item, Node) and item.id in _GLOWS | _SPREADS and (source := sheet.first(id)):
+        if is_one_of(item, _GLOWS | _SPREADS) and (source := sheet.first(id)):
             file = _file(sheet, source)
             if PurePath(file).suffix.lower() in _BYTES:
                 sentence = f"'{id}' wants light brighter than white, and '{file}' has none: read an EXR"
@@ -85,7 +84,7 @@ def _shown(sheet: Sheet, id: str) -> list[str]:
     item = sheet.graph.nodes[id]
     if isinstance(item, Group):
         return [name for name, output in item.graph.outputs.items() if output.view == "none"]
-    return ["out"] if isinstance(item, _TONE) else []
+    return ["out"] if is_one_of(item, _TONE) else []
 
 
 def _file(sheet: Sheet, source: Port) -> str:
@@ -93,7 +92,7 @@ def _file(sheet: Sheet, source: Port) -> str:
     if source.node == INPUTS:
         return sheet.graph.inputs[source.socket].file
     item = sheet.graph.nodes[source.node]
-    return item.path if isinstance(item, ReadImage) else ""
+    return cast("ReadImage", item).path if is_one_of(item, {"read_image"}) else ""
 
 
 CHECKS = (Check(DISPLAY_LIGHT, display_light), Check(CLIPPED_LIGHT, clipped_light))

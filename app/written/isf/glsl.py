@@ -11,7 +11,8 @@ from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 
 from ....nodes import ShaderText, Stage
-from ...glsl import COUNTER, MOST_ROUNDS, blanked, guarded, words
+from ...glsl import blanked, words
+from ...glsl.loops import COUNTER, MOST_ROUNDS, guarded
 from ..code import Code, CodeFault
 from .header import PICTURES, Header
 

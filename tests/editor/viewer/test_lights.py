@@ -89,7 +89,7 @@ def see(editor: Any, socket: str, *values: float) -> None:
     editor.probe = SimpleNamespace(pixel=lambda texture, x, y: values)
     editor.preview.shown = lambda name: SimpleNamespace(
         port=Port(source, socket), full_size=(400, 200), texture=SimpleNamespace(size=(400, 200)), channels=len(values),
-        key=f"{values}", revision=1,
+        key=f"{values}", revision=1, size=(400, 200), start=(0, 0),
     ) if known[name] == socket else None
 
 

@@ -90,7 +90,7 @@ def test_what_is_moved_stays_under_the_mouse(editor: Any, depth: float | None) -
     editor.probe = SimpleNamespace(pixel=lambda texture, x, y: (depth or 1e10,))
     editor.preview.shown = lambda name: SimpleNamespace(
         port=Port("scene", "depth"), full_size=(400, 200), texture=SimpleNamespace(size=(400, 200)), channels=1, key="",
-        revision=1,
+        revision=1, size=(400, 200), start=(0, 0),
     )
     place = unproject(before.camera(ASPECT), 0.25, 0.5, depth or before.distance)
     drag(editor, (200.0, 200.0), (360.0, 120.0), "track")

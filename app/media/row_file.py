@@ -1,0 +1,80 @@
+"""A large picture on its way out, written by rows from the top down."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import OpenImageIO as oiio
+
+from ...nodes import Kind, Size
+from ..errors import OutputError
+from .color import Array
+from .encoding import Encoding
+from .metadata import add_metadata
+from .store import reason_of, unfinished
+from .write import Precision, exr_parts
+
+
+class RowFile:
+    """An EXR of one layer of `size` and `kind`, the same that `write` makes of all rows together.
+
+    It is there when it is closed, and not before. Raises OutputError.
+    """
+
+    def __init__(
+        self, path: Path, size: Size, name: str, kind: Kind, *, precision: Precision, compression: str,
+        encoding: Encoding, metadata: Mapping[str, Any],
+    ) -> None:
+        self._path, self._size, self._name, self._kind, self._metadata = path, size, name, kind, metadata
+        self._precision: Precision = precision
+        self._compression, self._encoding = compression, encoding
+        self._output = _encoder(path)
+        self._row = 0
+        self._open = ExitStack()
+        self._part, self._target = self._open.enter_context(unfinished(path))
+
+    def add(self, rows: Array) -> None:
+        """Write the next rows: [rows, width, channels]."""
+        layers, kinds = {self._name: rows}, {self._name: self._kind}
+        (part,) = exr_parts(layers, kinds, self._precision, self._compression, self._encoding)
+        if not self._row:
+            part.spec.height = part.spec.full_height = self._size[1]
+            add_metadata(part.spec, self._metadata, "openexr")
+            self._check(self._output.open(str(self._part), part.spec))
+            self._open.callback(self._output.close)
+        end = self._row + len(rows)
+        self._check(self._output.write_scanlines(self._row, end, 0, part.array))
+        self._row = end
+
+    def close(self) -> None:
+        """Finish it and give it its name."""
+        try:
+            assert self._row == self._size[1], f"{self._size[1] - self._row} rows are missing"
+            self._check(self._output.close())
+            with self._part.open("r+b") as file:
+                os.fsync(file.fileno())
+            self._part.replace(self._target)
+        except OSError as error:
+            raise OutputError(f"{self._path}: cannot be written: {reason_of(error)}") from error
+        finally:
+            self.abort()
+
+    def abort(self) -> None:
+        """Leave nothing behind, unless it was closed."""
+        self._open.close()
+
+    def _check(self, done: bool) -> None:
+        if not done:
+            said = self._output.geterror().strip().splitlines()
+            raise OutputError(f"{self._path}: cannot be written: {said[0] if said else 'the encoder gave no reason'}")
+
+
+def _encoder(path: Path) -> oiio.ImageOutput:
+    made = oiio.ImageOutput.create("openexr")
+    if made is None:
+        raise OutputError(f"{path}: cannot be written: this OpenImageIO has no encoder for openexr")
+    return made

@@ -1,0 +1,94 @@
+"""What is hashed for the key of a picture decides its program and all numbers in it, and nothing else does."""
+
+from __future__ import annotations
+
+from random import Random
+
+from edited_graphs import edited
+from halation.app.compiler import NULL, Library, Picture, Request, installed, parse
+from halation.app.compiler.emit import emit
+from halation.app.compiler.fuse import fuse
+from halation.app.compiler.ir import Foreign, Raster
+from halation.app.compiler.keys import Marks
+from halation.app.compiler.lower import lower
+from halation.app.compiler.rewrites import rewritten
+from halation.app.compiler.schedule import formats
+from halation.app.errors import HalationError
+from halation.app.graph import Graph, Input, Output, Port
+from halation.nodes import Kind
+from halation.nodes.color.exposure import Exposure
+from halation.nodes.color.vignette import Vignette
+from headers import Headers
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from msgspec.structs import replace
+from random_graphs import random_graph
+
+SIZE = (37, 23)
+FORMS = (NULL, replace(NULL, form="fragment"), replace(NULL, software=False))
+
+
+def told(graph: Graph, target=NULL, library: Library | None = None, frame: int = 1, scale: float = 1.0) -> dict:
+    """By mark, the programs of all that passes make, each as if it were alone, and what they are set to."""
+    library, found = library or installed(), dict[str, set]()
+    bindings = {
+        name: Picture(name, "", item.kind, item.socket().channels, in_memory=True)
+        for name, item in graph.inputs.items() if item.default is None or not item.socket().single
+    }
+    try:
+        program = lower(graph, Request(bindings=bindings, frame=frame, scale=scale), library, Headers(SIZE)).program
+    except HalationError:
+        return {}
+    passes = rewritten(program, fuse(program, target), target, library)
+    texels = formats(program, passes, target, "half", frozenset())
+    marks = Marks(program, library, target, texels)
+    for fused in passes:
+        whole = emit(program, fused, library, target, texels)
+        for one, mark in marks.of(fused, whole):
+            root = program.ops[one.root]
+            alone = whole if one is fused else emit(program, one, library, target, texels)
+            drawn = root.mesh.digest if isinstance(root, Raster) else root.text if isinstance(root, Foreign) else ""
+            stored = tuple(texels[ref] for ref in (*one.reads, *one.writes))
+            found.setdefault(mark, set()).add(repr((alone.shader, alone.uniforms, alone.weights, drawn, stored)))
+    return found
+
+
+def check(*some: dict) -> None:
+    """Among all that was told, one mark is one program, and one program one mark."""
+    both: dict[str, set] = {}
+    for found in some:
+        for mark, programs in found.items():
+            both.setdefault(mark, set()).update(programs)
+    assert all(len(programs) == 1 for programs in both.values())
+    everything = [program for programs in both.values() for program in programs]
+    assert len(everything) == len({*everything})
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 10**6), st.sampled_from(FORMS))
+def test_marks_are_equal_where_programs_and_numbers_are(seed, target):
+    graph, rng = random_graph(seed), Random(seed)
+    graphs = [graph]
+    for _ in range(4):
+        graphs.append(edited(rng, graphs[-1]))
+    check(*(told(one, target) for one in graphs))
+    check(told(graph, target), told(graph, target, frame=7), told(graph, target, scale=0.5))
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(0, 10**6))
+def test_marks_know_nothing_of_other_graphs(seed):
+    check(told(random_graph(seed)), told(random_graph(seed + 1)), told(random_graph(seed, 3)))
+
+
+def test_a_shader_that_is_written_again_changes_what_it_makes_and_nothing_else():
+    graph = Graph().add_input("image", Input(Kind.IMAGE))
+    for name, node in (("exposure", Exposure(stops=1.0)), ("vignette", Vignette())):
+        graph = graph.add(name, node).connect(Port("inputs", "image"), Port(name, "image"))
+        graph = graph.add_output(name, Output(Kind.IMAGE)).connect(Port(name, "out"), Port("outputs", name))
+    library, name = installed(), Exposure().shader
+    source = f"{library.texts[name].body}\n".replace("exp2(", "exp(")
+    other = library.replacing(parse(name, source), "another")
+    before, after = told(graph), told(graph, library=other)
+    check(before, after)
+    assert len(before) == len(after) == 2 and len(before.keys() & after.keys()) == 1

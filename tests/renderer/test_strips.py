@@ -1,0 +1,62 @@
+"""Pictures that no memory holds go from file to file by rows: the same files, to the byte."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from halation.app.errors import HalationError, OutputError
+from halation.app.graph import Graph, Input, Output, Port
+from halation.app.media import row_file
+from halation.app.renderer import Renderer, Wanted, open_device
+from halation.app.renderer.job import Writing, run_job
+from halation.nodes import Kind, catalogue
+from oiio_pictures import stored
+
+NODES = catalogue()
+WIDTH, HEIGHT = 700, 900
+MEMORY = 5 * 2**20
+"""The picture, and what is made of it, are 10 MB each."""
+
+
+def blurred() -> Graph:
+    """A file through a blur and grain."""
+    graph = Graph().add_input("image", Input(Kind.IMAGE)).add("blur", NODES["gaussian_blur"](sigma=5.0))
+    graph = graph.add("grain", NODES["film_grain"]()).connect(Port("inputs", "image"), Port("blur", "image"))
+    graph = graph.connect(Port("blur", "out"), Port("grain", "image"))
+    return graph.add_output("image", Output()).connect(Port("grain", "out"), Port("outputs", "image"))
+
+
+@pytest.fixture
+def picture(tmp_path) -> str:
+    array = np.random.default_rng(5).gamma(0.6, 1.0, (HEIGHT, WIDTH, 4)).astype(np.float32)
+    array[100:140, 50] = np.nan
+    return stored(tmp_path / "in.exr", array, format="float")
+
+
+def written(folder: Path, picture: str, memory: int, **how) -> Path:
+    """The file that a job makes of it, with so much memory."""
+    renderer, file = Renderer(open_device("compute").within(memory), budget=0), folder / "out.exr"
+    try:
+        run_job(renderer, blurred(), Wanted({"image": picture}), Writing([("image", file)], **how))
+    finally:
+        renderer.close()
+    return file.rename(folder / f"{memory}.exr")
+
+
+@pytest.mark.parametrize("how", [{}, {"precision": "float", "compression": "piz"}, {"space": "ACEScg"}])
+def test_files_are_the_same_to_the_byte(tmp_path, picture, how):
+    whole, parts = (written(tmp_path, picture, memory, **how) for memory in (0, MEMORY))
+    assert whole.read_bytes() == parts.read_bytes()
+
+
+def test_what_is_not_finished_leaves_nothing_behind(tmp_path, picture, monkeypatch):
+    def full(*_: object) -> None:
+        raise OutputError("no room")
+
+    monkeypatch.setattr(row_file.RowFile, "add", full)
+    before = set(tmp_path.iterdir())
+    with pytest.raises(HalationError, match="no room"):
+        written(tmp_path, picture, MEMORY)
+    assert set(tmp_path.iterdir()) == before
