@@ -1,29 +1,28 @@
 """Graph in, plan out. Pure: no OpenGL, no files.
 
-Stages, each a function of what the one before made: `expand` flattens groups, `lower` turns nodes into operations,
-`fuse` groups operations into passes, `merge` makes one of passes that read the same, `emit` writes a GLSL program per
-pass, `schedule` finds formats, keys and slots.
+Stages are folders, each a function of what the one before made: `lowering` turns nodes into operations, `fusion` groups
+operations into passes, `shading` writes a GLSL program for a pass, `scheduling` finds formats, keys and slots, `parts`
+plans for a part of a picture, or by tiles. `planner` runs them and remembers what holds for the next plan.
 """
 
 from __future__ import annotations
 
 from ..glsl import parse
 from .areas import Region
-from .bodies import MAX_WEIGHTS
 from .explain import as_json, dot, explain
-from .ir import Held, Memory, Picture, Read, Ref
+from .ir import MAX_WEIGHTS, Held, Memory, Picture, Read, Ref
 from .library import Library, installed
-from .named import named_files
+from .lowering.named import named_files
+from .lowering.upstream import Upstream
 from .outside import Frame, Outside, Probed
+from .parts.tiles import Stage, Tiling
+from .parts.tiling import tile_plan
 from .plan import FIRST_TABLE, Pass, Plan, Shader, Surface, Upload
 from .planner import Planner, compile_graph, examine, graph_library
 from .raster import ATTRIBUTES, Mesh
 from .recolor import ColorProgram, Table
 from .request import Request
 from .target import NULL, Form, Precision, Target
-from .tiles import Stage, Tiling
-from .tiling import tile_plan
-from .upstream import Upstream
 from .working import Working, library_for
 
 __all__ = [

@@ -208,6 +208,13 @@ class Gather(Op, frozen=True):
         return (item.operand for item in self.accessors if isinstance(item.operand, Ref))
 
 
+MAX_WEIGHTS = 4096
+"""Floats in the uniform block of a convolution: GL promises 16 KB."""
+
+MAX_TAPS = MAX_WEIGHTS - 15
+"""Weights of a convolution: an odd number that leaves room for zeros past the last one, where eight pixels slide."""
+
+
 class Convolve(Op, frozen=True):
     """out[i] = sum over j of weights[j] * image[i * stride + origin + j], along one axis (0 is x)."""
 

@@ -11,11 +11,11 @@ from ...nodes import Camera, Size, Uniform
 from ..graph import Port
 from .areas import Region
 from .ir import Memory, Picture
+from .parts.tiles import Tiling
 from .raster import Mesh
 from .recolor import Table
 from .record import Record
 from .target import Form, Target
-from .tiles import Tiling
 
 Depth = Literal["f2", "f4"]
 FIRST_TABLE = 16

@@ -10,21 +10,21 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from ..graph import Graph, color_settings
-from .expand import written_texts
-from .fuse import fuse
+from .fusion.fuse import fuse
+from .fusion.rewrites import rewritten
 from .ir import Picture, Read
 from .library import Library, installed
-from .lower import lower
+from .lowering.expand import written_texts
+from .lowering.lower import lower
+from .lowering.relower import relower
+from .lowering.steps import Lowered
 from .outside import Outside
+from .parts.regions import focused
+from .parts.tiling import tile
 from .plan import Plan
-from .regions import focused
-from .relower import relower
 from .request import Request
-from .rewrites import rewritten
-from .schedule import Scheduled, formats, reschedule, schedule
-from .steps import Lowered
+from .scheduling.schedule import Scheduled, formats, reschedule, schedule
 from .target import NULL, Precision, Target
-from .tiling import tile
 from .working import library_for
 
 KEPT = 4

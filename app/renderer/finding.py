@@ -12,7 +12,7 @@ from msgspec import structs
 
 from ...nodes import Node
 from ...presets import paths as presets
-from ..compiler.named import CONFIG, path_texts
+from ..compiler.lowering.named import CONFIG, path_texts
 from ..errors import InputError, UsageError
 from ..graph import INPUTS, Graph, did_you_mean
 from ..graph.fence import outside

@@ -14,7 +14,7 @@ from msgspec import Struct, field
 
 from .. import media
 from ..compiler import Picture, Plan, named_files
-from ..compiler.named import CONFIG, path_texts
+from ..compiler.lowering.named import CONFIG, path_texts
 from ..errors import HalationError
 from ..graph import INPUTS, OUTPUTS, Graph
 from ..graph.frames import format_frames

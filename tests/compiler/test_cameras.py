@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from halation.app.compiler import Picture, Request
 from halation.app.compiler.library import Library, parse
-from halation.app.compiler.lower import lower
+from halation.app.compiler.lowering.lower import lower
 from halation.app.errors import GraphError
 from halation.app.graph import Graph, Group, Input, Output, Port
 from halation.nodes import Camera, Draw, Drawn, Field, Filter, Image, Kind, Viewpoint, look_at

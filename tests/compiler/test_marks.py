@@ -6,13 +6,13 @@ from random import Random
 
 from edited_graphs import edited
 from halation.app.compiler import NULL, Library, Picture, Request, installed, parse
-from halation.app.compiler.emit import emit
-from halation.app.compiler.fuse import fuse
+from halation.app.compiler.fusion.fuse import fuse
+from halation.app.compiler.fusion.rewrites import rewritten
 from halation.app.compiler.ir import Foreign, Raster
-from halation.app.compiler.keys import Marks
-from halation.app.compiler.lower import lower
-from halation.app.compiler.rewrites import rewritten
-from halation.app.compiler.schedule import formats
+from halation.app.compiler.lowering.lower import lower
+from halation.app.compiler.scheduling.keys import Marks
+from halation.app.compiler.scheduling.schedule import formats
+from halation.app.compiler.shading.emit import emit
 from halation.app.errors import HalationError
 from halation.app.graph import Graph, Input, Output, Port
 from halation.nodes import Kind

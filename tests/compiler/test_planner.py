@@ -12,11 +12,11 @@ import pytest
 from edited_graphs import edited, some_graph
 from halation.app.compiler import NULL, Picture, Planner, Probed, Region, Request, compile_graph
 from halation.app.compiler import planner as planning
-from halation.app.compiler.fuse import fuse
-from halation.app.compiler.lower import lower
-from halation.app.compiler.numbers import without
+from halation.app.compiler.fusion.fuse import fuse
+from halation.app.compiler.fusion.rewrites import rewritten
+from halation.app.compiler.lowering.lower import lower
 from halation.app.compiler.planner import KEPT, graph_library
-from halation.app.compiler.rewrites import rewritten
+from halation.app.compiler.scheduling.numbers import without
 from halation.app.errors import GraphError, HalationError
 from halation.app.graph import Control, Expression, Graph, Group, Input, Key, Keys, Output, Port, signature
 from halation.app.media.pictures import Pictures

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from halation.app import document
-from halation.app.compiler.named import path_texts
+from halation.app.compiler.lowering.named import path_texts
 from halation.app.graph.paths import inlined, rebased, repointed
 
 INNER = {

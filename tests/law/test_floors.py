@@ -22,6 +22,9 @@ FLOORS = (
 )
 """Parts of app from the ground up. `__init__` is the public face of the engine, so it stands on the renderer."""
 
+STAGES = ("lowering", "fusion", "shading", "scheduling", "parts")
+"""Folders of the compiler, first to last; what lies beside them is what all of them speak of, and the planner."""
+
 HOMES = {
     "moderngl": "renderer", "glcontext": "renderer",
     "OpenImageIO": "media", "PyOpenColorIO": "media",
@@ -89,6 +92,20 @@ def test_app_imports_only_lower_floors() -> None:
             if here not in FLOORS or there not in FLOORS or FLOORS.index(there) > FLOORS.index(here):
                 wrong.append(f"{name} imports {target}")
     assert not wrong
+
+
+def test_stages_of_the_compiler_import_only_earlier_ones() -> None:
+    def stage(name: str) -> int | None:
+        part = name.removeprefix("app.compiler.").split(".")[0]
+        return STAGES.index(part) if name.startswith("app.compiler.") and part in STAGES else None
+
+    wrong: list[str] = []
+    for name, target in links():
+        here, there = stage(name), stage(target)
+        if here is not None and there is not None and there > here:
+            wrong.append(f"{name} imports {target}")
+    assert not wrong
+    assert {stage(name) for name in MODULES} == {None, *range(len(STAGES))}
 
 
 def test_nodes_import_the_standard_library_and_themselves() -> None:

@@ -13,11 +13,11 @@ import pytest
 from conftest import graph_of
 from halation.app.compiler import Request, graph_library
 from halation.app.compiler.areas import Region
-from halation.app.compiler.fuse import fuse
+from halation.app.compiler.fusion.fuse import fuse
+from halation.app.compiler.fusion.rewrites import rewritten
 from halation.app.compiler.ir import Read
-from halation.app.compiler.lower import lower
-from halation.app.compiler.regions import needed
-from halation.app.compiler.rewrites import rewritten
+from halation.app.compiler.lowering.lower import lower
+from halation.app.compiler.parts.regions import needed
 from halation.app.media.pictures import Pictures
 from halation.app.renderer import Renderer, Wanted
 from halation.nodes import Kind, Node, Source, Temporal, catalogue, look_at

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from conftest import graph_of
 from halation.app import document
-from halation.app.compiler import Region, Request, examine, explain, tiling
+from halation.app.compiler import Region, Request, examine, explain
+from halation.app.compiler.parts import tiling
 from halation.app.errors import DeviceError
 from halation.app.graph import Graph, Input, Output, Port
 from halation.app.media.pictures import Pictures

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from ....nodes import ColorChange, ColorSettings, Kind, Missing, Render, Scene, Size
 from ...graph import Graph, Port
 from .. import graph_library
-from ..fuse import fuse
+from ..fusion.fuse import fuse
 from ..ir import Picture, Program, Read, Ref
-from ..lower import lower
+from ..lowering.lower import lower
 from ..outside import Frame, Outside, Probed
 from ..raster import Mesh
 from ..recolor import ColorProgram

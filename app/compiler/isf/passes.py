@@ -9,11 +9,11 @@ from msgspec import field
 
 from ....nodes import Uniform
 from ...glsl import Text, words
-from ..emit import Parts, around, macros_of, parts_of, texts_of
-from ..fuse import Fused
+from ..fusion.fuse import Fused
 from ..ir import Constant, Convolve, Foreign, Op, Program, Raster, Read, Ref
 from ..library import Library
-from ..names import Names, convert
+from ..shading.emit import Parts, around, macros_of, parts_of, texts_of
+from ..shading.names import Names, convert
 from .affine import literal
 
 _DEFINED = re.compile(r"\bstruct\s+(\w+)|^[ \t]*#[ \t]*define[ \t]+(\w+)", re.MULTILINE)

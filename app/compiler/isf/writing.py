@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from ....nodes import Size, Uniform
-from ..fuse import Fused, fuse
+from ..fusion.fuse import Fused, fuse
 from ..ir import Ref
 from ..library import Library
 from ..target import NULL

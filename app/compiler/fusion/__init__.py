@@ -1,0 +1,1 @@
+"""Operations become passes: which of them share one."""

@@ -1,0 +1,33 @@
+"""What all rewrites ask of a pass: whether a device can run it, and in what order it computes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from ..ir import Call, Op, Program, Ref
+from ..target import Target
+from .fuse import MAX_MEMBERS, MAX_UNIFORMS, Fused, count_tables, count_uniforms
+
+
+def fits(program: Program, one: Fused, target: Target) -> bool:
+    """True if a pass of pointwise operations is within the limits of a device, and still reads the fast way."""
+    reads, writes = len(one.reads), len(one.writes)
+    if target.loads_images and reads + writes > target.max_images:
+        return False
+    most = target.max_images if target.form == "compute" else target.max_targets
+    return (
+        reads + count_tables(program.ops, one.members) <= target.max_inputs and writes <= most
+        and len(one.members) <= MAX_MEMBERS
+        and sum(count_uniforms(program.ops[index]) for index in one.members) <= MAX_UNIFORMS
+    )
+
+
+def ordered(ops: tuple[Op, ...], *members: Iterable[int]) -> tuple[int, ...]:
+    """The operations of several passes as those of one. What looks around reads textures only, so it comes first."""
+    both = {index for some in members for index in some}
+    return tuple(sorted(both, key=lambda index: (isinstance(ops[index], Call), index)))
+
+
+def looks_around(ops: tuple[Op, ...], one: Fused, ref: Ref) -> bool:
+    """True if a pass reads more of a picture than its own pixel."""
+    return any(ref in ops[index].reads() for index in one.members if not isinstance(ops[index], Call))

@@ -1,0 +1,161 @@
+"""Passes of pointwise operations that read the same become one, which writes several pictures.
+
+A pass that reads, at its own pixel, what another one makes is computed right there: the picture is not loaded again,
+and not even stored if nobody else wants it. Two that read the same picture load it once. The later pass moves up to the
+earlier one if all that it reads is there by then; else the earlier one moves down, if nobody reads it before that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import islice
+
+from msgspec import Struct
+
+from ....nodes import Size
+from ..ir import Call, Gather, Program, Ref
+from ..library import Library
+from ..target import Target
+from .fuse import Fused, kept_refs
+from .limits import fits, looks_around, ordered
+
+MOST_TRIED = 4
+"""Passes that read a picture and are tried for another one that does, the latest: hundreds may read one file."""
+
+
+def merge(program: Program, passes: tuple[Fused, ...], target: Target, library: Library) -> tuple[Fused, ...]:
+    """Merge passes as far as `target` allows. They stay in an order in which each comes after what it reads."""
+    found = _Merging(program, passes, target).run()
+    return tuple(group.fused for group in found)
+
+
+def alone(program: Program, fused: Fused) -> tuple[Fused, ...]:
+    """What a pass writes, each operation's as the pass that would make nothing else; the pass itself if it is one."""
+    roots = tuple(dict.fromkeys(ref.op for ref in fused.writes))
+    return (fused,) if len(roots) == 1 else tuple(_behind(program, fused, root) for root in roots)
+
+
+def _behind(program: Program, fused: Fused, root: int) -> Fused:
+    """The part of a pass that an operation needs."""
+    needed, reads = {root}, set[Ref]()
+    for index in reversed(fused.members):
+        if index in needed:
+            found = set(program.ops[index].reads())
+            needed |= {ref.op for ref in found if ref not in fused.reads}
+            reads |= found
+    return Fused(
+        tuple(index for index in fused.members if index in needed), tuple(ref for ref in fused.reads if ref in reads),
+        tuple(ref for ref in fused.writes if ref.op == root),
+    )
+
+
+class _Group(Struct, frozen=True):
+    """Passes that are one. `place` says when it runs; what is not `open` is merged with nothing."""
+
+    place: int
+    members: tuple[int, ...]
+    reads: dict[Ref, None]
+    writes: dict[Ref, None]
+    size: Size
+    open: bool
+
+    @property
+    def fused(self) -> Fused:
+        return Fused(self.members, tuple(self.reads), tuple(self.writes))
+
+
+class _Merging:
+    """The work in progress: who makes and who reads each picture, by the numbers of groups."""
+
+    def __init__(self, program: Program, passes: tuple[Fused, ...], target: Target) -> None:
+        self.program, self.ops, self.target = program, program.ops, target
+        self.kept = frozenset(kept_refs(program))
+        self.groups: dict[int, _Group] = {}
+        self.maker: dict[Ref, int] = {}
+        self.readers: dict[Ref, dict[int, None]] = {}
+        self.met: dict[Ref, dict[int, None]] = {}
+        """Of the readers, those that were looked at."""
+        for place, one in enumerate(passes):
+            size, reads, writes = self.ops[one.root].size, dict.fromkeys(one.reads), dict.fromkeys(one.writes)
+            self._enter(place, _Group(place, one.members, reads, writes, size, self._is_open(one)))
+
+    def run(self) -> list[_Group]:
+        for number in list(self.groups):
+            while number >= 0:
+                for ref in self.groups[number].reads:
+                    self.met.setdefault(ref, {})[number] = None
+                number = self._widened(number)
+        return sorted(self.groups.values(), key=lambda group: group.place)
+
+    def _is_open(self, one: Fused) -> bool:
+        """True for what makes each pixel of its own: pointwise operations, and what looks around and is light."""
+        root = self.ops[one.root]
+        if not isinstance(root, Call) and not (isinstance(root, Gather) and root.light):
+            return False
+        return all(self.program.shape(ref).size == root.size for ref in one.writes)
+
+    def _enter(self, number: int, group: _Group) -> None:
+        self.groups[number] = group
+        self.maker |= dict.fromkeys(group.writes, number)
+        for ref in group.reads:
+            self.readers.setdefault(ref, {})[number] = None
+
+    def _leave(self, number: int) -> None:
+        group = self.groups.pop(number)
+        for ref in group.reads:
+            del self.readers[ref][number]
+            self.met[ref].pop(number, None)
+
+    def _widened(self, number: int) -> int:
+        """Merge a group with another one; the number of what they became, or -1 if there is none."""
+        for other in dict.fromkeys(self._partners(number)):
+            first, last = sorted((number, other), key=lambda one: self.groups[one].place)
+            both = self._both(first, last)
+            if both and fits(self.program, both.fused, self.target):
+                self._leave(first)
+                self._leave(last)
+                self._enter(last, both)
+                return last
+        return -1
+
+    def _partners(self, number: int) -> Iterator[int]:
+        """Groups that share pictures with one and were looked at: those that make them, then those that read them."""
+        group = self.groups[number]
+        if not group.open:
+            return
+        for ref in reversed(group.reads):
+            if ref in self.maker and self._alike(group, self.maker[ref]):
+                yield self.maker[ref]
+        for ref in group.reads:
+            if self.program.shape(ref).size == group.size:
+                latest = islice(reversed(self.met[ref]), MOST_TRIED)
+                yield from (other for other in latest if other != number and self._alike(group, other))
+
+    def _alike(self, group: _Group, other: int) -> bool:
+        return self.groups[other].open and self.groups[other].size == group.size
+
+    def _both(self, first: int, last: int) -> _Group | None:
+        """Two groups as one, if there is a place where it can run."""
+        early, late = self.groups[first], self.groups[last]
+        place = self._place(first, last)
+        if place < 0 or any(looks_around(self.ops, late.fused, ref) for ref in early.writes if ref in late.reads):
+            return None
+        members = ordered(self.ops, early.members, late.members)
+        if not isinstance(self.ops[members[-1]], Call):
+            return None
+        reads = dict.fromkeys(ref for ref in (*early.reads, *late.reads) if ref not in early.writes)
+        writes = dict.fromkeys(ref for ref in (*early.writes, *late.writes) if self._is_wanted(ref, first, last))
+        return _Group(place, members, reads, writes, early.size, True)
+
+    def _is_wanted(self, ref: Ref, *but: int) -> bool:
+        """True if others than these groups want a picture."""
+        return ref in self.kept or any(one not in but for one in self.readers.get(ref, ()))
+
+    def _place(self, first: int, last: int) -> int:
+        """Where two groups can run as one; -1 if nowhere."""
+        early, late = self.groups[first], self.groups[last]
+        makers = (self.maker[ref] for ref in late.reads if ref in self.maker)
+        if all(one == first or self.groups[one].place < early.place for one in makers):
+            return early.place
+        readers = (one for ref in early.writes for one in self.readers.get(ref, ()) if one != last)
+        return late.place if all(self.groups[one].place > late.place for one in readers) else -1

@@ -1,0 +1,63 @@
+"""What is cheap and pointwise is computed by each pass that reads it, rather than stored for all of them."""
+
+from __future__ import annotations
+
+from ..ir import Call, Program, Reduce, Ref
+from ..library import Library
+from ..target import Target
+from .fuse import Fused, kept_refs
+from .limits import fits, looks_around, ordered
+
+MOST_READERS = 3
+MOST_AGAIN = 4
+"""Operations that are computed again, at most."""
+
+STORE = 4
+"""A picture that is stored takes as long as so many that are read: measured on the software rasterizer."""
+
+
+def recompute(program: Program, passes: tuple[Fused, ...], target: Target, library: Library) -> tuple[Fused, ...]:
+    """Leave out passes whose readers can do their work, where that costs fewer reads than it saves."""
+    kept = frozenset(kept_refs(program))
+    found = dict(enumerate(passes))
+    readers: dict[Ref, dict[int, None]] = {}
+    for number, one in found.items():
+        for ref in one.reads:
+            readers.setdefault(ref, {})[number] = None
+    for number in range(len(passes)):
+        one = found[number]
+        if len(one.writes) != 1 or one.writes[0] in kept or not _is_cheap(program, one, library):
+            continue
+        asking = {reader: found[reader] for reader in readers[one.writes[0]]}
+        if len(asking) > MOST_READERS or not all(_takes(program, reader, one.writes[0]) for reader in asking.values()):
+            continue
+        made = {at: _with(program, one, reader) for at, reader in asking.items()}
+        more = sum(len(made[at].reads) - len(reader.reads) for at, reader in asking.items())
+        if more >= STORE + len(one.reads) or not all(fits(program, reader, target) for reader in made.values()):
+            continue
+        found |= made
+        del found[number]
+        for read in one.reads:
+            readers[read] = {at: None for at in (*readers[read], *made) if at != number}
+    return tuple(found.values())
+
+
+def _is_cheap(program: Program, one: Fused, library: Library) -> bool:
+    ops = [program.ops[index] for index in one.members]
+    return len(ops) <= MOST_AGAIN and all(
+        isinstance(op, Call) and not op.program and library.cheap(op.shader, op.function, op.owner) for op in ops
+    )
+
+
+def _takes(program: Program, reader: Fused, ref: Ref) -> bool:
+    """True if a pass wants each pixel of a picture for one of its own, and can compute it there."""
+    root, size = program.ops[reader.root], program.shape(ref).size
+    if isinstance(root, Reduce):
+        return size == program.shape(root.image).size
+    return isinstance(root, Call) and size == root.size and not looks_around(program.ops, reader, ref)
+
+
+def _with(program: Program, one: Fused, reader: Fused) -> Fused:
+    """A pass that also does the work of one that it reads."""
+    reads = dict.fromkeys((*(ref for ref in reader.reads if ref not in one.writes), *one.reads))
+    return Fused((*ordered(program.ops, one.members, reader.members[:-1]), reader.root), tuple(reads), reader.writes)

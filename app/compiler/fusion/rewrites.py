@@ -1,0 +1,25 @@
+"""What is done to passes once operations are fused: each a function of passes that gives passes for the same pixels.
+
+They are never undone by each other: what is computed again is not stored, so only what is stored is merged.
+"""
+
+from __future__ import annotations
+
+from ..ir import Program
+from ..library import Library
+from ..target import Target
+from .fuse import Fused
+from .merge import alone, merge
+from .recompute import recompute
+
+__all__ = ["REWRITES", "alone", "rewritten"]
+
+REWRITES = (recompute, merge)
+"""In this order."""
+
+
+def rewritten(program: Program, passes: tuple[Fused, ...], target: Target, library: Library) -> tuple[Fused, ...]:
+    """Fewer passes, or such that read and write less."""
+    for rewrite in REWRITES:
+        passes = rewrite(program, passes, target, library)
+    return passes

@@ -1,0 +1,393 @@
+"""What a filter's `passes` is handed: it turns draws into operations."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from hashlib import blake2b
+from types import MappingProxyType
+from typing import Literal
+
+from msgspec import Struct, field
+
+from ....nodes import (
+    Affine,
+    Argument,
+    Camera,
+    ColorChange,
+    Drawn,
+    Edge,
+    Filter,
+    Image,
+    Kernel,
+    Kind,
+    Motion,
+    Node,
+    Overlap,
+    Pixels,
+    Plain,
+    Reach,
+    Render,
+    Scene,
+    ShaderText,
+    Size,
+    Socket,
+    Uniform,
+    Viewpoint,
+    glsl_type,
+)
+from ...errors import ShaderError
+from ...glsl import Function
+from ..areas import Around
+from ..ir import (
+    BLOCK,
+    MAX_TAPS,
+    Accessor,
+    Builder,
+    Call,
+    Choice,
+    Constant,
+    Convolve,
+    Foreign,
+    Gather,
+    History,
+    Memory,
+    Operand,
+    Parameter,
+    Picture,
+    Raster,
+    Read,
+    Reduce,
+    Ref,
+    Shape,
+)
+from ..library import Library
+from ..raster import CHANNELS, Mesh
+from ..recolor import ColorProgram
+from . import fourier, gaussian, transforms
+
+
+class Made(Struct, frozen=True):
+    """A draw's result: the `Drawn` that a node sees."""
+
+    ref: Ref
+    shape: Shape
+
+    @property
+    def size(self) -> Size:
+        return self.shape.size
+
+
+class Fed(Struct, frozen=True):
+    """A node at a frame, and what it reads: inputs and wired values by name, and inputs at the frames it looks at."""
+
+    path: str
+    frame: int
+    node: Node
+    inputs: dict[str, Operand] = field(default_factory=dict[str, Operand])
+    wires: dict[str, Operand] = field(default_factory=dict[str, Operand])
+    others: dict[tuple[str, int], Operand] = field(default_factory=dict[tuple[str, int], Operand])
+    linked: set[str] = field(default_factory=set[str])
+
+
+class Files(Struct, frozen=True):
+    """What a node names beyond the graph: pixels, changes of color, triangles, and what a render holds."""
+
+    read: Callable[[Picture], Ref]
+    recolor: Callable[[ColorChange], ColorProgram]
+    mesh: Callable[[Scene], Mesh]
+    render: Callable[[str, Mapping[str, str]], Render]
+    asset: Callable[[Picture], Ref]
+
+
+class Recorder:
+    """Implements `Draw` for one node, which is `fed`."""
+
+    def __init__(
+        self, fed: Fed, node: Filter, size: Size, builder: Builder, library: Library, files: Files,
+        memories: Mapping[str, Memory], rate: float, start: int,
+    ) -> None:
+        self.size, self.rate, self.start = size, rate, start
+        self.timed = False
+        """Whether the node asked for the frame."""
+        self._owner, self._fed, self._node = fed.path, fed, node
+        self._builder, self._library, self._files = builder, library, files
+        self._memories = memories
+        self._shader = node.shader
+        self.remembered: dict[str, Ref] = {}
+
+    @property
+    def frame(self) -> int:
+        self.timed = True
+        return self._fed.frame
+
+    def size_of(self, pixels: Pixels) -> Size:
+        operand = self._operand(pixels)
+        return self._builder.shape(operand).size if isinstance(operand, Ref) else (1, 1)
+
+    def linked(self, socket: Socket) -> bool:
+        return socket.name in self._fed.linked
+
+    def camera(self, socket: Viewpoint, frame: int | None = None) -> Camera | None:
+        operand = self._operand(socket) if frame is None else self._at(socket, frame)
+        assert isinstance(operand, Constant)
+        rows = operand.value
+        return Camera(rows) if isinstance(rows, tuple) and any(rows) else None
+
+    def at(self, socket: Socket, frame: int) -> Drawn:
+        operand = self._at(socket, frame)
+        if isinstance(operand, Ref):
+            return Made(operand, self._builder.shape(operand))
+        shape, parameters = self._shape(socket, self.size), (Parameter(socket.glsl, operand),)
+        return self._made(Call((shape,), self._owner, "primitive/convert", f"as_{socket.glsl}", parameters))
+
+    def __call__(
+        self, function: str, /, *inputs: Socket, size: Size | None = None, edge: Edge = "clamp",
+        result: Socket | None = None, overlap: Overlap | Mapping[str, Overlap] | None = None, **arguments: Argument,
+    ) -> Drawn:
+        light = self._library.light(self._shader, function, self._owner)
+        shapes = (self._shape(result, size or self.size),)
+        op = self._gather(function, {item.name: item for item in inputs} | arguments, shapes, edge, overlap, light)
+        return self._made(op)
+
+    def several(
+        self, function: str, results: tuple[Socket, ...], /, *inputs: Socket, size: Size | None = None,
+        edge: Edge = "clamp", overlap: Overlap | Mapping[str, Overlap] | None = None, **arguments: Argument,
+    ) -> tuple[Drawn, ...]:
+        shapes = tuple(self._shape(result, size or self.size) for result in results)
+        given = [glsl for glsl, _ in self._library.function(self._shader, function, self._owner).outputs]
+        wanted = [result.glsl for result in results]
+        if given != wanted:
+            fault = f"'{function}' makes ({', '.join(given)}) but is drawn for ({', '.join(wanted)})"
+            raise ShaderError(self._owner, self._library.file(self._shader), 1, fault)
+        op = self._gather(function, {item.name: item for item in inputs} | arguments, shapes, edge, overlap, False)
+        first = self._builder.add(op)
+        return tuple(Made(Ref(first.op, number), shape) for number, shape in enumerate(shapes))
+
+    def _gather(
+        self, function: str, named: Mapping[str, Argument], shapes: tuple[Shape, ...], edge: Edge,
+        overlap: Overlap | Mapping[str, Overlap] | None, light: bool,
+    ) -> Gather:
+        overlaps = overlap if isinstance(overlap, Mapping) else dict.fromkeys(named, overlap)
+        accessors: list[Accessor] = []
+        rest: dict[str, Argument] = {}
+        for name, item in named.items():
+            if isinstance(item, (Socket, Made)):
+                operand = self._operand(item)
+                channels = item.channels if isinstance(item, Socket) else item.shape.channels
+                around = self._around(operand, shapes[0].size, overlaps.get(name))
+                accessors.append(Accessor(name, glsl_type(channels), operand, around))
+            else:
+                rest[name] = item
+        parameters = self._parameters(self._library.function(self._shader, function, self._owner), rest)
+        return Gather(
+            shapes, self._owner, self._shader, function, tuple(accessors), parameters, edge, choices(self._node),
+            light=light,
+        )
+
+    def point(self, function: str, /, *inputs: Socket, result: Socket | None = None, **arguments: Argument) -> Drawn:
+        signature = self._library.function(self._shader, function, self._owner)
+        named: dict[str, Argument] = {item.name: item for item in inputs} | arguments
+        sizes = [self.size_of(item) for item in named.values() if isinstance(item, (Socket, Made))]
+        size = next((found for found in sizes if found != (1, 1)), (1, 1) if sizes else self.size)
+        return self._made(
+            Call(
+                (self._shape(result, size),), self._owner, self._shader, function,
+                self._parameters(signature, named), choices(self._node),
+            )
+        )
+
+    def program(
+        self, text: ShaderText, pictures: Mapping[str, Drawn], uniforms: Mapping[str, Uniform], *,
+        size: Size | None = None, result: Socket | None = None,
+    ) -> Drawn:
+        samplers = tuple((name, self._pixels(item).ref) for name, item in pictures.items())
+        values = tuple((name, Constant(value)) for name, value in uniforms.items())
+        return self._made(Foreign((self._shape(result, size or self.size),), self._owner, text, samplers, values))
+
+    def blur(self, image: Pixels, sigma: float | tuple[float, float], edge: Edge = "clamp") -> Drawn:
+        sigmas = sigma if isinstance(sigma, tuple) else (sigma, sigma)
+        return self._blurred(image, [gaussian.plan_axis(max(0.0, one)) for one in sigmas], edge)
+
+    def spread(self, image: Pixels, weights: tuple[float, ...], edge: Edge = "clamp") -> Drawn:
+        return self._blurred(image, [gaussian.plan_weights(weights)] * 2, edge)
+
+    def convolve(
+        self, image: Pixels, weights: tuple[float, ...], axis: Literal["x", "y"], edge: Edge = "clamp"
+    ) -> Drawn:
+        made = self._pixels(image)
+        if len(weights) % 2 == 0 or len(weights) > MAX_TAPS:
+            fault = f"a convolution takes an odd number of weights up to {MAX_TAPS}, not {len(weights)}"
+            raise ShaderError(self._owner, f"nodes/{self._shader}.py", 1, fault)
+        along = 0 if axis == "x" else 1
+        return self._convolve(made, along, weights, 1, -(len(weights) // 2), edge, made.size[along])
+
+    def convolve_2d(self, image: Pixels, kernel: Pixels) -> Drawn:
+        picture, spread = self._pixels(image), self._pixels(kernel)
+        ref = fourier.convolution(self._builder, picture.ref, spread.ref, self._owner)
+        return Made(ref, self._builder.shape(ref))
+
+    def recolor(self, image: Pixels, change: ColorChange) -> Drawn:
+        made, program = self._pixels(image), self._files.recolor(change)
+        color = (Parameter("vec4", made.ref),)
+        return self._made(Call((made.shape,), self._owner, program.text.name, program.function, color, (), program))
+
+    def place(self, image: Pixels, matrix: Affine, kernel: Kernel, edge: Edge = "black") -> Drawn:
+        source = self._pixels(image).ref
+        shape = self._shape(None, self.size)
+        ref = transforms.place(self._builder, source, self._owner, shape, matrix, kernel, edge)
+        return Made(ref, shape)
+
+    def raster(
+        self, scene: Scene, motions: tuple[Motion, Motion, Motion], cameras: tuple[Camera, Camera, Camera], near: float
+    ) -> Mapping[str, Drawn]:
+        shapes = tuple(Shape(self.size, channels, data) for channels, data, _ in CHANNELS.values())
+        rows = tuple(part for camera in cameras for part in camera.rows)
+        moved = tuple(part for motion in motions for part in motion)
+        op = Raster(shapes, self._owner, self._files.mesh(scene), rows, moved, near)
+        first = self._builder.add(op)
+        return {name: Made(Ref(first.op, at), shapes[at]) for at, name in enumerate(CHANNELS)}
+
+    def reduce(self, image: Pixels, operation: Literal["sum", "max"]) -> Drawn:
+        made = self._pixels(image)
+        while made.size != (1, 1):
+            size = (math.ceil(made.size[0] / BLOCK), math.ceil(made.size[1] / BLOCK))
+            shape = Shape(size, made.shape.channels, data=True)
+            made = self._made(Reduce((shape,), self._owner, made.ref, operation))
+        return made
+
+    def history(self, first: Pixels, name: str = "") -> Drawn:
+        made, memory = self._pixels(first), self._memories.get(name)
+        # A memory of another size is of another picture.
+        if memory is None or memory.shape != made.shape:
+            return made
+        return Made(self._builder.add(History((made.shape,), self._owner, memory.key, memory.half)), made.shape)
+
+    def remember(self, pixels: Drawn, name: str = "") -> None:
+        assert isinstance(pixels, Made)
+        self.remembered[name] = pixels.ref
+
+    def table(self, numbers: tuple[float, ...], width: int) -> Drawn:
+        rows = max(1, -(-len(numbers) // (4 * width)))
+        filled = numbers + (0.0,) * (4 * width * rows - len(numbers))
+        table = tuple(
+            tuple(filled[at : at + 4] for at in range(row, row + 4 * width, 4))
+            for row in range(0, len(filled), 4 * width)
+        )
+        shape = Shape((width, rows), 4, data=True)
+        picture = Picture("numbers", "", Kind.VECTOR, 4, in_memory=True, pixels=table)
+        return self._made(Read((shape,), self._owner, picture, blake2b(repr(table).encode()).hexdigest(), half=False))
+
+    def render(self, path: str, named: Mapping[str, str] = MappingProxyType({})) -> Render:
+        return self._files.render(path, named)
+
+    def read(self, path: str, layer: str, result: Socket, space: str = "") -> Drawn:
+        ref = self._files.read(Picture(path, layer, result.kind, result.channels, space=space))
+        return Made(ref, self._builder.shape(ref))
+
+    def asset(self, path: str, folder: str) -> Drawn:
+        ref = self._files.asset(Picture(path, "", Kind.IMAGE, 4, within=folder))
+        return Made(ref, self._builder.shape(ref))
+
+    # --- parts ---------------------------------------------------------------------------------------------------
+
+    def _made(self, op: Call | Foreign | Gather | Convolve | Read | Reduce) -> Made:
+        return Made(self._builder.add(op), op.shapes[0])
+
+    def _shape(self, result: Socket | None, size: Size) -> Shape:
+        socket = result or Image()
+        return Shape((1, 1) if socket.single else size, socket.channels, socket.kind is not Kind.IMAGE)
+
+    def _around(self, operand: Operand, own: Size, overlap: Overlap | None) -> Around | None:
+        """Where a function reads a picture that has this overlap."""
+        if overlap is None or isinstance(operand, Constant):
+            return None
+        if isinstance(overlap, Reach):
+            return Around(overlap.matrix, overlap.radius)
+        radius = overlap if isinstance(overlap, tuple) else (overlap, overlap)
+        return Around.pixel(own, self._builder.shape(operand).size, radius)
+
+    def _operand(self, item: Pixels) -> Ref | Constant:
+        if isinstance(item, Socket):
+            return self._fed.inputs[item.name]
+        assert isinstance(item, Made)
+        return item.ref
+
+    def _at(self, socket: Socket, frame: int) -> Operand:
+        return self._fed.others.get((socket.name, frame)) or self._fed.inputs[socket.name]
+
+    def _pixels(self, item: Pixels) -> Made:
+        operand = self._operand(item)
+        if isinstance(operand, Constant):
+            raise ShaderError(self._owner, f"nodes/{self._shader}.py", 1, "a constant input cannot be filtered")
+        return Made(operand, self._builder.shape(operand))
+
+    def _parameters(self, signature: Function, arguments: Mapping[str, Argument]) -> tuple[Parameter, ...]:
+        names = tuple(name for _, name in signature.parameters)
+        if names != tuple(arguments):
+            raise ShaderError(
+                self._owner, self._library.file(self._shader), 1,
+                f"'{signature.name}' takes ({', '.join(names)}) but is drawn with ({', '.join(arguments)})",
+            )
+        found: list[Parameter] = []
+        for (glsl, name), item in zip(signature.parameters, arguments.values(), strict=True):
+            if isinstance(item, str):
+                operand = Choice(self._node.values[name].choices.index(item))
+            elif isinstance(item, (Socket, Made)):
+                operand = self._operand(item)
+            else:
+                assert isinstance(item, (float, int, tuple))
+                operand = Constant(_plain(item))
+            found.append(Parameter(glsl, operand))
+        return tuple(found)
+
+    def _blurred(self, image: Pixels, axes: Sequence[gaussian.Axis], edge: Edge) -> Made:
+        made = self._pixels(image)
+        full = made.size
+        firsts = [0, 0]
+        spans = [gaussian.spans(plan, length, edge) for plan, length in zip(axes, full, strict=True)]
+        for axis, plan in enumerate(axes):
+            for step, (first, length) in zip(plan.steps, spans[axis][0], strict=True):
+                weights, start = gaussian.decimation(step)
+                made = self._convolve(made, axis, weights, step, first * step + start - firsts[axis], edge, length)
+                firsts[axis] = first
+        for axis, plan in enumerate(axes):
+            if plan.weights:
+                origin = -(len(plan.weights) // 2)
+                made = self._convolve(made, axis, plan.weights, 1, origin, spans[axis][1], made.size[axis])
+        for axis, plan in reversed(list(enumerate(axes))):
+            if plan.factor > 1:
+                apron = -firsts[axis] * plan.factor
+                made = self._enlarge(made, axis, plan.factor, apron, full[axis], spans[axis][1])
+        return made
+
+    def _convolve(
+        self, made: Made, axis: int, weights: tuple[float, ...], stride: int, origin: int, edge: Edge, length: int
+    ) -> Made:
+        size = (length, made.size[1]) if axis == 0 else (made.size[0], length)
+        shape = Shape(size, made.shape.channels, made.shape.data)
+        return self._made(Convolve((shape,), self._owner, made.ref, axis, weights, stride, origin, edge))
+
+    def _enlarge(self, made: Made, axis: int, factor: int, apron: int, length: int, edge: Edge) -> Made:
+        size = (length, made.size[1]) if axis == 0 else (made.size[0], length)
+        shape = Shape(size, made.shape.channels, made.shape.data)
+        part, start = 1.0 / factor, apron / factor
+        matrix = (part, 0.0, start, 0.0, 1.0, 0.0) if axis == 0 else (1.0, 0.0, 0.0, 0.0, part, start)
+        around = Around(matrix, (2.0, 0.0) if axis == 0 else (0.0, 2.0))
+        accessor = Accessor("image", "vec4", made.ref, around)
+        numbers = tuple(Parameter("int", Constant(value)) for value in (axis, factor, apron))
+        enlarge = ("primitive/enlarge", "enlarge")
+        light = self._library.light(*enlarge, self._owner)
+        return self._made(Gather((shape,), self._owner, *enlarge, (accessor,), numbers, edge, light=light))
+
+
+def choices(node: Node) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """The choices of a node by value: its GLSL file sees them as macros."""
+    return tuple((name, value.choices) for name, value in node.values.items() if value.choices)
+
+
+def _plain(item: Plain) -> float | int | bool | tuple[float, ...]:
+    assert not isinstance(item, str)
+    return item
+
+

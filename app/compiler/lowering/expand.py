@@ -1,0 +1,181 @@
+"""Groups become their bodies: nested graphs in, one flat graph with paths for names out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from itertools import chain
+from typing import Any
+
+from msgspec import Struct, field
+
+from ....nodes import Node, Socket
+from ...errors import GraphError
+from ...glsl import Text
+from ...graph import INPUTS, OUTPUTS, Graph, Group, Input, Port, Unknown, conversion
+from ...written import Written
+
+MAX_DEPTH = 32
+
+
+class Flat(Struct):
+    """A graph without groups. Node names are paths such as `glow/bloom`; an input's node is `<path>/inputs`."""
+
+    nodes: dict[str, Node] = field(default_factory=dict[str, Node])
+    links: dict[Port, Port] = field(default_factory=dict[Port, Port])
+    inputs: dict[Port, Input] = field(default_factory=dict[Port, Input])
+    muted: set[str] = field(default_factory=set[str])
+    unknown: dict[str, Unknown] = field(default_factory=dict[str, Unknown])
+    faults: dict[Port, str] = field(default_factory=dict[Port, str])
+    """Why links cannot be, by target: said when something follows one."""
+    folders: dict[str, str] = field(default_factory=dict[str, str])
+
+    def source(self, port: Port) -> Port | None:
+        """What is linked to an input, followed through the ends of groups to a node or a graph input."""
+        if port not in self.links:
+            return None
+        found, seen = port, set[Port]()
+        while found in self.links:
+            if found in self.faults:
+                raise GraphError(self.faults[found], node=found.node)
+            if found in seen:
+                group = found.node.rpartition("/")[0]
+                raise GraphError(f"group '{group}' feeds itself: cut one link of the loop", node=group)
+            seen.add(found)
+            found = self.links[found]
+        return found
+
+    def behind(self, end: Port) -> Port:
+        """`source` without any check, for what has been followed before; the end itself if nothing feeds it."""
+        for _ in range(len(self.links)):
+            if end not in self.links:
+                break
+            end = self.links[end]
+        return end
+
+
+def stand_in(output: Socket, inputs: Mapping[str, Socket]) -> str | None:
+    """The input that an output of a muted node or group shows: the first of its type, else one that fits."""
+    same = (name for name, socket in inputs.items() if (socket.kind, socket.channels) == (output.kind, output.channels))
+    fitting = (name for name, socket in inputs.items() if conversion(socket, output) is None)
+    return next(chain(same, fitting), None)
+
+
+def nothing(socket: Socket) -> float | tuple[float, ...]:
+    """Zero in every channel: what a muted output shows that no input can stand in for."""
+    return 0.0 if socket.channels == 1 else (0.0,) * socket.channels
+
+
+def expand(graph: Graph) -> Flat:
+    """Expand every group of `graph`. A group's unlinked input keeps its own default file."""
+    flat = Flat()
+    # Depth first without recursion: groups may nest deeper than we would like to recurse through.
+    todo: list[tuple[str, Graph, Mapping[str, Any]]] = [("", graph, {})]
+    while todo:
+        prefix, body, values = todo.pop()
+        if prefix.count("/") > MAX_DEPTH:
+            group = prefix.rstrip("/")
+            fault = f"group '{group}': groups nest deeper than {MAX_DEPTH}; flatten some of them"
+            raise GraphError(fault, node=group)
+        body = _with_controls(body, values)
+        flat.folders[prefix] = body.folder
+        for name, socket in body.inputs.items():
+            flat.inputs[Port(prefix + INPUTS, name)] = socket
+        for name, item in body.nodes.items():
+            path = prefix + name
+            if isinstance(item, Group) and name in body.muted:
+                _mute(flat, path + "/", item.graph)
+            elif isinstance(item, Group):
+                todo.append((path + "/", item.graph, item.values))
+            elif isinstance(item, Unknown):
+                flat.unknown[path] = item
+            else:
+                flat.nodes[path] = item
+                flat.folders[path] = body.folder
+                if name in body.muted:
+                    flat.muted.add(path)
+        for target, source in body.links.items():
+            inward = _inward(body, prefix, target)
+            flat.links[inward] = _outward(body, prefix, source)
+            if fault := body.link_fault(source, target):
+                where = f"in group '{prefix.rstrip('/')}': " if prefix else ""
+                flat.faults[inward] = f"{where}'{source}' cannot feed '{target}': {fault}"
+    return flat
+
+
+def changed_nodes(before: Graph, after: Graph, prefix: str = "") -> dict[str, Node] | None:
+    """The nodes that have other values, by path, if two graphs differ in nothing else that matters; else None."""
+    parts = ("links", "inputs", "outputs", "controls", "muted", "settings")
+    same = all(getattr(before, part) is getattr(after, part) for part in parts) and before.folder == after.folder
+    moves = before.animation is not after.animation and (before.animation or after.animation)
+    if not same or moves or [*before.nodes] != [*after.nodes]:
+        return None
+    found: dict[str, Node] = {}
+    for id, item in after.nodes.items():
+        old = before.nodes[id]
+        if item is old:
+            continue
+        if isinstance(item, Node) and type(item) is type(old):
+            found[prefix + id] = item
+        elif isinstance(item, Group) and isinstance(old, Group) and id not in after.muted:
+            try:
+                bodies = [_with_controls(group.graph, group.values) for group in (old, item)]
+                inner = changed_nodes(bodies[0], bodies[1], f"{prefix}{id}/")
+            except GraphError:
+                return None
+            if inner is None:
+                return None
+            found |= inner
+        else:
+            return None
+    return found
+
+
+def _with_controls(body: Graph, values: Mapping[str, Any]) -> Graph:
+    """The body of a group, its controls set."""
+    for name, value in values.items():
+        body = body.set_control(name, value)
+    return body
+
+
+def _inward(body: Graph, prefix: str, target: Port) -> Port:
+    """A link into a group ends at the group's own input, or at what its control turns."""
+    item = body.nodes.get(target.node)
+    while isinstance(item, Group):
+        prefix += target.node + "/"
+        if target.socket in item.graph.inputs:
+            return Port(prefix + INPUTS, target.socket)
+        control = item.graph.controls.get(target.socket)
+        if control is None:
+            break
+        target, item = control.target, item.graph.nodes.get(control.target.node)
+    return Port(prefix + target.node, target.socket)
+
+
+def _outward(body: Graph, prefix: str, source: Port) -> Port:
+    """A link out of a group starts at the group's own output."""
+    if isinstance(body.nodes.get(source.node), Group):
+        return Port(f"{prefix}{source.node}/{OUTPUTS}", source.socket)
+    return Port(prefix + source.node, source.socket)
+
+
+def _mute(flat: Flat, prefix: str, body: Graph) -> None:
+    """A muted group passes its inputs to its outputs, whatever is inside."""
+    flat.folders[prefix] = body.folder
+    inputs = {name: end.socket(name) for name, end in body.inputs.items()}
+    for name, end in body.inputs.items():
+        flat.inputs[Port(prefix + INPUTS, name)] = end
+    for name, end in body.outputs.items():
+        shown, port = stand_in(end.socket(name), inputs), Port(prefix + OUTPUTS, name)
+        if shown is not None:
+            flat.links[port] = Port(prefix + INPUTS, shown)
+        else:
+            flat.inputs[port] = Input(end.kind, end.width, default=nothing(end.socket(name)))
+
+
+def written_texts(graph: Graph) -> Iterator[Text]:
+    """The code of the nodes that users wrote, groups included."""
+    for item in graph.nodes.values():
+        if isinstance(item, Group):
+            yield from written_texts(item.graph)
+        elif isinstance(item, Written) and item.text is not None:
+            yield item.text

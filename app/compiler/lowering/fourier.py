@@ -1,0 +1,122 @@
+"""Convolves two pictures by the fast Fourier transform: its lengths, stages and passes. See primitive/fourier.glsl."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+from msgspec import Struct
+
+from ..ir import Accessor, Builder, Choice, Constant, Gather, Parameter, Ref, Shape
+
+_PRIMES = (2, 3, 5)
+
+_PASS = 14
+"""What a stage costs besides its reads, in reads: measured on the software rasterizer."""
+
+_MOST = 20
+"""Reads of a stage at most: the driver unrolls them."""
+
+
+_SHADER = "primitive/fourier"
+
+
+class Stage(Struct, frozen=True):
+    """One pass: `radix` transforms of length `span` become one; every pixel of it is made of `terms` pixels.
+
+    Of the first stage, `terms` may be less than `radix`: what is not read is black.
+    """
+
+    radix: int
+    span: int
+    terms: int
+
+
+def convolution(builder: Builder, image: Ref, kernel: Ref, owner: str) -> Ref:
+    """A picture convolved with another one around its middle, black outside."""
+    picture, spread = builder.shape(image).size, builder.shape(kernel).size
+    width, height = (padded_length(*lengths) for lengths in zip(picture, spread, strict=True))
+    spectra = [_transform(builder, _transform(builder, made, 0, width, owner), 1, height, owner)
+               for made in (image, kernel)]
+    product = builder.add(
+        Gather(
+            (Shape((width, height), 4, data=True),), owner, _SHADER, "fourier_product",
+            tuple(Accessor(name, "vec4", made) for name, made in zip(("image", "kernel"), spectra, strict=True)),
+            (Parameter("float", Constant(1.0 / (width * height))),),
+        )
+    )
+    across, down = spread[0] // 2, spread[1] // 2
+    made = _transform(builder, product, 1, height, owner, (down, picture[1]))
+    return _transform(builder, made, 0, width, owner, (across, picture[0]))
+
+
+def padded_length(picture: int, kernel: int) -> int:
+    """Pixels to transform so that nothing that a kernel spreads comes round to the picture again."""
+    length = max(kernel, picture + kernel // 2)
+    while _rest(length) != 1:
+        length += 1
+    return length
+
+
+def stages(length: int, filled: int) -> tuple[Stage, ...]:
+    """The passes that transform a length with no prime factors but 2, 3 and 5; pixels from `filled` on are black."""
+    terms = {
+        radix: math.ceil(filled * radix / length) for radix in range(1, length + 1) if length % radix == 0
+    }
+    first = min(
+        (radix for radix in terms if terms[radix] <= _MOST),
+        key=lambda radix: _PASS + terms[radix] + _cost(_radices(length // radix)),
+    )
+    found = [Stage(first, 1, terms[first])]
+    span = first
+    for radix in _radices(length // first):
+        found.append(Stage(radix, span, radix))
+        span *= radix
+    return tuple(found)
+
+
+@cache
+def _radices(length: int) -> tuple[int, ...]:
+    """The factors of a length that cost the least."""
+    if length == 1:
+        return ()
+    tried = ((radix, *_radices(length // radix)) for radix in range(2, _MOST + 1) if length % radix == 0)
+    return min(tried, key=_cost)
+
+
+def _cost(radices: tuple[int, ...]) -> int:
+    return sum(_PASS + radix for radix in radices)
+
+
+def _rest(length: int) -> int:
+    for prime in _PRIMES:
+        while length % prime == 0:
+            length //= prime
+    return length
+
+
+def _transform(
+    builder: Builder, made: Ref, axis: int, length: int, owner: str, wanted: tuple[int, int] | None = None
+) -> Ref:
+    """Transform along an axis; with `wanted` (the first pixel and how many) the other way."""
+    passes = stages(length, builder.shape(made).size[axis])
+    for stage in passes:
+        size = builder.shape(made).size
+        first, count = wanted if wanted and stage is passes[-1] else (0, length)
+        size = (count, size[1]) if axis == 0 else (size[0], count)
+        apart = length // stage.radix
+        begins = not wanted and stage is passes[0]
+        # The numbers that loops run to are part of the text, so that drivers unroll them.
+        parameters = [Parameter("int", Choice(axis)), Parameter("int", Choice(stage.terms))]
+        if begins:
+            parameters += [Parameter("int", Constant(number)) for number in (stage.radix, apart)]
+        else:
+            parameters += [Parameter("int", Constant(number)) for number in (stage.span, apart, first)]
+            parameters.append(Parameter("float", Constant(1.0 if wanted else -1.0)))
+        made = builder.add(
+            Gather(
+                (Shape(size, 4, data=True),), owner, _SHADER, "fourier_first" if begins else "fourier_stage",
+                (Accessor("image", "vec4", made),), tuple(parameters), "black" if begins else "clamp",
+            )
+        )
+    return made

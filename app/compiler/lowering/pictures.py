@@ -1,0 +1,141 @@
+"""Pictures from outside and their sizes: reading, fitting, converting."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+
+from msgspec import structs
+from msgspec.structs import replace
+
+from ....nodes import ColorChange, Kind, LookupFile, Missing, Render, Scene, SceneFile, Size, Socket
+from ...errors import HalationError
+from ...graph import Graph, color_settings, make_socket
+from ..areas import Around
+from ..ir import Accessor, Builder, Call, Constant, Gather, Operand, Parameter, Picture, Read, Ref, Shape
+from ..outside import Outside, Probed
+from ..raster import Mesh
+from ..recolor import ColorProgram
+from ..request import Request
+from .draws import Fed, Files
+from .expand import Flat, nothing
+from .named import Named
+
+DEFAULT_CANVAS: Size = (1920, 1080)
+
+
+class Pictures:
+    """Adds what is read from outside, and changes of size and type, to the operations in `builder`."""
+
+    def __init__(self, graph: Graph, flat: Flat, request: Request, outside: Outside, builder: Builder) -> None:
+        self.named = Named(flat, request.bindings)
+        self._settled = graph.settings.size
+        self._color = color_settings(graph)
+        self._request, self._outside, self._builder = request, outside, builder
+        self.measured = False
+        """Whether the canvas has been asked for."""
+
+    @cached_property
+    def canvas(self) -> Size:
+        """The size of what is made from nothing: asked for, the graph's own, or that of the first picture."""
+        size = self._request.size or self._settled
+        if size is None:
+            first = next(iter(self.named), None)
+            size = self._first_size(*first) if first else DEFAULT_CANVAS
+        self.measured = True
+        return self._scaled(size)
+
+    def _first_size(self, picture: Picture, owner: str) -> Size:
+        """What a sequence is as large as, whether or not this frame has a file."""
+        path = self._outside.at(picture.path, self._request.frame, "nearest").path if not picture.in_memory else ""
+        return self._probed(replace(picture, path=path) if path else picture, owner).size
+
+    def _probed(self, picture: Picture, owner: str) -> Probed:
+        try:
+            return self._outside.probe(replace(picture, color=self._color))
+        except HalationError as error:
+            error.node = owner
+            raise
+
+    def _scaled(self, size: Size) -> Size:
+        scale = self._request.scale
+        return (max(1, round(size[0] * scale)), max(1, round(size[1] * scale)))
+
+    def read(self, picture: Picture, owner: str, frame: int, missing: Missing) -> Ref:
+        """Upload a picture, or that frame of a sequence, at the size wanted."""
+        picture, black = replace(picture, color=self._color), False
+        if not picture.in_memory:
+            found = self._outside.at(picture.path, frame, missing)
+            picture, black = replace(picture, path=found.path, frame=found.number), found.black
+        probed = self._probed(picture, owner)
+        shape = Shape(probed.size, picture.width, picture.kind is not Kind.IMAGE)
+        wanted = self._scaled(self._request.size if self._request.size and probed.size != (1, 1) else probed.size)
+        if black:
+            socket = make_socket(picture.kind, picture.width)
+            return self.converted(Constant(nothing(socket)), socket, wanted, owner)
+        # What is bound is known by its fingerprint. Its pixels come with the request: nothing else holds on to them.
+        picture = replace(picture, pixels=None, by_rows=probed.by_rows)
+        ref = self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half))
+        return self.fit(ref, wanted, owner)
+
+    def asset(self, picture: Picture, owner: str) -> Ref:
+        """Upload a picture that belongs to a node, as it is."""
+        picture = replace(picture, color=self._color)
+        probed = self._probed(picture, owner)
+        shape = Shape(probed.size, picture.width, picture.kind is not Kind.IMAGE)
+        return self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half))
+
+    def files(self, fed: Fed, missing: Missing) -> Files:
+        """The files that a node names, which lie beside the graph file that it came from."""
+
+        def located(file: str) -> str:
+            return self.named.located(file, fed.path)
+
+        def recolor(change: ColorChange) -> ColorProgram:
+            if isinstance(change, LookupFile):
+                change = structs.replace(change, path=located(change.path))
+            else:
+                change = structs.replace(change, color=self._color)
+            return self._outside.recolor(change)
+
+        def read(picture: Picture) -> Ref:
+            return self.read(replace(picture, path=located(picture.path)), fed.path, fed.frame, missing)
+
+        def mesh(scene: Scene) -> Mesh:
+            if isinstance(scene, SceneFile):
+                scene = structs.replace(scene, path=located(scene.path))
+            return self._outside.mesh(scene)
+
+        def render(file: str, named: Mapping[str, str]) -> Render:
+            return self._outside.render(self._outside.at(located(file), fed.frame, missing).path, named)
+
+        def asset(picture: Picture) -> Ref:
+            whole = replace(picture, path=located(picture.path), within=located(picture.within))
+            return self.asset(whole, fed.path)
+
+        return Files(read, recolor, mesh, render, asset)
+
+    def fit(self, ref: Ref, size: Size, owner: str) -> Ref:
+        """The picture at another size. Equal up to rounding: stretched; otherwise scaled to cover and cropped."""
+        shape = self._builder.shape(ref)
+        if shape.size in (size, (1, 1)):
+            return ref
+        across, down = shape.size[0] / size[0], shape.size[1] / size[1]
+        if abs(across / down - 1.0) > max(1.0 / side for side in (*size, *shape.size)):
+            across = down = min(across, down)
+        fitted = Shape(size, shape.channels, shape.data)
+        function = "fit_nearest" if shape.data else "fit"
+        # The middles of both lie on each other; a pixel more for what floats of 32 bits round.
+        matrix = (
+            across, 0.0, (shape.size[0] - across * size[0]) / 2.0, 0.0, down, (shape.size[1] - down * size[1]) / 2.0
+        )
+        around = Around(matrix, (max(across, 1.0) + 1.0, max(down, 1.0) + 1.0))
+        accessor, scale = Accessor("image", "vec4", ref, around), Parameter("vec2", Constant((across, down)))
+        return self._builder.add(Gather((fitted,), owner, "primitive/fit", function, (accessor,), (scale,)))
+
+    def converted(self, operand: Operand, socket: Socket, size: Size, owner: str) -> Ref:
+        """The same as the pixels that `socket` stands for."""
+        glsl = socket.glsl
+        shape = Shape(size, socket.channels, socket.kind is not Kind.IMAGE)
+        parameters = (Parameter(glsl, operand),)
+        return self._builder.add(Call((shape,), owner, "primitive/convert", f"as_{glsl}", parameters))

@@ -1,0 +1,112 @@
+"""What a node shows depends on everything upstream of it: one hash per node says whether any of that changed."""
+
+from __future__ import annotations
+
+from hashlib import blake2b
+
+from msgspec.structs import replace
+
+from ....nodes import Node
+from ...errors import GraphError
+from ...graph import INPUTS, OUTPUTS, Graph, Group, Port, is_animated
+from .expand import Flat, changed_nodes
+from .moments import Moments
+
+
+class Upstream:
+    """A hash by path of every node (`glow/bloom`), group (`glow`) and input (`inputs.beauty`, `glow/inputs.image`).
+
+    It changes with the node, its values and links, and with those of all that feed it, and with the frame; not with
+    pictures bound to the graph. What cannot be rendered, because it goes in a circle say, has none. From what is
+    `known` of another graph that differs in values of nodes only, as while one is dragged, only what they reach is
+    found out anew.
+    """
+
+    def __init__(self, graph: Graph, frame: int = 1, known: Upstream | None = None) -> None:
+        self.graph, self.frame = graph, frame
+        self.hashes: dict[str, str] = {}
+        follows = known and known.frame == frame and not is_animated(graph)
+        changed = changed_nodes(known.graph, graph) if known and follows else None
+        try:
+            if known is None or changed is None:
+                self._find_all()
+            else:
+                self._follow(known, changed)
+        except GraphError:
+            self.hashes = {}
+
+    def _find_all(self) -> None:
+        moments = Moments(self.graph)
+        self._flat: Flat = moments.flat(self.frame)
+        # A node may look at other frames, where values are others.
+        self._settings = repr((self.graph.settings, self.frame, _animations(self.graph)))
+        self._reads = {path: self._sources(path) for path in self._order(moments)}
+        for path in self._reads:
+            self._hash_node(path)
+        self._ends = [
+            end for end in (*self._flat.inputs, *self._flat.links)
+            if end.node.rpartition("/")[2] == INPUTS or end.node.endswith(f"/{OUTPUTS}")
+        ]
+        self._hash_ends()
+
+    def _follow(self, known: Upstream, changed: dict[str, Node]) -> None:
+        self.hashes = dict(known.hashes)
+        if not known.hashes:
+            return
+        self._flat = replace(known._flat, nodes={**known._flat.nodes, **changed})
+        self._settings, self._reads, self._ends = known._settings, known._reads, known._ends
+        reached = set(changed)
+        for path, sources in self._reads.items():
+            if path in reached or any(source and source.node in reached for source in sources):
+                reached.add(path)
+                self._hash_node(path)
+        self._hash_ends()
+
+    def _order(self, moments: Moments) -> list[str]:
+        paths = [Port(path, "") for path in self._flat.nodes]
+        try:
+            return list(dict.fromkeys(path for path, _ in moments.order(paths, self.frame)))
+        except GraphError:  # something is wrong somewhere: take what can be had
+            found: dict[str, None] = {}
+            for path in paths:
+                try:
+                    found |= dict.fromkeys(node for node, _ in moments.order((path,), self.frame))
+                except GraphError:
+                    continue
+            return list(found)
+
+    def _sources(self, path: str) -> list[Port | None]:
+        node = self._flat.nodes[path]
+        return [self._flat.source(Port(path, name)) for name in (*node.inputs, *node.values)]
+
+    def _hash_node(self, path: str) -> None:
+        node = self._flat.nodes[path]
+        values = {name: getattr(node, name) for name in node.values}
+        read = [f"{source} {self._of(source)}" if source else "-" for source in self._reads[path]]
+        self.hashes[path] = _hash(node.shader, values, path in self._flat.muted, self._settings, *read)
+
+    def _hash_ends(self) -> None:
+        groups: dict[str, str] = {}
+        for end in self._ends:
+            group, _, side = end.node.rpartition("/")
+            if side == INPUTS:
+                self.hashes[f"{end}"] = self._of(self._flat.behind(end))
+            else:
+                groups[group] = _hash(groups.get(group, ""), end.socket, self._of(self._flat.behind(end)))
+        self.hashes |= groups
+
+    def _of(self, source: Port) -> str:
+        """The hash of what a link starts at."""
+        if source in self._flat.inputs:
+            return _hash(f"{source}", self._flat.inputs[source], self._settings)
+        return self.hashes.get(source.node, "")
+
+
+def _animations(graph: Graph) -> list[object]:
+    """How values change over time, in groups too."""
+    inner = [_animations(item.graph) for item in graph.nodes.values() if isinstance(item, Group)]
+    return [sorted(graph.animation.items(), key=lambda item: item[0]), *(found for found in inner if any(found))]
+
+
+def _hash(*parts: object) -> str:
+    return blake2b("\0".join(str(part) for part in parts).encode(), digest_size=16).hexdigest()

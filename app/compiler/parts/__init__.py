@@ -1,0 +1,1 @@
+"""Parts of pictures: which are needed for which, and tiles."""

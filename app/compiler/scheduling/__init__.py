@@ -1,0 +1,1 @@
+"""Passes become a plan: their order, and which textures hold what, under which keys."""

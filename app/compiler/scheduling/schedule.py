@@ -1,0 +1,248 @@
+"""Last stage: formats, keys, lives and slots; the plan."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+
+from msgspec import Struct
+from msgspec.structs import replace
+
+from ....nodes import Size
+from ...errors import DeviceError
+from ...graph import Port
+from ..fusion.fuse import Fused, kept_refs
+from ..ir import Call, Foreign, Gather, Held, History, Memory, Op, Program, Raster, Read, Ref, Shape
+from ..library import Library
+from ..plan import Depth, Pass, Plan, Surface, Upload, texel, texture_bytes
+from ..shading.emit import Emitted, emit
+from ..target import Precision, Target
+from .keys import Mark, Marks, keys_of, update
+from .numbers import differing
+
+
+class Scheduled(Struct, frozen=True):
+    """A plan, and what it was made of."""
+
+    program: Program
+    passes: tuple[Fused, ...]
+    texels: Mapping[Ref, str]
+    """Formats, in the order of the surfaces."""
+    marks: tuple[tuple[Mark, ...], ...]
+    keys: Mapping[Ref, str]
+    plan: Plan
+
+
+def schedule(
+    program: Program, passes: tuple[Fused, ...], library: Library, target: Target, precision: Precision,
+    halves: frozenset[str] = frozenset(),
+) -> Scheduled:
+    """Write the program of every pass, and find a texture for everything it makes.
+
+    `halves` are outputs that will be rounded to half floats.
+    """
+    texels = formats(program, passes, target, precision, halves)
+    needed = dict.fromkeys(texels)
+    emitted = [emit(program, fused, library, target, texels) for fused in passes]
+    deciding = Marks(program, library, target, texels)
+    marks = tuple(deciding.of(fused, item) for fused, item in zip(passes, emitted, strict=True))
+    keys = keys_of(program, marks, needed)
+    first, last = _lives(program, passes)
+    slots, sizes = _slots(program, needed, texels, first, last)
+    numbers = {ref: number for number, ref in enumerate(needed)}
+    surfaces = tuple(
+        Surface(
+            keys[ref], program.ops[ref.op].owner, program.held(ref), _shape(program, ref).channels,
+            _depth(texels[ref]), slots[ref], first[ref], last[ref], program.windows.get(ref),
+        )
+        for ref in needed
+    )
+    plan = Plan(
+        target, surfaces, tuple(_uploads(program, numbers)),
+        tuple(_pass(program, fused, item, numbers, library) for fused, item in zip(passes, emitted, strict=True)),
+        MappingProxyType({name: numbers[ref] for name, ref in program.outputs.items()}),
+        MappingProxyType({port: numbers[ref] for port, ref in program.results.items() if ref in numbers}),
+        program.cameras, _memories(program, keys, texels), sizes,
+    )
+    return Scheduled(program, passes, texels, marks, keys, plan)
+
+
+def reschedule(known: Scheduled, program: Program, library: Library) -> Scheduled | None:
+    """The plan of a program that differs from the known one in numbers alone, else None.
+
+    The same passes make the same pictures in the same textures: only the passes whose numbers are others are written
+    again, and keys found of all that comes after them.
+    """
+    changed = differing(known.program, program)
+    if changed is None:
+        return None
+    plan, target, numbers = known.plan, known.plan.target, {ref: number for number, ref in enumerate(known.texels)}
+    moved, deciding = program.frame != known.program.frame, Marks(program, library, target, known.texels)
+    passes, marks, surfaces, keys = [*plan.passes], [*known.marks], [*plan.surfaces], dict(known.keys)
+    others = [
+        number for number, fused in enumerate(known.passes)
+        if not changed.isdisjoint(fused.members)
+        or (moved and any(name == "frame" for name, _ in passes[number].uniforms))
+    ]
+    for number in others:
+        fused = known.passes[number]
+        item = emit(program, fused, library, target, known.texels)
+        passes[number] = _pass(program, fused, item, numbers, library)
+        marks[number] = deciding.of(fused, item)
+    sources = [ref for ref in numbers if ref.op in changed]
+    for ref in update(keys, program, sources, marks, others):
+        if ref in numbers:
+            surfaces[numbers[ref]] = replace(surfaces[numbers[ref]], key=keys[ref])
+    plan = replace(
+        plan, surfaces=tuple(surfaces), uploads=tuple(_uploads(program, numbers)), passes=tuple(passes),
+        cameras=program.cameras, memories=_memories(program, keys, known.texels),
+    )
+    return Scheduled(program, known.passes, known.texels, tuple(marks), keys, plan)
+
+
+def _memories(program: Program, keys: Mapping[Ref, str], texels: Mapping[Ref, str]) -> Mapping[Port, Memory]:
+    return MappingProxyType({
+        node: Memory(keys[ref], _shape(program, ref), texels[ref].endswith("16f"))
+        for node, ref in program.memories.items()
+    })
+
+
+def formats(
+    program: Program, passes: Sequence[Fused], target: Target, precision: Precision, halves: frozenset[str]
+) -> dict[Ref, str]:
+    """The format of everything that needs a texture. Raises DeviceError for a pass that writes too many at once."""
+    for fused in passes:
+        _check_outputs(len(fused.writes), program.ops[fused.root], target)
+    rounded = _rounded(program, passes, target, halves)
+    return {ref: _texel(program, ref, "half" if ref in rounded else precision) for ref in _textures(program, passes)}
+
+
+def _textures(program: Program, passes: Sequence[Fused]) -> dict[Ref, None]:
+    """Everything that passes read and write, and what must be there at the end."""
+    needed = dict.fromkeys(ref for fused in passes for ref in (*fused.reads, *fused.writes))
+    return needed | dict.fromkeys(kept_refs(program))
+
+
+def _shape(program: Program, ref: Ref) -> Shape:
+    return program.ops[ref.op].shapes[ref.output]
+
+
+def peak(program: Program, passes: Sequence[Fused], texels: Mapping[Ref, str]) -> int:
+    """Bytes of all textures that passes need at the same time."""
+    first, last = _lives(program, passes)
+    return sum(_slots(program, _textures(program, passes), texels, first, last)[1])
+
+
+def _check_outputs(count: int, op: Op, target: Target) -> None:
+    by_image = target.form == "compute" and not isinstance(op, Foreign | Raster)
+    most = target.max_images if by_image else target.max_targets
+    if count > most:
+        raise DeviceError(
+            f"node '{op.owner}': {target.renderer} writes {most} pictures at once, not {count}; "
+            "link fewer of its outputs", node=op.owner,
+        )
+
+
+def _texel(program: Program, ref: Ref, precision: Precision) -> str:
+    """As narrow as the data allows: data keeps 32 bits, a file of halves stays half, color follows the precision."""
+    op, shape = program.ops[ref.op], _shape(program, ref)
+    if isinstance(op, Held):
+        return texel(shape.channels, op.halves[ref.output])
+    half = op.half if isinstance(op, (Read, History)) else precision == "half" and not shape.data
+    return texel(shape.channels, half)
+
+
+def _rounded(
+    program: Program, passes: Sequence[Fused], target: Target, halves: frozenset[str]
+) -> frozenset[Ref]:
+    """Outputs that are stored as half floats because nobody wants more, neither a pass nor the next frame."""
+    if not target.rounds_halves:
+        return frozenset()
+    found = {ref for name, ref in program.outputs.items() if name in halves}
+    found -= {ref for name, ref in program.outputs.items() if name not in halves}
+    found -= {ref for fused in passes for ref in fused.reads}
+    found = {ref for ref in found if not isinstance(program.ops[ref.op], Raster)}  # the driver rounds what it draws
+    return frozenset(found.difference(program.memories.values()))
+
+
+def _depth(format: str) -> Depth:
+    return "f2" if format.endswith("16f") else "f4"
+
+
+def _lives(program: Program, passes: Sequence[Fused]) -> tuple[dict[Ref, int], dict[Ref, int]]:
+    """The pass that makes each surface, or that reads an upload first; and the pass that reads it last.
+
+    What was remembered of the frame before is there from the first pass to the last.
+    """
+    first: dict[Ref, int] = {}
+    last: dict[Ref, int] = {}
+    for index, fused in enumerate(passes):
+        for ref in (*fused.writes, *fused.reads):
+            first.setdefault(ref, index)
+            last[ref] = index
+    for ref in first:
+        if isinstance(program.ops[ref.op], History):
+            first[ref], last[ref] = 0, len(passes)
+    for ref in kept_refs(program):
+        first.setdefault(ref, len(passes))
+        last[ref] = len(passes)
+    return first, last
+
+
+def _slots(
+    program: Program, needed: Mapping[Ref, None], texels: Mapping[Ref, str],
+    first: Mapping[Ref, int], last: Mapping[Ref, int],
+) -> tuple[dict[Ref, int], tuple[int, ...]]:
+    """Give each surface a texture; one is free for another of its size and format after its last reader."""
+    slots: dict[Ref, int] = {}
+    bytes_: list[int] = []
+    free: dict[tuple[Size, str], list[int]] = {}
+    by_start = sorted(needed, key=lambda ref: (first[ref], ref.op, ref.output))
+    by_end = sorted(needed, key=lambda ref: (last[ref], ref.op, ref.output))
+    ended = 0
+    for ref in by_start:
+        while ended < len(by_end) and last[by_end[ended]] < first[ref]:
+            gone = by_end[ended]
+            if gone in slots:
+                free.setdefault((program.held(gone), texels[gone]), []).append(slots[gone])
+            ended += 1
+        kind = (program.held(ref), texels[ref])
+        if free.get(kind):
+            slots[ref] = free[kind].pop()
+            continue
+        slots[ref] = len(bytes_)
+        bytes_.append(texture_bytes(*kind))
+    return slots, tuple(bytes_)
+
+
+def _uploads(program: Program, numbers: Mapping[Ref, int]) -> list[Upload]:
+    found: list[Upload] = []
+    for ref, number in numbers.items():
+        op = program.ops[ref.op]
+        picture = op.picture if isinstance(op, Read) else op.pictures[ref.output] if isinstance(op, Held) else None
+        if picture is not None:
+            found.append(Upload(number, picture, op.owner, _shape(program, ref).size))
+    return found
+
+
+def _pass(
+    program: Program, fused: Fused, item: Emitted, numbers: Mapping[Ref, int], library: Library
+) -> Pass:
+    ops = [program.ops[index] for index in fused.members]
+    return Pass(
+        tuple(dict.fromkeys(owner for op in ops for owner in op.owners)), tuple(op.label for op in ops), item.shader,
+        tuple(numbers[ref] for ref in fused.reads), tuple(numbers[ref] for ref in fused.writes),
+        item.uniforms, item.weights, item.groups,
+        tuple(dict.fromkeys(table for op in ops if isinstance(op, Call) for table in op.tables)),
+        next((op.mesh for op in ops if isinstance(op, Raster)), None), _writers(ops, library),
+    )
+
+
+def _writers(ops: list[Op], library: Library) -> dict[str, str]:
+    """The nodes behind code that users wrote, by what messages call its file."""
+    calls = (op for op in ops if isinstance(op, (Call, Gather)))
+    found = {library.file(op.shader): op.owner for op in calls if op.shader.startswith("written/")}
+    for op in ops:
+        if isinstance(op, Foreign):
+            found |= {stage.file: op.owner for stage in (op.text.fragment, op.text.vertex) if stage}
+    return found

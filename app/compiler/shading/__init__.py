@@ -1,0 +1,1 @@
+"""A pass becomes GLSL."""
