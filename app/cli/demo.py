@@ -21,7 +21,7 @@ def demo(
     from ...presets import paths
     from .. import document
     from ..renderer import Wanted
-    from ..renderer.job import Writing, run_job
+    from ..renderer.jobs.job import Writing, run_job
 
     done: list[dict[str, object]] = []
     with batch(output, len(paths())) as work:

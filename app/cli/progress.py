@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rich.progress import Progress as RichProgress
 
     from ..compiler import Pass
-    from ..renderer.job import FrameReport
+    from ..renderer.jobs.job import FrameReport
 
 _PATIENCE = 0.3
 """Seconds that work may take without a bar."""

@@ -35,7 +35,7 @@ from .sharing import independent, piped, share
 from .watchdog import PATIENCE, Timeout, watched
 
 if TYPE_CHECKING:
-    from ..renderer.job import Report
+    from ..renderer.jobs.job import Report
 
 
 def render(
@@ -105,7 +105,7 @@ def render(
     if (code := watched(context, opened_graph, timeout, piped(graph, opened_graph))) is not None:
         return code
     bindings, targets = bound(opened_graph, inputs or ()), parsing.targets(opened_graph, node)
-    from ..renderer.warming import warm
+    from ..renderer.opengl.warming import warm
 
     if not deterministic and jobs == 1:  # a pinned driver is loaded with other settings
         warm()
@@ -114,7 +114,7 @@ def render(
     alone = jobs == 1 and not resume and not targets and not most
     ahead = Ahead(opened_graph, bindings) if alone else None  # it reads while all else is loaded
     from ..renderer import DEFAULT_BUDGET, Renderer, Wanted, open_device, open_pinned
-    from ..renderer.job import Writing, run_job
+    from ..renderer.jobs.job import Writing, run_job
 
     if chosen is None:
         first, last = Lazy().frames(opened_graph, inputs or ())

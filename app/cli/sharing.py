@@ -118,7 +118,7 @@ class _Listener:
                 _stop(crew)
 
     def _line(self, line: str) -> None:
-        from ..renderer.job import FrameReport
+        from ..renderer.jobs.job import FrameReport
 
         with contextlib.suppress(ValueError, KeyError, TypeError):
             told = json.loads(line)

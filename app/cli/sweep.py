@@ -63,8 +63,8 @@ def sweep(
     from .. import media
     from ..errors import UsageError
     from ..renderer import DEFAULT_BUDGET, Wanted
-    from ..renderer import sweep as sweeping
-    from ..renderer.job import Writing
+    from ..renderer.jobs import sweep as sweeping
+    from ..renderer.jobs.job import Writing
 
     started = time.perf_counter()
     depth = parsing.precision(precision) if precision is not None else None

@@ -12,7 +12,7 @@ from .options import changed
 if TYPE_CHECKING:
     from ...nodes import Value
     from ..graph import Graph
-    from ..renderer.sweep import Axis
+    from ..renderer.jobs.sweep import Axis
 
 _RANGE = re.compile(r"\s*(?P<first>[^.].*?)\.\.(?P<last>.+?)/(?P<count>[0-9]+)(?P<log>log)?\s*")
 _MOST = 400
@@ -24,7 +24,7 @@ def axes(graph: Graph, sets: Sequence[str], frames: Sequence[int]) -> tuple[Grap
     Raises UsageError.
     """
     from ..errors import UsageError
-    from ..renderer.sweep import FRAME, Axis, Step, used_labels
+    from ..renderer.jobs.sweep import FRAME, Axis, Step, used_labels
 
     typed: dict[str, list[str]] = {}
     for item in sets:

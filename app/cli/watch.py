@@ -31,7 +31,7 @@ from .outcome import INTERRUPTED, note
 if TYPE_CHECKING:
     from ..editor.services.rerendering import Turn
     from ..graph import Graph
-    from ..renderer.job import Progress, Report
+    from ..renderer.jobs.job import Progress, Report
 
 _LISTED = 3
 
@@ -59,7 +59,7 @@ def watch(
     """
     from ..editor.services.rerendering import Rerendering
     from ..renderer import Renderer, Wanted, open_device
-    from ..renderer.job import Writing, run_job
+    from ..renderer.jobs.job import Writing, run_job
 
     if str(graph) == "-":
         raise UsageError("-: standard input cannot be watched: name the file of a graph")

@@ -36,7 +36,7 @@ def watched(context: typer.Context, graph: Graph, timeout: float, text: str = ""
     None if there is nothing to fear, or this is that process: then go on. `context` holds the words of the command,
     `text` is what it reads from standard input. Raises DeviceError once a pass has taken longer than `timeout` seconds.
     """
-    from ..renderer.heartbeat import HEARTBEAT
+    from ..renderer.opengl.heartbeat import HEARTBEAT
 
     if not timeout or os.environ.get(HEARTBEAT) or not has_loops(graph):
         return None
@@ -63,7 +63,7 @@ def has_loops(graph: Graph) -> bool:
 
 def _watch(command: list[str], beat: Path, timeout: float, text: str) -> int:
     from ..errors import DeviceError
-    from ..renderer.heartbeat import HEARTBEAT
+    from ..renderer.opengl.heartbeat import HEARTBEAT
 
     environment = {**os.environ, HEARTBEAT: str(beat)}
     with _undisturbed(), subprocess.Popen(command, stdin=subprocess.PIPE if text else None, env=environment) as process:

@@ -20,8 +20,8 @@ from .timeline.state import TimelineState
 from .viewer.state import ViewerState
 
 if TYPE_CHECKING:
-    from ..renderer.display import Display
-    from ..renderer.probe import Probe
+    from ..renderer.viewing.display import Display
+    from ..renderer.viewing.probe import Probe
     from .action import Actions, Scope
     from .preview import Preview
     from .services.exporting import Exports

@@ -10,18 +10,18 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .device import Device, describe
-    from .display import Display, Drawable, Handle
     from .engine import DEFAULT_BUDGET, Renderer, Wanted
-    from .executor import Counters
-    from .look import Look, fitted, to_panel, to_picture
+    from .opengl.device import Device, describe
+    from .opengl.textures import Lease
     from .opening import open_device
     from .pinned import open_pinned
-    from .probe import Nonfinite, Probe, first_nonfinite
     from .reel import Reel
-    from .run import Run
-    from .runner import Runner
-    from .textures import Lease
+    from .running.executor import Counters
+    from .running.run import Run
+    from .running.runner import Runner
+    from .viewing.display import Display, Drawable, Handle
+    from .viewing.look import Look, fitted, to_panel, to_picture
+    from .viewing.probe import Nonfinite, Probe, first_nonfinite
 
 __all__ = [
     "DEFAULT_BUDGET", "Counters", "Device", "Display", "Drawable", "Handle", "Lease", "Look", "Nonfinite", "Probe",
@@ -30,11 +30,12 @@ __all__ = [
 ]
 
 _HOMES = MappingProxyType({
-    "Counters": "executor", "DEFAULT_BUDGET": "engine", "Device": "device", "Display": "display",
-    "Drawable": "display", "Handle": "display", "Lease": "textures", "Look": "look", "Nonfinite": "probe",
-    "Probe": "probe", "Reel": "reel", "Renderer": "engine", "Run": "run", "Runner": "runner",
-    "Wanted": "engine", "describe": "device", "first_nonfinite": "probe", "fitted": "look", "open_device": "opening",
-    "open_pinned": "pinned", "to_panel": "look", "to_picture": "look",
+    "Counters": "running.executor", "DEFAULT_BUDGET": "engine", "Device": "opengl.device",
+    "Display": "viewing.display", "Drawable": "viewing.display", "Handle": "viewing.display",
+    "Lease": "opengl.textures", "Look": "viewing.look", "Nonfinite": "viewing.probe", "Probe": "viewing.probe",
+    "Reel": "reel", "Renderer": "engine", "Run": "running.run", "Runner": "running.runner", "Wanted": "engine",
+    "describe": "opengl.device", "first_nonfinite": "viewing.probe", "fitted": "viewing.look",
+    "open_device": "opening", "open_pinned": "pinned", "to_panel": "viewing.look", "to_picture": "viewing.look",
 })
 
 

@@ -15,9 +15,9 @@ from statistics import median
 from ..compiler import Pass, Plan
 from ..graph import Graph
 from .engine import Renderer, Wanted
+from .opengl.textures import Lease
 from .reel import Reel
-from .run import Timings
-from .textures import Lease
+from .running.run import Timings
 
 Name = tuple[tuple[str, ...], tuple[str, ...], int]
 """What stands for a pass in every frame and every run: its nodes, its functions, and a count of such passes before."""

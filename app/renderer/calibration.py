@@ -22,8 +22,8 @@ from ..errors import HalationError
 from ..graph import Graph, Port, Settings
 from ..graph.fence import outside
 from ..media.pictures import Pictures
-from .device import Device
-from .runner import Runner
+from .opengl.device import Device
+from .running.runner import Runner
 
 SIZE = (1024, 1024)
 TURNS = 5

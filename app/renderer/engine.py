@@ -12,10 +12,10 @@ from ...nodes import Size
 from ..compiler import Library, Memory, Plan, Planner, Precision, Region, Request
 from ..graph import Graph, Port
 from ..media.pictures import Pictures
-from .decoding import Array
-from .device import Device
+from .opengl.device import Device
 from .opening import open_device
-from .runner import Runner
+from .running.decoding import Array
+from .running.runner import Runner
 
 if TYPE_CHECKING:
     from ..media.ahead import Ahead

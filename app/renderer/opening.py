@@ -12,8 +12,8 @@ from ..compiler import Form
 from ..compiler.devices import choose
 from ..errors import DeviceError
 from .calibration import kept_or_measured
-from .device import OLDEST, Device, describe
-from .warming import EGL, GL
+from .opengl.device import OLDEST, Device, describe
+from .opengl.warming import EGL, GL
 
 
 def open_device(form: Form | None = None) -> Device:

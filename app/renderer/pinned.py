@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from .device import Device
+from .opengl.device import Device
 from .opening import open_device
 
 _SET = {

@@ -8,10 +8,10 @@ from msgspec.structs import replace
 
 from ..compiler import Memory, Plan
 from ..graph import Graph, Port
-from .decoding import Array
 from .engine import Renderer, Wanted
-from .run import Run, Timings, carried
-from .textures import Lease
+from .opengl.textures import Lease
+from .running.decoding import Array
+from .running.run import Run, Timings, carried
 
 KEPT_PLANS = 16
 

@@ -19,7 +19,7 @@ from ..graph.frames import Pattern
 from ..media.goldens import Stored, keep
 from ..media.layers import split_layer
 from ..renderer import Reel, Renderer, Wanted
-from ..renderer.job import Writing, run_job
+from ..renderer.jobs.job import Writing, run_job
 from .cases import Case, Golden
 from .judging import Parts, in_full, judged, unusable
 from .pictures import left, views_of

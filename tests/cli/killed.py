@@ -23,7 +23,7 @@ def main(count: int, words: list[str]) -> None:
     import OpenImageIO as oiio
     from halation.app import document, media  # noqa: F401
     from halation.app.cli.program import run
-    from halation.app.renderer import job  # noqa: F401
+    from halation.app.renderer.jobs import job  # noqa: F401
 
     folder = Path(words[words.index("-o") + 1]).parent
 

@@ -202,7 +202,7 @@ def test_render_without_a_destination(cli, graphs):
 
 
 def test_a_bug_is_called_a_bug(cli, graphs, tmp_path, monkeypatch):
-    from halation.app.renderer import job
+    from halation.app.renderer.jobs import job
 
     monkeypatch.setattr(job, "run_job", lambda *_, **__: 1 / 0)
     result = cli("render", graphs(), "-o", tmp_path / "out.exr", "--json")
@@ -218,7 +218,7 @@ def test_too_little_memory(fails, graphs, monkeypatch):
     def refuse(*_, **__):
         raise MemoryError
 
-    from halation.app.renderer import job
+    from halation.app.renderer.jobs import job
 
     monkeypatch.setattr(job, "run_job", refuse)
     assert fails(1, "render", graphs()) == "there is not enough memory: render smaller with --scale or --size"

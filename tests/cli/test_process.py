@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -87,11 +88,15 @@ SELDOM = {
     *(f"halation.app.{name}" for name in (
         "editor", "lint", "suite", "cli.edit", "cli.nodes", "cli.batch", "document.versions", "document.schema",
         "graph.expressions.parser", "glsl.loops", "written.glsl", "written.isf", "compiler.isf", "media.survey",
-        "media.video", "media.video_file", "media.meshes", "renderer.display", "renderer.probe", "renderer.sweep",
-        "renderer.reproduction",
+        "media.video", "media.video_file", "media.meshes", "renderer.viewing.display", "renderer.viewing.probe",
+        "renderer.jobs.sweep", "renderer.reproducing",
     )),
 }
 """What most renderings do without."""
+
+
+def test_what_most_do_without_has_a_name():
+    assert all(find_spec(name) for name in SELDOM if name.startswith("halation."))
 
 
 def test_a_rendering_loads_what_it_needs(ten, tmp_path):

@@ -11,7 +11,7 @@ from halation.app import document, media
 from halation.app.editor.window.arriving import arrived
 from halation.app.graph import Port
 from halation.app.renderer import Renderer, Wanted
-from halation.app.renderer.job import Writing, run_job
+from halation.app.renderer.jobs.job import Writing, run_job
 from halation.presets import paths, sample
 
 BLOOM = next(path for path in paths() if path.stem == "soft_bloom")

@@ -22,8 +22,11 @@ FLOORS = (
 )
 """Parts of app from the ground up. `__init__` is the public face of the engine, so it stands on the renderer."""
 
-STAGES = ("lowering", "fusion", "shading", "scheduling", "parts")
-"""Folders of the compiler, first to last; what lies beside them is what all of them speak of, and the planner."""
+ROOMS = {
+    "compiler": ("lowering", "fusion", "shading", "scheduling", "parts"),
+    "renderer": ("opengl", "running", "viewing", "jobs", "reproducing"),
+}
+"""Folders of a floor, first to last. What lies beside them is what all of them speak of, or puts them together."""
 
 HOMES = {
     "moderngl": "renderer", "glcontext": "renderer",
@@ -94,18 +97,20 @@ def test_app_imports_only_lower_floors() -> None:
     assert not wrong
 
 
-def test_stages_of_the_compiler_import_only_earlier_ones() -> None:
-    def stage(name: str) -> int | None:
-        part = name.removeprefix("app.compiler.").split(".")[0]
-        return STAGES.index(part) if name.startswith("app.compiler.") and part in STAGES else None
+@pytest.mark.parametrize("floor", ROOMS)
+def test_rooms_import_only_earlier_ones(floor: str) -> None:
+    def place(name: str) -> int | None:
+        parts = name.split(".")
+        known = parts[:2] == ["app", floor] and len(parts) > 3 and parts[2] in ROOMS[floor]
+        return ROOMS[floor].index(parts[2]) if known else None
 
     wrong: list[str] = []
     for name, target in links():
-        here, there = stage(name), stage(target)
+        here, there = place(name), place(target)
         if here is not None and there is not None and there > here:
             wrong.append(f"{name} imports {target}")
     assert not wrong
-    assert {stage(name) for name in MODULES} == {None, *range(len(STAGES))}
+    assert {place(name) for name in MODULES} == {None, *range(len(ROOMS[floor]))}
 
 
 def test_nodes_import_the_standard_library_and_themselves() -> None:

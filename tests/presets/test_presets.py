@@ -19,7 +19,7 @@ from halation.app import document, media
 from halation.app.graph import Control, Graph, Group, problems, signature
 from halation.app.media.sheet import sheet, shown
 from halation.app.renderer import Reel, Renderer, Wanted
-from halation.app.renderer.job import Writing, run_job
+from halation.app.renderer.jobs.job import Writing, run_job
 from halation.nodes import Kind
 from halation.presets import paths
 from halation.presets import picture as thumbnail

@@ -10,7 +10,7 @@ from halation.app.errors import ShaderError
 from halation.app.graph.fence import fenced
 from halation.app.renderer import calibration, open_device
 from halation.app.renderer.calibration import kept_or_measured, measured
-from halation.app.renderer.runner import Runner
+from halation.app.renderer.running.runner import Runner
 from msgspec.structs import replace
 
 SMALL = (64, 48)

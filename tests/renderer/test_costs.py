@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from conftest import graph_of
 from halation.app.renderer import Renderer, Wanted
-from halation.app.renderer.costs import Costs
+from halation.app.renderer.running.costs import Costs
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 

@@ -69,7 +69,7 @@ def test_measured_peak_is_the_planned_one(seed):
 @pytest.mark.parametrize("pixels", [100, 300])
 def test_bands_equal_one_dispatch(renderer, monkeypatch, seed, pixels):
     """Large passes are dispatched in bands, between which an interrupt is heard."""
-    from halation.app.renderer import executor
+    from halation.app.renderer.running import executor
 
     graph, wanted = random_graph(seed), Wanted(pictures(seed), precision="float")
     whole = renderer.render(graph, wanted)

@@ -13,10 +13,10 @@ from halation.app.compiler import Surface
 from halation.app.errors import InputError
 from halation.app.graph import Graph, Input, Output, Port
 from halation.app.renderer import Renderer, Wanted, open_device
-from halation.app.renderer.arrays import Arrays
-from halation.app.renderer.behind import BEHIND, BEHIND_BYTES, Behind
-from halation.app.renderer.decoding import AHEAD, AHEAD_BYTES, within_reach
-from halation.app.renderer.job import Writing, run_job
+from halation.app.renderer.jobs.behind import BEHIND, BEHIND_BYTES, Behind
+from halation.app.renderer.jobs.job import Writing, run_job
+from halation.app.renderer.running.arrays import Arrays
+from halation.app.renderer.running.decoding import AHEAD, AHEAD_BYTES, within_reach
 from halation.nodes import catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure

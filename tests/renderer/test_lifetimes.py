@@ -12,7 +12,7 @@ from conftest import graph_of
 from halation.app.errors import DeviceError, InputError, UsageError
 from halation.app.graph import Graph, Input, Output, Port, Settings
 from halation.app.renderer import Renderer, Wanted, open_device
-from halation.app.renderer.decoding import AHEAD
+from halation.app.renderer.running.decoding import AHEAD
 from halation.nodes import Kind, catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
@@ -209,7 +209,7 @@ def test_a_picture_that_changed_its_size_spoils_nothing(engine):
 
 
 def test_an_upload_that_is_interrupted_spoils_nothing(engine, monkeypatch):
-    from halation.app.renderer import executor
+    from halation.app.renderer.running import executor
 
     def interrupt(*_):
         raise KeyboardInterrupt
@@ -321,7 +321,7 @@ def test_a_picture_that_was_begun_for_a_dropped_run_is_not_decoded_again(forgetf
 
 
 def test_programs_that_were_not_used_for_long_go(renderer, engine, monkeypatch):
-    from halation.app.renderer import programs
+    from halation.app.renderer.opengl import programs
 
     monkeypatch.setattr(programs, "MAX_PROGRAMS", 2)
     for _ in range(2):

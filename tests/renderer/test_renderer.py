@@ -12,7 +12,7 @@ from halation.app.compiler.library import parse
 from halation.app.errors import DeviceError, ShaderError, UsageError
 from halation.app.graph import Graph, Input, Output, Port
 from halation.app.renderer import Renderer, Wanted, open_device
-from halation.app.renderer.programs import Programs
+from halation.app.renderer.opengl.programs import Programs
 from halation.nodes import Kind
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
@@ -117,7 +117,7 @@ def test_a_broken_shader_names_node_file_and_line():
 
 
 def test_a_failed_allocation_is_one_sentence_with_numbers(engine, monkeypatch):
-    from halation.app.renderer.textures import Textures
+    from halation.app.renderer.opengl.textures import Textures
 
     monkeypatch.setattr(Textures, "_try", lambda *_: None)
     with pytest.raises(DeviceError, match=r"no room for .* MiB more .*--scale"):

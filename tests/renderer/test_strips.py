@@ -10,7 +10,7 @@ from halation.app.errors import HalationError, OutputError
 from halation.app.graph import Graph, Input, Output, Port
 from halation.app.media import row_file
 from halation.app.renderer import Renderer, Wanted, open_device
-from halation.app.renderer.job import Writing, run_job
+from halation.app.renderer.jobs.job import Writing, run_job
 from halation.nodes import Kind, catalogue
 from oiio_pictures import stored
 

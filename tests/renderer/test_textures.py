@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from halation.app.compiler import Surface
-from halation.app.renderer.textures import Lease, Textures
+from halation.app.renderer.opengl.textures import Lease, Textures
 from hypothesis import given
 from hypothesis import strategies as st
 

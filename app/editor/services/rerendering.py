@@ -12,7 +12,7 @@ from typing import Any, cast
 from ...compiler import Pass, installed
 from ...errors import GraphError, HalationError
 from ...graph import Graph
-from ...renderer.job import FrameReport, Progress, Report
+from ...renderer.jobs.job import FrameReport, Progress, Report
 from ..edits import coding
 from .reloading import NodeFiles, shader_folder
 from .sequences import all_files

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ...document import load, loads, save
 from ...errors import UsageError
 from ...graph import Graph, Output
-from ...renderer.finding import made_by
+from ...renderer.reproducing.finding import made_by
 from ..edits import folding, layout, paths
 from .history import Step
 from .state import State

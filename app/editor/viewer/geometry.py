@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from ...renderer import look
-from ...renderer.look import Look
+from ...renderer.viewing import look
+from ...renderer.viewing.look import Look
 
 Point = tuple[float, float]
 Pixels = tuple[int, int]

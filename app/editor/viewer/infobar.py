@@ -9,7 +9,7 @@ import numpy as np
 from imgui_bundle import imgui
 
 from ....nodes import Kind
-from ...renderer.look import Look
+from ...renderer.viewing.look import Look
 from ..theme.palette import RGB
 from ..theme.style import mix, u32, ui_scale
 from ..toolkit.words import font

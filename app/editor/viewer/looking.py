@@ -13,7 +13,7 @@ from ....nodes import ColorSettings, Kind
 from ...graph import OUTPUTS, Graph, Port
 from ...media import to_display
 from ...media.managed import DEFAULT_COLOR
-from ...renderer.look import Look
+from ...renderer.viewing.look import Look
 from ..preview.data import Array, are_normals, balanced, data_range
 from .geometry import Sight, ordered
 from .scopes import rgb_of

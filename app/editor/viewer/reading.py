@@ -11,7 +11,7 @@ from .geometry import Box, Pixels, texel, texels
 from .measuring import Array, Statistics, statistics
 
 if TYPE_CHECKING:
-    from ...renderer.probe import Probe
+    from ...renderer.viewing.probe import Probe
     from ..preview import Shown
 
 T = TypeVar("T")

@@ -14,7 +14,7 @@ from ..dialogs import Browse
 from .looking import picture_only
 
 if TYPE_CHECKING:
-    from ...renderer.look import Look
+    from ...renderer.viewing.look import Look
     from ..editor import Editor
     from ..preview import Shown
 

@@ -10,7 +10,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ....nodes import Kind
-from ...renderer.plates import Plate
+from ...renderer.viewing.plates import Plate
 from ..theme.style import u32, ui_scale
 from ..toolkit.buttons import quiet, room_for, tool
 from ..toolkit.words import nothing_here

@@ -10,7 +10,7 @@ from imgui_bundle import imgui
 
 from ....nodes import Kind, Plain
 from ...graph import OUTPUTS, Port
-from ...renderer.look import Look
+from ...renderer.viewing.look import Look
 from ..theme.style import u32, ui_scale
 from . import infobar
 from .banner import draw_banner

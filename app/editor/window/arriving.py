@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ...errors import HalationError
 from ...media.sequences import find_sequence
-from ...renderer.recipe import has_recipe
+from ...renderer.reproducing.recipe import has_recipe
 from ..actions.documents import open_graph, open_made
 from ..dialogs import Question
 from ..editor import Editor

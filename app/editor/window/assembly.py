@@ -10,8 +10,8 @@ from imgui_bundle import imgui
 from ...graph import Graph
 from ...media.pictures import Pictures
 from ...renderer import Device, Renderer
-from ...renderer.display import Display
-from ...renderer.probe import Probe
+from ...renderer.viewing.display import Display
+from ...renderer.viewing.probe import Probe
 from ..action import Actions
 from ..actions import table
 from ..editor import Editor

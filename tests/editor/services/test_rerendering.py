@@ -15,7 +15,7 @@ from halation.app.editor.services import rerendering
 from halation.app.editor.services.rerendering import Rerendering
 from halation.app.errors import GraphError, RenderError
 from halation.app.graph import Graph, Input
-from halation.app.renderer.job import Report
+from halation.app.renderer.jobs.job import Report
 
 FAULT = "nodes/blur/some.py, line 3: it is broken; all nodes stay as they were"
 DONE = Report((), 1, 0, 0, {})

@@ -14,7 +14,7 @@ from halation.app.editor.viewer.state import ViewerState
 from halation.app.editor.viewer.wanted import wanted
 from halation.app.graph import Graph, Output, Port
 from halation.app.media import to_display
-from halation.app.renderer.look import Look
+from halation.app.renderer.viewing.look import Look
 from halation.nodes import Kind
 
 SIGHT = Sight((0.0, 0.0), (800, 400), (400, 200), zoom=2.0, pan=(3.0, 4.0))

@@ -7,8 +7,8 @@ from collections import Counter
 import moderngl
 from msgspec import Struct
 
-from ..compiler import Surface
-from ..errors import DeviceError
+from ...compiler import Surface
+from ...errors import DeviceError
 
 Kind = tuple[int, int, int, str]
 """Width, height, components, depth."""

@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .. import media
-from .decoding import Array
+from ... import media
+from ..running.decoding import Array
 from .destinations import Destination, Writing
 
 if TYPE_CHECKING:

@@ -9,15 +9,15 @@ from weakref import WeakValueDictionary
 
 from msgspec import Struct
 
-from ..compiler import Plan
-from ..errors import DeviceError, UsageError
+from ...compiler import Plan
+from ...errors import DeviceError, UsageError
+from ..opengl.device import Device
+from ..opengl.textures import Lease, Texture
 from .arrays import Arrays
 from .decoding import Array, Decoded, Decoding, Loader, decode, within_reach
 from .decoding import Wanted as Awaited
-from .device import Device
 from .executor import Executor
 from .run import Run, Timings, WholeRun, needed_passes, needed_uploads
-from .textures import Lease, Texture
 from .tiles import TiledRun
 
 

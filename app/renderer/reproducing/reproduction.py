@@ -10,21 +10,21 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import DeviceError, UsageError
-from ..graph import Graph, color_settings, node_output
-from ..graph.fence import ROOT
-from ..media import color_digest
-from ..media.compare import CODE, Compared, compare
-from ..media.stored import stored
-from ..version import VERSION
-from .decoding import Array
-from .destinations import Writing
-from .device import Device
-from .engine import Renderer, Wanted
+from ...errors import DeviceError, UsageError
+from ...graph import Graph, color_settings, node_output
+from ...graph.fence import ROOT
+from ...media import color_digest
+from ...media.compare import CODE, Compared, compare
+from ...media.stored import stored
+from ...version import VERSION
+from ..engine import Renderer, Wanted
+from ..jobs.destinations import Writing
+from ..jobs.job import run_job
+from ..opengl.device import Device
+from ..opening import open_device
+from ..pinned import open_pinned
+from ..running.decoding import Array
 from .finding import Found, pointed
-from .job import run_job
-from .opening import open_device
-from .pinned import open_pinned
 from .recipe import Recipe
 
 ELSEWHERE = CODE

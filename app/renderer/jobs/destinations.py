@@ -9,13 +9,13 @@ from pathlib import Path
 from msgspec import Struct
 from msgspec.structs import replace
 
-from ...nodes import Kind, Socket
-from .. import media
-from ..compiler import Picture, Plan, Precision
-from ..errors import UsageError
-from ..graph import OUTPUTS, Graph, Port, color_settings, did_you_mean
-from ..graph.frames import Pattern, check_numbered, is_video
-from .engine import Wanted
+from ....nodes import Kind, Socket
+from ... import media
+from ...compiler import Picture, Plan, Precision
+from ...errors import UsageError
+from ...graph import OUTPUTS, Graph, Port, color_settings, did_you_mean
+from ...graph.frames import Pattern, check_numbered, is_video
+from ..engine import Wanted
 
 
 class Writing(Struct, frozen=True):

@@ -6,12 +6,12 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Container, Iterable
 from types import TracebackType
 
-from ..compiler import Pass, Plan
-from ..errors import HalationError
+from ...compiler import Pass, Plan
+from ...errors import HalationError
+from ..opengl.textures import Lease
 from .decoding import Array, Decoding
 from .decoding import Wanted as Awaited
 from .executor import Executor
-from .textures import Lease
 
 Timings = list[tuple[Pass, float]]
 """Passes and the seconds that each took on the device."""

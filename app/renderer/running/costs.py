@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..compiler import Pass, Plan
+from ...compiler import Pass, Plan
 
 _BYTES_PER_SECOND = {True: 4e9, False: 4e11}
 """What passes read and write where they have not been measured yet; True for the software rasterizer."""

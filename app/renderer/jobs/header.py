@@ -10,14 +10,14 @@ from collections.abc import Mapping, Sequence
 from hashlib import blake2b
 from typing import Any
 
-from .. import document, media
-from ..compiler import Pass, Plan, Target
-from ..errors import HalationError
-from ..graph import Graph
-from ..graph.paths import inlined
-from ..version import VERSION
+from ... import document, media
+from ...compiler import Pass, Plan, Target
+from ...errors import HalationError
+from ...graph import Graph
+from ...graph.paths import inlined
+from ...version import VERSION
+from ..engine import Wanted
 from .destinations import Destination, Writing
-from .engine import Wanted
 from .sources import Hashes, Source, said
 
 PREFIX = "halation:"

@@ -15,19 +15,19 @@ from typing import TYPE_CHECKING, Any, Protocol
 from msgspec import Struct, field
 from msgspec.structs import replace
 
-from .. import media
-from ..compiler import Pass, Plan
-from ..errors import HalationError, UsageError
-from ..graph import Graph
+from ... import media
+from ...compiler import Pass, Plan
+from ...errors import HalationError, UsageError
+from ...graph import Graph
+from ..engine import Renderer, Wanted
+from ..opengl.textures import Lease
+from ..reel import Reel
+from ..running.decoding import Array
 from .behind import Behind
-from .decoding import Array
 from .destinations import Destination, Writing, check, destinations, halves
-from .engine import Renderer, Wanted
 from .header import frame_key, header, is_marked, is_written, whole
-from .reel import Reel
 from .sources import Hashes, Source, Sources
 from .strips import Strips, written_by_rows
-from .textures import Lease
 from .videos import Videos
 
 if TYPE_CHECKING:

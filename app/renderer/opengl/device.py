@@ -12,9 +12,9 @@ import numpy as np
 from msgspec import Struct, field
 from msgspec.structs import replace
 
-from ..compiler import Target
-from ..compiler.devices import is_software
-from ..errors import DeviceError, UsageError
+from ...compiler import Target
+from ...compiler.devices import is_software
+from ...errors import DeviceError, UsageError
 
 OLDEST = 410
 """macOS stops at OpenGL 4.1."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import moderngl
 import numpy as np
 
-from .device import Device
+from ..opengl.device import Device
 
 
 class Plate:

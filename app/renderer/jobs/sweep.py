@@ -12,15 +12,15 @@ from pathlib import Path
 import numpy as np
 from msgspec import structs
 
-from ...nodes import Kind, Socket
-from ..errors import UsageError
-from ..graph import OUTPUTS, Graph, Port
-from ..media.sheet import data_shown, grid_sheet, grouped_sheet, shown_over_checker
-from .decoding import Array
+from ....nodes import Kind, Socket
+from ...errors import UsageError
+from ...graph import OUTPUTS, Graph, Port
+from ...media.sheet import data_shown, grid_sheet, grouped_sheet, shown_over_checker
+from ..engine import Renderer, Wanted
+from ..reel import Reel
+from ..running.decoding import Array
 from .destinations import Writing
-from .engine import Renderer, Wanted
 from .job import run_job
-from .reel import Reel
 
 LETTERS = 16
 MOST_CELLS = 400

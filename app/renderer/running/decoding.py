@@ -9,7 +9,7 @@ from concurrent.futures import Executor, Future
 import numpy as np
 from msgspec import Struct
 
-from ..compiler import Picture, Surface, Upload
+from ...compiler import Picture, Surface, Upload
 
 Array = np.ndarray
 Loader = Callable[[Picture], Array]

@@ -9,13 +9,13 @@ import numpy as np
 from msgspec import Struct
 from msgspec.structs import replace
 
-from ..compiler import installed
-from ..errors import UsageError
-from ..graph import INPUTS, Graph, Port
-from .decoding import Array
-from .device import Device
-from .engine import Renderer, Wanted
-from .programs import VERTEX, undisturbed
+from ...compiler import installed
+from ...errors import UsageError
+from ...graph import INPUTS, Graph, Port
+from ..engine import Renderer, Wanted
+from ..opengl.device import Device
+from ..opengl.programs import VERTEX, undisturbed
+from ..running.decoding import Array
 
 Rect = tuple[int, int, int, int]
 """x, y, width, height in pixels of the texture, row 0 on top."""

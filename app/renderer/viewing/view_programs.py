@@ -7,13 +7,13 @@ from typing import cast, get_args
 
 import moderngl
 
-from ...nodes import ColorSettings
-from ..compiler import ColorProgram, Library, installed, library_for
-from ..errors import DeviceError
-from ..media import color_mark, gpu_view, working_of
+from ....nodes import ColorSettings
+from ...compiler import ColorProgram, Library, installed, library_for
+from ...errors import DeviceError
+from ...media import color_mark, gpu_view, working_of
+from ..opengl.programs import VERTEX, undisturbed
+from ..opengl.tables import table_texture
 from .look import Channels, Compare, Meaning
-from .programs import VERTEX, undisturbed
-from .tables import table_texture
 
 FIRST_LUT = 2
 """The texture unit of a view's first table; pictures are bound to those before."""

@@ -8,8 +8,8 @@ from typing import Protocol, get_args
 
 import moderngl
 
-from ..media import color_mark
-from .device import Device
+from ...media import color_mark
+from ..opengl.device import Device
 from .look import Channels, Look, Meaning, Point, Size, origin
 from .view_programs import Seen, ViewProgram, ViewPrograms
 

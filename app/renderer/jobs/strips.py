@@ -6,12 +6,12 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..compiler import Plan
-from .decoding import Array
+from ...compiler import Plan
+from ..running.decoding import Array
 from .destinations import Destination, Writing
 
 if TYPE_CHECKING:
-    from ..media.row_file import RowFile
+    from ...media.row_file import RowFile
 
 
 def written_by_rows(files: Sequence[Destination]) -> frozenset[str]:
@@ -38,7 +38,7 @@ class Strips:
 
     def take(self, name: str, row: int, pixels: Array) -> None:
         """Write rows of an output. Raises OutputError."""
-        from ..media.row_file import RowFile
+        from ...media.row_file import RowFile
 
         size = self._plan.surfaces[self._plan.outputs[name]].size
         for file in self._files:

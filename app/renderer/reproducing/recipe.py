@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path, PurePath
 from typing import Any, cast
 
-from ...nodes import Node, Size
-from .. import document, media
-from ..compiler import Form, Precision
-from ..errors import InputError
-from ..graph import Graph
-from ..graph.frames import parse_frames
-from .header import PREFIX
+from ....nodes import Node, Size
+from ... import document, media
+from ...compiler import Form, Precision
+from ...errors import InputError
+from ...graph import Graph
+from ...graph.frames import parse_frames
+from ..jobs.header import PREFIX
 
 _DIGEST = re.compile(r"(?P<name>.+) sha256:(?P<digest>[0-9a-f]{64})")
 _LAYERED = re.compile(r"(?P<name>.*?\.\w{1,5}):(?P<layer>.+)")

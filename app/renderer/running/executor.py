@@ -8,17 +8,17 @@ import moderngl
 import numpy as np
 from msgspec import Struct
 
-from ..compiler import FIRST_TABLE, MAX_WEIGHTS, Mesh, Pass, Plan, Shader, Upload
-from ..errors import InputError, RenderError
+from ...compiler import FIRST_TABLE, MAX_WEIGHTS, Mesh, Pass, Plan, Shader, Upload
+from ...errors import InputError, RenderError
+from ..opengl.device import Device
+from ..opengl.heartbeat import Heartbeat
+from ..opengl.meshes import MeshBuffers
+from ..opengl.programs import Program, Programs
+from ..opengl.tables import Tables
+from ..opengl.textures import Lease, Texture, Textures
 from .arrays import Arrays
 from .costs import Costs
 from .decoding import Array, Decoded
-from .device import Device
-from .heartbeat import Heartbeat
-from .meshes import MeshBuffers
-from .programs import Program, Programs
-from .tables import Tables
-from .textures import Lease, Texture, Textures
 
 MAX_WEIGHT_BUFFERS = 64
 

@@ -10,16 +10,16 @@ from typing import Literal
 
 from msgspec import structs
 
-from ...nodes import Node
-from ...presets import paths as presets
-from ..compiler.lowering.named import CONFIG, path_texts
-from ..errors import InputError, UsageError
-from ..graph import INPUTS, Graph, did_you_mean
-from ..graph.fence import outside
-from ..graph.frames import Pattern
-from ..graph.paths import relocated, repointed
+from ....nodes import Node
+from ....presets import paths as presets
+from ...compiler.lowering.named import CONFIG, path_texts
+from ...errors import InputError, UsageError
+from ...graph import INPUTS, Graph, did_you_mean
+from ...graph.fence import outside
+from ...graph.frames import Pattern
+from ...graph.paths import relocated, repointed
+from ..jobs.sources import Hashes
 from .recipe import Recipe, Used, read_recipe
-from .sources import Hashes
 
 _FAR = "../../../"
 """Where the spelling of a path begins that leads too far away to be better than an absolute one."""

@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING
 
 from msgspec import Struct, field
 
-from .. import media
-from ..compiler import Picture, Plan, named_files
-from ..compiler.lowering.named import CONFIG, path_texts
-from ..errors import HalationError
-from ..graph import INPUTS, OUTPUTS, Graph
-from ..graph.frames import format_frames
+from ... import media
+from ...compiler import Picture, Plan, named_files
+from ...compiler.lowering.named import CONFIG, path_texts
+from ...errors import HalationError
+from ...graph import INPUTS, OUTPUTS, Graph
+from ...graph.frames import format_frames
 
 if TYPE_CHECKING:
-    from ...nodes import Missing
-    from ..media.pictures import Pictures
+    from ....nodes import Missing
+    from ...media.pictures import Pictures
 
 
 class Source(Struct, frozen=True):

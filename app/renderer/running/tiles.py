@@ -9,16 +9,16 @@ from typing import Protocol
 import numpy as np
 from msgspec.structs import replace
 
-from ...nodes import Kind, Size
-from ..compiler import Held, Pass, Picture, Plan, Read, Ref, Region, Stage, Upload, tile_plan
-from ..compiler.areas import Span
-from ..compiler.explain import size_text
-from ..compiler.ir import Program
-from ..errors import DeviceError, HalationError
+from ....nodes import Kind, Size
+from ...compiler import Held, Pass, Picture, Plan, Read, Ref, Region, Stage, Upload, tile_plan
+from ...compiler.areas import Span
+from ...compiler.explain import size_text
+from ...compiler.ir import Program
+from ...errors import DeviceError, HalationError
+from ..opengl.textures import Lease
 from .arrays import Arrays
 from .decoding import Array, Loader
 from .run import Run, carried
-from .textures import Lease
 
 
 class Runs(Protocol):

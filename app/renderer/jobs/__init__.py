@@ -1,0 +1,1 @@
+"""From graphs to files: frames, where they go, and what files say of themselves."""

@@ -1,0 +1,1 @@
+"""The device and what lives on it: programs, textures, meshes."""

@@ -1,0 +1,1 @@
+"""Results on a screen, and numbers read back from them."""
