@@ -8,7 +8,7 @@ plans for a part of a picture, or by tiles. `planner` runs them and remembers wh
 from __future__ import annotations
 
 from ..glsl import parse
-from .areas import Region
+from .areas import Region, scaled
 from .explain import as_json, dot, explain
 from .ir import MAX_WEIGHTS, Held, Memory, Picture, Read, Ref
 from .library import Library, installed
@@ -30,5 +30,5 @@ __all__ = [
     "Mesh", "Outside", "Pass", "Picture", "Plan", "Planner", "Precision", "Probed", "Read", "Ref", "Region", "Request",
     "Shader", "Stage", "Surface", "Table", "Target", "Tiling", "Upload", "Upstream", "Working", "as_json",
     "compile_graph", "dot", "examine", "explain", "graph_library", "installed", "library_for", "named_files", "parse",
-    "tile_plan",
+    "scaled", "tile_plan",
 ]

@@ -82,6 +82,11 @@ class Around(Struct, frozen=True):
         )
 
 
+def scaled(size: Size, scale: float) -> Size:
+    """The size of a picture at a scale, at least a pixel."""
+    return max(1, round(size[0] * scale)), max(1, round(size[1] * scale))
+
+
 def inside(span: Span, length: int, edge: Edge) -> Span:
     """The pixels of a row of `length` that are read where a span beyond its ends is asked for."""
     first, end = span

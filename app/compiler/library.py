@@ -103,7 +103,7 @@ class Library(Record, frozen=True):
         return self._light[shader, function]
 
     def asked(self, shader: str, function: str, asker: str) -> frozenset[str]:
-        """The uniforms that a function asks for."""
+        """The uniforms that a function asks for; so may macros, which come with files of which it calls nothing."""
         if (shader, function) not in self._asked:
             needed = frozenset({function})
             for text in reversed(self.closure((shader,), asker)):

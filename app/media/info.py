@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import hashlib
+import math
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -211,13 +212,19 @@ def _check_size(size: Size, path: str) -> None:
         )
 
 
+def machine_memory() -> float:
+    """Bytes of memory that this machine has; infinite where the system does not say."""
+    if not hasattr(os, "sysconf"):
+        return math.inf
+    there = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    return there if there > 0 else math.inf
+
+
 def check_memory(path: str, size: Size, channels: int) -> None:
     """Refuse what this machine cannot hold, before the system ends the process for it. Raises InputError."""
-    if not hasattr(os, "sysconf"):
-        return
-    there = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    there = machine_memory()
     need = size[0] * size[1] * _BYTES * (channels + _COPIES * _CHANNELS)
-    if 0 < there < need:
+    if there < need:
         room, memory = need / 2**30, there / 2**30
         raise InputError(
             f"{path}: {size[0]}x{size[1]} pixels of {channels} channels take {room:.0f} GiB, and this machine has "

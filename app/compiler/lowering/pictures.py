@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property
 
-from msgspec import structs
 from msgspec.structs import replace
 
 from ....nodes import ColorChange, Kind, LookupFile, Missing, Render, Scene, SceneFile, Size, Socket
 from ...errors import HalationError
 from ...graph import Graph, color_settings, make_socket
-from ..areas import Around
+from ..areas import Around, scaled
 from ..ir import Accessor, Builder, Call, Constant, Gather, Operand, Parameter, Picture, Read, Ref, Shape
 from ..outside import Outside, Probed
 from ..raster import Mesh
@@ -58,8 +57,7 @@ class Pictures:
             raise
 
     def _scaled(self, size: Size) -> Size:
-        scale = self._request.scale
-        return (max(1, round(size[0] * scale)), max(1, round(size[1] * scale)))
+        return scaled(size, self._request.scale)
 
     def read(self, picture: Picture, owner: str, frame: int, missing: Missing) -> Ref:
         """Upload a picture, or that frame of a sequence, at the size wanted."""
@@ -93,9 +91,9 @@ class Pictures:
 
         def recolor(change: ColorChange) -> ColorProgram:
             if isinstance(change, LookupFile):
-                change = structs.replace(change, path=located(change.path))
+                change = replace(change, path=located(change.path))
             else:
-                change = structs.replace(change, color=self._color)
+                change = replace(change, color=self._color)
             return self._outside.recolor(change)
 
         def read(picture: Picture) -> Ref:
@@ -103,7 +101,7 @@ class Pictures:
 
         def mesh(scene: Scene) -> Mesh:
             if isinstance(scene, SceneFile):
-                scene = structs.replace(scene, path=located(scene.path))
+                scene = replace(scene, path=located(scene.path))
             return self._outside.mesh(scene)
 
         def render(file: str, named: Mapping[str, str]) -> Render:

@@ -24,14 +24,11 @@ from ..ir import (
     Ref,
 )
 from ..library import Library
-from ..shading.emit import Emitted
+from ..shading.emit import EDGES, Emitted
 from ..target import Target
 
 Mark = tuple[Fused, str]
 """A pass that makes one thing, and a hash of all that decides it but the pictures that it reads."""
-
-EDGES = ("primitive/edges",)
-"""The file that everything includes that looks around."""
 
 
 class Marks:
@@ -79,14 +76,14 @@ class Marks:
         """All that an operation is but the pictures that it reads."""
         found = [(*shape.size, shape.channels) for shape in op.shapes]
         if isinstance(op, Convolve):
-            files = self._library.digest(EDGES, op.owner)
+            files = self._library.digest((EDGES,), op.owner)
             return [*found, files, op.axis, op.weights, op.stride, op.origin, op.edge]
         if isinstance(op, Reduce):
             return [*found, op.operation]
         assert isinstance(op, Call | Gather)
         found += [op.function, *(part for item in op.parameters for part in _parameter(item))]
         if isinstance(op, Gather):
-            found += [self._library.digest((*EDGES, op.shader), op.owner), op.edge]
+            found += [self._library.digest((EDGES, op.shader), op.owner), op.edge]
             found += [
                 (item.name, item.glsl, _plain(item.operand) if isinstance(item.operand, Constant) else None)
                 for item in op.accessors

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from functools import singledispatch
 
-from msgspec import structs
 from msgspec.structs import replace
 
 from ..ir import (
@@ -94,7 +93,7 @@ def _accessors(op: Gather) -> tuple[Accessor, ...]:
 
 def _parameters(found: tuple[Parameter, ...]) -> tuple[Parameter, ...]:
     return tuple(
-        structs.replace(item, operand=_blank(item.operand)) if isinstance(item.operand, Constant) else item
+        replace(item, operand=_blank(item.operand)) if isinstance(item.operand, Constant) else item
         for item in found
     )
 

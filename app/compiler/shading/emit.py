@@ -22,6 +22,9 @@ from . import bodies, forms
 from .foreign import foreign
 from .names import Names, convert, glsl_channels
 
+EDGES = "primitive/edges"
+"""The file that all passes include that look around."""
+
 ACCESSORS = ("raw", "at", "near", "size")
 """What there is for a picture that is read anywhere: `image_at` and so on."""
 
@@ -156,7 +159,7 @@ def parts_of(program: Program, fused: Fused, names: Names, library: Library) -> 
             for line in bodies.accessor(names, item, guest.op.edge)
         ]
         body, values = _calls(program, fused, names, library)
-        shaders = [*(["primitive/edges"] if guests else []), *shaders]
+        shaders = [*([EDGES] if guests else []), *shaders]
         return Parts(shaders, functions, body, [values[ref] for ref in fused.writes], guests=guests)
     if isinstance(root, Reduce):
         body, values = _calls(program, fused, names, library)
@@ -164,7 +167,7 @@ def parts_of(program: Program, fused: Fused, names: Names, library: Library) -> 
         return Parts(shaders, functions, [], ["reduced(pixel)"])
     if isinstance(root, Convolve):
         functions, body = _convolved(names, root)
-        return Parts(["primitive/edges"], functions, body, ["convolved"])
+        return Parts([EDGES], functions, body, ["convolved"])
     assert isinstance(root, Gather)
     functions = [line for item in root.accessors for line in bodies.accessor(names, item, root.edge)]
     arguments = [names.argument(item, {}) for item in root.parameters]
@@ -176,7 +179,7 @@ def parts_of(program: Program, fused: Fused, names: Names, library: Library) -> 
         outputs = {f"r{number}": glsl_type(shape.channels) for number, shape in enumerate(root.shapes)}
         body = [f"{glsl} {name};" for name, glsl in outputs.items()]
         body.append(f"{root.function}({', '.join([*arguments, *outputs])});")
-    return Parts(["primitive/edges", root.shader], functions, body, results, accessors)
+    return Parts([EDGES, root.shader], functions, body, results, accessors)
 
 
 def _convolved(names: Names, op: Convolve) -> tuple[list[str], list[str]]:

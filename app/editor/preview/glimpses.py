@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ....nodes import Size
-from ...compiler import Region
+from ...compiler import Region, scaled
 from ...graph import Port
 from ...renderer import Renderer
 from .wishes import Wish
@@ -46,13 +46,9 @@ class Glimpse:
         found, pixels = Region.of(spans[0], spans[1]), size[0] * size[1]
         return found if pixels >= SMALL and found.width * found.height <= LARGEST * pixels else None
 
-    def scaled(self, scale: float) -> Size:
-        """The size of the pictures at a scale."""
-        return max(1, round(self.picture[0] * scale)), max(1, round(self.picture[1] * scale))
-
     def share(self, scale: float) -> float:
         """The part of the pictures that is computed first at a scale, of their area."""
-        size = self.scaled(scale)
+        size = scaled(self.picture, scale)
         region = self.region(size)
         return region.width * region.height / (size[0] * size[1]) if region else 1.0
 
@@ -82,7 +78,7 @@ def part_of(renderer: Renderer, wish: Wish, ports: Mapping[str, Port], glimpse: 
         return None
     plan, there = renderer.compile(wish.graph, wish.wanted(ports, wish.frame)), renderer.runner.textures
     made = [plan.surfaces[number] for number in plan.outputs.values()]
-    size = glimpse.scaled(wish.scale)
+    size = scaled(glimpse.picture, wish.scale)
     if plan.memories or plan.tiling is not None or any(surface.size != size for surface in made):
         return None
     region = None if all(surface.key in there for surface in made) else glimpse.region(size)

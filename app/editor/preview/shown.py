@@ -6,7 +6,7 @@ from collections.abc import Container, Mapping
 from dataclasses import dataclass
 
 from ....nodes import Kind, Size
-from ...compiler import Plan
+from ...compiler import Plan, scaled
 from ...graph import Port
 from ...renderer import Handle, Lease, Runner
 from .glimpses import Part
@@ -110,7 +110,7 @@ class Shelf:
         known += [plan.surfaces[upload.surface].size for upload in plan.uploads]
         found = (round(size[0] / wish.scale), round(size[1] / wish.scale))
         for full in known:
-            if full and (max(1, round(full[0] * wish.scale)), max(1, round(full[1] * wish.scale))) == size:
+            if full and scaled(full, wish.scale) == size:
                 found = full
                 break
         found = size if wish.scale == 1.0 or size == (1, 1) else found

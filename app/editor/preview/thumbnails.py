@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from ....nodes import ColorSettings, Kind
-from ...compiler import Plan
+from ...compiler import Plan, scaled
 from ...media.managed import DEFAULT_COLOR
 from ...renderer import Display, Handle, Look, Probe, Renderer
 from ..services.coloring import Coloring
@@ -98,7 +98,7 @@ class Thumbnails:
         source = _Source(texture.handle, texture.handle.size, subject.channels, subject.key)
         width, height = source.full_size
         zoom = min(LARGEST[0] / width, LARGEST[1] / height, 1.0)
-        size = (max(1, round(width * zoom)), max(1, round(height * zoom)))
+        size = scaled(source.full_size, zoom)
         look = self._look(subject, source.texture, max(size[0] / width, size[1] / height))
         drawn = self._display.draw(f"thumbnail {subject.path}", size, source, None, look)
         self._drawn[subject.path] = _Drawn(drawn, subject.key, subject.mark)

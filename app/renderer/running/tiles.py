@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Generator, Iterable, Mapping, Set
 from typing import Protocol
 
@@ -15,6 +14,7 @@ from ...compiler.areas import Span
 from ...compiler.explain import size_text
 from ...compiler.ir import Program
 from ...errors import DeviceError, HalationError
+from ...media.info import machine_memory
 from ..opengl.textures import Lease
 from .arrays import Arrays
 from .decoding import Array, Loader
@@ -212,9 +212,9 @@ def _check_memory(program: Program, taken: Set[str]) -> None:
     """Raise DeviceError for outputs that this machine cannot hold: all but those `taken` are put together in memory."""
     shapes = [program.shape(ref) for name, ref in program.outputs.items() if name not in taken]
     nbytes = sum(shape.size[0] * shape.size[1] * shape.channels * 4 for shape in shapes)
-    if hasattr(os, "sysconf") and nbytes > (most := os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")):
+    if nbytes > (most := machine_memory()):
         raise DeviceError(
-            f"the outputs take {size_text(nbytes)} of memory, and this machine has {size_text(most)}; "
+            f"the outputs take {size_text(nbytes)} of memory, and this machine has {size_text(int(most))}; "
             "render smaller with --scale or --size"
         )
 
