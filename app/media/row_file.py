@@ -8,15 +8,13 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-import OpenImageIO as oiio
-
 from ...nodes import Kind, Size
 from ..errors import OutputError
 from .color import Array
 from .encoding import Encoding
 from .metadata import add_metadata
 from .store import reason_of, unfinished
-from .write import Precision, exr_parts
+from .write import Precision, encoder_of, exr_parts, refusal
 
 
 class RowFile:
@@ -32,7 +30,7 @@ class RowFile:
         self._path, self._size, self._name, self._kind, self._metadata = path, size, name, kind, metadata
         self._precision: Precision = precision
         self._compression, self._encoding = compression, encoding
-        self._output = _encoder(path)
+        self._output = encoder_of(path, "openexr")
         self._row = 0
         self._open = ExitStack()
         self._part, self._target = self._open.enter_context(unfinished(path))
@@ -69,12 +67,4 @@ class RowFile:
 
     def _check(self, done: bool) -> None:
         if not done:
-            said = self._output.geterror().strip().splitlines()
-            raise OutputError(f"{self._path}: cannot be written: {said[0] if said else 'the encoder gave no reason'}")
-
-
-def _encoder(path: Path) -> oiio.ImageOutput:
-    made = oiio.ImageOutput.create("openexr")
-    if made is None:
-        raise OutputError(f"{path}: cannot be written: this OpenImageIO has no encoder for openexr")
-    return made
+            raise refusal(self._path, self._output.geterror())

@@ -204,17 +204,27 @@ def _picture(array: Array, format: str, precision: Precision, compression: str, 
 
 def _encoder(path: str | Path, format: str, parts: Sequence[Part]) -> Callable[[str], None]:
     def encode(file: str) -> None:
-        output = oiio.ImageOutput.create(format)
-        if output is None:
-            raise OutputError(f"{path}: cannot be written: this OpenImageIO has no encoder for {format}")
-        first = parts[0].spec
+        output, first = encoder_of(path, format), parts[0].spec
         done = output.open(file, tuple(part.spec for part in parts)) if len(parts) > 1 else output.open(file, first)
         for index, part in enumerate(parts):
             done = done and (index == 0 or output.open(file, part.spec, "AppendSubimage"))
             done = done and output.write_image(part.array)
         said = output.geterror()
         if not (output.close() and done):
-            said = (said or output.geterror()).strip().splitlines()
-            raise OutputError(f"{path}: cannot be written: {said[0] if said else 'the encoder gave no reason'}")
+            raise refusal(path, said or output.geterror())
 
     return encode
+
+
+def encoder_of(path: str | Path, format: str) -> oiio.ImageOutput:
+    """What writes files of a format. Raises OutputError where there is nothing."""
+    output = oiio.ImageOutput.create(format)
+    if output is None:
+        raise OutputError(f"{path}: cannot be written: this OpenImageIO has no encoder for {format}")
+    return output
+
+
+def refusal(path: str | Path, said: str) -> OutputError:
+    """What an encoder said when it could not write a file."""
+    lines = said.strip().splitlines()
+    return OutputError(f"{path}: cannot be written: {lines[0] if lines else 'the encoder gave no reason'}")
