@@ -16,6 +16,9 @@ from .metadata import add_metadata
 from .store import reason_of, unfinished
 from .write import Precision, encoder_of, exr_parts, refusal
 
+_BLOCK = 2**16
+"""Bytes that a disk should have left."""
+
 
 class RowFile:
     """An EXR of one layer of `size` and `kind`, the same that `write` makes of all rows together.
@@ -66,5 +69,12 @@ class RowFile:
         self._open.close()
 
     def _check(self, done: bool) -> None:
-        if not done:
-            raise refusal(self._path, self._output.geterror())
+        if done:
+            return
+        said = self._output.geterror()
+        try:
+            with self._part.open("ab") as file:  # the encoder does not know why, but the system does
+                file.write(bytes(_BLOCK))
+        except OSError as error:
+            raise OutputError(f"{self._path}: cannot be written: {reason_of(error)}") from error
+        raise refusal(self._path, said)

@@ -60,3 +60,16 @@ def test_what_is_not_finished_leaves_nothing_behind(tmp_path, picture, monkeypat
     with pytest.raises(HalationError, match="no room"):
         written(tmp_path, picture, MEMORY)
     assert set(tmp_path.iterdir()) == before
+
+
+def test_a_disk_that_is_full_says_so(tmp_path, picture):
+    """The encoder says only that it failed, and names a file that nobody knows."""
+    resource = pytest.importorskip("resource")
+    before, limits = set(tmp_path.iterdir()), resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, limits[1]))
+    try:
+        with pytest.raises(HalationError, match="would be larger than may be written here: make it smaller"):
+            written(tmp_path, picture, MEMORY)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert set(tmp_path.iterdir()) == before
