@@ -45,8 +45,14 @@ def save(graph: Graph, path: str | Path) -> None:
 
 
 def render(
-    graph: Graph, inputs: Mapping[str, Binding] | None = None, *, values: Mapping[str, Any] | None = None,
-    node: str = "", size: tuple[int, int] | None = None, scale: float = 1.0, frame: int | None = None,
+    graph: Graph,
+    inputs: Mapping[str, Binding] | None = None,
+    *,
+    values: Mapping[str, Any] | None = None,
+    node: str = "",
+    size: tuple[int, int] | None = None,
+    scale: float = 1.0,
+    frame: int | None = None,
     precision: Precision | None = None,
 ) -> dict[str, np.ndarray]:
     """Every output of a graph by name, as float arrays [height, width, channels].
@@ -62,9 +68,15 @@ def render(
 
 
 def render_frames(
-    graph: Graph, inputs: Mapping[str, Binding | Callable[[int], Binding]] | None = None,
-    frames: Iterable[int] | None = None, *, values: Mapping[str, Any] | None = None, node: str = "",
-    size: tuple[int, int] | None = None, scale: float = 1.0, precision: Precision | None = None,
+    graph: Graph,
+    inputs: Mapping[str, Binding | Callable[[int], Binding]] | None = None,
+    frames: Iterable[int] | None = None,
+    *,
+    values: Mapping[str, Any] | None = None,
+    node: str = "",
+    size: tuple[int, int] | None = None,
+    scale: float = 1.0,
+    precision: Precision | None = None,
 ) -> Iterator[tuple[int, dict[str, np.ndarray]]]:
     """Frames of a graph, by default all that it has, one after the other, each with its outputs as `render` has them.
 

@@ -57,8 +57,13 @@ def run(renderer: Renderer) -> Run:
     """
 
     def rendered(
-        subject: Node | Graph, inputs: Mapping[str, Array | Camera] | None = None, *,
-        size: tuple[int, int] | None = None, output: str = "out", scale: float = 1.0, precision: str = "float",
+        subject: Node | Graph,
+        inputs: Mapping[str, Array | Camera] | None = None,
+        *,
+        size: tuple[int, int] | None = None,
+        output: str = "out",
+        scale: float = 1.0,
+        precision: str = "float",
         engine: Renderer | None = None,
     ) -> Array:
         given = inputs or {}

@@ -41,8 +41,26 @@ def _edit(rng: Random, graph: Graph) -> Graph:
     id = rng.choice([*graph.nodes])
     item, face = graph.nodes[id], signature(graph.nodes[id])
     numbers = [name for name, value in face.values.items() if value.type == "float"]
-    match rng.choice(("set", "set", "link", "unlink", "add", "remove", "rename", "mute", "move", "keys", "inside",
-                      "control", "end", "expression", "settings", "replace")):
+    match rng.choice(
+        (
+            "set",
+            "set",
+            "link",
+            "unlink",
+            "add",
+            "remove",
+            "rename",
+            "mute",
+            "move",
+            "keys",
+            "inside",
+            "control",
+            "end",
+            "expression",
+            "settings",
+            "replace",
+        )
+    ):
         case "set" if numbers:
             name = rng.choice(numbers)
             value = face.values[name]

@@ -102,7 +102,12 @@ class Ui:
         io.mouse_single_click_delay, io.mouse_double_click_time = usual
 
     def drag(
-        self, start: str | Point, end: str | Point, button: int = 0, keys: str = "", release: bool = True,
+        self,
+        start: str | Point,
+        end: str | Point,
+        button: int = 0,
+        keys: str = "",
+        release: bool = True,
         fraction: Point = (0.5, 0.5),
     ) -> None:
         """Press at one place, let go at another."""
@@ -169,8 +174,13 @@ class _Held:
 
 
 def drive(
-    body: Callable[[Ui], object], folder: Path, path: Path | None = None, bindings: Mapping[str, str] | None = None,
-    size: tuple[int, int] = (1400, 900), likes: Mapping[str, object] | None = None, faulty: bool = False,
+    body: Callable[[Ui], object],
+    folder: Path,
+    path: Path | None = None,
+    bindings: Mapping[str, str] | None = None,
+    size: tuple[int, int] = (1400, 900),
+    likes: Mapping[str, object] | None = None,
+    faulty: bool = False,
 ) -> Window:
     """Open the editor, run `body(ui)` beside it, and close it. Its state is in `folder / "state"`.
 
@@ -203,7 +213,9 @@ def drive(
 
 
 def headless(
-    folder: Path, path: Path | None = None, bindings: Mapping[str, str] | None = None,
+    folder: Path,
+    path: Path | None = None,
+    bindings: Mapping[str, str] | None = None,
     size: tuple[int, int] = (1400, 900),
 ) -> Window:
     """A window that is ready to run and needs no display: what it shows is real all the same."""

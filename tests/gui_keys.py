@@ -16,12 +16,17 @@ def animation(ui: Ui) -> Iterator[str]:
     yield "animation_none"
     intensity, gain = Port("bloom", "intensity"), Port("grade", "gain")
     ui.session.set_frames(1, 48)
-    ui.session.animate_all({
-        intensity: Keys((Key(1, 0.2), Key(12, 0.9), Key(24, 0.9), Key(40, 0.1, "constant"))),
-        Port("bloom", "knee"): Keys((Key(5, 0.2, "bezier"), Key(20, 1.0, "bezier"), Key(30, 0.4, "linear")), "loop"),
-        gain: Keys((Key(1, (1.0,) * 4), Key(10, (1.5, 0.7, 0.8, 1.0), "linear"), Key(30, (0.8, 1.2, 1.4, 1.0)))),
-        Port("tone_map", "exposure"): Expression("0.3 + 0.1 * sin(time * tau)"),
-    }, "Animate")
+    ui.session.animate_all(
+        {
+            intensity: Keys((Key(1, 0.2), Key(12, 0.9), Key(24, 0.9), Key(40, 0.1, "constant"))),
+            Port("bloom", "knee"): Keys(
+                (Key(5, 0.2, "bezier"), Key(20, 1.0, "bezier"), Key(30, 0.4, "linear")), "loop"
+            ),
+            gain: Keys((Key(1, (1.0,) * 4), Key(10, (1.5, 0.7, 0.8, 1.0), "linear"), Key(30, (0.8, 1.2, 1.4, 1.0)))),
+            Port("tone_map", "exposure"): Expression("0.3 + 0.1 * sin(time * tau)"),
+        },
+        "Animate",
+    )
     ui.session.seek(16)
     state = ui.editor.curves
     state.fit()

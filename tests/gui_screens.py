@@ -34,9 +34,15 @@ def made(folder: Path) -> Path:
         graph = graph.add(id, node[id]())
     graph = graph.add("plate", node["read_image"](path="samples/neon.exr"))
     for source, target in (
-        ("inputs.beauty", "grade.image"), ("grade.out", "bloom.image"), ("bloom.out", "vignette.image"),
-        ("vignette.out", "tone_map.image"), ("tone_map.out", "outputs.image"), ("inputs.amount", "vignette.amount"),
-        ("tone_map.out", "luminance.image"), ("luminance.out", "outputs.lights"), ("noise.out", "convolve3x3.image"),
+        ("inputs.beauty", "grade.image"),
+        ("grade.out", "bloom.image"),
+        ("bloom.out", "vignette.image"),
+        ("vignette.out", "tone_map.image"),
+        ("tone_map.out", "outputs.image"),
+        ("inputs.amount", "vignette.amount"),
+        ("tone_map.out", "luminance.image"),
+        ("luminance.out", "outputs.lights"),
+        ("noise.out", "convolve3x3.image"),
     ):
         graph = graph.connect(Port.parse(source), Port.parse(target))
     graph = graph.add_control("glow", Control(Port("bloom", "intensity")))
@@ -59,18 +65,25 @@ def window(ui: Ui) -> Screens:
 
 def inspector(ui: Ui) -> Screens:
     """What can be selected."""
-    lamps = Lamps(lights=numbers_of(tuple(
-        Light(kind, color=(1.0, 0.2 * kind, 0.1), intensity=4.0 - 3.0 * kind, on=kind != LightKind.SUN)
-        for kind in (LightKind.SPOT, LightKind.SUN, *LightKind, *LightKind)
-    )))
+    lamps = Lamps(
+        lights=numbers_of(
+            tuple(
+                Light(kind, color=(1.0, 0.2 * kind, 0.1), intensity=4.0 - 3.0 * kind, on=kind != LightKind.SUN)
+                for kind in (LightKind.SPOT, LightKind.SUN, *LightKind, *LightKind)
+            )
+        )
+    )
     ui.session.edit("Add", ui.session.graph.add("curves", Tint()).add("lamps", lamps))
     for id in ("grade", "noise", "bloom", "vignette", "tone_map", "convolve3x3", "plate", "curves", "lamps"):
         ui.session.select([id])
         ui.wait(3)
         yield f"inspector_{id}"
     for name, keys in (
-        ("input", ["inputs.beauty"]), ("input_number", ["inputs.amount"]), ("output", ["outputs.image"]),
-        ("several", ["grade", "vignette"]), ("nothing", []),
+        ("input", ["inputs.beauty"]),
+        ("input_number", ["inputs.amount"]),
+        ("output", ["outputs.image"]),
+        ("several", ["grade", "vignette"]),
+        ("nothing", []),
     ):
         ui.session.select(keys)
         ui.wait(3)
@@ -247,7 +260,8 @@ def renders(ui: Ui) -> Screens:
         render(folder / "comp_v013.png", "failed", total=1, sentence="/pictures/shots/0120: no such folder"),
         render(folder / "a_very_long_name_of_a_picture_that_does_not_end_v014.####.exr", "cancelled", 5),
         render(folder / "comp_v015.####.exr", "running", 9, frame=10, node="bloom", passes=(3, 8)),
-        render(folder / "comp_v016.####.exr", "waiting"), render(folder / "comp_v017.####.exr", "waiting"),
+        render(folder / "comp_v016.####.exr", "waiting"),
+        render(folder / "comp_v017.####.exr", "waiting"),
     )
     ui.wait(3)
     yield "renders"
@@ -294,7 +308,8 @@ def dialogs(ui: Ui) -> Screens:
         ui.editor.dialogs.open.clear()
         ui.wait(2)
     ui.editor.dialogs.question = Question(
-        "Save the changes?", "'many_things' was changed since it was saved.",
+        "Save the changes?",
+        "'many_things' was changed since it was saved.",
         (("Save", lambda: None), ("Do not save", lambda: None), ("Cancel", lambda: None)),
     )
     ui.wait(3)
@@ -361,5 +376,16 @@ def _open_start(editor: Editor) -> None:
 
 
 SCREENS: tuple[Callable[[Ui], Screens], ...] = (
-    window, inspector, fields, viewer, scopes, panels, animation, renders, files, dialogs, canvas, start,
+    window,
+    inspector,
+    fields,
+    viewer,
+    scopes,
+    panels,
+    animation,
+    renders,
+    files,
+    dialogs,
+    canvas,
+    start,
 )

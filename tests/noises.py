@@ -5,10 +5,27 @@ from __future__ import annotations
 import numpy as np
 from hashes import pcg3d
 
-PERLIN = np.array([
-    (1, 1, 0), (-1, 1, 0), (1, -1, 0), (-1, -1, 0), (1, 0, 1), (-1, 0, 1), (1, 0, -1), (-1, 0, -1),
-    (0, 1, 1), (0, -1, 1), (0, 1, -1), (0, -1, -1), (1, 1, 0), (0, -1, 1), (-1, 1, 0), (0, -1, -1),
-], np.float64)
+PERLIN = np.array(
+    [
+        (1, 1, 0),
+        (-1, 1, 0),
+        (1, -1, 0),
+        (-1, -1, 0),
+        (1, 0, 1),
+        (-1, 0, 1),
+        (1, 0, -1),
+        (-1, 0, -1),
+        (0, 1, 1),
+        (0, -1, 1),
+        (0, 1, -1),
+        (0, -1, -1),
+        (1, 1, 0),
+        (0, -1, 1),
+        (-1, 1, 0),
+        (0, -1, -1),
+    ],
+    np.float64,
+)
 """The sixteen cases of Perlin's reference implementation (2002): x, y and z of each edge."""
 
 DENSITY = 0.5

@@ -31,11 +31,16 @@ def random_node(rng: Random, node: type[Node] | None = None) -> Node:
 def random_graph(seed: int, length: int = 10) -> Graph:
     """A graph of `length` nodes over pictures of every type and a camera; every loose end is an output."""
     rng = Random(seed)
-    graph = Graph(inputs={
-        "image": Input(Kind.IMAGE), "field": Input(Kind.FIELD), "vector": Input(Kind.VECTOR, 2),
-        "normal": Input(Kind.VECTOR, 3), "motion": Input(Kind.VECTOR, 4),
-        "camera": Input(Kind.CAMERA, default=look_at((1.0, -5.0, 2.0), (0.0, 0.0, 0.5), (1.2, 1.9)).rows),
-    })
+    graph = Graph(
+        inputs={
+            "image": Input(Kind.IMAGE),
+            "field": Input(Kind.FIELD),
+            "vector": Input(Kind.VECTOR, 2),
+            "normal": Input(Kind.VECTOR, 3),
+            "motion": Input(Kind.VECTOR, 4),
+            "camera": Input(Kind.CAMERA, default=look_at((1.0, -5.0, 2.0), (0.0, 0.0, 0.5), (1.2, 1.9)).rows),
+        }
+    )
     for index in range(length):
         name = f"n{index}"
         graph = graph.add(name, random_node(rng))
@@ -45,7 +50,8 @@ def random_graph(seed: int, length: int = 10) -> Graph:
         ]
         for target in [*face.inputs, *wires]:
             fitting = [
-                port for port in sources(graph, name)
+                port
+                for port in sources(graph, name)
                 if conversion(graph.source(port), graph.target(Port(name, target))) is None
                 and not (looks_around(graph.nodes[name]) and remembers(graph, port.node))
             ]
@@ -54,7 +60,8 @@ def random_graph(seed: int, length: int = 10) -> Graph:
                 graph = graph.connect(fitting[-1 - int(len(fitting) * rng.random() ** 3)], Port(name, target))
     read = set(graph.links.values())
     loose = [
-        port for port in sources(graph, "")
+        port
+        for port in sources(graph, "")
         if port not in read and port.node != "inputs" and graph.source(port).kind is not Kind.CAMERA
     ]
     for number, port in enumerate(loose[-4:]):

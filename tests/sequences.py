@@ -57,6 +57,7 @@ def played(
 
 def flat(value: Callable[[int], float], size: tuple[int, int] = (3, 2)) -> Callable[[int], Array]:
     """Frames of one gray each, opaque."""
+
     def made(frame: int) -> Array:
         picture = np.full((size[1], size[0], 4), value(frame), np.float32)
         picture[..., 3] = 1.0

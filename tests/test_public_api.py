@@ -22,8 +22,9 @@ PICTURE[..., 3] = 1.0
 @pytest.fixture
 def graph() -> Graph:
     """beauty -> light -> image, with the control `glow`, and a field that passes through."""
-    made = Graph(inputs={"beauty": Input(Kind.IMAGE), "depth": Input(Kind.FIELD, default=0.5)},
-                 outputs={"image": Output()}).add("light", Exposure(stops=1.0))
+    made = Graph(
+        inputs={"beauty": Input(Kind.IMAGE), "depth": Input(Kind.FIELD, default=0.5)}, outputs={"image": Output()}
+    ).add("light", Exposure(stops=1.0))
     made = made.connect(Port("inputs", "beauty"), Port("light", "image"))
     return made.connect(Port("light", "out"), Port("outputs", "image"))
 
@@ -34,16 +35,16 @@ def test_names_are_frozen():
     assert {name: str(inspect.signature(getattr(hal, name))).split(" -> ")[0] for name in hal.__all__[1:]} == {
         "load": "(path: 'str | Path')",
         "render": "(graph: 'Graph', inputs: 'Mapping[str, Binding] | None' = None, *, "
-                  "values: 'Mapping[str, Any] | None' = None, node: 'str' = '', size: 'tuple[int, int] | None' = None, "
-                  "scale: 'float' = 1.0, frame: 'int | None' = None, precision: 'Precision | None' = None)",
+        "values: 'Mapping[str, Any] | None' = None, node: 'str' = '', size: 'tuple[int, int] | None' = None, "
+        "scale: 'float' = 1.0, frame: 'int | None' = None, precision: 'Precision | None' = None)",
         "render_frames": "(graph: 'Graph', "
-                         "inputs: 'Mapping[str, Binding | Callable[[int], Binding]] | None' = None, "
-                         "frames: 'Iterable[int] | None' = None, *, values: 'Mapping[str, Any] | None' = None, "
-                         "node: 'str' = '', size: 'tuple[int, int] | None' = None, scale: 'float' = 1.0, "
-                         "precision: 'Precision | None' = None)",
+        "inputs: 'Mapping[str, Binding | Callable[[int], Binding]] | None' = None, "
+        "frames: 'Iterable[int] | None' = None, *, values: 'Mapping[str, Any] | None' = None, "
+        "node: 'str' = '', size: 'tuple[int, int] | None' = None, scale: 'float' = 1.0, "
+        "precision: 'Precision | None' = None)",
         "save": "(graph: 'Graph', path: 'str | Path')",
         "write": "(path: 'str | Path', picture: 'np.ndarray', *, view: 'str' = '', precision: 'Precision' = 'half', "
-                 "compression: 'str' = 'zip')",
+        "compression: 'str' = 'zip')",
     }
     for name in hal.__all__:
         assert inspect.getdoc(getattr(hal, name)), name
@@ -52,8 +53,15 @@ def test_names_are_frozen():
 def test_every_error_is_a_halation_error_with_its_exit_code():
     classes = {name: item for name, item in vars(errors).items() if isinstance(item, type)}
     assert {name: item.exit_code for name, item in classes.items()} == {
-        "HalationError": 1, "UsageError": 2, "GraphError": 3, "DocumentError": 3, "InputError": 4, "DeviceError": 5,
-        "ShaderError": 5, "RenderError": 1, "OutputError": 1,
+        "HalationError": 1,
+        "UsageError": 2,
+        "GraphError": 3,
+        "DocumentError": 3,
+        "InputError": 4,
+        "DeviceError": 5,
+        "ShaderError": 5,
+        "RenderError": 1,
+        "OutputError": 1,
     }
     assert all(issubclass(item, hal.HalationError) for item in classes.values())
 

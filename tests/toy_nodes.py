@@ -133,10 +133,12 @@ def small() -> Graph:
     return Graph(
         nodes={"gain": Gain(gain=2.0), "soften": Soften(sigma=4.0)},
         links={
-            Port("gain", "image"): Port("inputs", "beauty"), Port("soften", "image"): Port("gain", "out"),
+            Port("gain", "image"): Port("inputs", "beauty"),
+            Port("soften", "image"): Port("gain", "out"),
             Port("outputs", "image"): Port("soften", "out"),
         },
-        inputs={"beauty": Input(file="shot.exr", layer="Combined")}, outputs={"image": Output()},
+        inputs={"beauty": Input(file="shot.exr", layer="Combined")},
+        outputs={"image": Output()},
         controls={"glow": Control(Port("gain", "gain"), "Glow")},
         ui={"nodes": {"gain": [10, 20.5], "soften": [200, 20]}, "zoom": 1.5},
     )
@@ -146,9 +148,7 @@ def random_item(rng: Random, depth: int = 0) -> Item:
     """A node with random values, a group of some, or one of unknown type."""
     if depth < 2 and rng.random() < 0.15:
         body = random_graph(rng, 6, depth + 1)
-        values = {
-            name: value.default for name, value in signature(Group(body)).values.items() if rng.random() < 0.5
-        }
+        values = {name: value.default for name, value in signature(Group(body)).values.items() if rng.random() < 0.5}
         return Group(body, values=values)
     if rng.random() < 0.1:
         return Unknown(rng.choice(["lens", "gain9"]), {"version": rng.randint(1, 9), "values": {"a": [1, {"b": None}]}})
@@ -175,10 +175,12 @@ def random_value(rng: Random, kind: type[Node], name: str) -> Any:
             part for place in places for part in (place / 8, *(rng.uniform(-9.0, 9.0) for _ in range(value.length - 1)))
         )
     if value.type == "lights":
-        return numbers_of(tuple(
-            Light(rng.choice([*LightKind]), intensity=rng.uniform(-9.0, 9.0), on=rng.random() < 0.5)
-            for _ in range(rng.randint(0, 3))
-        ))
+        return numbers_of(
+            tuple(
+                Light(rng.choice([*LightKind]), intensity=rng.uniform(-9.0, 9.0), on=rng.random() < 0.5)
+                for _ in range(rng.randint(0, 3))
+            )
+        )
     return tuple(rng.uniform(-1e3, 1e3) for _ in range(value.length))
 
 
@@ -210,7 +212,8 @@ def random_edit(rng: Random, graph: Graph, depth: int = 0) -> Graph:
 def random_graph(rng: Random, edits: int = 25, depth: int = 0) -> Graph:
     """What is left of a number of random edits."""
     graph = Graph(
-        inputs={"image": Input(), "depth": Input(Kind.FIELD)}, outputs={"final": Output()},
+        inputs={"image": Input(), "depth": Input(Kind.FIELD)},
+        outputs={"final": Output()},
         settings=Settings(rng.choice([None, (64, 48)])),
     )
     for _ in range(edits):

@@ -33,9 +33,17 @@ def number_in(picture: np.ndarray) -> int:
 
 
 def write_frames(
-    path: Path, frames: Sequence[Any], codec: str, *, options: Mapping[str, str] | None = None,
-    container: Mapping[str, str] | None = None, times: Sequence[int] | None = None, rate: int = 24, rotation: int = 0,
-    tags: Mapping[str, str] | None = None, color: Mapping[str, int] | None = None,
+    path: Path,
+    frames: Sequence[Any],
+    codec: str,
+    *,
+    options: Mapping[str, str] | None = None,
+    container: Mapping[str, str] | None = None,
+    times: Sequence[int] | None = None,
+    rate: int = 24,
+    rotation: int = 0,
+    tags: Mapping[str, str] | None = None,
+    color: Mapping[str, int] | None = None,
 ) -> Path:
     """Encode PyAV frames as they are; `times` are in milliseconds."""
     import av

@@ -174,35 +174,60 @@ def _as_json(
     from ..renderer.bench import names, shares
 
     made: dict[str, Any] = {
-        "graph": str(graph), "device": device, "size": list(found.size), "frames": list(frames),
-        "repeats": len(found.totals), "median": found.median, "fastest": found.fastest,
-        "planning": found.planning, "compiling": found.compiling, "programs": found.programs,
-        "loading": found.loading, "peak_bytes": found.peak_bytes, "lead": found.lead,
+        "graph": str(graph),
+        "device": device,
+        "size": list(found.size),
+        "frames": list(frames),
+        "repeats": len(found.totals),
+        "median": found.median,
+        "fastest": found.fastest,
+        "planning": found.planning,
+        "compiling": found.compiling,
+        "programs": found.programs,
+        "loading": found.loading,
+        "peak_bytes": found.peak_bytes,
+        "lead": found.lead,
         "nodes": [
             {
-                "nodes": list(one.nodes), "passes": one.count, "median": one.median, "fastest": one.fastest,
-                "share": one.median / found.median, "read_bytes": one.read, "written_bytes": one.written,
+                "nodes": list(one.nodes),
+                "passes": one.count,
+                "median": one.median,
+                "fastest": one.fastest,
+                "share": one.median / found.median,
+                "read_bytes": one.read,
+                "written_bytes": one.written,
             }
             for one in shares(found.passes)
         ],
         "passes": [
             {
-                "nodes": list(one.nodes), "functions": list(one.functions), "number": name[2], "median": one.median,
-                "fastest": one.fastest, "read_bytes": one.read, "written_bytes": one.written,
+                "nodes": list(one.nodes),
+                "functions": list(one.functions),
+                "number": name[2],
+                "median": one.median,
+                "fastest": one.fastest,
+                "read_bytes": one.read,
+                "written_bytes": one.written,
             }
             for name, one in zip(names(found.passes), found.passes, strict=True)
         ],
     }
     if compared:
         made["compared"] = {
-            "device": compared.device, "new": compared.new, "gone": compared.gone,
-            "ratios": [_told(one) for one in compared.ratios], "slower": [_told(one) for one in slower],
+            "device": compared.device,
+            "new": compared.new,
+            "gone": compared.gone,
+            "ratios": [_told(one) for one in compared.ratios],
+            "slower": [_told(one) for one in slower],
         }
     return made
 
 
 def _told(one: Ratio) -> dict[str, Any]:
     return {
-        "nodes": list(one.nodes), "functions": list(one.functions), "median": one.median, "fastest": one.fastest,
+        "nodes": list(one.nodes),
+        "functions": list(one.functions),
+        "median": one.median,
+        "fastest": one.fastest,
         "ratio": one.judged,
     }

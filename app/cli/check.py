@@ -110,12 +110,17 @@ def _told(report: Report, strict: bool) -> dict[str, Any]:
     def problem(finding: Finding) -> dict[str, Any]:
         found = finding.problem
         return {
-            "rule": found.rule.name, "severity": found.severity, "line": finding.line, "node": found.node,
-            "socket": found.socket, "sentence": found.sentence,
+            "rule": found.rule.name,
+            "severity": found.severity,
+            "line": finding.line,
+            "node": found.node,
+            "socket": found.socket,
+            "sentence": found.sentence,
         }
 
     return {
-        "graph": report.file, "exit_code": _code(report, strict),
+        "graph": report.file,
+        "exit_code": _code(report, strict),
         "problems": [problem(finding) for finding in report.findings],
     }
 

@@ -22,9 +22,13 @@ def explain(
     size: SizeText = None,
     scale: Scale = 1.0,
     frame: Annotated[int | None, typer.Option(help="The frame to plan; by default the first of the graph.")] = None,
-    form: Annotated[str, typer.Option(
-        metavar="fragment|compute|device", help="Plan for this form of passes, or for the device that is here.",
-    )] = "compute",
+    form: Annotated[
+        str,
+        typer.Option(
+            metavar="fragment|compute|device",
+            help="Plan for this form of passes, or for the device that is here.",
+        ),
+    ] = "compute",
     precision: Annotated[
         str | None, typer.Option(metavar="half|float", help="Precision of color intermediates.")
     ] = None,
@@ -49,8 +53,11 @@ def explain(
     report_problems(graph, opened_graph)
     lazy = Lazy()
     request = compiler.Request(
-        parsing.targets(opened_graph, node), lazy.bind(opened_graph, inputs or ()), parsing.size(size),
-        parsing.scale(scale), frame if frame is not None else lazy.frames(opened_graph, inputs or ())[0],
+        parsing.targets(opened_graph, node),
+        lazy.bind(opened_graph, inputs or ()),
+        parsing.size(size),
+        parsing.scale(scale),
+        frame if frame is not None else lazy.frames(opened_graph, inputs or ())[0],
     )
     target = replace(_target(way), memory=most)
     # As if each went into an EXR of its own.

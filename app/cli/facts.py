@@ -59,13 +59,21 @@ def hard_range(value: Value) -> str:
 def facts_of(node: type[Node]) -> dict[str, Any]:
     """Everything, for machines."""
     return {
-        "id": node.id, "category": node.category, "version": node.version, "doc": doc_of(node),
+        "id": node.id,
+        "category": node.category,
+        "version": node.version,
+        "doc": doc_of(node),
         "inputs": {name: _socket_facts(socket) for name, socket in node.inputs.items()},
         "outputs": {name: _socket_facts(output.socket) for name, output in node.outputs.items()},
         "values": {
             value.name: {
-                "type": value.type, "default": value.default, "choices": list(value.choices), "unit": value.unit,
-                "soft": _finite(value.low, value.high), "hard": _finite(value.minimum, value.maximum), "doc": value.doc,
+                "type": value.type,
+                "default": value.default,
+                "choices": list(value.choices),
+                "unit": value.unit,
+                "soft": _finite(value.low, value.high),
+                "hard": _finite(value.minimum, value.maximum),
+                "doc": value.doc,
             }
             for value in node.values.values()
         },

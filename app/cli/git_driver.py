@@ -52,8 +52,9 @@ def _diff(words: Sequence[str]) -> int:
     state = ", new" if words[2] == "." else ", deleted" if words[5] == "." else ""
     one, other = graphs
     if one is None or other is None:
-        for line in difflib.unified_diff(before.splitlines(), after.splitlines(), f"a/{words[0]}", f"b/{path}",
-                                         lineterm=""):
+        for line in difflib.unified_diff(
+            before.splitlines(), after.splitlines(), f"a/{words[0]}", f"b/{path}", lineterm=""
+        ):
             print(painted(line, line[:1], colored))
         return 0
     lines = told(difference(one, other), one, other)
@@ -81,8 +82,9 @@ def _merge(base: str, ours: str, theirs: str, path: str) -> int:
     from .merge import merged_versions, tell
 
     if not any('"halation"' in _read(file) for file in (ours, theirs)):
-        return subprocess.run(["git", "merge-file", "-L", "ours", "-L", "base", "-L", "theirs", ours, base, theirs],
-                              check=False).returncode
+        return subprocess.run(
+            ["git", "merge-file", "-L", "ours", "-L", "base", "-L", "theirs", ours, base, theirs], check=False
+        ).returncode
     try:
         made = merged_versions(base, ours, theirs)
     except DocumentError as fault:

@@ -68,8 +68,13 @@ def _frames(shot: Sequence) -> str:
 def _shot_facts(shot: Sequence) -> dict[str, Any]:
     return {
         "sequence": {
-            "pattern": shot.pattern.text, "count": len(shot.frames), "first": shot.frames[0], "last": shot.frames[-1],
-            "frames": list(shot.frames), "gaps": [list(gap) for gap in shot.gaps], "missing": shot.missing,
+            "pattern": shot.pattern.text,
+            "count": len(shot.frames),
+            "first": shot.frames[0],
+            "last": shot.frames[-1],
+            "frames": list(shot.frames),
+            "gaps": [list(gap) for gap in shot.gaps],
+            "missing": shot.missing,
         }
     }
 
@@ -80,20 +85,32 @@ def _facts(found: Survey) -> dict[str, Any]:
 
     header = found.header
     return {
-        "file": header.info.path, "format": header.info.format, "size": list(header.info.size),
-        "renderer": found.maker.renderer, "renderer_reason": found.maker.reason,
+        "file": header.info.path,
+        "format": header.info.format,
+        "size": list(header.info.size),
+        "renderer": found.maker.renderer,
+        "renderer_reason": found.maker.reason,
         "parts": [
             {
-                "index": part.index, "name": part.name, "view": part.view, "storage": part.storage,
-                "compression": part.compression, "data_window": part.data, "display_window": part.display,
-                "channels": dict(zip(part.channels, part.formats, strict=True)), "color_space": part.tag,
+                "index": part.index,
+                "name": part.name,
+                "view": part.view,
+                "storage": part.storage,
+                "compression": part.compression,
+                "data_window": part.data,
+                "display_window": part.display,
+                "channels": dict(zip(part.channels, part.formats, strict=True)),
+                "color_space": part.tag,
             }
             for part in header.parts
         ],
         "layers": [
             {
-                **_layer_facts(item.layer), "role": item.role, "grounds": item.grounds.name.lower(),
-                "reason": item.reason, "candidates": list(item.candidates),
+                **_layer_facts(item.layer),
+                "role": item.role,
+                "grounds": item.grounds.name.lower(),
+                "reason": item.reason,
+                "candidates": list(item.candidates),
             }
             for item in found.passes
         ],
@@ -102,7 +119,10 @@ def _facts(found: Survey) -> dict[str, Any]:
         "undecided": {role: [layer.name for layer in layers] for role, layers in found.rivals.items()},
         "conventions": {
             role: {
-                "kind": rule.kind, "measured": rule.measured, "reason": rule.reason, "scale": list(rule.scale),
+                "kind": rule.kind,
+                "measured": rule.measured,
+                "reason": rule.reason,
+                "scale": list(rule.scale),
                 "offset": list(rule.offset),
             }
             for role, rule in found.conventions.items()
@@ -114,8 +134,12 @@ def _facts(found: Survey) -> dict[str, Any]:
 
 def _layer_facts(layer: Layer) -> dict[str, Any]:
     return {
-        "name": layer.name, "full_name": layer.full, "part": layer.part, "channels": list(layer.channels),
-        "type": layer.format, "data": layer.data,
+        "name": layer.name,
+        "full_name": layer.full,
+        "part": layer.part,
+        "channels": list(layer.channels),
+        "type": layer.format,
+        "data": layer.data,
     }
 
 
@@ -125,8 +149,14 @@ def _camera_facts(camera: Camera | None, reason: str, solved: Solved | None) -> 
     from ..media.report import field_of_view
 
     facts = {
-        "reason": reason, "rows": list(camera.rows), "eye": camera.eye, "forward": camera.forward,
-        "right": camera.right, "down": camera.down, "focal": camera.focal, "center": camera.center,
+        "reason": reason,
+        "rows": list(camera.rows),
+        "eye": camera.eye,
+        "forward": camera.forward,
+        "right": camera.right,
+        "down": camera.down,
+        "focal": camera.focal,
+        "center": camera.center,
         "field_of_view": field_of_view(camera),
     }
     if solved is not None:

@@ -47,7 +47,9 @@ def _slug(heading: str) -> str:
 def _menu(nodes: Iterable[type[Node]]) -> str:
     rows = [
         (
-            f"[{node.id}](#{node.id})", _prose(doc_of(node).splitlines()[0]), _types(node.inputs),
+            f"[{node.id}](#{node.id})",
+            _prose(doc_of(node).splitlines()[0]),
+            _types(node.inputs),
             _types({name: output.socket for name, output in node.outputs.items()}),
         )
         for node in nodes
@@ -72,8 +74,13 @@ def _section(node: type[Node]) -> Iterator[str]:
 def _value(value: Value) -> tuple[str, ...]:
     choices = ", ".join(f"`{choice}`" for choice in value.choices)
     return (
-        f"`{value.name}`", value.type, _prose(default_text(value)), soft_range(value), hard_range(value),
-        value.unit or "", _prose(". ".join(filter(None, (choices, value.doc)))),
+        f"`{value.name}`",
+        value.type,
+        _prose(default_text(value)),
+        soft_range(value),
+        hard_range(value),
+        value.unit or "",
+        _prose(". ".join(filter(None, (choices, value.doc)))),
     )
 
 

@@ -32,7 +32,8 @@ def merge(
     resolve: Annotated[
         list[str] | None,
         typer.Option(
-            "--resolve", metavar="[PATH=]SIDE",
+            "--resolve",
+            metavar="[PATH=]SIDE",
             help="Decide conflicts in the graphs named: ours, theirs or base, for all or what is at PATH.",
         ),
     ] = None,

@@ -28,7 +28,8 @@ Inputs = Annotated[
 Sets = Annotated[
     list[str] | None,
     typer.Option(
-        "--set", metavar="NODE.VALUE=X",
+        "--set",
+        metavar="NODE.VALUE=X",
         help="Set a value, or a control by its name: a number, r,g,b,a, keys as 1@1,4@24, or =expression.",
     ),
 ]

@@ -21,6 +21,7 @@ Pictures = Mapping[str, Any]
 How = tuple[Sequence[str], tuple[int, int] | None, float, int | None]
 """Inputs as typed, size, scale and frame, of which the last may be left open."""
 
+
 def compared(a: str, b: str, how: How, output: Path | None) -> list[dict[str, Any]]:
     """How far every output of two graphs is apart; with `output` they are shown there side by side.
 
@@ -61,13 +62,17 @@ def _bindings(graphs: Sequence[Graph], inputs: Sequence[str]) -> list[dict[str, 
     known = set[str]().union(*(graph.inputs for graph in graphs))
     if names - known:
         bound(graphs[0], inputs)
-    fitting = ([item for item in inputs if "=" not in item or item.partition("=")[0] in graph.inputs]
-               for graph in graphs)
+    fitting = (
+        [item for item in inputs if "=" not in item or item.partition("=")[0] in graph.inputs] for graph in graphs
+    )
     return [bound(graph, items) for graph, items in zip(graphs, fitting, strict=True)]
 
 
 def _rendered(
-    renderer: Any, graph: Graph, inputs: Mapping[str, str], canvas: tuple[tuple[int, int] | None, float],
+    renderer: Any,
+    graph: Graph,
+    inputs: Mapping[str, str],
+    canvas: tuple[tuple[int, int] | None, float],
     frame: int | None,
 ) -> tuple[Pictures, int]:
     """The outputs of a graph, and which frame it was."""
@@ -84,8 +89,11 @@ def _rendered(
 def _told(name: str, far: Compared) -> dict[str, Any]:
     """The measures of two pictures, and in words; what is not finite is null for machines."""
     if far.fault:
-        return {"output": name, "same": False, "words": far.fault.replace("is expected", "before").replace(
-            "are expected", "before")}
+        return {
+            "output": name,
+            "same": False,
+            "words": far.fault.replace("is expected", "before").replace("are expected", "before"),
+        }
     measures = {"max_abs": far.max_abs, "rms": far.rms, "psnr": far.psnr, "ssim": far.ssim, "flip": far.flip}
     finite = {key: number if math.isfinite(number) else None for key, number in measures.items()}
     if far.equal:

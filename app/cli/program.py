@@ -17,8 +17,25 @@ from .options import rooted
 from .outcome import EXIT_CODES, failed, guarded, settle
 
 _SHOWN = (
-    "edit", "render", "check", "explain", "info", "nodes", "fmt", "diff", "merge", "git-setup", "demo", "gallery",
-    "test", "schema", "reproduce", "watch", "sweep", "bench", "export-isf",
+    "edit",
+    "render",
+    "check",
+    "explain",
+    "info",
+    "nodes",
+    "fmt",
+    "diff",
+    "merge",
+    "git-setup",
+    "demo",
+    "gallery",
+    "test",
+    "schema",
+    "reproduce",
+    "watch",
+    "sweep",
+    "bench",
+    "export-isf",
 )
 _HIDDEN = ("git-driver",)
 _FENCED = ("render", "check", "explain", "export-isf", "info", "diff", "test", "reproduce", "watch", "sweep", "bench")
@@ -55,7 +72,11 @@ class _Group(TyperGroup):
 
 
 app = typer.Typer(
-    name="halation", cls=_Group, add_completion=False, rich_markup_mode=None, epilog=EXIT_CODES,
+    name="halation",
+    cls=_Group,
+    add_completion=False,
+    rich_markup_mode=None,
+    epilog=EXIT_CODES,
     help="A node-graph compositor for screen-space effects.",
 )
 

@@ -48,10 +48,18 @@ class Lines:
     def finished(self, report: FrameReport, done: int, total: int) -> None:
         """Say which frame is there."""
         written = [str(path) for path in report.written]
-        note(json.dumps(
-            {"frame": report.frame, "done": done, "frames": total, "written": written, "kept": report.kept,
-             "passes": report.passes}
-        ))
+        note(
+            json.dumps(
+                {
+                    "frame": report.frame,
+                    "done": done,
+                    "frames": total,
+                    "written": written,
+                    "kept": report.kept,
+                    "passes": report.passes,
+                }
+            )
+        )
 
 
 class Bar:

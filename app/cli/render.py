@@ -153,9 +153,14 @@ def render(
 
 def _as_json(report: Report, device: str, seconds: dict[str, float]) -> dict[str, Any]:
     return {
-        "written": [str(path) for path in report.written], "frames": [item.frame for item in report.frames],
-        "kept": [item.frame for item in report.frames if item.kept], "device": device, "passes": report.passes,
-        "programs": report.programs, "peak_bytes": report.peak_bytes, "repaired": dict(report.repaired),
+        "written": [str(path) for path in report.written],
+        "frames": [item.frame for item in report.frames],
+        "kept": [item.frame for item in report.frames if item.kept],
+        "device": device,
+        "passes": report.passes,
+        "programs": report.programs,
+        "peak_bytes": report.peak_bytes,
+        "repaired": dict(report.repaired),
         "seconds": {name: round(part, 4) for name, part in seconds.items()},
     }
 
@@ -196,14 +201,28 @@ def _told(report: dict[str, Any], total: float, as_json: bool) -> int:
     return 0
 
 
-def _words(graph: Path, output: Sequence[str], inputs: Sequence[str] | None, sets: Sequence[str] | None, node: str,
-           size: str | None, scale: float, resume: bool, precision: str | None, compression: str,
-           form: str | None) -> list[str]:
+def _words(
+    graph: Path,
+    output: Sequence[str],
+    inputs: Sequence[str] | None,
+    sets: Sequence[str] | None,
+    node: str,
+    size: str | None,
+    scale: float,
+    resume: bool,
+    precision: str | None,
+    compression: str,
+    form: str | None,
+) -> list[str]:
     """The same call for another process."""
     listed = {"-o": output, "-i": inputs or (), "--set": sets or ()}
     single = {
-        "--node": node, "--size": size, "--scale": repr(scale), "--precision": precision,
-        "--compression": compression, "--form": form,
+        "--node": node,
+        "--size": size,
+        "--scale": repr(scale),
+        "--precision": precision,
+        "--compression": compression,
+        "--form": form,
     }
     words = [str(graph), *(word for flag, items in listed.items() for item in items for word in (flag, item))]
     return [*words, *_flags(single), *(["--resume"] if resume else [])]

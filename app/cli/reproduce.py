@@ -135,26 +135,40 @@ def _name(item: Found) -> str:
 def _input(item: Found) -> dict[str, Any]:
     used = item.used
     return {
-        "name": _name(item), "file": used.pattern or used.name, "layer": used.layer, "state": item.state,
-        "path": item.path, "then": used.together or used.digest, "now": item.digest,
+        "name": _name(item),
+        "file": used.pattern or used.name,
+        "layer": used.layer,
+        "state": item.state,
+        "path": item.path,
+        "then": used.together or used.digest,
+        "now": item.digest,
     }
 
 
 def _as_json(recipe: Recipe, found: tuple[Found, ...], made: Reproduction, saved: str) -> dict[str, Any]:
     return {
-        "picture": str(recipe.path), "same": made.same, "tolerance": made.tolerance, "frame": recipe.frame,
-        "version": recipe.version, "renderer": recipe.renderer,
+        "picture": str(recipe.path),
+        "same": made.same,
+        "tolerance": made.tolerance,
+        "frame": recipe.frame,
+        "version": recipe.version,
+        "renderer": recipe.renderer,
         "differences": [{"what": item.what, "then": item.then, "now": item.now} for item in made.differences],
         "inputs": [_input(item) for item in found],
         "pixels": [
             {
-                "layer": layer.name, "equal": layer.compared.equal, "farthest": _number(layer.farthest),
-                "max_abs": _number(layer.compared.max_abs), "rms": _number(layer.compared.rms),
-                "failing": layer.compared.failing, "fault": layer.compared.fault,
+                "layer": layer.name,
+                "equal": layer.compared.equal,
+                "farthest": _number(layer.farthest),
+                "max_abs": _number(layer.compared.max_abs),
+                "rms": _number(layer.compared.rms),
+                "failing": layer.compared.failing,
+                "fault": layer.compared.fault,
             }
             for layer in made.layers
         ],
-        "graph": saved, "written": [str(path) for path in made.written],
+        "graph": saved,
+        "written": [str(path) for path in made.written],
     }
 
 

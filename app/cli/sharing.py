@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from ..graph import Graph, Port
     from .progress import Told
 
+
 def independent(graph: Graph, targets: Mapping[str, Port], inputs: Sequence[str], frame: int) -> bool:
     """True if every frame can be made without the ones before it. Raises the errors of `app.errors`."""
     from ..compiler import Request, compile_graph
@@ -41,9 +42,7 @@ def piped(path: Path, graph: Graph) -> str:
     return document.dumps(graph) if str(path) == "-" else ""
 
 
-def share(
-    words: Sequence[str], frames: Sequence[int], jobs: int, progress: Told, text: str
-) -> list[dict[str, Any]]:
+def share(words: Sequence[str], frames: Sequence[int], jobs: int, progress: Told, text: str) -> list[dict[str, Any]]:
     """Run `halation render` with those words in several processes, which read `text`; their reports.
 
     Raises HalationError with the sentence and exit code of the first one that fails; the others are stopped.
@@ -58,8 +57,13 @@ def share(
     command = [sys.executable, "-P", "-m", "halation.app.cli", "render", *words, "--json", "--progress=json"]
     crew = [
         subprocess.Popen(
-            [*command, f"--frames={format_frames(part)}"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE, encoding="utf-8", errors="surrogateescape", env=environment,
+            [*command, f"--frames={format_frames(part)}"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            encoding="utf-8",
+            errors="surrogateescape",
+            env=environment,
         )
         for part in parts
     ]

@@ -27,7 +27,16 @@ _DATA = MappingProxyType({"depth": "Depth", "ids": "Object Index"})
 """Layers of the sample that fields of these names are for."""
 
 _ROLES = (
-    "beauty", "albedo", "emission", "occlusion", "position", "object_id", "material_id", "uv", "depth", "normal",
+    "beauty",
+    "albedo",
+    "emission",
+    "occlusion",
+    "position",
+    "object_id",
+    "material_id",
+    "uv",
+    "depth",
+    "normal",
     "velocity",
 )
 """Layers that a render may have."""
@@ -90,8 +99,17 @@ def over(node: type[Node], sample: Path) -> Graph:
     base = "image" if "image" in images else next(reversed(images), "")
     for name, socket in needed.items():
         if socket.kind is Kind.IMAGE and name != base:
-            graph = _made(graph, name, "ramp", "out", shape="radial", start=(0.3, 0.4), end=(0.75, 0.4),
-                          first=(1.0, 0.35, 0.1, 1.0), second=(0.0, 0.0, 0.0, 0.0))
+            graph = _made(
+                graph,
+                name,
+                "ramp",
+                "out",
+                shape="radial",
+                start=(0.3, 0.4),
+                end=(0.75, 0.4),
+                first=(1.0, 0.35, 0.1, 1.0),
+                second=(0.0, 0.0, 0.0, 0.0),
+            )
         elif socket.kind is Kind.IMAGE:
             graph = _fed(graph, name, "beauty", _layer(Kind.IMAGE, 4, sample, "Combined"))
         elif name in _DATA:
@@ -138,8 +156,12 @@ def _vector(graph: Graph, name: str, socket: Socket, sample: Path) -> Graph:
     graph = graph.add("positions", _node("combine")).add("stirred", _node("swirl")).add("parts", _node("separate"))
     graph = graph.add("across", _node("ramp")).add("up", _node("ramp", start=(0.5, 1.0), end=(0.5, 0.0)))
     links = {
-        "positions.red": "across.value", "positions.green": "up.value", "stirred.image": "positions.out",
-        "parts.image": "stirred.out", f"{map}.x": "parts.red", f"{map}.y": "parts.green",
+        "positions.red": "across.value",
+        "positions.green": "up.value",
+        "stirred.image": "positions.out",
+        "parts.image": "stirred.out",
+        f"{map}.x": "parts.red",
+        f"{map}.y": "parts.green",
     }
     for target, source in links.items():
         graph = graph.connect(Port.parse(source), Port.parse(target))

@@ -27,7 +27,8 @@ def sweep(
     sets: Annotated[
         list[str] | None,
         typer.Option(
-            "--set", metavar="NODE.VALUE=X,Y,...",
+            "--set",
+            metavar="NODE.VALUE=X,Y,...",
             help="What to sweep: 1,2,4 or 1..8/4 or 1..100/5log; * for all choices; colors and vectors with ; between.",
         ),
     ] = None,
@@ -48,9 +49,7 @@ def sweep(
     cells: Annotated[
         Path | None, typer.Option("--cells", metavar="DIR", help="Write each picture alone into this folder too.")
     ] = None,
-    ending: Annotated[
-        str, typer.Option(metavar=".png|.exr|...", help="What kind of files --cells writes.")
-    ] = ".png",
+    ending: Annotated[str, typer.Option(metavar=".png|.exr|...", help="What kind of files --cells writes.")] = ".png",
     precision: Precision = None,
     timeout: Timeout = PATIENCE,
     as_json: AsJson = False,
@@ -122,10 +121,13 @@ def _ending(text: str) -> str:
 
 def _as_json(output: Path, made: Any, device: str, spent: float) -> dict[str, Any]:
     return {
-        "written": str(output), "size": list(made.light.shape[1::-1]), "device": device,
+        "written": str(output),
+        "size": list(made.light.shape[1::-1]),
+        "device": device,
         "cells": [
             {
-                "label": cell.label, "frame": cell.frame,
+                "label": cell.label,
+                "frame": cell.frame,
                 "values": {axis.name: step.text for axis, step in cell.steps if step.frame is None},
                 **({"file": str(made.files[place])} if made.files else {}),
             }

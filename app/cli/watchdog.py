@@ -24,7 +24,9 @@ _LOOK = 0.2
 Timeout = Annotated[
     float,
     typer.Option(
-        "--timeout", min=0.0, metavar="SECONDS",
+        "--timeout",
+        min=0.0,
+        metavar="SECONDS",
         help="How long a pass of code that is written in the graph may take; 0 for as long as it likes.",
     ),
 ]
@@ -55,7 +57,8 @@ def has_loops(graph: Graph) -> bool:
     from ..written import Written
 
     return any(
-        has_loops(item.graph) if isinstance(item, Group)
+        has_loops(item.graph)
+        if isinstance(item, Group)
         else isinstance(item, Written) and bool({"for", "while", "do"} & words(item.code.text, item.code.vertex))
         for item in graph.nodes.values()
     )
@@ -83,7 +86,8 @@ def _watch(command: list[str], beat: Path, timeout: float, text: str) -> int:
                 nodes = said.partition(" ")[2]
                 raise DeviceError(
                     f"node '{nodes}': its code has not ended after {timeout:g} seconds, so the rendering was stopped: "
-                    "look for a loop without an end, or allow more with --timeout", node=nodes,
+                    "look for a loop without an end, or allow more with --timeout",
+                    node=nodes,
                 )
 
 

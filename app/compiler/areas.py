@@ -73,7 +73,8 @@ class Around(Struct, frozen=True):
         """What is read for a region, beyond the edges of the picture too."""
         a, b, x, c, d, y = self.matrix
         corners = [
-            (i, j) for i in (region.x + 0.5, region.x + region.width - 0.5)
+            (i, j)
+            for i in (region.x + 0.5, region.x + region.width - 0.5)
             for j in (region.y + 0.5, region.y + region.height - 0.5)
         ]
         return (

@@ -22,7 +22,8 @@ _SOFTWARE = re.compile("llvmpipe|softpipe|swiftshader|swrast|lavapipe|software|b
 _TABLE: tuple[tuple[re.Pattern[str], Form, str], ...] = (
     (_SOFTWARE, "compute", "a software rasterizer loads from images for a third of what samplers cost it"),
     (
-        re.compile(r"\b(H20|H100|H200|H800|GH200)\b"), "compute",
+        re.compile(r"\b(H20|H100|H200|H800|GH200)\b"),
+        "compute",
         "few units of this chip can draw, and all of them compute",
     ),
 )

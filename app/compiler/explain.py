@@ -78,22 +78,35 @@ def as_json(plan: Plan) -> dict[str, object]:
         ],
         "passes": [
             {
-                "nodes": list(one.nodes), "functions": list(one.functions), "form": one.shader.form,
-                "reads": list(one.textures), "writes": list(one.targets),
+                "nodes": list(one.nodes),
+                "functions": list(one.functions),
+                "form": one.shader.form,
+                "reads": list(one.textures),
+                "writes": list(one.targets),
             }
             for one in plan.passes
         ],
         "surfaces": [
             {
-                "node": item.label, "size": list(item.size), "channels": item.channels, "format": item.texel,
-                "slot": item.slot, "bytes": item.nbytes, "first": item.first, "last": item.last, "key": item.key,
+                "node": item.label,
+                "size": list(item.size),
+                "channels": item.channels,
+                "format": item.texel,
+                "slot": item.slot,
+                "bytes": item.nbytes,
+                "first": item.first,
+                "last": item.last,
+                "key": item.key,
             }
             for item in plan.surfaces
         ],
         "outputs": dict(plan.outputs),
         "peak_bytes": plan.peak_bytes,
-        "tiles": None if plan.tiling is None else {
-            "why": plan.tiling.why, "peak_bytes": plan.tiling.nbytes,
+        "tiles": None
+        if plan.tiling is None
+        else {
+            "why": plan.tiling.why,
+            "peak_bytes": plan.tiling.nbytes,
             "stages": [
                 {"outputs": list(stage.outputs), "tiles": len(stage.tiles), "size": list(stage.tiles[0].size)}
                 for stage in plan.tiling.stages

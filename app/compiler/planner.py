@@ -66,8 +66,15 @@ class Planner:
 
     @_uncollected()
     def plan(
-        self, graph: Graph, request: Request, outside: Outside, *, target: Target = NULL,
-        precision: Precision | None = None, library: Library | None = None, fusion: bool = True,
+        self,
+        graph: Graph,
+        request: Request,
+        outside: Outside,
+        *,
+        target: Target = NULL,
+        precision: Precision | None = None,
+        library: Library | None = None,
+        fusion: bool = True,
         there: Container[str] = (),
     ) -> Plan:
         """Compile what `request` wants of `graph` for `target`: see `compile_graph`.
@@ -76,7 +83,13 @@ class Planner:
         """
         library, precision = graph_library(graph, outside, library), precision or target.precision
         asked = (
-            dict(request.targets), request.size, request.scale, request.halves, request.by_rows, target, precision,
+            dict(request.targets),
+            request.size,
+            request.scale,
+            request.halves,
+            request.by_rows,
+            target,
+            precision,
             fusion,
         )
         lowered = scheduled = tiling = part = None
@@ -105,7 +118,14 @@ class Planner:
             part = wanted
         if tiled or wanted is not scheduled:  # what fitted as it was still does if nothing but numbers changed
             tiling = tile(
-                wanted.program, wanted.passes, wanted.texels, library, target, precision, request.halves, wanted.keys,
+                wanted.program,
+                wanted.passes,
+                wanted.texels,
+                library,
+                target,
+                precision,
+                request.halves,
+                wanted.keys,
                 request.by_rows,
             )
         tiled = tiling is not None if wanted is scheduled else tiled
@@ -114,17 +134,21 @@ class Planner:
 
 
 def compile_graph(
-    graph: Graph, request: Request, outside: Outside, *, target: Target = NULL, precision: Precision | None = None,
-    library: Library | None = None, fusion: bool = True,
+    graph: Graph,
+    request: Request,
+    outside: Outside,
+    *,
+    target: Target = NULL,
+    precision: Precision | None = None,
+    library: Library | None = None,
+    fusion: bool = True,
 ) -> Plan:
     """Compile what `request` wants of `graph` for `target`.
 
     Raises GraphError for a graph that cannot be rendered, InputError (from `outside`) for a file that cannot
     be read, DeviceError for one that is too large, ShaderError for a node and its GLSL that do not agree.
     """
-    return Planner().plan(
-        graph, request, outside, target=target, precision=precision, library=library, fusion=fusion
-    )
+    return Planner().plan(graph, request, outside, target=target, precision=precision, library=library, fusion=fusion)
 
 
 def examine(graph: Graph, request: Request, outside: Outside, target: Target = NULL) -> None:

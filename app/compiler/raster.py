@@ -8,7 +8,13 @@ from typing import ClassVar
 from .record import Record
 
 ATTRIBUTES: Mapping[str, int] = {
-    "place": 3, "normal": 3, "uv": 2, "albedo": 3, "emission": 3, "metal_rough": 2, "object_material_moving": 3,
+    "place": 3,
+    "normal": 3,
+    "uv": 2,
+    "albedo": 3,
+    "emission": 3,
+    "metal_rough": 2,
+    "object_material_moving": 3,
 }
 """What a vertex holds, in order, and how many floats of each."""
 
@@ -76,7 +82,14 @@ def fragment_lines(library: str, wanted: list[str]) -> Iterator[str]:
 
 def _varyings(way: str) -> str:
     smooth = {
-        "v_place": 3, "v_normal": 3, "v_now": 3, "v_before": 3, "v_after": 3, "v_uv": 2, "v_albedo": 3, "v_emission": 3,
+        "v_place": 3,
+        "v_normal": 3,
+        "v_now": 3,
+        "v_before": 3,
+        "v_after": 3,
+        "v_uv": 2,
+        "v_albedo": 3,
+        "v_emission": 3,
         "v_metal_rough": 2,
     }
     lines = [f"{way} {_glsl(count)} {name};" for name, count in smooth.items()]

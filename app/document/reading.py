@@ -38,8 +38,13 @@ def load(path: str | Path, catalogue: Types | None = None, migrations: Migration
 
 
 def loads(
-    text: str, file: str = "", folder: str = "", catalogue: Types | None = None, migrations: Migrations = MIGRATIONS,
-    *, follow: bool = True,
+    text: str,
+    file: str = "",
+    folder: str = "",
+    catalogue: Types | None = None,
+    migrations: Migrations = MIGRATIONS,
+    *,
+    follow: bool = True,
 ) -> Graph:
     """The graph in `text`. `file` is its name in messages, `folder` is where relative paths start.
 
@@ -120,10 +125,17 @@ class _Body(Struct):
             controls={name: reader.control(name, item, at) for name, item in record.controls.items()},
             animation=reader.animation(record.animation, nodes, at),
             settings=Settings(
-                settings.size, settings.frames, settings.rate, settings.preroll,
-                ColorSettings(color.config, color.working), settings.allow,
+                settings.size,
+                settings.frames,
+                settings.rate,
+                settings.preroll,
+                ColorSettings(color.config, color.working),
+                settings.allow,
             ),
-            muted=frozenset(muted), ui=record.ui, extra=reader.extra, folder=self.folder,
+            muted=frozenset(muted),
+            ui=record.ui,
+            extra=reader.extra,
+            folder=self.folder,
         )
         return graph, count
 
@@ -161,9 +173,7 @@ class _Body(Struct):
         found = convert(raw, records.InputRecord, self.file, where)
         self.keep(f"inputs.{name}", raw, records.InputRecord)
         kind, width = read_type(found.type, self.file, where)
-        return Input(
-            kind, width, found.file, found.layer, found.default, found.doc, found.missing, found.color_space
-        )
+        return Input(kind, width, found.file, found.layer, found.default, found.doc, found.missing, found.color_space)
 
     def output(self, name: str, raw: Any, at: str) -> Output:
         """An entry of `outputs`."""
@@ -269,7 +279,7 @@ class _Body(Struct):
             fault = f"the group file '{inner}' does not exist{near}"
             raise DocumentError(self.file, at, fault, rule="missing-group")
         if real in self.outer:
-            loop = " -> ".join(one.name for one in (*self.outer[self.outer.index(real):], real))
+            loop = " -> ".join(one.name for one in (*self.outer[self.outer.index(real) :], real))
             raise DocumentError(self.file, at, f"a group cannot hold itself: {loop}")
         return self.loading.file(inner, self.outer)
 

@@ -20,8 +20,13 @@ RecordType = type[msgspec.Struct]
 R = TypeVar("R", bound=msgspec.Struct)
 
 _WORDS = {
-    "str": "a string", "int": "a whole number", "float": "a number", "bool": "true or false", "object": "an object",
-    "array": "a list", "null": "null",
+    "str": "a string",
+    "int": "a whole number",
+    "float": "a number",
+    "bool": "true or false",
+    "object": "an object",
+    "array": "a list",
+    "null": "null",
 }
 
 

@@ -91,11 +91,18 @@ def schema(types: Mapping[str, type[Node]]) -> Schema:
             "code": code,
             "animation": _either(
                 _record(records.AnimationRecord, keys={"type": ["array", "null"], "items": {"$ref": "#/$defs/key"}}),
-                keys="array", expression="string",
+                keys="array",
+                expression="string",
             ),
-            "key": _record(records.KeyRecord, value={"anyOf": [
-                {"type": ["number", "boolean"]}, {**_NUMBERS, "minItems": 1},
-            ]}),
+            "key": _record(
+                records.KeyRecord,
+                value={
+                    "anyOf": [
+                        {"type": ["number", "boolean"]},
+                        {**_NUMBERS, "minItems": 1},
+                    ]
+                },
+            ),
             "curve": _points(2, range(2, MAX_POINTS + 1)),
             "ramp": _points(5, range(2, MAX_POINTS + 1)),
             "lights": _points(LIGHT_NUMBERS, range(MAX_LIGHTS + 1)),
@@ -140,7 +147,8 @@ def _record(kind: records.RecordType, **known: Schema) -> Schema:
     own = [name for name in fields if name not in shared or not issubclass(kind, records.TypeRecord)]
     needed = [name for name in made["required"] if name in own]
     return {
-        "type": "object", "properties": {name: field(name) for name in own},
+        "type": "object",
+        "properties": {name: field(name) for name in own},
         **({"required": needed} if needed else {}),
     }
 
@@ -148,7 +156,8 @@ def _record(kind: records.RecordType, **known: Schema) -> Schema:
 def _node(kind: type[Node]) -> Schema:
     """A node of a type. Values that an older version of it saved are not looked at."""
     values: Schema = {
-        "type": "object", "properties": {name: _value(value) for name, value in kind.values.items()},
+        "type": "object",
+        "properties": {name: _value(value) for name, value in kind.values.items()},
     }
     version = {"type": "integer", "minimum": 1, "maximum": kind.version, "default": 1}
     made = _record(records.NodeRecord, version=version, **({"values": values} if kind.version == 1 else {}))

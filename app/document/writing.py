@@ -72,7 +72,8 @@ def _settings(settings: Settings, kept: Mapping[str, Any]) -> Section:
     """What differs from the default; `kept` are keys of `color` that mean nothing."""
     plain = Settings()
     found = {
-        field.name: now for field in fields(Settings)
+        field.name: now
+        for field in fields(Settings)
         if (now := getattr(settings, field.name)) != getattr(plain, field.name)
     }
     color = {**kept, **_filled({"config": settings.color.config, "working": settings.color.working})}
@@ -88,7 +89,10 @@ def _input(name: str, end: Input) -> Section:
     elif default is not None:
         default = float(default)
     found = {
-        "file": end.file, "layer": end.layer, "doc": end.doc, "missing": end.missing if end.missing != "error" else "",
+        "file": end.file,
+        "layer": end.layer,
+        "doc": end.doc,
+        "missing": end.missing if end.missing != "error" else "",
         "color_space": end.color_space,
     }
     return {"type": type_name(end.kind, end.width)} | _filled(found) | ({} if default is None else {"default": default})

@@ -72,7 +72,10 @@ class Actions:
         """Other actions that this shortcut would set off too."""
         scope = self[id].scope
         return tuple(
-            action for action in self.all
-            if action.id != id and shortcut and self.shortcut(action.id) == shortcut
+            action
+            for action in self.all
+            if action.id != id
+            and shortcut
+            and self.shortcut(action.id) == shortcut
             and (not scope or not action.scope or scope == action.scope)
         )

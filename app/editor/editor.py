@@ -93,7 +93,9 @@ class Editor:
         except Exception as error:
             self.log.add(
                 f"this did not work because of a fault in Halation ({type(error).__name__}: {error}); "
-                "the document is as it was before", "error", traceback.format_exc(),
+                "the document is as it was before",
+                "error",
+                traceback.format_exc(),
             )
         return default
 

@@ -12,15 +12,35 @@ from imgui_bundle import imgui
 
 from ..errors import UsageError
 
-_MODIFIERS: Mapping[str, int] = MappingProxyType({
-    "Ctrl": int(imgui.Key.mod_ctrl), "Shift": int(imgui.Key.mod_shift), "Alt": int(imgui.Key.mod_alt),
-    "Super": int(imgui.Key.mod_super),
-})
-_SIGNS = MappingProxyType({
-    "Comma": ",", "Period": ".", "Slash": "/", "Backslash": "\\", "Minus": "-", "Equal": "=", "Semicolon": ";",
-    "Apostrophe": "'", "LeftBracket": "[", "RightBracket": "]", "GraveAccent": "`", "LeftArrow": "Left",
-    "RightArrow": "Right", "UpArrow": "Up", "DownArrow": "Down", "PageUp": "Page Up", "PageDown": "Page Down",
-})
+_MODIFIERS: Mapping[str, int] = MappingProxyType(
+    {
+        "Ctrl": int(imgui.Key.mod_ctrl),
+        "Shift": int(imgui.Key.mod_shift),
+        "Alt": int(imgui.Key.mod_alt),
+        "Super": int(imgui.Key.mod_super),
+    }
+)
+_SIGNS = MappingProxyType(
+    {
+        "Comma": ",",
+        "Period": ".",
+        "Slash": "/",
+        "Backslash": "\\",
+        "Minus": "-",
+        "Equal": "=",
+        "Semicolon": ";",
+        "Apostrophe": "'",
+        "LeftBracket": "[",
+        "RightBracket": "]",
+        "GraveAccent": "`",
+        "LeftArrow": "Left",
+        "RightArrow": "Right",
+        "UpArrow": "Up",
+        "DownArrow": "Down",
+        "PageUp": "Page Up",
+        "PageDown": "Page Down",
+    }
+)
 
 
 def chord(text: str) -> int:

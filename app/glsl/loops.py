@@ -34,10 +34,14 @@ _BEGIN = re.compile(r"\s*(int|uint|float)\s+(\w+)\s*=\s*([^,;]+)")
 _TEST = re.compile(r"\s*(\w+)\s*(<=|>=|<|>|!=)\s*([^|?]+)")
 _STEP = re.compile(r"\s*(?:(\+\+|--)\s*(\w+)|(\w+)\s*(\+\+|--)|(\w+)\s*(\+=|-=)\s*([^,]+))\s*")
 _NUMBER = re.compile(r"(?<![\w.])((?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)[uUfF]?(?![\w.])")
-_OPERATORS: Mapping[type[ast.operator], Callable[[float, float], float]] = MappingProxyType({
-    ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul,
-    ast.Div: lambda a, b: int(a / b) if isinstance(a, int) and isinstance(b, int) else a / b,
-})
+_OPERATORS: Mapping[type[ast.operator], Callable[[float, float], float]] = MappingProxyType(
+    {
+        ast.Add: operator.add,
+        ast.Sub: operator.sub,
+        ast.Mult: operator.mul,
+        ast.Div: lambda a, b: int(a / b) if isinstance(a, int) and isinstance(b, int) else a / b,
+    }
+)
 _STILL = 1e-6
 """Of a float, a part that adding may leave as it is."""
 

@@ -132,8 +132,13 @@ def parse(name: str, source: str, file: str = "") -> Text:
     }
     words = frozenset(_WORD.findall(code))
     return Text(
-        name, file or f"shaders/{name}.glsl", _INCLUDE.sub(_blank, code), MappingProxyType(includes), by_name,
-        functions, words,
+        name,
+        file or f"shaders/{name}.glsl",
+        _INCLUDE.sub(_blank, code),
+        MappingProxyType(includes),
+        by_name,
+        functions,
+        words,
     )
 
 

@@ -52,8 +52,13 @@ def split(first: Point, one: Point, two: Point, last: Point, frame: float) -> tu
         starts.append(row[0])
         ends.append(row[-1])
     middle = (frame, *row[0][1:])
-    return (_offset(first, starts[1]), _offset(middle, starts[2]), middle[1:],
-            _offset(middle, ends[2]), _offset(last, ends[1]))
+    return (
+        _offset(first, starts[1]),
+        _offset(middle, starts[2]),
+        middle[1:],
+        _offset(middle, ends[2]),
+        _offset(last, ends[1]),
+    )
 
 
 def end_slopes(first: Point, one: Point, two: Point, last: Point, *, last_end: bool) -> Point:

@@ -7,22 +7,27 @@ from types import MappingProxyType
 
 from ...nodes import Color, Field, Image, Kind, Number, Plain, Socket, Value, Vector, Viewpoint
 
-_FITS: Mapping[Kind, frozenset[Kind]] = MappingProxyType({
-    Kind.NUMBER: frozenset(Kind) - {Kind.CAMERA},
-    Kind.COLOR: frozenset({Kind.COLOR, Kind.IMAGE}),
-    Kind.FIELD: frozenset({Kind.FIELD, Kind.IMAGE, Kind.VECTOR}),
-    Kind.IMAGE: frozenset({Kind.IMAGE}),
-    Kind.VECTOR: frozenset({Kind.VECTOR}),
-    Kind.CAMERA: frozenset({Kind.CAMERA}),
-})
+_FITS: Mapping[Kind, frozenset[Kind]] = MappingProxyType(
+    {
+        Kind.NUMBER: frozenset(Kind) - {Kind.CAMERA},
+        Kind.COLOR: frozenset({Kind.COLOR, Kind.IMAGE}),
+        Kind.FIELD: frozenset({Kind.FIELD, Kind.IMAGE, Kind.VECTOR}),
+        Kind.IMAGE: frozenset({Kind.IMAGE}),
+        Kind.VECTOR: frozenset({Kind.VECTOR}),
+        Kind.CAMERA: frozenset({Kind.CAMERA}),
+    }
+)
 
-_VALUE_TAKES: Mapping[str, frozenset[Kind]] = MappingProxyType({
-    "float": frozenset({Kind.NUMBER, Kind.FIELD}),
-    "int": frozenset({Kind.NUMBER, Kind.FIELD}),
-    "bool": frozenset({Kind.NUMBER, Kind.FIELD}),
-    "color": frozenset({Kind.COLOR, Kind.IMAGE, Kind.FIELD, Kind.NUMBER}),
-    "vector": frozenset({Kind.VECTOR, Kind.FIELD, Kind.NUMBER}),
-})
+_VALUE_TAKES: Mapping[str, frozenset[Kind]] = MappingProxyType(
+    {
+        "float": frozenset({Kind.NUMBER, Kind.FIELD}),
+        "int": frozenset({Kind.NUMBER, Kind.FIELD}),
+        "bool": frozenset({Kind.NUMBER, Kind.FIELD}),
+        "color": frozenset({Kind.COLOR, Kind.IMAGE, Kind.FIELD, Kind.NUMBER}),
+        "vector": frozenset({Kind.VECTOR, Kind.FIELD, Kind.NUMBER}),
+    }
+)
+
 
 def make_socket(kind: Kind, width: int = 4, default: Plain | None = None, *, name: str = "", doc: str = "") -> Socket:
     """A socket that no class body declares. `width` counts the channels of a Vector."""
@@ -31,7 +36,11 @@ def make_socket(kind: Kind, width: int = 4, default: Plain | None = None, *, nam
         socket: Socket = Vector(start, width=width, doc=doc)
     else:
         makers = {
-            Kind.IMAGE: Image, Kind.FIELD: Field, Kind.NUMBER: Number, Kind.COLOR: Color, Kind.CAMERA: Viewpoint,
+            Kind.IMAGE: Image,
+            Kind.FIELD: Field,
+            Kind.NUMBER: Number,
+            Kind.COLOR: Color,
+            Kind.CAMERA: Viewpoint,
         }
         socket = makers[kind](start, doc=doc)
     socket.__set_name__(Socket, name)

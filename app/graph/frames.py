@@ -27,10 +27,29 @@ _WIDEST = 16
 _SHOWN = 40
 _EXAMPLE = "such as 1-24, 1-24x2 or 1-12,40"
 
-VIDEO_ENDINGS = frozenset({
-    ".mp4", ".m4v", ".mov", ".mkv", ".webm", ".avi", ".mxf", ".mpg", ".mpeg", ".m2v", ".ts", ".mts", ".m2ts", ".wmv",
-    ".flv", ".ogv", ".3gp", ".y4m", ".dv",
-})
+VIDEO_ENDINGS = frozenset(
+    {
+        ".mp4",
+        ".m4v",
+        ".mov",
+        ".mkv",
+        ".webm",
+        ".avi",
+        ".mxf",
+        ".mpg",
+        ".mpeg",
+        ".m2v",
+        ".ts",
+        ".mts",
+        ".m2ts",
+        ".wmv",
+        ".flv",
+        ".ogv",
+        ".3gp",
+        ".y4m",
+        ".dv",
+    }
+)
 """Endings of names of videos."""
 
 _RANGE = re.compile(r"(-?[0-9]+)\s*(?:-\s*(-?[0-9]+)\s*(?:[xX]\s*([0-9]+))?)?")

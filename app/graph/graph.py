@@ -117,9 +117,11 @@ class Graph(Wired[Item]):
     def bypass(self, id: str, wanted: Socket | Value | None) -> Port | None:
         """What reaches `wanted` in place of node `id`: the source of the node's first linked input that fits."""
         face = signature(self.node(id))
-        ports = sorted(port for port in self.links if port.node == id) if face.anything else [
-            Port(id, name) for name in face.inputs
-        ]
+        ports = (
+            sorted(port for port in self.links if port.node == id)
+            if face.anything
+            else [Port(id, name) for name in face.inputs]
+        )
         for source in (self.links[port] for port in ports if port in self.links):
             try:
                 start = self.source(source)
@@ -152,8 +154,12 @@ class Graph(Wired[Item]):
                 links[target] = instead
         kept = {name: control for name, control in self.controls.items() if control.target.node != id}
         return self._with(
-            nodes=without(self.nodes, id), links=links, controls=kept, muted=self.muted - {id},
-            animation=moved(self.animation, id), ui=moved_layout(self.ui, id),
+            nodes=without(self.nodes, id),
+            links=links,
+            controls=kept,
+            muted=self.muted - {id},
+            animation=moved(self.animation, id),
+            ui=moved_layout(self.ui, id),
             extra=moved_keys(self.extra, f"nodes.{id}"),
         )
 
@@ -171,9 +177,13 @@ class Graph(Wired[Item]):
             for name, item in self.controls.items()
         }
         return self._with(
-            nodes=renamed(self.nodes, old, new), links=moved_links(self.links, moves), controls=controls,
-            muted={new if id == old else id for id in self.muted}, animation=moved(self.animation, old, new),
-            ui=moved_layout(self.ui, old, new), extra=moved_keys(self.extra, f"nodes.{old}", f"nodes.{new}"),
+            nodes=renamed(self.nodes, old, new),
+            links=moved_links(self.links, moves),
+            controls=controls,
+            muted={new if id == old else id for id in self.muted},
+            animation=moved(self.animation, old, new),
+            ui=moved_layout(self.ui, old, new),
+            extra=moved_keys(self.extra, f"nodes.{old}", f"nodes.{new}"),
         )
 
     def replace(self, id: str, item: Item) -> Self:
@@ -186,12 +196,14 @@ class Graph(Wired[Item]):
         after = self._with(nodes={**self.nodes, id: item})
         links = relinked(self.links, id, signature(before), face, lambda start, end: not after.link_fault(start, end))
         kept = {
-            name: control for name, control in self.controls.items()
+            name: control
+            for name, control in self.controls.items()
             if control.target.node != id or face.anything or control.target.socket in face.values
         }
         extra = self.extra if type(before) is type(item) else moved_keys(self.extra, f"nodes.{id}")
         kept_animation = {
-            port: animation for port, animation in self.animation.items()
+            port: animation
+            for port, animation in self.animation.items()
             if port.node != id or face.anything or ((value := face.values.get(port.socket)) and value.type in ANIMATED)
         }
         return after._with(links=links, controls=kept, animation=kept_animation, extra=extra)

@@ -147,6 +147,7 @@ class Keys:
 
         Keys that stay where one arrives are replaced. `lift` is one number or one for every channel.
         """
+
         def there(key: Key) -> Key:
             return replace(key, frame=round(key.frame + by, _DECIMALS), value=_lifted(key, lift))
 
@@ -186,8 +187,9 @@ class Keys:
         for given in (left, right):
             if given and not (len(given) == 1 + len(key.parts) and all(map(math.isfinite, given))):
                 raise GraphError(f"the key at frame {frame:g} takes {1 + len(key.parts)} finite numbers for a handle")
-        return self._with((replace(key, left=key.left if left is None else left,
-                                   right=key.right if right is None else right),))
+        return self._with(
+            (replace(key, left=key.left if left is None else left, right=key.right if right is None else right),)
+        )
 
     def _with(self, keys: Iterable[Key]) -> Keys:
         return replace(self, keys=(*self.keys, *keys))
@@ -211,10 +213,12 @@ class Keys:
         u = (frame - start.frame) / width
         if start.interpolation == "linear":
             return self._plain(tuple(a + (b - a) * u for a, b in zip(start.parts, end.parts, strict=True)))
-        return self._plain(tuple(
-            _hermite(u, a, b, width * self._slope(place, channel), width * self._slope(place + 1, channel))
-            for channel, (a, b) in enumerate(zip(start.parts, end.parts, strict=True))
-        ))
+        return self._plain(
+            tuple(
+                _hermite(u, a, b, width * self._slope(place, channel), width * self._slope(place + 1, channel))
+                for channel, (a, b) in enumerate(zip(start.parts, end.parts, strict=True))
+            )
+        )
 
     def _beyond(self, frame: float) -> Plain:
         """The value outside, along the slope of the nearest end."""
@@ -251,8 +255,10 @@ class Keys:
         left = end.handle("left") or (-third, *(-third * slope for slope in self.slopes(end.frame)))
         if limit and len(right) == len(left):
             _, one, two, _ = bezier.limited((start.frame, *start.parts), (end.frame, *end.parts), right, left)
-            return (tuple(b - a for a, b in zip((start.frame, *start.parts), one, strict=True)),
-                    tuple(b - a for a, b in zip((end.frame, *end.parts), two, strict=True)))
+            return (
+                tuple(b - a for a, b in zip((start.frame, *start.parts), one, strict=True)),
+                tuple(b - a for a, b in zip((end.frame, *end.parts), two, strict=True)),
+            )
         return right, left
 
     def _slope(self, place: int, channel: int) -> float:

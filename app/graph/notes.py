@@ -25,6 +25,7 @@ def moved_layout(ui: Mapping[str, Any], old: str, new: str = "") -> Mapping[str,
 
     Ends are called as `ui["nodes"]` does: `inputs.beauty`.
     """
+
     def moved(name: str) -> str:
         inside = name == old or name.startswith(f"{old}.")
         return new and new + name.removeprefix(old) if inside else name

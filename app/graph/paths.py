@@ -58,7 +58,8 @@ def relocated(path: str, old: str, new: str) -> str:
 
 def _changed(graph: Graph, folder: str, change: Change) -> Graph:
     return replace(
-        graph, folder=folder,
+        graph,
+        folder=folder,
         inputs={name: replace(end, file=change(end.file)) for name, end in graph.inputs.items()},
         nodes={id: _item(item, folder, change) for id, item in graph.nodes.items()},
     )

@@ -41,7 +41,10 @@ def selected(graph: Graph, ids: Sequence[str]) -> Graph:
     made = signature(graph.node(last.node)).outputs[last.socket]
     links[Port(OUTPUTS, "image")] = last
     return replace(
-        graph, nodes={id: item for id, item in graph.nodes.items() if id in kept}, links=links, inputs=inputs,
+        graph,
+        nodes={id: item for id, item in graph.nodes.items() if id in kept},
+        links=links,
+        inputs=inputs,
         outputs={"image": Output(made.kind, made.channels)},
         controls={name: item for name, item in graph.controls.items() if item.target.node in kept},
         animation={port: item for port, item in graph.animation.items() if port.node in kept},

@@ -68,7 +68,8 @@ def loop_faults(graph: Graph) -> Iterator[tuple[Port, str]]:
     """Expressions that need themselves."""
     reads = {
         port: [named(graph, name)[0] for name in item.names if _is_there(graph, name)]
-        for port, item in graph.animation.items() if isinstance(item, Expression)
+        for port, item in graph.animation.items()
+        if isinstance(item, Expression)
     }
     for port in reads:
         seen, todo = set[Port](), list(reads[port])

@@ -9,7 +9,8 @@ from ..graph.problems import CONTROLS
 from ..graph.rules import Rule
 
 STALE_ALLOW = Rule(
-    "stale-allow", "warning",
+    "stale-allow",
+    "warning",
     "settings.allow allows what no rule warns of: it was mended since, the name is wrong, or it is an error.",
     "Remove the entry, or correct its name.",
 )
@@ -30,9 +31,7 @@ def allowed(graph: Graph, problem: Problem) -> str:
     return next((name for name in names if name in graph.settings.allow), "")
 
 
-def stale(
-    graph: Graph, used: Iterable[str], rules: Mapping[str, Rule], unsure: Iterable[str]
-) -> Iterator[Problem]:
+def stale(graph: Graph, used: Iterable[str], rules: Mapping[str, Rule], unsure: Iterable[str]) -> Iterator[Problem]:
     """Entries that allow nothing; those of `unsure` rules depend on more than the file, so nothing is said of them."""
     spent, silent = set(used), set(unsure)
     for entry in graph.settings.allow:

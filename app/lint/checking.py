@@ -20,9 +20,16 @@ from .rules import CHECKS
 from .sheet import Sheet, bodies
 
 RULES: Mapping[str, Rule] = {
-    rule.name: rule for rule in (
-        *texts.READING, *GRAPH_RULES, *compiled.RULES, *(check.rule for check in CHECKS), *surroundings.RULES,
-        texts.OLD_VERSION, texts.NOT_CANONICAL, *allowing.RULES,
+    rule.name: rule
+    for rule in (
+        *texts.READING,
+        *GRAPH_RULES,
+        *compiled.RULES,
+        *(check.rule for check in CHECKS),
+        *surroundings.RULES,
+        texts.OLD_VERSION,
+        texts.NOT_CANONICAL,
+        *allowing.RULES,
     )
 }
 """Every rule by its name."""
@@ -108,9 +115,7 @@ class Checker:
         for code, problem in compiled.problems(made, self.world):
             yield problem, 0, code
 
-    def _report(
-        self, file: str, text: str, made: Graph | None, found: Iterator[tuple[Problem, int, int]]
-    ) -> Report:
+    def _report(self, file: str, text: str, made: Graph | None, found: Iterator[tuple[Problem, int, int]]) -> Report:
         kept, used = list[tuple[Problem, int, int]](), set[str]()
         for item in found:
             if item[0].rule.name in self.off:
@@ -148,7 +153,10 @@ def _line(lines: Positions, made: Graph | None, problem: Problem) -> int:
         at = f"{at}nodes.{name}.graph."
     node = rest[-1]
     places = (
-        f"{at}nodes.{node}.values.{problem.socket}", f"{at}links.{node}.{problem.socket}",
-        f"{at}{node}.{problem.socket}", f"{at}nodes.{node}", f"{at}{node}",
+        f"{at}nodes.{node}.values.{problem.socket}",
+        f"{at}links.{node}.{problem.socket}",
+        f"{at}{node}.{problem.socket}",
+        f"{at}nodes.{node}",
+        f"{at}{node}",
     )
     return lines.line(next((place for place in places if place in lines), ""))

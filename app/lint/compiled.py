@@ -20,21 +20,24 @@ if TYPE_CHECKING:
     from ..media.pictures import Pictures
 
 UNREADABLE_FILE = Rule(
-    "unreadable-file", "error",
+    "unreadable-file",
+    "error",
     "A file that the graph reads (a picture, a layer of it, a mesh, a table) is not there, or cannot be read.",
     "Put it where the path leads, or correct path and layer.",
 )
 LFS_POINTER = Rule(
-    "lfs-pointer", "error", "A file is only the pointer that git LFS keeps in its place.",
+    "lfs-pointer",
+    "error",
+    "A file is only the pointer that git LFS keeps in its place.",
     "Fetch the file with git lfs pull; in a workflow, check out with lfs: true.",
 )
 UNBOUND_INPUT = Rule(
-    "unbound-input", "warning", "An input has neither a file nor a default, so that rendering needs -i NAME=FILE.",
+    "unbound-input",
+    "warning",
+    "An input has neither a file nor a default, so that rendering needs -i NAME=FILE.",
     "Bind it when rendering, or allow it where the graph is meant for that.",
 )
-CANNOT_COMPILE = Rule(
-    "cannot-compile", "error", "The graph as a whole makes no picture.", "Do what the sentence says."
-)
+CANNOT_COMPILE = Rule("cannot-compile", "error", "The graph as a whole makes no picture.", "Do what the sentence says.")
 BAD_SETTING = Rule(
     "bad-setting", "error", "A value is a name that nobody knows, such as that of a color space.", "Correct it."
 )
@@ -85,6 +88,7 @@ class World:
 
     def _is_sequence(self, path: str) -> bool:
         """False for one picture, whether it is there or not."""
+
         def ask() -> bool:
             from ..media.sequences import find_sequence
 

@@ -20,7 +20,8 @@ def sarif(reports: Iterable[Report], rules: Mapping[str, Rule], root: Path, vers
     places = {name: place for place, name in enumerate(rules)}
     results = [
         _result(finding, _uri(report.file, root), places[finding.problem.rule.name])
-        for report in reports for finding in report.findings
+        for report in reports
+        for finding in report.findings
     ]
     driver = {"name": "Halation", "version": version, "rules": [_rule(rule) for rule in rules.values()]}
     return {"$schema": SCHEMA, "version": "2.1.0", "runs": [{"tool": {"driver": driver}, "results": results}]}
@@ -44,12 +45,13 @@ def _result(finding: Finding, uri: str, index: int) -> dict[str, Any]:
     if place := where(problem):
         location["logicalLocations"] = [{"fullyQualifiedName": place}]
     return {
-        "ruleId": problem.rule.name, "ruleIndex": index, "level": problem.severity,
-        "message": {"text": problem.sentence}, "locations": [location],
+        "ruleId": problem.rule.name,
+        "ruleIndex": index,
+        "level": problem.severity,
+        "message": {"text": problem.sentence},
+        "locations": [location],
         # Lines are left out, so that what was known before is known again after an edit above it.
-        "partialFingerprints": {
-            "halation/v1": _hash(problem.rule.name, uri, place, problem.socket, problem.sentence)
-        },
+        "partialFingerprints": {"halation/v1": _hash(problem.rule.name, uri, place, problem.socket, problem.sentence)},
     }
 
 

@@ -35,7 +35,8 @@ class Sheet:
         """Nodes of which a value changes over time or is wired."""
         nodes = self.graph.nodes
         wired = (
-            port.node for port in self.graph.links
+            port.node
+            for port in self.graph.links
             if port.node in nodes and port.socket not in getattr(nodes[port.node], "inputs", {port.socket})
         )
         return frozenset((*wired, *(port.node for port in self.graph.animation)))
@@ -47,7 +48,8 @@ class Sheet:
     @cached_property
     def _working(self) -> dict[str, Item]:
         return {
-            id: item for id, item in self.graph.nodes.items()
+            id: item
+            for id, item in self.graph.nodes.items()
             if id not in self.graph.muted and not (isinstance(item, Node) and self._neutral(id, item))
         }
 

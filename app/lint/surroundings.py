@@ -16,13 +16,16 @@ from .rules.paths import is_absolute, named_paths, who
 from .sheet import bodies
 
 PATH_CASE = Rule(
-    "path-case", "warning",
+    "path-case",
+    "warning",
     "A path is spelled in other letters (capitals, or accents made otherwise) than the file on disk: some systems find "
     "it, others do not.",
     "Spell it as the disk does.",
 )
 OUTSIDE_REPOSITORY = Rule(
-    "outside-repository", "warning", "A path leads out of the repository: a fresh clone does not have the file.",
+    "outside-repository",
+    "warning",
+    "A path leads out of the repository: a fresh clone does not have the file.",
     "Move the file into the repository, or allow it where a script puts it there.",
 )
 RULES = (PATH_CASE, OUTSIDE_REPOSITORY)

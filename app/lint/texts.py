@@ -22,11 +22,15 @@ CONFLICT_MARKERS = Rule(
 )
 SYNTAX = Rule("syntax", "error", "The file is no JSON.", "Correct the line that is named.")
 DOUBLE_KEY = Rule(
-    "double-key", "error", "An object has a key twice, as after a merge by lines: one of them would be lost.",
+    "double-key",
+    "error",
+    "An object has a key twice, as after a merge by lines: one of them would be lost.",
     "Remove one.",
 )
 SCHEMA = Rule(
-    "schema", "error", "Something in the file is not of the type that the format asks for.",
+    "schema",
+    "error",
+    "Something in the file is not of the type that the format asks for.",
     "Correct it; halation schema lets an editor of text show it while it is typed.",
 )
 NEWER_VERSION = Rule(
@@ -34,11 +38,14 @@ NEWER_VERSION = Rule(
 )
 MISSING_GROUP = Rule("missing-group", "error", "The file of a group is not there.", "Correct its path.")
 OLD_VERSION = Rule(
-    "old-version", "warning", "A node was saved by an older version of its type; it is brought up to date when read.",
+    "old-version",
+    "warning",
+    "A node was saved by an older version of its type; it is brought up to date when read.",
     "halation fmt writes the present version.",
 )
 NOT_CANONICAL = Rule(
-    "not-canonical", "warning",
+    "not-canonical",
+    "warning",
     "The file is not laid out in the one canonical way, or holds values that are the default anyway: the next save "
     "changes lines that nobody edited.",
     "halation fmt rewrites it.",

@@ -23,16 +23,50 @@ if TYPE_CHECKING:
     from .video_file import VideoFile, check_video
 
 __all__ = [
-    "Attribute", "Encoding", "ImageInfo", "Layer", "Pixels", "Sequence", "VideoFile", "Want", "check_destination",
-    "check_video", "color_digest", "color_mark", "content_hash", "displays", "find_layer", "find_sequence",
-    "fingerprint", "frame_file", "gpu_view", "info", "looks", "read", "read_many", "read_metadata", "rounds",
-    "suggest_pattern", "sweep", "to_display", "views", "working_of", "write",
+    "Attribute",
+    "Encoding",
+    "ImageInfo",
+    "Layer",
+    "Pixels",
+    "Sequence",
+    "VideoFile",
+    "Want",
+    "check_destination",
+    "check_video",
+    "color_digest",
+    "color_mark",
+    "content_hash",
+    "displays",
+    "find_layer",
+    "find_sequence",
+    "fingerprint",
+    "frame_file",
+    "gpu_view",
+    "info",
+    "looks",
+    "read",
+    "read_many",
+    "read_metadata",
+    "rounds",
+    "suggest_pattern",
+    "sweep",
+    "to_display",
+    "views",
+    "working_of",
+    "write",
 ]
 
-_LATER = MappingProxyType({
-    "Sequence": "sequences", "VideoFile": "video_file", "check_video": "video_file", "find_sequence": "sequences",
-    "frame_file": "sequences", "gpu_view": "recolor", "suggest_pattern": "sequences",
-})
+_LATER = MappingProxyType(
+    {
+        "Sequence": "sequences",
+        "VideoFile": "video_file",
+        "check_video": "video_file",
+        "find_sequence": "sequences",
+        "frame_file": "sequences",
+        "gpu_view": "recolor",
+        "suggest_pattern": "sequences",
+    }
+)
 """What most renderings do without, and the modules that have it, which are loaded when it is asked for (PEP 562)."""
 
 

@@ -45,9 +45,7 @@ def read_rows(path: str, want: Want, first: int, end: int) -> Pixels:
         return replace(made, array=made.array[own], repaired=repaired)
 
 
-def _decoded(
-    handle: oiio.ImageInput, spec: oiio.ImageSpec, layer: Layer, path: str, first: int, end: int
-) -> Array:
+def _decoded(handle: oiio.ImageInput, spec: oiio.ImageSpec, layer: Layer, path: str, first: int, end: int) -> Array:
     """The channels of a layer in some rows, in the file's precision."""
     low, high, kind = min(layer.indices), max(layer.indices) + 1, READ_AS.get(layer.format, "float")
     tile = spec.tile_height

@@ -147,7 +147,12 @@ def _found(name: str, known: tuple[str, ...], what: str) -> str:
 
 
 def to_display(
-    array: Array, view: str = "", *, bits: Literal[8, 16, 32] = 8, display: str = "", look: str = "",
+    array: Array,
+    view: str = "",
+    *,
+    bits: Literal[8, 16, 32] = 8,
+    display: str = "",
+    look: str = "",
     color: ColorSettings = DEFAULT_COLOR,
 ) -> Array:
     """Working-space pixels [h, w, 3 or 4] as seen on a display, sRGB by default, the same shape.

@@ -29,7 +29,8 @@ def color_faults(graph: Graph) -> Iterator[ColorFault]:
     manager = managed(color)
     views = {name: end.view for name, end in graph.outputs.items() if end.view not in ("", NO_VIEW)}
     spaces = {
-        name: end.color_space for name, end in graph.inputs.items()
+        name: end.color_space
+        for name, end in graph.inputs.items()
         if end.color_space and end.kind in (Kind.IMAGE, Kind.COLOR)
     }
     if manager.plain and not views and not spaces:

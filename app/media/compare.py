@@ -56,7 +56,12 @@ class Compared:
 
 
 def compare(
-    actual: Array, expected: Array, *, threshold: float = CODE, relative: bool = False, linear: bool = True,
+    actual: Array,
+    expected: Array,
+    *,
+    threshold: float = CODE,
+    relative: bool = False,
+    linear: bool = True,
     perceptual: bool = True,
 ) -> Compared:
     """Measure two pictures [h, w] or [h, w, c] of floats; integers fill 0..1.
@@ -81,11 +86,17 @@ def compare(
     max_abs, rms = float(difference.max()), float(np.sqrt(np.mean(difference**2)))
     y, x = (int(place) for place in np.unravel_index(per_pixel.argmax(), per_pixel.shape))
     return Compared(
-        max_abs, rms, _psnr(rms, first[finite], second[finite]),
-        ssim(one, other, linear=linear) if perceptual else nan, flip(one, other, linear=linear) if perceptual else nan,
-        float(np.mean(per_pixel > threshold)), (x, y) if max_abs else None,
-        tuple(map(float, one[y, x])) if max_abs else (), tuple(map(float, other[y, x])) if max_abs else (),
-        int(broken.any(axis=2).sum()), max_rel=float(parts.max()),
+        max_abs,
+        rms,
+        _psnr(rms, first[finite], second[finite]),
+        ssim(one, other, linear=linear) if perceptual else nan,
+        flip(one, other, linear=linear) if perceptual else nan,
+        float(np.mean(per_pixel > threshold)),
+        (x, y) if max_abs else None,
+        tuple(map(float, one[y, x])) if max_abs else (),
+        tuple(map(float, other[y, x])) if max_abs else (),
+        int(broken.any(axis=2).sum()),
+        max_rel=float(parts.max()),
     )
 
 

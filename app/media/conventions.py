@@ -94,8 +94,13 @@ _HABITS: Sequence[_Habit] = (
     _habit(Renderer.RENDERMAN, Role.DEPTH, "z zfiltered depth", DepthKind.PLANAR, "RenderMan's z is its camera's"),
     _habit(Renderer.MITSUBA, Role.DEPTH, "depth dd", DepthKind.RADIAL, "Mitsuba's depth is the length of the ray"),
     _habit(Renderer.NUKE, Role.DEPTH, "depth z", DepthKind.INVERSE, "Nuke's ScanlineRender writes 1 / z"),
-    _habit(Renderer.VRAY, Role.DEPTH, "vrayzdepth zdepth z", "",
-           "V-Ray scales, clamps and turns around its Z-depth as its settings say"),
+    _habit(
+        Renderer.VRAY,
+        Role.DEPTH,
+        "vrayzdepth zdepth z",
+        "",
+        "V-Ray scales, clamps and turns around its Z-depth as its settings say",
+    ),
     _habit(Renderer.BLENDER, Role.NORMAL, "normal", Space.WORLD, "Blender writes normals of the world"),
     _habit(Renderer.ARNOLD, Role.NORMAL, "n", Space.WORLD, "Arnold's N is in world space"),
     _habit(Renderer.KARMA, Role.NORMAL, "ngcamera ncamera", Space.CAMERA, "its name says camera"),
@@ -108,19 +113,39 @@ _HABITS: Sequence[_Habit] = (
     _habit(Renderer.KARMA, Role.POSITION, "pcamera", Space.CAMERA, "its name says camera"),
     _habit(Renderer.RENDERMAN, Role.POSITION, "p", Space.CAMERA_AHEAD, "RenderMan shades in camera space"),
     _habit(Renderer.RENDERMAN, Role.POSITION, "pworld", Space.WORLD, "its name says world"),
-    _habit(Renderer.BLENDER, Role.VELOCITY, "vector", Motion.FROM_PREVIOUS,
-           f"Blender's X and Y are previous minus current, {_UP}; Z and W current minus next", (-1.0, 1.0, -1.0, 1.0)),
-    _habit(Renderer.NUKE, Role.VELOCITY, "backward", Motion.FROM_PREVIOUS,
-           f"Nuke's backward vectors point to the previous frame, {_UP}", (-1.0, 1.0)),
-    _habit(Renderer.NUKE, Role.VELOCITY, "forward motion", Motion.TO_NEXT,
-           f"Nuke's forward vectors point to the next frame, {_UP}", (1.0, -1.0)),
+    _habit(
+        Renderer.BLENDER,
+        Role.VELOCITY,
+        "vector",
+        Motion.FROM_PREVIOUS,
+        f"Blender's X and Y are previous minus current, {_UP}; Z and W current minus next",
+        (-1.0, 1.0, -1.0, 1.0),
+    ),
+    _habit(
+        Renderer.NUKE,
+        Role.VELOCITY,
+        "backward",
+        Motion.FROM_PREVIOUS,
+        f"Nuke's backward vectors point to the previous frame, {_UP}",
+        (-1.0, 1.0),
+    ),
+    _habit(
+        Renderer.NUKE,
+        Role.VELOCITY,
+        "forward motion",
+        Motion.TO_NEXT,
+        f"Nuke's forward vectors point to the next frame, {_UP}",
+        (1.0, -1.0),
+    ),
 )
-_FALLBACKS: Mapping[Role, Convention] = MappingProxyType({
-    Role.DEPTH: Convention(DepthKind.PLANAR, "what most renderers write; nothing in the file proves it"),
-    Role.NORMAL: Convention(Space.WORLD, "what most renderers write; nothing in the file proves it"),
-    Role.POSITION: Convention(Space.WORLD, "what most renderers write; nothing in the file proves it"),
-    Role.VELOCITY: Convention("", "renderers differ in it; the frame before would tell"),
-})
+_FALLBACKS: Mapping[Role, Convention] = MappingProxyType(
+    {
+        Role.DEPTH: Convention(DepthKind.PLANAR, "what most renderers write; nothing in the file proves it"),
+        Role.NORMAL: Convention(Space.WORLD, "what most renderers write; nothing in the file proves it"),
+        Role.POSITION: Convention(Space.WORLD, "what most renderers write; nothing in the file proves it"),
+        Role.VELOCITY: Convention("", "renderers differ in it; the frame before would tell"),
+    }
+)
 
 
 def habit(role: Role, name: str, renderer: Renderer | None) -> Convention | None:
@@ -130,7 +155,8 @@ def habit(role: Role, name: str, renderer: Renderer | None) -> Convention | None
     """
     word = plain(name.rpartition(".")[2])
     found = [
-        item.convention for item in _HABITS
+        item.convention
+        for item in _HABITS
         if item.role is role and renderer in (None, item.renderer) and word in item.names.split()
     ]
     agreed = len({(item.kind, item.scale) for item in found}) == 1

@@ -63,7 +63,11 @@ class Encoding(Struct, frozen=True):
         depth = 8 if bits == 8 else 16
         if not self.space:
             shown = to_display(
-                array, self.view, bits=32 if bits == 10 else depth, display=self.display, look=self.look,
+                array,
+                self.view,
+                bits=32 if bits == 10 else depth,
+                display=self.display,
+                look=self.look,
                 color=self.color,
             )
         else:

@@ -101,8 +101,10 @@ def depth_alone(depth: Array) -> Convention | None:
     found = _flattest(cross, (at - ((height - 1) / 2, (width - 1) / 2)) / width) if len(at[0]) >= _FEWEST else None
     if not below:
         return found
-    return None if found and found.kind != DepthKind.PLANAR else Convention(
-        DepthKind.NEGATIVE, "all of it is below zero", True, _sign(DepthKind.NEGATIVE)
+    return (
+        None
+        if found and found.kind != DepthKind.PLANAR
+        else Convention(DepthKind.NEGATIVE, "all of it is below zero", True, _sign(DepthKind.NEGATIVE))
     )
 
 
@@ -110,7 +112,8 @@ def _flattest(cross: Array, away: Array) -> Convention | None:
     """Depths of five pixels each, and how far these are from the middle as fractions of the width."""
     square = (away**2).sum(axis=2)
     bends = {
-        DepthKind.PLANAR: _bend(1.0 / cross), DepthKind.INVERSE: _bend(cross),
+        DepthKind.PLANAR: _bend(1.0 / cross),
+        DepthKind.INVERSE: _bend(cross),
         DepthKind.RADIAL: min(_bend(np.sqrt(1.0 + square / focal**2) / cross) for focal in _FOCALS),
     }
     if bends[DepthKind.PLANAR] < _CLEARLY * bends[DepthKind.RADIAL]:
@@ -142,9 +145,7 @@ def position_space(camera: Camera, position: Array) -> Convention:
     return Convention(Space.WORLD, f"the camera that sees them stands at {eye}", True)
 
 
-def normal_by_position(
-    normal: Array, position: Array, camera: Camera, home: Space = Space.WORLD
-) -> Convention | None:
+def normal_by_position(normal: Array, position: Array, camera: Camera, home: Space = Space.WORLD) -> Convention | None:
     """Whose axes normals refer to, by how the places around each pixel lie; `home` is what positions refer to."""
     height, width = normal.shape[:2]
     if min(width, height) < 3:
@@ -169,7 +170,8 @@ def normal_by_position(
         return None
     up, ahead = -np.array(camera.down), np.array(camera.forward)
     axes = {
-        Space.CAMERA: np.stack([camera.right, up, -ahead]), Space.CAMERA_AHEAD: np.stack([camera.right, up, ahead]),
+        Space.CAMERA: np.stack([camera.right, up, -ahead]),
+        Space.CAMERA_AHEAD: np.stack([camera.right, up, ahead]),
         home: np.eye(3),
     }
     off = {space: _angle(stored, facing @ turned.T) for space, turned in axes.items()}

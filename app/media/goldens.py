@@ -84,6 +84,7 @@ def maker(path: str | Path) -> str:
 
 def keep(path: Path, source: Path) -> None:
     """Replace a file by a copy of another, whole or not at all; its folder is made. Raises OutputError."""
+
     def copy(name: str) -> None:
         shutil.copyfile(source, name)
 

@@ -74,10 +74,16 @@ def _part(index: int, spec: oiio.ImageSpec) -> PartHeader:
     formats = spec.channelformats or (spec.format,) * spec.nchannels
     tiles = f"tiles of {spec.tile_width}x{spec.tile_height}" if spec.tile_width else "scan lines"
     return PartHeader(
-        index, text(spec.get_string_attribute("oiio:subimagename")), text(spec.get_string_attribute("view")), tiles,
-        text(spec.get_string_attribute("compression")), (spec.x, spec.y, spec.width, spec.height),
+        index,
+        text(spec.get_string_attribute("oiio:subimagename")),
+        text(spec.get_string_attribute("view")),
+        tiles,
+        text(spec.get_string_attribute("compression")),
+        (spec.x, spec.y, spec.width, spec.height),
         (spec.full_x, spec.full_y, spec.full_width or spec.width, spec.full_height or spec.height),
-        tuple(map(text, spec.channelnames)), tuple(map(str, formats)), space(spec),
+        tuple(map(text, spec.channelnames)),
+        tuple(map(str, formats)),
+        space(spec),
     )
 
 

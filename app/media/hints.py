@@ -19,6 +19,9 @@ def hints_of(spec: oiio.ImageSpec, format: str, integer: bool) -> Hints:
         tag, usual = "", tag
     primaries = spec.getattribute("chromaticities")
     return Hints(
-        tag, usual, text(spec.get_string_attribute("ICCProfile:profile_description")),
-        tuple(primaries) if isinstance(primaries, tuple) else (), integer,
+        tag,
+        usual,
+        text(spec.get_string_attribute("ICCProfile:profile_description")),
+        tuple(primaries) if isinstance(primaries, tuple) else (),
+        integer,
     )

@@ -235,8 +235,11 @@ def check_memory(path: str, size: Size, channels: int) -> None:
 def _part(index: int, spec: oiio.ImageSpec) -> Part:
     formats = spec.channelformats or (spec.format,) * spec.nchannels
     return Part(
-        index, text(spec.get_string_attribute("oiio:subimagename")), tuple(map(text, spec.channelnames)),
-        tuple(_DTYPES.get(str(item), "float32") for item in formats), space(spec),
+        index,
+        text(spec.get_string_attribute("oiio:subimagename")),
+        tuple(map(text, spec.channelnames)),
+        tuple(_DTYPES.get(str(item), "float32") for item in formats),
+        space(spec),
     )
 
 

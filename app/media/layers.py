@@ -126,9 +126,7 @@ def _split(part: Part, several: bool) -> Iterable[Layer]:
         yield Layer("", short, part.index, indices, kept, False, full)
 
 
-def _without_strangers(
-    names: Sequence[str], groups: Mapping[str, list[int]]
-) -> Iterable[tuple[str, list[int]]]:
+def _without_strangers(names: Sequence[str], groups: Mapping[str, list[int]]) -> Iterable[tuple[str, list[int]]]:
     """The groups; what stands beside the colors of one is its own, such as the depth of a view (`left.R`, `left.Z`)."""
     for key, places in groups.items():
         words = {index: names[index].rpartition(".")[2].casefold() for index in places}
@@ -195,8 +193,12 @@ def _channels(layer: Layer) -> Iterable[Layer]:
     """Every channel of a layer as a layer of its own."""
     for channel, index in zip(layer.channels, layer.indices, strict=True):
         yield replace(
-            layer, name=f"{layer.name}.{channel}", full=f"{layer.full}.{channel}", channels=(channel,),
-            indices=(index,), data=True,
+            layer,
+            name=f"{layer.name}.{channel}",
+            full=f"{layer.full}.{channel}",
+            channels=(channel,),
+            indices=(index,),
+            data=True,
         )
 
 

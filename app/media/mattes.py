@@ -28,10 +28,14 @@ from .read import read
 from .survey import Survey, survey
 
 _NAME = re.compile(r"cryptomatte/(\w+)/name")
-_ROLES = MappingProxyType({
-    Role.CRYPTOMATTE_OBJECT: "object", Role.CRYPTOMATTE_MATERIAL: "material", Role.CRYPTOMATTE_ASSET: "asset",
-    Role.CRYPTOMATTE: "",
-})
+_ROLES = MappingProxyType(
+    {
+        Role.CRYPTOMATTE_OBJECT: "object",
+        Role.CRYPTOMATTE_MATERIAL: "material",
+        Role.CRYPTOMATTE_ASSET: "asset",
+        Role.CRYPTOMATTE: "",
+    }
+)
 
 
 def mattes_of(found: Survey) -> tuple[Matte, ...]:

@@ -107,10 +107,15 @@ def _piece(scene: Any, node: str) -> Piece | None:
     visual = getattr(mesh, "visual", None)
     uvs, material = getattr(visual, "uv", None), getattr(visual, "material", None)
     return Piece(
-        np.asarray(mesh.vertices), np.asarray(mesh.vertex_normals), np.asarray(mesh.faces),
+        np.asarray(mesh.vertices),
+        np.asarray(mesh.vertex_normals),
+        np.asarray(mesh.faces),
         np.zeros((len(mesh.vertices), 2)) if uvs is None else np.asarray(uvs)[:, :2],
-        albedo=_color(visual, material), emission=_factor(material, "emissiveFactor", (0.0, 0.0, 0.0)),
-        metal=_number(material, "metallicFactor", 0.0), rough=_number(material, "roughnessFactor", 0.6), moving=True,
+        albedo=_color(visual, material),
+        emission=_factor(material, "emissiveFactor", (0.0, 0.0, 0.0)),
+        metal=_number(material, "metallicFactor", 0.0),
+        rough=_number(material, "roughnessFactor", 0.6),
+        moving=True,
     )
 
 

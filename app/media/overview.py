@@ -67,12 +67,21 @@ def overview(path: str, roles: Sequence[Role], named: Mapping[Role, str] = Mappi
     uses = {role: _use(plain, found, role, faults.get(role, ""), rules.get(role)) for role in roles}
     used = {use.layer for use in uses.values()}
     others = tuple(
-        item for item in found.passes
+        item
+        for item in found.passes
         if item.layer.name not in used and not (item.role and item.role.value.startswith("cryptomatte"))
     )
     return Overview(
-        size_line(found), maker_line(found), MappingProxyType(uses), others, camera, mattes_of(found),
-        tuple(part_rows(found)), tuple(metadata_rows(found)), text, fault,
+        size_line(found),
+        maker_line(found),
+        MappingProxyType(uses),
+        others,
+        camera,
+        mattes_of(found),
+        tuple(part_rows(found)),
+        tuple(metadata_rows(found)),
+        text,
+        fault,
     )
 
 

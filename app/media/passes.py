@@ -18,8 +18,11 @@ from .naming import HINTS, PATTERNS, SCHEMES, Renderer, Role
 _GROUP = re.compile(r"(?:combined|rgba?|beauty)_(.+)", re.IGNORECASE)
 _RANKS = re.compile(r"u?(?P<name>.*crypto.*?)(?P<rank>\d\d)?", re.IGNORECASE)
 _CRYPTOMATTES = (
-    ("material", Role.CRYPTOMATTE_MATERIAL), ("mtl", Role.CRYPTOMATTE_MATERIAL), ("asset", Role.CRYPTOMATTE_ASSET),
-    ("object", Role.CRYPTOMATTE_OBJECT), ("node", Role.CRYPTOMATTE_OBJECT),
+    ("material", Role.CRYPTOMATTE_MATERIAL),
+    ("mtl", Role.CRYPTOMATTE_MATERIAL),
+    ("asset", Role.CRYPTOMATTE_ASSET),
+    ("object", Role.CRYPTOMATTE_OBJECT),
+    ("node", Role.CRYPTOMATTE_OBJECT),
 )
 _EYES = ("left", "right")
 _MANIFEST = re.compile(r"cryptomatte/\w+/name")
@@ -79,7 +82,9 @@ def maker_of(attributes: Mapping[str, object], layers: Sequence[Layer]) -> Maker
 
 
 def passes_of(
-    layers: Sequence[Layer], attributes: Mapping[str, object], renderer: Renderer | None,
+    layers: Sequence[Layer],
+    attributes: Mapping[str, object],
+    renderer: Renderer | None,
     seen_by: Mapping[int, str] = MappingProxyType({}),
 ) -> tuple[Pass, ...]:
     """What every layer is; `seen_by` names the views of those parts that are of one."""
@@ -131,8 +136,11 @@ def _read(layer: Layer, views: Sequence[str], view: str) -> tuple[str, str]:
 def _pass(layer: Layer, name: str, renderer: Renderer | None, manifests: set[str]) -> Pass:
     word = plain(name)
     for found in (
-        _cryptomatte(layer, manifests), _by_table(layer, word, renderer), _light_group(layer, name),
-        _by_pattern(layer, word), _by_shape(layer, word),
+        _cryptomatte(layer, manifests),
+        _by_table(layer, word, renderer),
+        _light_group(layer, name),
+        _by_pattern(layer, word),
+        _by_shape(layer, word),
     ):
         if found is not None:
             return found

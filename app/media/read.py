@@ -56,7 +56,13 @@ class Pixels(Struct, frozen=True):
 
 
 def read(
-    path: str | Path, layer: str, kind: Kind, width: int = 4, frame: int = 1, *, space: str = "",
+    path: str | Path,
+    layer: str,
+    kind: Kind,
+    width: int = 4,
+    frame: int = 1,
+    *,
+    space: str = "",
     color: ColorSettings = DEFAULT_COLOR,
 ) -> Pixels:
     """Read one layer over the whole display window; what the file has no data for is 0.

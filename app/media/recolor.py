@@ -53,9 +53,7 @@ def color_program(processor: Any, name: str) -> ColorProgram:
     return ColorProgram(name, parse(f"OpenColorIO/{name}", made.getShaderText()), tuple(tables))
 
 
-def gpu_view(
-    view: str = "", display: str = "", look: str = "", color: ColorSettings = DEFAULT_COLOR
-) -> ColorProgram:
+def gpu_view(view: str = "", display: str = "", look: str = "", color: ColorSettings = DEFAULT_COLOR) -> ColorProgram:
     """The program that computes what `to_display` computes, from straight working-space color.
 
     Raises:

@@ -12,11 +12,24 @@ from .mattes import mattes_of
 from .naming import Role
 from .survey import survey
 
-_DATA = frozenset({
-    Role.DEPTH, Role.NORMAL, Role.POSITION, Role.VELOCITY, Role.UV, Role.ALBEDO, Role.EMISSION, Role.OCCLUSION,
-    Role.OBJECT_ID, Role.MATERIAL_ID, Role.CRYPTOMATTE, Role.CRYPTOMATTE_OBJECT, Role.CRYPTOMATTE_MATERIAL,
-    Role.CRYPTOMATTE_ASSET,
-})
+_DATA = frozenset(
+    {
+        Role.DEPTH,
+        Role.NORMAL,
+        Role.POSITION,
+        Role.VELOCITY,
+        Role.UV,
+        Role.ALBEDO,
+        Role.EMISSION,
+        Role.OCCLUSION,
+        Role.OBJECT_ID,
+        Role.MATERIAL_ID,
+        Role.CRYPTOMATTE,
+        Role.CRYPTOMATTE_OBJECT,
+        Role.CRYPTOMATTE_MATERIAL,
+        Role.CRYPTOMATTE_ASSET,
+    }
+)
 """What makes a picture a render: layers that effects work from."""
 
 
@@ -33,9 +46,9 @@ def find_render(path: str, named: Mapping[str, str] = MappingProxyType({})) -> R
     return Render(
         MappingProxyType({role.value: layer.full for role, layer in layers.items()}),
         MappingProxyType({role.value: len(layer.channels) for role, layer in layers.items()}),
-        MappingProxyType({
-            role.value: Meaning(rule.kind, rule.scale, rule.offset) for role, rule in found.conventions.items()
-        }),
+        MappingProxyType(
+            {role.value: Meaning(rule.kind, rule.scale, rule.offset) for role, rule in found.conventions.items()}
+        ),
         found.camera.camera,
         mattes_of(found),
     )

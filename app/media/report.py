@@ -22,16 +22,25 @@ def report(found: Survey) -> Iterator[str]:
     yield f"{found.header.info.path}\n  {size_line(found)}"
     yield f"  {maker_line(found)}"
     yield from _section("parts", part_rows(found))
-    yield from _section("layers", [
-        (item.layer.name, "".join(item.layer.channels), _SHORT.get(item.layer.format, item.layer.format),
-         item.role.words if item.role else "-", item.reason)
-        for item in found.passes
-    ])
+    yield from _section(
+        "layers",
+        [
+            (
+                item.layer.name,
+                "".join(item.layer.channels),
+                _SHORT.get(item.layer.format, item.layer.format),
+                item.role.words if item.role else "-",
+                item.reason,
+            )
+            for item in found.passes
+        ],
+    )
     yield from _section("color", space_rows(found.header.info.path))
     yield from _section("to be decided", _open_rows(found))
-    yield from _section("conventions", [
-        (role.words, rule.words, certainty(rule), rule.reason) for role, rule in found.conventions.items()
-    ])
+    yield from _section(
+        "conventions",
+        [(role.words, rule.words, certainty(rule), rule.reason) for role, rule in found.conventions.items()],
+    )
     yield from _section("camera", camera_rows(found.camera))
     yield from _section("metadata", [(name, _shortened(value)) for name, value in metadata_rows(found)])
 
@@ -100,7 +109,8 @@ def _open_rows(found: Survey) -> list[tuple[str, str]]:
     """What a user has to say: layers that may be several things, and roles that several layers claim."""
     rows = [
         (item.layer.name, f"may be {either([role.words for role in item.candidates])}")
-        for item in found.passes if item.role is None and item.candidates
+        for item in found.passes
+        if item.role is None and item.candidates
     ]
     rivals = [
         (role.words, f"may be {either([layer.name for layer in layers])}") for role, layers in found.rivals.items()
@@ -115,7 +125,9 @@ def camera_rows(found: FoundCamera) -> list[tuple[str, str]]:
         return [("none", found.reason)]
     across, down = field_of_view(camera)
     rows = [
-        ("found", found.reason), ("eye", _numbers(camera.eye)), ("looks along", _numbers(camera.forward)),
+        ("found", found.reason),
+        ("eye", _numbers(camera.eye)),
+        ("looks along", _numbers(camera.forward)),
         ("field of view", f"{across:.4g} x {down:.4g} degrees"),
         ("axis meets", f"{_numbers(camera.center)} of the picture"),
     ]

@@ -27,8 +27,16 @@ class RowFile:
     """
 
     def __init__(
-        self, path: Path, size: Size, name: str, kind: Kind, *, precision: Precision, compression: str,
-        encoding: Encoding, metadata: Mapping[str, Any],
+        self,
+        path: Path,
+        size: Size,
+        name: str,
+        kind: Kind,
+        *,
+        precision: Precision,
+        compression: str,
+        encoding: Encoding,
+        metadata: Mapping[str, Any],
     ) -> None:
         self._path, self._size, self._name, self._kind, self._metadata = path, size, name, kind, metadata
         self._precision: Precision = precision

@@ -185,7 +185,9 @@ def suggest_pattern(path: str) -> str | None:
     except InputError:
         return None
     fitting = [
-        text for before, number, after in _numbers(name) for width in range(1, _WIDEST + 1)
+        text
+        for before, number, after in _numbers(name)
+        for width in range(1, _WIDEST + 1)
         if (text := _text(before, width, after)) in groups and groups[text][0] < -1 and _fits(number, width)
     ]
     return folder + min(fitting, key=lambda text: (groups[text], text)) if fitting else None

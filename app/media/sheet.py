@@ -79,7 +79,11 @@ def sheet(pictures: Mapping[str, Array], columns: int = 4, width: int = 0) -> Ar
 
 
 def grouped_sheet(
-    groups: Mapping[str, Mapping[str, Array]], columns: int = 4, width: int = 0, *, letters: int = 15,
+    groups: Mapping[str, Mapping[str, Array]],
+    columns: int = 4,
+    width: int = 0,
+    *,
+    letters: int = 15,
     colors: Mapping[str, RGB] = MappingProxyType({}),
 ) -> Array:
     """The same for pictures by group and name, under headings with rules of these `colors` (sRGB) by group.
@@ -107,7 +111,12 @@ def grouped_sheet(
 
 
 def grid_sheet(
-    rows: Sequence[Sequence[Array]], down: Sequence[str], across: Sequence[str], *, width: int = 0, title: str = "",
+    rows: Sequence[Sequence[Array]],
+    down: Sequence[str],
+    across: Sequence[str],
+    *,
+    width: int = 0,
+    title: str = "",
     letters: int = 16,
 ) -> Array:
     """The same for pictures by row and column, which have headings: `down` and `across`."""

@@ -14,9 +14,7 @@ from .info import described, opened
 from .managed import DEFAULT_COLOR, managed
 
 
-def layer_spaces(
-    path: str | Path, color: ColorSettings = DEFAULT_COLOR, wanted: str = ""
-) -> Mapping[str, FileSpace]:
+def layer_spaces(path: str | Path, color: ColorSettings = DEFAULT_COLOR, wanted: str = "") -> Mapping[str, FileSpace]:
     """The color space of every layer of color by its full name; data has none. `wanted` is what somebody says it is.
 
     Raises:

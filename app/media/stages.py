@@ -40,7 +40,12 @@ class Piece:
         return replace(self, places=self.places + np.asarray(place))
 
     def made_of(
-        self, albedo: Color, *, emission: Color = (0.0, 0.0, 0.0), metal: float = 0.0, rough: float = 0.6,
+        self,
+        albedo: Color,
+        *,
+        emission: Color = (0.0, 0.0, 0.0),
+        metal: float = 0.0,
+        rough: float = 0.6,
         moving: bool = False,
     ) -> Piece:
         """The same shape of another material."""
@@ -61,6 +66,7 @@ def surface(points: Callable[[Array, Array], Array], across: int, down: int) -> 
 
 def sphere(radius: float, segments: int = 96) -> Piece:
     """A ball around the origin. Its normals point out, at the poles too."""
+
     def points(u: Array, v: Array) -> Array:
         turn, tilt = 2.0 * np.pi * u, np.pi * v
         return radius * np.stack([np.cos(turn) * np.sin(tilt), np.sin(turn) * np.sin(tilt), np.cos(tilt)], 1)
@@ -71,6 +77,7 @@ def sphere(radius: float, segments: int = 96) -> Piece:
 
 def torus(radius: float, thickness: float, segments: int = 96) -> Piece:
     """A ring around the y axis: it stands upright."""
+
     def points(u: Array, v: Array) -> Array:
         turn, around = 2.0 * np.pi * u, 2.0 * np.pi * v
         away = radius + thickness * np.cos(around)
@@ -88,14 +95,17 @@ def box(width: float, depth: float, height: float) -> Piece:
     """A block that stands on z = 0, in the middle of x and y."""
     w, d, h = width / 2.0, depth / 2.0, height
     sides = [
-        quad((-w, -d, 0.0), (width, 0.0, 0.0), (0.0, 0.0, h)), quad((w, d, 0.0), (-width, 0.0, 0.0), (0.0, 0.0, h)),
-        quad((w, -d, 0.0), (0.0, depth, 0.0), (0.0, 0.0, h)), quad((-w, d, 0.0), (0.0, -depth, 0.0), (0.0, 0.0, h)),
+        quad((-w, -d, 0.0), (width, 0.0, 0.0), (0.0, 0.0, h)),
+        quad((w, d, 0.0), (-width, 0.0, 0.0), (0.0, 0.0, h)),
+        quad((w, -d, 0.0), (0.0, depth, 0.0), (0.0, 0.0, h)),
+        quad((-w, d, 0.0), (0.0, -depth, 0.0), (0.0, 0.0, h)),
         quad((-w, -d, h), (width, 0.0, 0.0), (0.0, depth, 0.0)),
         quad((-w, d, 0.0), (width, 0.0, 0.0), (0.0, -depth, 0.0)),
     ]
     starts = np.cumsum([0, *(len(side.places) for side in sides[:-1])])
     return Piece(
-        np.concatenate([side.places for side in sides]), np.concatenate([side.normals for side in sides]),
+        np.concatenate([side.places for side in sides]),
+        np.concatenate([side.normals for side in sides]),
         np.concatenate([side.triangles + start for side, start in zip(sides, starts, strict=True)]),
         np.concatenate([side.uvs for side in sides]),
     )
@@ -103,6 +113,7 @@ def box(width: float, depth: float, height: float) -> Piece:
 
 def _backdrop() -> Piece:
     """Floor and wall in one, round where they meet, as in a photographer's studio."""
+
     def points(u: Array, v: Array) -> Array:
         bend, floor, wall = 1.2, 9.0, 5.0
         arc = bend * np.pi / 2.0

@@ -202,9 +202,7 @@ def survey(
 
 
 @lru_cache(maxsize=64)
-def _survey(
-    path: str, mark: str, before: tuple[str, str] | None, named: tuple[tuple[Role, str], ...] = ()
-) -> Survey:
+def _survey(path: str, mark: str, before: tuple[str, str] | None, named: tuple[tuple[Role, str], ...] = ()) -> Survey:
     header = read_header(path)
     maker = maker_of(header.attributes, header.info.layers)
     views = {part.index: part.view for part in header.parts}

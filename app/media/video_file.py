@@ -23,10 +23,18 @@ from .write import shown_layer
 
 _RGB, _UNKNOWN = 0, 2
 _LIMITED, _FULL = 1, 2
-_TAGS = MappingProxyType({
-    "srgb_rec709_scene": (1, 13), "srgb_p3d65_scene": (12, 13), "g24_rec709_scene": (1, 1), "g22_rec709_scene": (1, 4),
-    "lin_rec709_scene": (1, 8), "pq_rec2020_scene": (9, 16), "hlg_rec2020_scene": (9, 18), "g24_rec2020_scene": (9, 14),
-})
+_TAGS = MappingProxyType(
+    {
+        "srgb_rec709_scene": (1, 13),
+        "srgb_p3d65_scene": (12, 13),
+        "g24_rec709_scene": (1, 1),
+        "g22_rec709_scene": (1, 4),
+        "lin_rec709_scene": (1, 8),
+        "pq_rec2020_scene": (9, 16),
+        "hlg_rec2020_scene": (9, 18),
+        "g24_rec2020_scene": (9, 14),
+    }
+)
 """Spaces of pictures for people -> primaries and transfer characteristics by the numbers of ITU-T H.273."""
 
 _NTSC = 1001
@@ -50,8 +58,15 @@ class VideoFile:
     """
 
     def __init__(
-        self, path: str | Path, size: Size, rate: float | Fraction, *, codec: str = "", deep: bool = False,
-        encoding: Encoding | None = None, metadata: Mapping[str, Any] | None = None,
+        self,
+        path: str | Path,
+        size: Size,
+        rate: float | Fraction,
+        *,
+        codec: str = "",
+        deep: bool = False,
+        encoding: Encoding | None = None,
+        metadata: Mapping[str, Any] | None = None,
     ) -> None:
         """Open it. Raises UsageError for what cannot be, OutputError where nothing can be written."""
         self.path, self.size, self._rate = Path(path), size, exact_rate(rate)

@@ -22,12 +22,20 @@ from .metadata import add_metadata
 from .store import check_room, store
 
 _FORMATS = {
-    ".exr": "openexr", ".png": "png", ".jpg": "jpeg", ".jpeg": "jpeg", ".tif": "tiff", ".tiff": "tiff", ".webp": "webp",
-    ".hdr": "hdr", ".dpx": "dpx",
+    ".exr": "openexr",
+    ".png": "png",
+    ".jpg": "jpeg",
+    ".jpeg": "jpeg",
+    ".tif": "tiff",
+    ".tiff": "tiff",
+    ".webp": "webp",
+    ".hdr": "hdr",
+    ".dpx": "dpx",
 }
 _EXR_LOSSY = ("pxr24", "b44", "b44a", "dwaa", "dwab")
 _COMPRESSIONS = {
-    "openexr": ("none", "rle", "zips", "zip", "piz", *_EXR_LOSSY), "tiff": ("none", "lzw", "zip", "packbits"),
+    "openexr": ("none", "rle", "zips", "zip", "piz", *_EXR_LOSSY),
+    "tiff": ("none", "lzw", "zip", "packbits"),
 }
 _STORED = {"uint8": "uint8", "uint16": "uint16", "float32": "float"}
 
@@ -42,8 +50,14 @@ class Part(Struct, frozen=True):
 
 
 def write(
-    path: str | Path, layers: Mapping[str, Array], *, kinds: Mapping[str, Kind], precision: Precision = "half",
-    compression: str = "zip", view: str = "", metadata: Mapping[str, Any] | None = None,
+    path: str | Path,
+    layers: Mapping[str, Array],
+    *,
+    kinds: Mapping[str, Kind],
+    precision: Precision = "half",
+    compression: str = "zip",
+    view: str = "",
+    metadata: Mapping[str, Any] | None = None,
     encoding: Encoding | None = None,
 ) -> None:
     """Write [h, w, c] or [h, w] arrays; the ending of the name decides the format.
@@ -82,7 +96,12 @@ def rounds(path: str | Path, kind: Kind, *, precision: Precision, encoding: Enco
 
 
 def check_destination(
-    path: str | Path, kinds: Mapping[str, Kind], sizes: Mapping[str, Size], *, compression: str = "zip", view: str = "",
+    path: str | Path,
+    kinds: Mapping[str, Kind],
+    sizes: Mapping[str, Size],
+    *,
+    compression: str = "zip",
+    view: str = "",
     encoding: Encoding | None = None,
 ) -> None:
     """Refuse, before there are pixels, what `write` would refuse: the same errors, a full disk aside."""

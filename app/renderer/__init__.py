@@ -24,19 +24,56 @@ if TYPE_CHECKING:
     from .viewing.probe import Nonfinite, Probe, first_nonfinite
 
 __all__ = [
-    "DEFAULT_BUDGET", "Counters", "Device", "Display", "Drawable", "Handle", "Lease", "Look", "Nonfinite", "Probe",
-    "Reel", "Renderer", "Run", "Runner", "Wanted", "describe", "first_nonfinite", "fitted",
-    "open_device", "open_pinned", "to_panel", "to_picture",
+    "DEFAULT_BUDGET",
+    "Counters",
+    "Device",
+    "Display",
+    "Drawable",
+    "Handle",
+    "Lease",
+    "Look",
+    "Nonfinite",
+    "Probe",
+    "Reel",
+    "Renderer",
+    "Run",
+    "Runner",
+    "Wanted",
+    "describe",
+    "first_nonfinite",
+    "fitted",
+    "open_device",
+    "open_pinned",
+    "to_panel",
+    "to_picture",
 ]
 
-_HOMES = MappingProxyType({
-    "Counters": "running.executor", "DEFAULT_BUDGET": "engine", "Device": "opengl.device",
-    "Display": "viewing.display", "Drawable": "viewing.display", "Handle": "viewing.display",
-    "Lease": "opengl.textures", "Look": "viewing.look", "Nonfinite": "viewing.probe", "Probe": "viewing.probe",
-    "Reel": "reel", "Renderer": "engine", "Run": "running.run", "Runner": "running.runner", "Wanted": "engine",
-    "describe": "opengl.device", "first_nonfinite": "viewing.probe", "fitted": "viewing.look",
-    "open_device": "opening", "open_pinned": "pinned", "to_panel": "viewing.look", "to_picture": "viewing.look",
-})
+_HOMES = MappingProxyType(
+    {
+        "Counters": "running.executor",
+        "DEFAULT_BUDGET": "engine",
+        "Device": "opengl.device",
+        "Display": "viewing.display",
+        "Drawable": "viewing.display",
+        "Handle": "viewing.display",
+        "Lease": "opengl.textures",
+        "Look": "viewing.look",
+        "Nonfinite": "viewing.probe",
+        "Probe": "viewing.probe",
+        "Reel": "reel",
+        "Renderer": "engine",
+        "Run": "running.run",
+        "Runner": "running.runner",
+        "Wanted": "engine",
+        "describe": "opengl.device",
+        "first_nonfinite": "viewing.probe",
+        "fitted": "viewing.look",
+        "open_device": "opening",
+        "open_pinned": "pinned",
+        "to_panel": "viewing.look",
+        "to_picture": "viewing.look",
+    }
+)
 
 
 def __getattr__(name: str) -> Any:

@@ -86,7 +86,12 @@ class Share:
 
 
 def bench(
-    renderer: Renderer, graph: Graph, wanted: Wanted, frames: Sequence[int], repeats: int, warm_up: int,
+    renderer: Renderer,
+    graph: Graph,
+    wanted: Wanted,
+    frames: Sequence[int],
+    repeats: int,
+    warm_up: int,
     step: Callable[[str], None] = lambda name: None,
 ) -> Bench:
     """Measure frames of a graph: each is rendered `warm_up` times unmeasured, then `repeats` times.
@@ -120,8 +125,15 @@ def bench(
     outputs = [first.surfaces[number].size for number in first.outputs.values()]
     lead = sum(frame - reel.begin(frame) for frame, reel in reels.items() if plans[frame].memories)
     return Bench(
-        _merged(plans, timings), tuple(_totals(timings)), outputs[0] if outputs else (0, 0), planning, compiling,
-        renderer.runner.programs.compiled - compiled, loading, renderer.runner.textures.peak, lead,
+        _merged(plans, timings),
+        tuple(_totals(timings)),
+        outputs[0] if outputs else (0, 0),
+        planning,
+        compiling,
+        renderer.runner.programs.compiled - compiled,
+        loading,
+        renderer.runner.textures.peak,
+        lead,
     )
 
 
@@ -132,9 +144,12 @@ def shares(passes: Iterable[Timed]) -> tuple[Share, ...]:
         found.setdefault(one.nodes, []).append(one)
     made = (
         Share(
-            nodes, len(several), median(map(sum, zip(*(one.seconds for one in several), strict=True))),
+            nodes,
+            len(several),
+            median(map(sum, zip(*(one.seconds for one in several), strict=True))),
             min(map(sum, zip(*(one.seconds for one in several), strict=True))),
-            sum(one.read for one in several), sum(one.written for one in several),
+            sum(one.read for one in several),
+            sum(one.written for one in several),
         )
         for nodes, several in found.items()
     )

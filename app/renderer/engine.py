@@ -65,8 +65,13 @@ class Renderer:
     """
 
     def __init__(
-        self, device: Device | None = None, *, budget: int = DEFAULT_BUDGET, library: Library | None = None,
-        fusion: bool = True, ahead: Ahead | None = None,
+        self,
+        device: Device | None = None,
+        *,
+        budget: int = DEFAULT_BUDGET,
+        library: Library | None = None,
+        fusion: bool = True,
+        ahead: Ahead | None = None,
     ) -> None:
         self._owns_device = device is None
         self.device = device or open_device()
@@ -81,12 +86,25 @@ class Renderer:
         """Plan the rendering of what is wanted of `graph`. Raises the errors of `app.errors`."""
         bindings = self.pictures.bind(graph, wanted.bound)
         request = Request(
-            wanted.targets, bindings, wanted.size, wanted.scale, wanted.frame, wanted.memories, wanted.halves,
-            wanted.region, wanted.by_rows,
+            wanted.targets,
+            bindings,
+            wanted.size,
+            wanted.scale,
+            wanted.frame,
+            wanted.memories,
+            wanted.halves,
+            wanted.region,
+            wanted.by_rows,
         )
         return self._planner.plan(
-            graph, request, self.pictures, target=self.device.target, precision=wanted.precision,
-            library=self.library, fusion=fusion and self._fusion, there=self.runner.textures,
+            graph,
+            request,
+            self.pictures,
+            target=self.device.target,
+            precision=wanted.precision,
+            library=self.library,
+            fusion=fusion and self._fusion,
+            there=self.runner.textures,
         )
 
     def frames(self, graph: Graph, wanted: Wanted = _ALL) -> tuple[int, int]:

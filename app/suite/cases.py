@@ -31,9 +31,14 @@ class Metric:
 
 PER_PIXEL = ("max_rel", "max_abs")
 METRICS = {
-    item.name: item for item in (
-        Metric("max_rel", 0.004), Metric("max_abs", 0.004), Metric("rms", 0.001), Metric("psnr", 40.0, True, " dB"),
-        Metric("ssim", 0.99, True), Metric("flip", 0.01),
+    item.name: item
+    for item in (
+        Metric("max_rel", 0.004),
+        Metric("max_abs", 0.004),
+        Metric("rms", 0.001),
+        Metric("psnr", 40.0, True, " dB"),
+        Metric("ssim", 0.99, True),
+        Metric("flip", 0.01),
     )
 }
 

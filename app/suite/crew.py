@@ -52,8 +52,10 @@ def run_cases(
             if stop_early and done.outcome.status == "failed":
                 break
     ordered = [found[case.id] for case in cases if case.id in found]
-    remark = "" if software or not how.deterministic else (
-        f"no software rasterizer was found: {device} rendered, so only tolerances can be relied on"
+    remark = (
+        ""
+        if software or not how.deterministic
+        else (f"no software rasterizer was found: {device} rendered, so only tolerances can be relied on")
     )
     return Session(ordered, device, time.perf_counter() - started, how.deterministic and software, remark, VERSION)
 

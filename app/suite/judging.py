@@ -58,8 +58,12 @@ def in_full(case: Case, check: Check, made: Parts, wanted: Parts) -> Check:
 def _compared(case: Case, made: Stored, wanted: Stored, perceptual: bool) -> Compared:
     threshold = case.tolerance if case.metric in PER_PIXEL else CODE
     return compare(
-        made.array, wanted.array, threshold=threshold, relative=case.metric != "max_abs",
-        linear=made.linear and wanted.linear, perceptual=perceptual,
+        made.array,
+        wanted.array,
+        threshold=threshold,
+        relative=case.metric != "max_abs",
+        linear=made.linear and wanted.linear,
+        perceptual=perceptual,
     )
 
 

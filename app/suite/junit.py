@@ -37,7 +37,11 @@ def _case(suite: ET.Element, outcome: Outcome) -> None:
     case = outcome.case
     group = _text(case.suite.as_posix().removesuffix(".suite.toml").replace("/", "."))
     element = ET.SubElement(
-        suite, "testcase", classname=group, name=_text(case.name), file=_text(case.suite.as_posix()),
+        suite,
+        "testcase",
+        classname=group,
+        name=_text(case.name),
+        file=_text(case.suite.as_posix()),
         time=f"{outcome.seconds:.3f}",
     )
     if outcome.status == "failed":

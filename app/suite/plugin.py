@@ -19,7 +19,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     """The options of the plugin."""
     group = parser.getgroup("halation", "graphs and golden pictures")
     group.addoption(
-        "--halation-update", action="store_true", default=False,
+        "--halation-update",
+        action="store_true",
+        default=False,
         help="bless: write golden pictures that are missing or fail as they are rendered now",
     )
     group.addoption(

@@ -38,8 +38,12 @@ def page(session: Session) -> str:
     """The page as text. Pictures are inside, those of failures only."""
     template = resources.files(__package__ or "").joinpath("report.html").read_text("utf-8")
     data = {
-        "device": session.device, "deterministic": session.deterministic, "remark": session.remark,
-        "version": session.version, "seconds": round(session.seconds, 2), "cases": _cases(session),
+        "device": session.device,
+        "deterministic": session.deterministic,
+        "remark": session.remark,
+        "version": session.version,
+        "seconds": round(session.seconds, 2),
+        "cases": _cases(session),
     }
     # A script element ends at its end tag and nowhere else, wherever that stands.
     return template.replace(_MARK, json.dumps(data, separators=(",", ":")).replace("<", "\\u003c"))
@@ -61,9 +65,14 @@ def _case(outcome: Outcome) -> dict[str, Any]:
     case, worst = outcome.case, outcome.worst
     value = "" if worst is None or worst.value is None else number(worst.value)
     return {
-        "suite": case.suite.as_posix(), "name": case.name, "status": outcome.status, "said": outcome.sentence,
-        "seconds": round(outcome.seconds, 3), "graph": case.graph.as_posix(),
-        "metric": _metric(outcome), "value": value,
+        "suite": case.suite.as_posix(),
+        "name": case.name,
+        "status": outcome.status,
+        "said": outcome.sentence,
+        "seconds": round(outcome.seconds, 3),
+        "graph": case.graph.as_posix(),
+        "metric": _metric(outcome),
+        "value": value,
     }
 
 
@@ -81,8 +90,13 @@ def _metric(outcome: Outcome) -> str:
 def _check(outcome: Outcome, check: Check) -> dict[str, Any]:
     found = check.compared
     said: dict[str, Any] = {
-        "golden": check.golden.as_posix(), "frame": check.frame, "layer": check.layer, "said": check.sentence,
-        "goldenBy": check.golden_by, "madeBy": check.made_by, "elsewhere": bool(check.elsewhere),
+        "golden": check.golden.as_posix(),
+        "frame": check.frame,
+        "layer": check.layer,
+        "said": check.sentence,
+        "goldenBy": check.golden_by,
+        "madeBy": check.made_by,
+        "elsewhere": bool(check.elsewhere),
         "files": [path.as_posix() for path in check.files],
     }
     if found is not None and outcome.status == "failed":

@@ -94,8 +94,11 @@ class Session:
 def as_json(session: Session) -> dict[str, Any]:
     """For machines. Infinity and NaN, which JSON does not know, are null."""
     return {
-        "device": session.device, "deterministic": session.deterministic, "remark": session.remark,
-        "version": session.version, "seconds": round(session.seconds, 4),
+        "device": session.device,
+        "deterministic": session.deterministic,
+        "remark": session.remark,
+        "version": session.version,
+        "seconds": round(session.seconds, 4),
         **{name: session.count(name) for name in ("passed", "failed", "blessed", "skipped")},
         "cases": [_case(item) for item in session.outcomes],
     }
@@ -104,18 +107,31 @@ def as_json(session: Session) -> dict[str, Any]:
 def _case(outcome: Outcome) -> dict[str, Any]:
     case = outcome.case
     return {
-        "id": case.id, "suite": str(case.suite), "name": case.name, "graph": str(case.graph),
-        "status": outcome.status, "message": outcome.sentence, "seconds": round(outcome.seconds, 4),
-        "metric": case.metric, "tolerance": case.tolerance, "checks": [_check(check) for check in outcome.checks],
+        "id": case.id,
+        "suite": str(case.suite),
+        "name": case.name,
+        "graph": str(case.graph),
+        "status": outcome.status,
+        "message": outcome.sentence,
+        "seconds": round(outcome.seconds, 4),
+        "metric": case.metric,
+        "tolerance": case.tolerance,
+        "checks": [_check(check) for check in outcome.checks],
     }
 
 
 def _check(check: Check) -> dict[str, Any]:
     measures = asdict(check.compared) if check.compared else {}
     return {
-        "golden": str(check.golden), "frame": check.frame, "layer": check.layer, "value": _plain(check.value),
-        "message": check.sentence, "golden_by": check.golden_by, "made_by": check.made_by,
-        **{name: _plain(item) for name, item in measures.items()}, "files": [str(path) for path in check.files],
+        "golden": str(check.golden),
+        "frame": check.frame,
+        "layer": check.layer,
+        "value": _plain(check.value),
+        "message": check.sentence,
+        "golden_by": check.golden_by,
+        "made_by": check.made_by,
+        **{name: _plain(item) for name, item in measures.items()},
+        "files": [str(path) for path in check.files],
     }
 
 

@@ -133,9 +133,10 @@ def _render_only(case: Case, renderer: Renderer, how: How) -> Outcome:
 
 def _fault_of(case: Case, graph: Graph, wanted: Wanted, pictures: Mapping[str, Any]) -> str:
     letters = {1: ("Y",), 2: ("X", "Y"), 3: ("X", "Y", "Z"), 4: ("R", "G", "B", "A")}
-    return unusable(case, {
-        name: Stored(array, letters.get(array.shape[2], ("X",)), encoded=False) for name, array in pictures.items()
-    })
+    return unusable(
+        case,
+        {name: Stored(array, letters.get(array.shape[2], ("X",)), encoded=False) for name, array in pictures.items()},
+    )
 
 
 def _graph(case: Case) -> Graph:

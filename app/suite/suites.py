@@ -10,8 +10,23 @@ from .cases import ENDING, METRICS, PER_PIXEL, Case
 from .reading import Table, frames_of, goldens_of, inputs_of, parse, size_of
 
 _KEYS = (
-    "graph", "inputs", "set", "frame", "frames", "size", "scale", "node", "golden", "metric", "tolerance", "failing",
-    "precision", "view", "error", "allow", "skip",
+    "graph",
+    "inputs",
+    "set",
+    "frame",
+    "frames",
+    "size",
+    "scale",
+    "node",
+    "golden",
+    "metric",
+    "tolerance",
+    "failing",
+    "precision",
+    "view",
+    "error",
+    "allow",
+    "skip",
 )
 _ALLOWABLE = ("nonfinite", "black")
 
@@ -83,12 +98,24 @@ def _case(path: Path, name: str, graph: Path, own: Table, both: Table) -> Case:
     if error and own.items.get("golden"):
         raise both.fault("golden", "a case that must fail gives no picture: leave out golden or error")
     return Case(
-        path, name, graph, inputs_of(both, path.parent), both.table("set").items, frames_of(both), size_of(both),
-        both.number("scale", 1.0, 0.0, 1.0), both.text("node"),
+        path,
+        name,
+        graph,
+        inputs_of(both, path.parent),
+        both.table("set").items,
+        frames_of(both),
+        size_of(both),
+        both.number("scale", 1.0, 0.0, 1.0),
+        both.text("node"),
         () if error else goldens_of(both, path.parent, name, graph.stem),
-        metric, both.number("tolerance", METRICS[metric].tolerance, None, None), failing,
-        both.choice("precision", ("half", "float"), "half"), both.text("view"), error,
-        both.choices("allow", _ALLOWABLE), both.text("skip"),
+        metric,
+        both.number("tolerance", METRICS[metric].tolerance, None, None),
+        failing,
+        both.choice("precision", ("half", "float"), "half"),
+        both.text("view"),
+        error,
+        both.choices("allow", _ALLOWABLE),
+        both.text("skip"),
     )
 
 
@@ -99,7 +126,8 @@ def _check_goldens(path: Path, cases: Iterable[Case]) -> None:
         for golden in case.goldens:
             if owner.setdefault(golden.path, case.name) != case.name:
                 raise DocumentError(
-                    str(path), f"cases.{case.name}",
+                    str(path),
+                    f"cases.{case.name}",
                     f"golden {golden.path} is that of '{owner[golden.path]}' too: give each its own, with {{case}}",
                 )
 

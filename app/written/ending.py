@@ -18,8 +18,12 @@ def ended(text: str, entry: Function, prefix: str) -> str:
     """
     outer, inner = f"{prefix}{entry.name}", f"{prefix[:-1]}x_{entry.name}"
     text = re.sub(rf"\b{outer}\b", inner, text)
-    taken = ", ".join([*(f"{glsl} {name}" for glsl, name in entry.parameters),
-                       *(f"out {glsl} {name}" for glsl, name in entry.outputs)])
+    taken = ", ".join(
+        [
+            *(f"{glsl} {name}" for glsl, name in entry.parameters),
+            *(f"out {glsl} {name}" for glsl, name in entry.outputs),
+        ]
+    )
     given = ", ".join(name for _, name in (*entry.parameters, *entry.outputs))
     call, made, back = f"{inner}({given});", entry.outputs, ""
     if not made:

@@ -23,7 +23,8 @@ from .values import value_of
 
 _FORBIDDEN = re.compile(
     r"\b(main|uniform|layout|buffer|shared|discard|barrier|imageLoad|imageStore|texelFetch|texture\w*|gl_\w+)\b"
-    r"|^[ \t]*#[ \t]*(version|extension|pragma|line)\b", re.MULTILINE,
+    r"|^[ \t]*#[ \t]*(version|extension|pragma|line)\b",
+    re.MULTILINE,
 )
 _DEFINED = re.compile(r"\bstruct\s+(\w+)|^[ \t]*#[ \t]*define[ \t]+(\w+)|^[ \t]*const\s+\w+\s+(\w+)", re.MULTILINE)
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
@@ -57,8 +58,11 @@ def glsl_node(code: Code) -> type[Written]:
     parameters = tuple(_parameters(source, plain, entry))
     _check(entry, parameters)
     inputs = {one.name: _socket(one) for one in parameters if not one.out and not one.note.default}
-    values = {one.name: value_of(one.glsl, one.name, one.note, one.line)
-              for one in parameters if not one.out and one.note.default}
+    values = {
+        one.name: value_of(one.glsl, one.name, one.note, one.line)
+        for one in parameters
+        if not one.out and one.note.default
+    }
     outputs = {one.name: Output(_socket(one)) for one in parameters if one.out}
     if not outputs:
         outputs = {"out": Output(_picture(entry.result, Note(), entry.line, "the result"))}
@@ -67,8 +71,15 @@ def glsl_node(code: Code) -> type[Written]:
 
 
 def _class(
-    code: Code, source: str, text: Text, entry: Function, parameters: tuple[_Parameter, ...],
-    inputs: Mapping[str, Socket], values: Mapping[str, Value], outputs: Mapping[str, Output], looks: bool,
+    code: Code,
+    source: str,
+    text: Text,
+    entry: Function,
+    parameters: tuple[_Parameter, ...],
+    inputs: Mapping[str, Socket],
+    values: Mapping[str, Value],
+    outputs: Mapping[str, Output],
+    looks: bool,
 ) -> type[Written]:
     digest = blake2b(f"{code.language}\0{source}".encode(), digest_size=4).hexdigest()
     prefix = f"w{digest}_"
@@ -140,7 +151,7 @@ def _check(entry: Function, parameters: tuple[_Parameter, ...]) -> None:
     given = [one for one in parameters if one.out]
     if given and entry.result != "void":
         raise CodeFault(entry.line, f"'{entry.name}' returns a {entry.result} and has out parameters: keep one of both")
-    if given and parameters[-len(given):] != tuple(given):
+    if given and parameters[-len(given) :] != tuple(given):
         raise CodeFault(given[0].line, "out parameters come last")
     if not given and entry.result == "void":
         raise CodeFault(entry.line, f"'{entry.name}' makes nothing: return a vec4, or write an out parameter")
@@ -195,7 +206,10 @@ def _renamed(source: str, text: Text, prefix: str) -> str:
 
 
 def _entries(
-    function: str, parameters: tuple[_Parameter, ...], inputs: Mapping[str, Socket], values: Mapping[str, Value],
+    function: str,
+    parameters: tuple[_Parameter, ...],
+    inputs: Mapping[str, Socket],
+    values: Mapping[str, Value],
     outputs: Mapping[str, Output],
 ) -> str:
     """For each output a function that is drawn: it reads its own pixel of every picture and calls the user's."""

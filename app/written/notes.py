@@ -20,7 +20,7 @@ _LIMIT = re.compile(rf"(>=|<=)\s*({_NUMBER})")
 _OPTIONAL = re.compile(rf"optional(?:\s+({_NUMBER}))?")
 _TOKENS = re.compile(r'"[^"]*"|\([^)]*\)|[^,"(:]+|[,:"(]')
 HELP = (
-    "a default (= 0.5), a range (0..1), limits (>= 0, <= 10), choices (one of a | b), a \"Label\", a unit "
+    'a default (= 0.5), a range (0..1), limits (>= 0, <= 10), choices (one of a | b), a "Label", a unit '
     f"({', '.join(UNITS)}), {', '.join(WORDS)} or an edge ({', '.join(EDGES)})"
 )
 

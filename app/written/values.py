@@ -18,7 +18,11 @@ def value_of(glsl: str, name: str, note: Note, line: int) -> Value:
         raise CodeFault(line, f"'{name}' has the type {glsl}: values are {', '.join(_GLSL)}")
     unit = cast("Unit", note.unit) or None
     found: dict[str, Any] = {
-        "name": name, "doc": note.doc, "label": note.label, "unit": unit, "minimum": note.minimum,
+        "name": name,
+        "doc": note.doc,
+        "label": note.label,
+        "unit": unit,
+        "minimum": note.minimum,
         "maximum": note.maximum,
     }
     length = _GLSL[glsl]

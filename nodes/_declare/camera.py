@@ -102,7 +102,8 @@ def orbit_camera(
 ) -> Camera:
     """A camera so far from its target. Angles are radians; where both are 0 it is level and looks along y."""
     away = (
-        math.sin(azimuth) * math.cos(elevation) * distance, -math.cos(azimuth) * math.cos(elevation) * distance,
+        math.sin(azimuth) * math.cos(elevation) * distance,
+        -math.cos(azimuth) * math.cos(elevation) * distance,
         math.sin(elevation) * distance,
     )
     x, y, z = (place + part for place, part in zip(target, away, strict=True))

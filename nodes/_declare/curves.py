@@ -24,7 +24,8 @@ def ramp_knots(stops: tuple[float, ...]) -> tuple[float, ...]:
     ts = stops[0::5]
     widths = [*(right - left for left, right in pairwise(ts)), 0.0]
     knots = [
-        part for at, (t, width) in enumerate(zip(ts, widths, strict=True))
+        part
+        for at, (t, width) in enumerate(zip(ts, widths, strict=True))
         for part in (t, 1.0 / width if width > 0.0 else 0.0, 0.0, 0.0, *_stop(stops, at))
     ]
     return (*knots, *(_NEVER, 0.0, 0.0, 0.0, *_stop(stops, len(ts) - 1)) * (MAX_POINTS - len(ts)))
@@ -47,8 +48,10 @@ def curve_at(points: tuple[float, ...], x: float) -> float:
     t = (x - xs[at]) / width
     start, end, lift, fall = ys[at], ys[at + 1], width * slopes[at], width * slopes[at + 1]
     return (
-        (2 * t**3 - 3 * t**2 + 1) * start + (t**3 - 2 * t**2 + t) * lift
-        + (3 * t**2 - 2 * t**3) * end + (t**3 - t**2) * fall
+        (2 * t**3 - 3 * t**2 + 1) * start
+        + (t**3 - 2 * t**2 + t) * lift
+        + (3 * t**2 - 2 * t**3) * end
+        + (t**3 - t**2) * fall
     )
 
 

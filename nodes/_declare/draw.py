@@ -119,8 +119,15 @@ class Draw(Protocol):
         ...
 
     def __call__(
-        self, function: str, /, *inputs: Socket, size: Size | None = None, edge: Edge = "clamp",
-        result: Socket | None = None, overlap: Overlap | Mapping[str, Overlap] | None = None, **arguments: Argument,
+        self,
+        function: str,
+        /,
+        *inputs: Socket,
+        size: Size | None = None,
+        edge: Edge = "clamp",
+        result: Socket | None = None,
+        overlap: Overlap | Mapping[str, Overlap] | None = None,
+        **arguments: Argument,
     ) -> Drawn:
         """Call `function` for every pixel of `size`.
 
@@ -135,8 +142,15 @@ class Draw(Protocol):
         ...
 
     def several(
-        self, function: str, results: tuple[Socket, ...], /, *inputs: Socket, size: Size | None = None,
-        edge: Edge = "clamp", overlap: Overlap | Mapping[str, Overlap] | None = None, **arguments: Argument,
+        self,
+        function: str,
+        results: tuple[Socket, ...],
+        /,
+        *inputs: Socket,
+        size: Size | None = None,
+        edge: Edge = "clamp",
+        overlap: Overlap | Mapping[str, Overlap] | None = None,
+        **arguments: Argument,
     ) -> tuple[Drawn, ...]:
         """Draw with a `function` that has `out` parameters, last, for pictures of these types: all are made at once."""
         ...
@@ -146,8 +160,13 @@ class Draw(Protocol):
         ...
 
     def program(
-        self, text: ShaderText, pictures: Mapping[str, Drawn], uniforms: Mapping[str, Uniform], *,
-        size: Size | None = None, result: Socket | None = None,
+        self,
+        text: ShaderText,
+        pictures: Mapping[str, Drawn],
+        uniforms: Mapping[str, Uniform],
+        *,
+        size: Size | None = None,
+        result: Socket | None = None,
     ) -> Drawn:
         """Run a program that is no function of ours over every pixel of `size`; four channels come out.
 

@@ -44,8 +44,16 @@ class Light(Struct, frozen=True):
     def numbers(self) -> tuple[float, ...]:
         """As a value holds it."""
         return (
-            float(self.kind), *self.place, *self.direction, *self.color, self.intensity, self.reach, self.inner,
-            self.outer, self.size, float(self.on),
+            float(self.kind),
+            *self.place,
+            *self.direction,
+            *self.color,
+            self.intensity,
+            self.reach,
+            self.inner,
+            self.outer,
+            self.size,
+            float(self.on),
         )
 
 
@@ -62,6 +70,14 @@ def numbers_of(lights: tuple[Light, ...]) -> tuple[float, ...]:
 def _light(numbers: tuple[float, ...]) -> Light:
     kind, px, py, pz, dx, dy, dz, red, green, blue, intensity, reach, inner, outer, size, on = numbers
     return Light(
-        LightKind(int(kind)), (px, py, pz), (dx, dy, dz), (red, green, blue), intensity, reach, inner, outer, size,
+        LightKind(int(kind)),
+        (px, py, pz),
+        (dx, dy, dz),
+        (red, green, blue),
+        intensity,
+        reach,
+        inner,
+        outer,
+        size,
         on > 0.5,
     )

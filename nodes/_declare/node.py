@@ -118,9 +118,9 @@ class Reader(Source):
     A folder is the sequence in it.
     """
 
-    missing: Annotated[Missing, Doc(
-        "What a frame shows that has no file: an error, the last one before, the nearest one, or black."
-    )] = "error"
+    missing: Annotated[
+        Missing, Doc("What a frame shows that has no file: an error, the last one before, the nearest one, or black.")
+    ] = "error"
 
 
 class Temporal(Filter):

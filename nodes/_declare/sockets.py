@@ -14,7 +14,6 @@ Edge = Literal["clamp", "mirror", "reflect", "wrap", "black"]
 """What lies outside a picture: scipy's nearest, mirror, reflect and wrap; black is transparent."""
 
 
-
 class Kind(StrEnum):
     """What travels on a link."""
 

@@ -16,21 +16,43 @@ class Fxaa(Filter):
     """
 
     image = Image()
-    quality: Annotated[Literal["low", "medium", "high"], Doc(
-        "How far and how finely the ends of an edge are searched: the presets 12, 29 and 39."
-    )] = "medium"
+    quality: Annotated[
+        Literal["low", "medium", "high"],
+        Doc("How far and how finely the ends of an edge are searched: the presets 12, 29 and 39."),
+    ] = "medium"
     subpixel: Annotated[Fraction, Doc("How much single pixels and fine lines are softened.")] = 0.75
-    threshold: Annotated[float, Slider(
-        0.063, 0.333, unit="ratio", minimum=0.0, maximum=1.0,
-        doc="The least contrast of an edge, as a part of the brightest tone around.",
-    )] = 0.166
-    threshold_dark: Annotated[float, Slider(
-        0.0, 0.1, unit="ratio", minimum=0.0, maximum=1.0, doc="The least contrast in the dark, from black to white 1."
-    )] = 0.0833
+    threshold: Annotated[
+        float,
+        Slider(
+            0.063,
+            0.333,
+            unit="ratio",
+            minimum=0.0,
+            maximum=1.0,
+            doc="The least contrast of an edge, as a part of the brightest tone around.",
+        ),
+    ] = 0.166
+    threshold_dark: Annotated[
+        float,
+        Slider(
+            0.0,
+            0.1,
+            unit="ratio",
+            minimum=0.0,
+            maximum=1.0,
+            doc="The least contrast in the dark, from black to white 1.",
+        ),
+    ] = 0.0833
 
     def passes(self, draw: Draw) -> Drawn:
         tone = draw.point("fxaa_tone", self.image, result=Field())
         return draw(
-            "fxaa", self.image, tone=tone, overlap={"image": 2, "tone": _REACH},
-            quality=self.quality, subpixel=self.subpixel, threshold=self.threshold, threshold_dark=self.threshold_dark,
+            "fxaa",
+            self.image,
+            tone=tone,
+            overlap={"image": 2, "tone": _REACH},
+            quality=self.quality,
+            subpixel=self.subpixel,
+            threshold=self.threshold,
+            threshold_dark=self.threshold_dark,
         )

@@ -15,36 +15,65 @@ class Smaa(Filter):
     """
 
     image = Image()
-    quality: Annotated[Literal["low", "medium", "high", "ultra"], Doc(
-        "How far the ends of an edge are searched: 8, 16, 32 or 64 pixels; high and ultra know diagonals too."
-    )] = "high"
-    detection: Annotated[Literal["luminance", "color"], Doc(
-        "What has edges: the luminance, or any color channel, which also finds edges between equally bright colors."
-    )] = "luminance"
-    threshold: Annotated[float, Slider(
-        0.02, 0.3, unit="ratio", minimum=0.0, maximum=1.0, doc="The least step that is an edge; black to white is 1."
-    )] = 0.1
-    contrast: Annotated[float, Slider(
-        1.0, 8.0, unit="ratio", minimum=1.0, doc="An edge is overlooked beside one that is so many times as strong."
-    )] = 2.0
+    quality: Annotated[
+        Literal["low", "medium", "high", "ultra"],
+        Doc("How far the ends of an edge are searched: 8, 16, 32 or 64 pixels; high and ultra know diagonals too."),
+    ] = "high"
+    detection: Annotated[
+        Literal["luminance", "color"],
+        Doc(
+            "What has edges: the luminance, or any color channel, which also finds edges between equally bright colors."
+        ),
+    ] = "luminance"
+    threshold: Annotated[
+        float,
+        Slider(
+            0.02,
+            0.3,
+            unit="ratio",
+            minimum=0.0,
+            maximum=1.0,
+            doc="The least step that is an edge; black to white is 1.",
+        ),
+    ] = 0.1
+    contrast: Annotated[
+        float,
+        Slider(
+            1.0, 8.0, unit="ratio", minimum=1.0, doc="An edge is overlooked beside one that is so many times as strong."
+        ),
+    ] = 2.0
     corner_rounding: Annotated[Fraction, Doc("How much sharp corners are rounded: 0 keeps them.")] = 0.25
 
     def passes(self, draw: Draw) -> Drawn:
         if self.detection == "luminance":
             tone = draw.point("smaa_tone", self.image, result=Field())
             edges = draw(
-                "smaa_edges", tone=tone, overlap=2, result=Vector(width=2), threshold=self.threshold,
+                "smaa_edges",
+                tone=tone,
+                overlap=2,
+                result=Vector(width=2),
+                threshold=self.threshold,
                 contrast=self.contrast,
             )
         else:
             tones = draw.point("smaa_tones", self.image, result=Vector(width=3))
             edges = draw(
-                "smaa_color_edges", tones=tones, overlap=2, result=Vector(width=2), threshold=self.threshold,
+                "smaa_color_edges",
+                tones=tones,
+                overlap=2,
+                result=Vector(width=2),
+                threshold=self.threshold,
                 contrast=self.contrast,
             )
         reach, diagonal = _REACH[self.quality]
         weights = draw(
-            "smaa_weights", edges=edges, edge="black", overlap=max(reach, diagonal) + 3, result=Vector(width=4),
-            reach=reach, diagonal=diagonal, corner_rounding=self.corner_rounding,
+            "smaa_weights",
+            edges=edges,
+            edge="black",
+            overlap=max(reach, diagonal) + 3,
+            result=Vector(width=4),
+            reach=reach,
+            diagonal=diagonal,
+            corner_rounding=self.corner_rounding,
         )
         return draw("smaa", self.image, weights=weights, edge="black", overlap=1)

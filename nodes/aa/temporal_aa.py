@@ -14,28 +14,50 @@ class TemporalAa(Temporal):
     """
 
     image = Image(doc="One sample per pixel.")
-    velocity = Vector(width=4, doc=(
-        "Pixels of the full-size picture, x right, y down: x and y from the frame before. The rest is not used."
-    ))
+    velocity = Vector(
+        width=4,
+        doc=("Pixels of the full-size picture, x right, y down: x and y from the frame before. The rest is not used."),
+    )
     depth = Field(0.0, doc="Says what is nearest, and what was hidden in the frame before.")
-    share: Annotated[Fraction, Doc(
-        "How much this frame counts: little is smooth, much is quick to follow what changes. At least 0.25 where "
-        "things move by half a pixel."
-    )] = 0.1
-    gamma: Annotated[float, Slider(
-        0.5, 3.0, unit="ratio", minimum=0.0, maximum=100.0,
-        doc="How many standard deviations the past may be off: more is smoother, less leaves no ghosts.",
-    )] = 1.0
-    weigh_light: Annotated[bool, Doc(
-        "Let a sample of a lamp count less the brighter it is, as 1 / (1 + luminance): edges of lights are smooth too."
-    )] = True
-    kernel: Annotated[Literal["catmull-rom", "lanczos"], Doc(
-        "How the past is read between pixels: Lanczos (3 lobes) keeps it sharper while things move."
-    )] = "lanczos"
-    tolerance: Annotated[float, Slider(
-        0.01, 0.5, unit="ratio", minimum=0.0, maximum=1e6,
-        doc="With depth: what was nearer or farther by more than this part was something else.",
-    )] = 0.1
+    share: Annotated[
+        Fraction,
+        Doc(
+            "How much this frame counts: little is smooth, much is quick to follow what changes. At least 0.25 where "
+            "things move by half a pixel."
+        ),
+    ] = 0.1
+    gamma: Annotated[
+        float,
+        Slider(
+            0.5,
+            3.0,
+            unit="ratio",
+            minimum=0.0,
+            maximum=100.0,
+            doc="How many standard deviations the past may be off: more is smoother, less leaves no ghosts.",
+        ),
+    ] = 1.0
+    weigh_light: Annotated[
+        bool,
+        Doc(
+            "Let a sample of a lamp count less the brighter it is, as 1 / (1 + luminance): edges of lights are smooth too."
+        ),
+    ] = True
+    kernel: Annotated[
+        Literal["catmull-rom", "lanczos"],
+        Doc("How the past is read between pixels: Lanczos (3 lobes) keeps it sharper while things move."),
+    ] = "lanczos"
+    tolerance: Annotated[
+        float,
+        Slider(
+            0.01,
+            0.5,
+            unit="ratio",
+            minimum=0.0,
+            maximum=1e6,
+            doc="With depth: what was nearer or farther by more than this part was something else.",
+        ),
+    ] = 0.1
 
     def times(self, frame: int) -> Mapping[str, tuple[int, ...]]:
         return {"depth": (frame, frame - 1)}
@@ -47,9 +69,17 @@ class TemporalAa(Temporal):
         blended = sample
         if history != sample:
             blended = draw(
-                "temporal_aa_blend", self.velocity, sample=sample, history=history,
-                depth=draw.at(self.depth, draw.frame), depth_before=draw.at(self.depth, draw.frame - 1), result=vector,
-                share=self.share, gamma=self.gamma, tolerance=self.tolerance, deep=draw.linked(self.depth),
+                "temporal_aa_blend",
+                self.velocity,
+                sample=sample,
+                history=history,
+                depth=draw.at(self.depth, draw.frame),
+                depth_before=draw.at(self.depth, draw.frame - 1),
+                result=vector,
+                share=self.share,
+                gamma=self.gamma,
+                tolerance=self.tolerance,
+                deep=draw.linked(self.depth),
                 kernel=self.kernel,
             )
         draw.remember(blended)

@@ -13,12 +13,15 @@ class BilateralBlur(Filter):
 
     image = Image()
     guide = Image(0.0, doc="Where this changes, the picture is not blurred. Without a link, the picture itself.")
-    sigma: Annotated[float, Slider(
-        0.5, 12.0, unit="px", minimum=0.0, maximum=64.0, doc="How far it blurs. The cost grows with its square."
-    )] = 4.0
-    sigma_range: Annotated[float, Slider(
-        0.01, 1.0, unit="scene", minimum=1e-6, doc="How different a color may be and still be mixed in."
-    )] = 0.1
+    sigma: Annotated[
+        float,
+        Slider(
+            0.5, 12.0, unit="px", minimum=0.0, maximum=64.0, doc="How far it blurs. The cost grows with its square."
+        ),
+    ] = 4.0
+    sigma_range: Annotated[
+        float, Slider(0.01, 1.0, unit="scene", minimum=1e-6, doc="How different a color may be and still be mixed in.")
+    ] = 0.1
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
     def identity(self) -> str | None:
@@ -27,6 +30,12 @@ class BilateralBlur(Filter):
     def passes(self, draw: Draw) -> Drawn:
         radius = max(round(1.5 * self.sigma), 1)
         return draw(
-            "bilateral_blur", image=self.image, guide=self.guide if draw.linked(self.guide) else self.image,
-            edge=self.edge, overlap=radius, radius=radius, sigma=self.sigma, sigma_range=self.sigma_range,
+            "bilateral_blur",
+            image=self.image,
+            guide=self.guide if draw.linked(self.guide) else self.image,
+            edge=self.edge,
+            overlap=radius,
+            radius=radius,
+            sigma=self.sigma,
+            sigma_range=self.sigma_range,
         )

@@ -18,13 +18,19 @@ class BoxBlur(Filter):
     """
 
     image = Image()
-    kind: Annotated[Literal["box", "tent", "iterated"], Doc(
-        "Box weighs all pixels alike. Tent, two boxes of half the radius, falls off in straight lines. Iterated, three "
-        "boxes of a third, is nearly a Gaussian whose sigma is a third of the radius."
-    )] = "box"
-    radius: Annotated[float, Slider(
-        0.0, 200.0, unit="px", minimum=0.0, maximum=2000.0, doc="How far a pixel spreads at most, along each axis."
-    )] = 10.0
+    kind: Annotated[
+        Literal["box", "tent", "iterated"],
+        Doc(
+            "Box weighs all pixels alike. Tent, two boxes of half the radius, falls off in straight lines. Iterated, three "
+            "boxes of a third, is nearly a Gaussian whose sigma is a third of the radius."
+        ),
+    ] = "box"
+    radius: Annotated[
+        float,
+        Slider(
+            0.0, 200.0, unit="px", minimum=0.0, maximum=2000.0, doc="How far a pixel spreads at most, along each axis."
+        ),
+    ] = 10.0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
     def identity(self) -> str | None:
@@ -56,18 +62,36 @@ class BoxBlur(Filter):
         full = size[axis] - 2 * shift
         size[axis] = (full + 2 * lead) // stride + 2
         blocks = draw(
-            "box_blur_blocks", image=image, size=(size[0], size[1]), edge=self.edge, result=Vector(width=4),
-            overlap=_along(axis, abs(shift) + lead + 3 * stride), axis=axis, first=shift - lead, stride=stride,
+            "box_blur_blocks",
+            image=image,
+            size=(size[0], size[1]),
+            edge=self.edge,
+            result=Vector(width=4),
+            overlap=_along(axis, abs(shift) + lead + 3 * stride),
+            axis=axis,
+            first=shift - lead,
+            stride=stride,
         )
         weights = (1.0 / count,) * count + (0.0,) * (1 - count % 2)
         size[axis] = full
         return draw(
-            "box_blur", image=image, windows=draw.convolve(blocks, weights, "y" if axis else "x"),
-            size=(size[0], size[1]), edge=self.edge, result=Vector(width=4) if apron else None,
+            "box_blur",
+            image=image,
+            windows=draw.convolve(blocks, weights, "y" if axis else "x"),
+            size=(size[0], size[1]),
+            edge=self.edge,
+            result=Vector(width=4) if apron else None,
             overlap={
-                "image": _along(axis, abs(shift) + whole + 2 * stride + 3), "windows": _along(axis, lead // stride + 4)
+                "image": _along(axis, abs(shift) + whole + 2 * stride + 3),
+                "windows": _along(axis, lead // stride + 4),
             },
-            axis=axis, shift=shift, whole=whole, part=radius - whole, stride=stride, count=count, lead=lead,
+            axis=axis,
+            shift=shift,
+            whole=whole,
+            part=radius - whole,
+            stride=stride,
+            count=count,
+            lead=lead,
         )
 
 
@@ -81,6 +105,7 @@ def _blocks(width: int) -> tuple[int, int]:
 
     Longer sums than of 64 would round off too much.
     """
+
     def cost(stride: int) -> float:
         return width / stride**2 / 3 + stride + abs(width - round(width / stride) * stride)
 

@@ -11,16 +11,21 @@ class DirectionalBlur(Filter):
     """
 
     image = Image()
-    angle: Annotated[float, Slider(
-        -180.0, 180.0, unit="deg", doc="Where the line points: 0 is right, 90 is up."
-    )] = 0.0
-    length: Annotated[float, Slider(
-        0.0, 200.0, unit="px", minimum=0.0, maximum=2000.0, doc="From one end of the line to the other."
-    )] = 40.0
-    shift: Annotated[float, Slider(
-        -0.5, 0.5, unit="ratio", minimum=-16.0, maximum=16.0,
-        doc="0 spreads to both sides, 0.5 only where the line points, -0.5 only to the other side.",
-    )] = 0.0
+    angle: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="Where the line points: 0 is right, 90 is up.")] = 0.0
+    length: Annotated[
+        float, Slider(0.0, 200.0, unit="px", minimum=0.0, maximum=2000.0, doc="From one end of the line to the other.")
+    ] = 40.0
+    shift: Annotated[
+        float,
+        Slider(
+            -0.5,
+            0.5,
+            unit="ratio",
+            minimum=-16.0,
+            maximum=16.0,
+            doc="0 spreads to both sides, 0.5 only where the line points, -0.5 only to the other side.",
+        ),
+    ] = 0.0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
     def identity(self) -> str | None:
@@ -29,6 +34,11 @@ class DirectionalBlur(Filter):
     def passes(self, draw: Draw) -> Drawn:
         farthest = abs(self.length) * (0.5 + abs(self.shift))
         return draw(
-            "directional_blur", self.image, edge=self.edge, overlap=math.ceil(farthest) + 1, angle=self.angle,
-            spread=self.length, shift=self.shift,
+            "directional_blur",
+            self.image,
+            edge=self.edge,
+            overlap=math.ceil(farthest) + 1,
+            angle=self.angle,
+            spread=self.length,
+            shift=self.shift,
         )

@@ -13,14 +13,25 @@ class GaussianBlur(Filter):
     sigma: Annotated[
         float,
         Slider(
-            0.0, 100.0, unit="px", minimum=0.0, maximum=2000.0,
+            0.0,
+            100.0,
+            unit="px",
+            minimum=0.0,
+            maximum=2000.0,
             doc="Standard deviation; the visible reach is about thrice that.",
         ),
     ] = 5.0
-    scale: Annotated[tuple[float, float], Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0,
-        doc="Factor on sigma across and down: (1, 0) blurs across alone, (1, 0.25) looks anamorphic.",
-    )] = (1.0, 1.0)
+    scale: Annotated[
+        tuple[float, float],
+        Slider(
+            0.0,
+            1.0,
+            unit="ratio",
+            minimum=0.0,
+            maximum=1.0,
+            doc="Factor on sigma across and down: (1, 0) blurs across alone, (1, 0.25) looks anamorphic.",
+        ),
+    ] = (1.0, 1.0)
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
     def identity(self) -> str | None:

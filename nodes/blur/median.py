@@ -16,6 +16,4 @@ class Median(Filter):
 
     def passes(self, draw: Draw) -> Drawn:
         small = self.window == "3x3"
-        return draw(
-            "median_3x3" if small else "median_5x5", self.image, edge=self.edge, overlap=1 if small else 2
-        )
+        return draw("median_3x3" if small else "median_5x5", self.image, edge=self.edge, overlap=1 if small else 2)

@@ -13,13 +13,20 @@ class RadialBlur(Filter):
 
     image = Image()
     kind: Annotated[Literal["zoom", "spin"], Doc("Zoom blurs away from the center, spin around it.")] = "zoom"
-    zoom: Annotated[float, Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, maximum=2.0,
-        doc="For zoom: how far a pixel spreads, as a part of its distance from the center.",
-    )] = 0.15
-    angle: Annotated[float, Slider(
-        0.0, 90.0, unit="deg", minimum=0.0, maximum=360.0, doc="For spin: how far a pixel turns in all."
-    )] = 10.0
+    zoom: Annotated[
+        float,
+        Slider(
+            0.0,
+            1.0,
+            unit="ratio",
+            minimum=0.0,
+            maximum=2.0,
+            doc="For zoom: how far a pixel spreads, as a part of its distance from the center.",
+        ),
+    ] = 0.15
+    angle: Annotated[
+        float, Slider(0.0, 90.0, unit="deg", minimum=0.0, maximum=360.0, doc="For spin: how far a pixel turns in all.")
+    ] = 10.0
     center: Annotated[Position, Doc("The point that stays sharp.")] = (0.5, 0.5)
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
@@ -34,6 +41,12 @@ class RadialBlur(Filter):
         else:
             reach = [min(0.5 * self.angle, 2.0) * math.hypot(*far)] * 2
         return draw(
-            "radial_blur", self.image, edge=self.edge, overlap=(math.ceil(reach[0]) + 2, math.ceil(reach[1]) + 2),
-            kind=self.kind, zoom=self.zoom, angle=self.angle, center=self.center,
+            "radial_blur",
+            self.image,
+            edge=self.edge,
+            overlap=(math.ceil(reach[0]) + 2, math.ceil(reach[1]) + 2),
+            kind=self.kind,
+            zoom=self.zoom,
+            angle=self.angle,
+            center=self.center,
         )

@@ -11,21 +11,32 @@ class Sharpen(Filter):
     """
 
     image = Image()
-    amount: Annotated[float, Slider(
-        0.0, 3.0, unit="ratio", minimum=-1.0, maximum=100.0, doc="How much detail is added; -1 takes it away."
-    )] = 0.8
-    sigma: Annotated[float, Slider(
-        0.3, 20.0, unit="px", minimum=0.0, maximum=2000.0, doc="Size of the detail. Large values raise local contrast."
-    )] = 1.5
-    threshold: Annotated[float, Slider(
-        0.0, 0.5, unit="scene", minimum=0.0, doc="Detail fainter than this is left alone."
-    )] = 0.0
-    limit: Annotated[float, Slider(
-        0.0, 2.0, unit="ratio", minimum=0.0, doc="The largest detail, as a part of the pixel's own brightness."
-    )] = 0.3
-    channels: Annotated[Literal["luminance", "separate"], Doc(
-        "Luminance adds the same gray detail to all channels, which leaves no colored fringes."
-    )] = "luminance"
+    amount: Annotated[
+        float,
+        Slider(0.0, 3.0, unit="ratio", minimum=-1.0, maximum=100.0, doc="How much detail is added; -1 takes it away."),
+    ] = 0.8
+    sigma: Annotated[
+        float,
+        Slider(
+            0.3,
+            20.0,
+            unit="px",
+            minimum=0.0,
+            maximum=2000.0,
+            doc="Size of the detail. Large values raise local contrast.",
+        ),
+    ] = 1.5
+    threshold: Annotated[
+        float, Slider(0.0, 0.5, unit="scene", minimum=0.0, doc="Detail fainter than this is left alone.")
+    ] = 0.0
+    limit: Annotated[
+        float,
+        Slider(0.0, 2.0, unit="ratio", minimum=0.0, doc="The largest detail, as a part of the pixel's own brightness."),
+    ] = 0.3
+    channels: Annotated[
+        Literal["luminance", "separate"],
+        Doc("Luminance adds the same gray detail to all channels, which leaves no colored fringes."),
+    ] = "luminance"
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
     def identity(self) -> str | None:
@@ -33,6 +44,11 @@ class Sharpen(Filter):
 
     def passes(self, draw: Draw) -> Drawn:
         return draw.point(
-            "sharpen", self.image, soft=draw.blur(self.image, self.sigma, self.edge),
-            amount=self.amount, threshold=self.threshold, limit=self.limit, channels=self.channels,
+            "sharpen",
+            self.image,
+            soft=draw.blur(self.image, self.sigma, self.edge),
+            amount=self.amount,
+            threshold=self.threshold,
+            limit=self.limit,
+            channels=self.channels,
         )

@@ -23,9 +23,10 @@ class VariableBlur(Filter):
 
     image = Image()
     field = Field(1.0, doc="How much of sigma, 0..1.")
-    sigma: Annotated[float, Slider(
-        0.0, 100.0, unit="px", minimum=0.0, maximum=2000.0, doc="Standard deviation where the field is 1."
-    )] = 12.0
+    sigma: Annotated[
+        float,
+        Slider(0.0, 100.0, unit="px", minimum=0.0, maximum=2000.0, doc="Standard deviation where the field is 1."),
+    ] = 12.0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
     def identity(self) -> str | None:

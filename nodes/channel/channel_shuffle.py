@@ -4,8 +4,18 @@ from .._declare import Doc, Image, Pointwise
 
 Pick = Annotated[
     Literal[
-        "red", "green", "blue", "alpha", "luminance", "zero", "one",
-        "other red", "other green", "other blue", "other alpha", "other luminance",
+        "red",
+        "green",
+        "blue",
+        "alpha",
+        "luminance",
+        "zero",
+        "one",
+        "other red",
+        "other green",
+        "other blue",
+        "other alpha",
+        "other luminance",
     ],
     Doc("What this channel is filled with: a channel of the image or of the other image, or a constant."),
 ]

@@ -11,16 +11,20 @@ class Cdl(Pointwise):
     """
 
     image = Image()
-    style: Annotated[Literal["no clamp", "asc"], Doc(
-        "ASC limits light to 0..1 before the power and at the end, as the standard says. No clamp keeps all light; "
-        "what is below 0 skips the power, as in OpenColorIO."
-    )] = "no clamp"
+    style: Annotated[
+        Literal["no clamp", "asc"],
+        Doc(
+            "ASC limits light to 0..1 before the power and at the end, as the standard says. No clamp keeps all light; "
+            "what is below 0 skips the power, as in OpenColorIO."
+        ),
+    ] = "no clamp"
     slope: Annotated[RGBA, Doc("Factor on the light, channel by channel.")] = (1.0, 1.0, 1.0, 1.0)
     offset: Annotated[RGBA, Doc("Light added after the slope.")] = (0.0, 0.0, 0.0, 0.0)
     power: Annotated[RGBA, Doc("Above 1 darkens the midtones, below 1 brightens them.")] = (1.0, 1.0, 1.0, 1.0)
-    saturation: Annotated[float, Slider(
-        0.0, 2.0, unit="ratio", minimum=0.0, doc="0 is black and white, 1 unchanged, 2 twice as far from gray."
-    )] = 1.0
+    saturation: Annotated[
+        float,
+        Slider(0.0, 2.0, unit="ratio", minimum=0.0, doc="0 is black and white, 1 unchanged, 2 twice as far from gray."),
+    ] = 1.0
 
     def identity(self) -> str | None:
         neutral = all(

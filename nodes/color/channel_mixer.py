@@ -17,9 +17,10 @@ class ChannelMixer(Pointwise):
     green: Annotated[_Mix, Slider(-2.0, 2.0, unit="ratio", doc="How much R, G and B go into green.")] = (0.0, 1.0, 0.0)
     blue: Annotated[_Mix, Slider(-2.0, 2.0, unit="ratio", doc="How much R, G and B go into blue.")] = (0.0, 0.0, 1.0)
     monochrome: Annotated[bool, Doc("Black and white: all three channels become the gray mix.")] = False
-    gray: Annotated[_Mix, Slider(
-        -2.0, 2.0, unit="ratio", doc="How much R, G and B go into gray; by default their luminance (Rec.709)."
-    )] = (0.2126, 0.7152, 0.0722)
+    gray: Annotated[
+        _Mix,
+        Slider(-2.0, 2.0, unit="ratio", doc="How much R, G and B go into gray; by default their luminance (Rec.709)."),
+    ] = (0.2126, 0.7152, 0.0722)
     constant: Annotated[_Mix, Slider(-1.0, 1.0, unit="scene", doc="Light added to R, G and B.")] = (0.0, 0.0, 0.0)
     normalized: Annotated[bool, Doc("Divide each mix by its sum, where that is not 0, so that grays keep.")] = False
 

@@ -14,24 +14,41 @@ class ChromaKey(Pointwise):
 
     image = Image()
     screen: Annotated[RGBA, Doc("The color of the empty screen, as it is lit.")] = (0.06, 0.5, 0.1, 1.0)
-    method: Annotated[Literal["difference", "distance"], Doc(
-        "Difference keeps hair, smoke and shadows; distance is for screens of a color that is no primary."
-    )] = "difference"
-    limit: Annotated[Literal["maximum", "average"], Doc(
-        "What the screen's channel may not exceed: the larger of the other two, or their average, which takes more off."
-    )] = "maximum"
-    black: Annotated[float, Slider(
-        0.0, 1.0, unit="ratio", minimum=-1.0, maximum=1.0, doc="Matte that becomes 0: cleans the screen up."
-    )] = 0.0
-    white: Annotated[float, Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, maximum=2.0, doc="Matte that becomes 1: closes holes in the subject."
-    )] = 1.0
-    tolerance: Annotated[float, Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, doc="Distance: how far from the screen's color a pixel is solid."
-    )] = 0.5
-    spill: Annotated[Fraction, Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="How much of the screen's light is taken off the subject."
-    )] = 1.0
+    method: Annotated[
+        Literal["difference", "distance"],
+        Doc("Difference keeps hair, smoke and shadows; distance is for screens of a color that is no primary."),
+    ] = "difference"
+    limit: Annotated[
+        Literal["maximum", "average"],
+        Doc(
+            "What the screen's channel may not exceed: the larger of the other two, or their average, which takes more off."
+        ),
+    ] = "maximum"
+    black: Annotated[
+        float,
+        Slider(0.0, 1.0, unit="ratio", minimum=-1.0, maximum=1.0, doc="Matte that becomes 0: cleans the screen up."),
+    ] = 0.0
+    white: Annotated[
+        float,
+        Slider(
+            0.0, 1.0, unit="ratio", minimum=0.0, maximum=2.0, doc="Matte that becomes 1: closes holes in the subject."
+        ),
+    ] = 1.0
+    tolerance: Annotated[
+        float,
+        Slider(0.0, 1.0, unit="ratio", minimum=0.0, doc="Distance: how far from the screen's color a pixel is solid."),
+    ] = 0.5
+    spill: Annotated[
+        Fraction,
+        Slider(
+            0.0,
+            1.0,
+            unit="ratio",
+            minimum=0.0,
+            maximum=1.0,
+            doc="How much of the screen's light is taken off the subject.",
+        ),
+    ] = 1.0
 
     out = Output(Image(doc="The subject, premultiplied."))
     matte = Output(Field(doc="How much of each pixel the subject covers, 0..1."))

@@ -6,24 +6,55 @@ from .._declare import Doc, Draw, Drawn, Filter, Image, Kernel3x3, Slider
 
 _IDENTITY: Kernel3x3 = (1, 0, 0, 0, 1, 0, 0, 0, 1)
 
-_MATRICES: Mapping[str, Kernel3x3] = MappingProxyType({
-    "sepia": (0.393, 0.769, 0.189, 0.349, 0.686, 0.168, 0.272, 0.534, 0.131),
-    "rec709 to rec2020": (
-        0.6274038959, 0.3292830384, 0.0433130657, 0.0690972894, 0.9195403951, 0.0113623156, 0.0163914389, 0.0880133079,
-        0.8955952532,
-    ),
-    "rec709 to p3": (
-        0.8224619687, 0.1775380313, 0.0, 0.0331941989, 0.9668058011, 0.0, 0.0170826307, 0.0723974407, 0.9105199286,
-    ),
-    "rec709 to acescg": (
-        0.6130974024, 0.3395231462, 0.0473794514, 0.0701937225, 0.9163538791, 0.0134523985, 0.0206155929, 0.1095697729,
-        0.8698146342,
-    ),
-    "rec709 to xyz": (
-        0.4123907993, 0.3575843394, 0.1804807884, 0.2126390059, 0.7151686788, 0.0721923154, 0.0193308187, 0.1191947798,
-        0.9505321522,
-    ),
-})
+_MATRICES: Mapping[str, Kernel3x3] = MappingProxyType(
+    {
+        "sepia": (0.393, 0.769, 0.189, 0.349, 0.686, 0.168, 0.272, 0.534, 0.131),
+        "rec709 to rec2020": (
+            0.6274038959,
+            0.3292830384,
+            0.0433130657,
+            0.0690972894,
+            0.9195403951,
+            0.0113623156,
+            0.0163914389,
+            0.0880133079,
+            0.8955952532,
+        ),
+        "rec709 to p3": (
+            0.8224619687,
+            0.1775380313,
+            0.0,
+            0.0331941989,
+            0.9668058011,
+            0.0,
+            0.0170826307,
+            0.0723974407,
+            0.9105199286,
+        ),
+        "rec709 to acescg": (
+            0.6130974024,
+            0.3395231462,
+            0.0473794514,
+            0.0701937225,
+            0.9163538791,
+            0.0134523985,
+            0.0206155929,
+            0.1095697729,
+            0.8698146342,
+        ),
+        "rec709 to xyz": (
+            0.4123907993,
+            0.3575843394,
+            0.1804807884,
+            0.2126390059,
+            0.7151686788,
+            0.0721923154,
+            0.0193308187,
+            0.1191947798,
+            0.9505321522,
+        ),
+    }
+)
 
 
 class ColorMatrix(Filter):
@@ -37,17 +68,24 @@ class ColorMatrix(Filter):
     image = Image()
     preset: Annotated[
         Literal[
-            "custom", "sepia", "rec709 to rec2020", "rec709 to p3", "rec709 to acescg", "rec709 to xyz",
+            "custom",
+            "sepia",
+            "rec709 to rec2020",
+            "rec709 to p3",
+            "rec709 to acescg",
+            "rec709 to xyz",
         ],
         Doc("A well-known matrix; `custom` uses the nine numbers below."),
     ] = "sepia"
     matrix: Annotated[Kernel3x3, Doc("Nine numbers row by row, for the preset `custom`.")] = _IDENTITY
-    direction: Annotated[Literal["forward", "inverse"], Doc(
-        "Inverse takes back what forward did. A matrix that has no inverse is used as it is."
-    )] = "forward"
-    offset: Annotated[tuple[float, float, float], Slider(
-        -1.0, 1.0, unit="scene", doc="Light added to red, green and blue after the matrix."
-    )] = (0.0, 0.0, 0.0)
+    direction: Annotated[
+        Literal["forward", "inverse"],
+        Doc("Inverse takes back what forward did. A matrix that has no inverse is used as it is."),
+    ] = "forward"
+    offset: Annotated[
+        tuple[float, float, float],
+        Slider(-1.0, 1.0, unit="scene", doc="Light added to red, green and blue after the matrix."),
+    ] = (0.0, 0.0, 0.0)
 
     def resolved(self) -> Kernel3x3:
         """The matrix that is applied: preset and direction resolved."""
@@ -69,7 +107,13 @@ def _inverse(matrix: Kernel3x3) -> Kernel3x3:
     if abs(whole) < 1e-12:
         return matrix
     return (
-        first / whole, (c * h - b * i) / whole, (b * f - c * e) / whole,
-        second / whole, (a * i - c * g) / whole, (c * d - a * f) / whole,
-        third / whole, (b * g - a * h) / whole, (a * e - b * d) / whole,
+        first / whole,
+        (c * h - b * i) / whole,
+        (b * f - c * e) / whole,
+        second / whole,
+        (a * i - c * g) / whole,
+        (c * d - a * f) / whole,
+        third / whole,
+        (b * g - a * h) / whole,
+        (a * e - b * d) / whole,
     )

@@ -14,13 +14,16 @@ class Curves(Pointwise):
     """
 
     image = Image()
-    space: Annotated[Literal["display", "log", "linear"], Doc(
-        "What runs along a curve from 0 to 1: sRGB codes as in paint programs, stops of light (ACEScct, 0.41 is middle "
-        "gray, 1 is 222 times white), or scene light."
-    )] = "display"
-    keep_color: Annotated[bool, Doc(
-        "The curve for all channels changes brightness alone; hue and saturation stay."
-    )] = False
+    space: Annotated[
+        Literal["display", "log", "linear"],
+        Doc(
+            "What runs along a curve from 0 to 1: sRGB codes as in paint programs, stops of light (ACEScct, 0.41 is middle "
+            "gray, 1 is 222 times white), or scene light."
+        ),
+    ] = "display"
+    keep_color: Annotated[
+        bool, Doc("The curve for all channels changes brightness alone; hue and saturation stay.")
+    ] = False
     master: Annotated[Points, Doc("For all channels, before the others.")] = _STRAIGHT
     red: Points = _STRAIGHT
     green: Points = _STRAIGHT

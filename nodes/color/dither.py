@@ -13,15 +13,20 @@ class Dither(Pointwise):
     """
 
     image = Image()
-    pattern: Annotated[Literal["blue noise", "bayer", "white"], Doc(
-        "Blue noise is the least visible, Bayer a regular weave, white noise the grain of bad film."
-    )] = "blue noise"
-    levels: Annotated[float, Slider(
-        2.0, 256.0, unit="count", minimum=2.0, maximum=65536.0, doc="How many levels there are from black to white."
-    )] = 256.0
-    space: Annotated[Literal["display", "linear"], Doc(
-        "What is divided evenly: sRGB codes, as files of 8 bits store them, or scene light."
-    )] = "display"
+    pattern: Annotated[
+        Literal["blue noise", "bayer", "white"],
+        Doc("Blue noise is the least visible, Bayer a regular weave, white noise the grain of bad film."),
+    ] = "blue noise"
+    levels: Annotated[
+        float,
+        Slider(
+            2.0, 256.0, unit="count", minimum=2.0, maximum=65536.0, doc="How many levels there are from black to white."
+        ),
+    ] = 256.0
+    space: Annotated[
+        Literal["display", "linear"],
+        Doc("What is divided evenly: sRGB codes, as files of 8 bits store them, or scene light."),
+    ] = "display"
     size: Annotated[float, Slider(1.0, 16.0, unit="px", minimum=0.01, doc="Side of a dot, at least one pixel.")] = 1.0
     colored: Annotated[bool, Doc("Another pattern for each of red, green and blue.")] = False
     animate: Annotated[bool, Doc("Another pattern for each frame.")] = False

@@ -16,9 +16,9 @@ class Grade(Pointwise):
     gamma: Annotated[RGBA, Doc("Above 1 brightens the midtones, while black and white stay.")] = (1.0, 1.0, 1.0, 1.0)
     gain: Annotated[RGBA, Doc("What white becomes, while black stays.")] = (1.0, 1.0, 1.0, 1.0)
     offset: Annotated[RGBA, Doc("Light added everywhere.")] = (0.0, 0.0, 0.0, 0.0)
-    amount: Annotated[Fraction, Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="Mix with the input; link a mask here."
-    )] = 1.0
+    amount: Annotated[
+        Fraction, Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="Mix with the input; link a mask here.")
+    ] = 1.0
 
     def identity(self) -> str | None:
         neutral = all(

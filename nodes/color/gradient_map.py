@@ -12,19 +12,52 @@ class GradientMap(Filter):
     """
 
     image = Image()
-    palette: Annotated[Literal[
-        "inferno", "viridis", "magma", "plasma", "turbo", "ironbow", "white hot", "black hot", "ramp",
-    ], Doc("A known palette, or the ramp below. The first four also read well in gray and to the color-blind.")
+    palette: Annotated[
+        Literal[
+            "inferno",
+            "viridis",
+            "magma",
+            "plasma",
+            "turbo",
+            "ironbow",
+            "white hot",
+            "black hot",
+            "ramp",
+        ],
+        Doc("A known palette, or the ramp below. The first four also read well in gray and to the color-blind."),
     ] = "inferno"
     ramp: Annotated[Stops, Doc("Your own colors, dark to bright.")] = (
-        0.0, 0.004, 0.01, 0.05, 1.0, 0.45, 0.35, 0.02, 0.12, 1.0, 0.75, 1.0, 0.25, 0.02, 1.0, 1.0, 1.0, 0.95, 0.6, 1.0,
+        0.0,
+        0.004,
+        0.01,
+        0.05,
+        1.0,
+        0.45,
+        0.35,
+        0.02,
+        0.12,
+        1.0,
+        0.75,
+        1.0,
+        0.25,
+        0.02,
+        1.0,
+        1.0,
+        1.0,
+        0.95,
+        0.6,
+        1.0,
     )
-    scale: Annotated[Literal["stops", "display", "linear"], Doc(
-        "What is even along the ramp: stops of light, sRGB codes as the eye sees, or scene light."
-    )] = "stops"
-    low: Annotated[float, Slider(
-        0.0, 1.0, unit="scene", minimum=0.0, doc="The luminance where the ramp begins; by stops, at least 0.00001."
-    )] = 0.01
+    scale: Annotated[
+        Literal["stops", "display", "linear"],
+        Doc("What is even along the ramp: stops of light, sRGB codes as the eye sees, or scene light."),
+    ] = "stops"
+    low: Annotated[
+        float,
+        Slider(
+            0.0, 1.0, unit="scene", minimum=0.0, doc="The luminance where the ramp begins; by stops, at least 0.00001."
+        ),
+    ] = 0.01
     high: Annotated[float, Slider(0.1, 64.0, unit="scene", minimum=0.0, doc="The luminance where it ends.")] = 16.0
     reverse: Annotated[bool, Doc("Run the ramp the other way round.")] = False
     smooth: Annotated[bool, Doc("Ease in and out of every stop.")] = False
@@ -36,6 +69,13 @@ class GradientMap(Filter):
     def passes(self, draw: Draw) -> Drawn:
         ramp = self.ramp if self.palette == "ramp" else PALETTES[self.palette]
         return draw.point(
-            "gradient_map", self.image, ramp=ramp_knots(ramp), scale=self.scale, low=self.low, high=self.high,
-            reverse=self.reverse, smoothed=self.smooth, amount=self.amount,
+            "gradient_map",
+            self.image,
+            ramp=ramp_knots(ramp),
+            scale=self.scale,
+            low=self.low,
+            high=self.high,
+            reverse=self.reverse,
+            smoothed=self.smooth,
+            amount=self.amount,
         )

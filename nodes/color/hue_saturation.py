@@ -12,13 +12,14 @@ class HueSaturation(Pointwise):
     """
 
     image = Image()
-    mode: Annotated[
-        Literal["perceptual", "luminance", "hsv"], Doc("What stays the same when hues turn.")
-    ] = "perceptual"
+    mode: Annotated[Literal["perceptual", "luminance", "hsv"], Doc("What stays the same when hues turn.")] = (
+        "perceptual"
+    )
     hue: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="Above 0 red turns to yellow and green.")] = 0.0
-    saturation: Annotated[float, Slider(
-        0.0, 2.0, unit="ratio", minimum=0.0, doc="0 is black and white, 1 unchanged, 2 twice as far from gray."
-    )] = 1.0
+    saturation: Annotated[
+        float,
+        Slider(0.0, 2.0, unit="ratio", minimum=0.0, doc="0 is black and white, 1 unchanged, 2 twice as far from gray."),
+    ] = 1.0
     value: Annotated[float, Slider(0.0, 4.0, unit="ratio", minimum=0.0, doc="Factor on the light.")] = 1.0
 
     def identity(self) -> str | None:

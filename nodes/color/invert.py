@@ -13,9 +13,9 @@ class Invert(Pointwise):
 
     image = Image()
     space: Annotated[Literal["display", "linear", "stops"], Doc("In what the picture is mirrored.")] = "display"
-    amount: Annotated[Fraction, Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="Mix with the input; link a mask here."
-    )] = 1.0
+    amount: Annotated[
+        Fraction, Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="Mix with the input; link a mask here.")
+    ] = 1.0
 
     def identity(self) -> str | None:
         return "image" if self.amount == 0.0 else None

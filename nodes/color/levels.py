@@ -11,14 +11,22 @@ class Levels(Pointwise):
     """
 
     image = Image()
-    space: Annotated[Literal["linear", "display"], Doc(
-        "What the points count: scene light, or sRGB codes as in paint programs."
-    )] = "linear"
+    space: Annotated[
+        Literal["linear", "display"], Doc("What the points count: scene light, or sRGB codes as in paint programs.")
+    ] = "linear"
     black: Annotated[float, Slider(0.0, 1.0, unit="scene", doc="What becomes black.")] = 0.0
     white: Annotated[float, Slider(0.0, 4.0, unit="scene", doc="What becomes white.")] = 1.0
-    gamma: Annotated[float, Slider(
-        0.2, 5.0, unit="ratio", minimum=0.01, maximum=100.0, doc="Above 1 brightens the midtones, below 1 darkens them."
-    )] = 1.0
+    gamma: Annotated[
+        float,
+        Slider(
+            0.2,
+            5.0,
+            unit="ratio",
+            minimum=0.01,
+            maximum=100.0,
+            doc="Above 1 brightens the midtones, below 1 darkens them.",
+        ),
+    ] = 1.0
     low: Annotated[float, Slider(0.0, 1.0, unit="scene", doc="What black comes out as.")] = 0.0
     high: Annotated[float, Slider(0.0, 4.0, unit="scene", doc="What white comes out as.")] = 1.0
     clip: Annotated[bool, Doc("Keep what lies beyond the two points at them.")] = False

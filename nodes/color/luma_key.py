@@ -11,17 +11,20 @@ class LumaKey(Pointwise):
     """
 
     image = Image()
-    measure: Annotated[Literal["luminance", "maximum", "minimum", "saturation"], Doc(
-        "Luminance is Rec.709. Maximum and minimum are of the three channels; saturation is 1 - minimum / maximum."
-    )] = "luminance"
+    measure: Annotated[
+        Literal["luminance", "maximum", "minimum", "saturation"],
+        Doc(
+            "Luminance is Rec.709. Maximum and minimum are of the three channels; saturation is 1 - minimum / maximum."
+        ),
+    ] = "luminance"
     low: Annotated[float, Slider(0.0, 4.0, unit="scene", doc="What is darker is cut away.")] = 0.5
     high: Annotated[float, Slider(0.0, 65504.0, unit="scene", doc="What is brighter is cut away.")] = 65504.0
-    low_softness: Annotated[float, Slider(
-        0.0, 2.0, unit="scene", minimum=0.0, doc="Below low, the matte fades over this much light."
-    )] = 0.25
-    high_softness: Annotated[float, Slider(
-        0.0, 2.0, unit="scene", minimum=0.0, doc="Above high, the matte fades over this much light."
-    )] = 0.0
+    low_softness: Annotated[
+        float, Slider(0.0, 2.0, unit="scene", minimum=0.0, doc="Below low, the matte fades over this much light.")
+    ] = 0.25
+    high_softness: Annotated[
+        float, Slider(0.0, 2.0, unit="scene", minimum=0.0, doc="Above high, the matte fades over this much light.")
+    ] = 0.0
     invert: Annotated[bool, Doc("Cut away what would stay.")] = False
 
     out = Output(Image(doc="What stays."))

@@ -7,8 +7,11 @@ class Luminance(Pointwise):
     """One channel from color: how bright every pixel is, as it lies over black."""
 
     image = Image()
-    measure: Annotated[Literal["luminance", "average", "maximum", "minimum"], Doc(
-        "Luminance is what the eye sees: 0.2126 R + 0.7152 G + 0.0722 B (Rec.709). The others treat channels alike."
-    )] = "luminance"
+    measure: Annotated[
+        Literal["luminance", "average", "maximum", "minimum"],
+        Doc(
+            "Luminance is what the eye sees: 0.2126 R + 0.7152 G + 0.0722 B (Rec.709). The others treat channels alike."
+        ),
+    ] = "luminance"
 
     out = Output(Field(doc="In the units of the image."))

@@ -11,18 +11,24 @@ class Posterize(Pointwise):
     """
 
     image = Image()
-    levels: Annotated[float, Slider(
-        2.0, 32.0, unit="count", minimum=2.0, maximum=65536.0, doc="How many levels there are from black to white."
-    )] = 5.0
-    space: Annotated[Literal["display", "linear"], Doc(
-        "What is divided evenly: sRGB codes, as the eye sees, or scene light."
-    )] = "display"
-    channels: Annotated[Literal["luminance", "separate"], Doc(
-        "Luminance rounds how bright a pixel is and keeps its color; separate rounds red, green and blue on their own."
-    )] = "luminance"
-    amount: Annotated[Fraction, Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="Mix with the input; link a mask here."
-    )] = 1.0
+    levels: Annotated[
+        float,
+        Slider(
+            2.0, 32.0, unit="count", minimum=2.0, maximum=65536.0, doc="How many levels there are from black to white."
+        ),
+    ] = 5.0
+    space: Annotated[
+        Literal["display", "linear"], Doc("What is divided evenly: sRGB codes, as the eye sees, or scene light.")
+    ] = "display"
+    channels: Annotated[
+        Literal["luminance", "separate"],
+        Doc(
+            "Luminance rounds how bright a pixel is and keeps its color; separate rounds red, green and blue on their own."
+        ),
+    ] = "luminance"
+    amount: Annotated[
+        Fraction, Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="Mix with the input; link a mask here.")
+    ] = 1.0
 
     def identity(self) -> str | None:
         return "image" if self.amount == 0.0 else None

@@ -11,20 +11,33 @@ class Sanitize(Filter):
     """
 
     image = Image()
-    repair: Annotated[
-        Literal["neighbors", "black"], Doc("What a broken channel (NaN, infinity) becomes.")
-    ] = "neighbors"
-    negative: Annotated[Literal["keep", "clip", "mirror"], Doc(
-        "What becomes of light below 0: kept, black, or as much light above 0. Negative alpha always becomes 0."
-    )] = "clip"
-    maximum: Annotated[float, Slider(
-        1.0, 65504.0, unit="scene", minimum=0.0, maximum=65504.0,
-        doc="Nothing is brighter; 65504 is the largest half float.",
-    )] = 65504.0
+    repair: Annotated[Literal["neighbors", "black"], Doc("What a broken channel (NaN, infinity) becomes.")] = (
+        "neighbors"
+    )
+    negative: Annotated[
+        Literal["keep", "clip", "mirror"],
+        Doc("What becomes of light below 0: kept, black, or as much light above 0. Negative alpha always becomes 0."),
+    ] = "clip"
+    maximum: Annotated[
+        float,
+        Slider(
+            1.0,
+            65504.0,
+            unit="scene",
+            minimum=0.0,
+            maximum=65504.0,
+            doc="Nothing is brighter; 65504 is the largest half float.",
+        ),
+    ] = 65504.0
     limit_alpha: Annotated[bool, Doc("Keep alpha within 0..1.")] = True
 
     def passes(self, draw: Draw) -> Drawn:
         return draw(
-            "sanitize", self.image, overlap=1, repair=self.repair, negative=self.negative, maximum=self.maximum,
+            "sanitize",
+            self.image,
+            overlap=1,
+            repair=self.repair,
+            negative=self.negative,
+            maximum=self.maximum,
             limit_alpha=self.limit_alpha,
         )

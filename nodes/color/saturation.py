@@ -7,9 +7,10 @@ class Saturation(Pointwise):
     """Move colors away from or toward the gray of the same luminance (Rec.709), which stays."""
 
     image = Image()
-    saturation: Annotated[float, Slider(
-        0.0, 2.0, unit="ratio", minimum=0.0, doc="0 is black and white, 1 unchanged, 2 twice as far from gray."
-    )] = 1.0
+    saturation: Annotated[
+        float,
+        Slider(0.0, 2.0, unit="ratio", minimum=0.0, doc="0 is black and white, 1 unchanged, 2 twice as far from gray."),
+    ] = 1.0
 
     def identity(self) -> str | None:
         return "image" if self.saturation == 1.0 else None

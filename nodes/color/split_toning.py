@@ -13,18 +13,22 @@ class SplitToning(Pointwise):
 
     image = Image()
     shadows: Annotated[RGBA, Doc("The color that dark grays take on; only its hue and strength count.")] = (
-        0.35, 0.60, 1.0, 1.0,
+        0.35,
+        0.60,
+        1.0,
+        1.0,
     )
     highlights: Annotated[RGBA, Doc("The color that bright grays take on.")] = (1.0, 0.72, 0.40, 1.0)
-    balance: Annotated[float, Slider(
-        -6.0, 6.0, unit="EV", doc="Where shadows end and highlights begin, in stops above middle gray."
-    )] = 0.0
-    range: Annotated[float, Slider(
-        0.5, 12.0, unit="EV", minimum=0.01, doc="Over how many stops the one goes over into the other."
-    )] = 6.0
-    amount: Annotated[Fraction, Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="Strength of the tints; link a mask here."
-    )] = 0.5
+    balance: Annotated[
+        float, Slider(-6.0, 6.0, unit="EV", doc="Where shadows end and highlights begin, in stops above middle gray.")
+    ] = 0.0
+    range: Annotated[
+        float, Slider(0.5, 12.0, unit="EV", minimum=0.01, doc="Over how many stops the one goes over into the other.")
+    ] = 6.0
+    amount: Annotated[
+        Fraction,
+        Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="Strength of the tints; link a mask here."),
+    ] = 0.5
 
     def identity(self) -> str | None:
         gray = all(color[0] == color[1] == color[2] for color in (self.shadows, self.highlights))

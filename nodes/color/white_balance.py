@@ -14,17 +14,32 @@ class WhiteBalance(Pointwise):
     """
 
     image = Image()
-    temperature: Annotated[float, Slider(
-        2000.0, 12000.0, unit="scene", minimum=1667.0, maximum=15000.0,
-        doc="Color temperature of the light in kelvin: candle 1850, bulb 2850, noon 5500, shade 8000.",
-    )] = _DAYLIGHT
-    tint: Annotated[float, Slider(
-        -100.0, 100.0, unit="ratio", minimum=-100.0, maximum=100.0,
-        doc="Above 0 the light was green (fluorescent) and the picture gets more magenta; below 0 greener.",
-    )] = 0.0
-    method: Annotated[Literal["bradford", "cat16"], Doc(
-        "How the eye adapts. Bradford is that of ICC profiles; CAT16 treats saturated blues better."
-    )] = "bradford"
+    temperature: Annotated[
+        float,
+        Slider(
+            2000.0,
+            12000.0,
+            unit="scene",
+            minimum=1667.0,
+            maximum=15000.0,
+            doc="Color temperature of the light in kelvin: candle 1850, bulb 2850, noon 5500, shade 8000.",
+        ),
+    ] = _DAYLIGHT
+    tint: Annotated[
+        float,
+        Slider(
+            -100.0,
+            100.0,
+            unit="ratio",
+            minimum=-100.0,
+            maximum=100.0,
+            doc="Above 0 the light was green (fluorescent) and the picture gets more magenta; below 0 greener.",
+        ),
+    ] = 0.0
+    method: Annotated[
+        Literal["bradford", "cat16"],
+        Doc("How the eye adapts. Bradford is that of ICC profiles; CAT16 treats saturated blues better."),
+    ] = "bradford"
 
     def identity(self) -> str | None:
         return "image" if self.temperature == _DAYLIGHT and self.tint == 0.0 else None

@@ -12,12 +12,12 @@ class Bulge(Filter):
     """
 
     image = Image()
-    strength: Annotated[float, Slider(
-        -1.0, 0.9, unit="ratio", minimum=-8.0, maximum=0.99, doc="Above 0 bulges, below 0 pinches."
-    )] = 0.5
-    radius: Annotated[float, Slider(
-        0.0, 1.0, unit="height", minimum=0.0, doc="Where the picture is itself again."
-    )] = 0.4
+    strength: Annotated[
+        float, Slider(-1.0, 0.9, unit="ratio", minimum=-8.0, maximum=0.99, doc="Above 0 bulges, below 0 pinches.")
+    ] = 0.5
+    radius: Annotated[float, Slider(0.0, 1.0, unit="height", minimum=0.0, doc="Where the picture is itself again.")] = (
+        0.4
+    )
     center: Annotated[Position, Doc("The point that stays.")] = (0.5, 0.5)
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
@@ -29,6 +29,11 @@ class Bulge(Filter):
         # x (1 - x^2)^2 is 0.287 at most.
         farthest = 0.287 * abs(self.strength * self.radius)
         return draw(
-            "bulge", self.image, edge=self.edge, overlap=math.ceil(farthest) + 2,
-            strength=self.strength, radius=self.radius, center=center,
+            "bulge",
+            self.image,
+            edge=self.edge,
+            overlap=math.ceil(farthest) + 2,
+            strength=self.strength,
+            radius=self.radius,
+            center=center,
         )

@@ -13,17 +13,26 @@ class ChromaticAberration(Filter):
     """
 
     image = Image()
-    shape: Annotated[Literal["radial", "straight"], Doc(
-        "Radial grows from the center to the edges, as lenses do; straight is the same everywhere, as a prism."
-    )] = "radial"
-    amount: Annotated[float, Slider(
-        -0.05, 0.05, unit="height",
-        doc="How far red and blue each lie from green: at half the height from the center, or everywhere if straight.",
-    )] = 0.006
+    shape: Annotated[
+        Literal["radial", "straight"],
+        Doc("Radial grows from the center to the edges, as lenses do; straight is the same everywhere, as a prism."),
+    ] = "radial"
+    amount: Annotated[
+        float,
+        Slider(
+            -0.05,
+            0.05,
+            unit="height",
+            doc="How far red and blue each lie from green: at half the height from the center, or everywhere if straight.",
+        ),
+    ] = 0.006
     angle: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="Straight: where red goes, 0 is right.")] = 0.0
-    samples: Annotated[int, Slider(
-        3, 64, unit="count", minimum=3, maximum=256, doc="Steps from red to blue; 3 shows three separate pictures."
-    )] = 16
+    samples: Annotated[
+        int,
+        Slider(
+            3, 64, unit="count", minimum=3, maximum=256, doc="Steps from red to blue; 3 shows three separate pictures."
+        ),
+    ] = 16
     center: Annotated[Position, Doc("The optical axis.")] = (0.5, 0.5)
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
@@ -39,6 +48,13 @@ class ChromaticAberration(Filter):
             corner = (max(center[0], width - center[0]), max(center[1], height - center[1]))
             farthest *= math.hypot(*corner) / (0.5 * height)
         return draw(
-            "chromatic_aberration", self.image, edge=self.edge, overlap=math.ceil(farthest) + 1,
-            shape=self.shape, amount=self.amount, angle=self.angle, samples=self.samples, center=center,
+            "chromatic_aberration",
+            self.image,
+            edge=self.edge,
+            overlap=math.ceil(farthest) + 1,
+            shape=self.shape,
+            amount=self.amount,
+            angle=self.angle,
+            samples=self.samples,
+            center=center,
         )

@@ -15,9 +15,10 @@ class Crop(Filter):
     top_left: Annotated[Position, Doc("One corner of what is kept.")] = (0.0, 0.0)
     bottom_right: Annotated[Position, Doc("The corner across.")] = (1.0, 1.0)
     resize: Annotated[bool, Doc("Make the picture as small as the rectangle; off leaves it empty around.")] = True
-    softness: Annotated[float, Slider(
-        0.0, 200.0, unit="px", minimum=0.0, doc="Fade to nothing over this many pixels inside the rectangle."
-    )] = 0.0
+    softness: Annotated[
+        float,
+        Slider(0.0, 200.0, unit="px", minimum=0.0, doc="Fade to nothing over this many pixels inside the rectangle."),
+    ] = 0.0
 
     def box(self, size: Size) -> tuple[int, int, int, int]:
         """Left, top, right and bottom in whole pixels of a picture of this size."""
@@ -38,7 +39,10 @@ class Crop(Filter):
         left, top, right, bottom = self.box(draw.size_of(self.image))
         start = (float(left), float(top)) if self.resize else (0.0, 0.0)
         return draw(
-            "crop", self.image, start=start, box=(float(left), float(top), float(right), float(bottom)),
+            "crop",
+            self.image,
+            start=start,
+            box=(float(left), float(top), float(right), float(bottom)),
             softness=self.softness,
         )
 

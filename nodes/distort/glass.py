@@ -14,21 +14,30 @@ class Glass(Filter):
 
     image = Image()
     surface = Field(0.0, doc="How high the glass is, 0 to 1. Without a link, random bumps.")
-    relief: Annotated[float, Slider(
-        0.0, 0.1, unit="height", minimum=0.0, doc="How high a surface of 1 rises above one of 0."
-    )] = 0.04
-    thickness: Annotated[float, Slider(
-        0.0, 0.5, unit="height", minimum=0.0, doc="How far the picture lies behind the surface."
-    )] = 0.15
-    index: Annotated[float, Slider(
-        1.0, 2.5, unit="ratio", minimum=1.0, maximum=5.0, doc="Index of refraction: water 1.33, glass 1.5, diamond 2.4."
-    )] = 1.5
-    dispersion: Annotated[float, Slider(
-        0.0, 0.3, unit="ratio", minimum=0.0, doc="How much larger the index is for blue than for red."
-    )] = 0.06
-    samples: Annotated[int, Slider(
-        3, 32, unit="count", minimum=3, maximum=128, doc="Steps from red to blue, where there is dispersion."
-    )] = 9
+    relief: Annotated[
+        float, Slider(0.0, 0.1, unit="height", minimum=0.0, doc="How high a surface of 1 rises above one of 0.")
+    ] = 0.04
+    thickness: Annotated[
+        float, Slider(0.0, 0.5, unit="height", minimum=0.0, doc="How far the picture lies behind the surface.")
+    ] = 0.15
+    index: Annotated[
+        float,
+        Slider(
+            1.0,
+            2.5,
+            unit="ratio",
+            minimum=1.0,
+            maximum=5.0,
+            doc="Index of refraction: water 1.33, glass 1.5, diamond 2.4.",
+        ),
+    ] = 1.5
+    dispersion: Annotated[
+        float, Slider(0.0, 0.3, unit="ratio", minimum=0.0, doc="How much larger the index is for blue than for red.")
+    ] = 0.06
+    samples: Annotated[
+        int,
+        Slider(3, 32, unit="count", minimum=3, maximum=128, doc="Steps from red to blue, where there is dispersion."),
+    ] = 9
     size: Annotated[float, Slider(0.005, 0.5, unit="height", minimum=1e-4, doc="Size of random bumps.")] = 0.08
     seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another pattern of bumps.")] = 0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "mirror"
@@ -44,10 +53,25 @@ class Glass(Filter):
         reach = math.ceil(self.thickness * math.sqrt(index**2 - 1.0)) + 3
         if draw.linked(self.surface):
             return draw(
-                "glass", self.image, self.surface, edge=self.edge, overlap={"image": reach, "surface": 1},
-                relief=self.relief, thickness=self.thickness, light=light, samples=samples,
+                "glass",
+                self.image,
+                self.surface,
+                edge=self.edge,
+                overlap={"image": reach, "surface": 1},
+                relief=self.relief,
+                thickness=self.thickness,
+                light=light,
+                samples=samples,
             )
         return draw(
-            "glass_hammered", self.image, edge=self.edge, overlap=reach,
-            relief=self.relief, thickness=self.thickness, light=light, samples=samples, bump=self.size, seed=self.seed,
+            "glass_hammered",
+            self.image,
+            edge=self.edge,
+            overlap=reach,
+            relief=self.relief,
+            thickness=self.thickness,
+            light=light,
+            samples=samples,
+            bump=self.size,
+            seed=self.seed,
         )

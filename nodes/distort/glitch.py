@@ -14,9 +14,9 @@ class Glitch(Filter):
     image = Image()
     amount: Annotated[Fraction, Doc("How many of the bands jump.")] = 0.25
     shift: Annotated[float, Slider(0.0, 0.5, unit="height", doc="How far they jump at most.")] = 0.12
-    colors: Annotated[float, Slider(
-        0.0, 0.1, unit="height", doc="How far red and blue come apart in them at most."
-    )] = 0.03
+    colors: Annotated[
+        float, Slider(0.0, 0.1, unit="height", doc="How far red and blue come apart in them at most.")
+    ] = 0.03
     band: Annotated[float, Slider(0.01, 0.5, unit="height", minimum=1e-4, doc="Height of the wide bands.")] = 0.12
     hold: Annotated[int, Slider(1, 24, unit="count", minimum=1, doc="How many frames a glitch lasts.")] = 2
     seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another glitch.")] = 0
@@ -28,7 +28,14 @@ class Glitch(Filter):
     def passes(self, draw: Draw) -> Drawn:
         farthest = math.ceil(2.0 * (abs(self.shift) + abs(self.colors)))
         return draw(
-            "glitch", self.image, edge=self.edge, overlap=(farthest + 1, 1),
-            amount=self.amount, shift=self.shift, colors=self.colors,
-            band=self.band, hold=self.hold, seed=self.seed,
+            "glitch",
+            self.image,
+            edge=self.edge,
+            overlap=(farthest + 1, 1),
+            amount=self.amount,
+            shift=self.shift,
+            colors=self.colors,
+            band=self.band,
+            hold=self.hold,
+            seed=self.seed,
         )

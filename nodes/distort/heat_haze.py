@@ -15,16 +15,16 @@ class HeatHaze(Filter):
     heat = Field(1.0, doc="Where it is hot: factor on the amount, pixel by pixel.")
     amount: Annotated[float, Slider(0.0, 0.05, unit="height", doc="How far points move at most.")] = 0.008
     size: Annotated[float, Slider(0.01, 0.5, unit="height", minimum=1e-4, doc="Size of the swirls.")] = 0.06
-    stretch: Annotated[float, Slider(
-        0.25, 4.0, unit="ratio", minimum=0.01, doc="Above 1 swirls are taller than wide, below flatter."
-    )] = 1.6
+    stretch: Annotated[
+        float, Slider(0.25, 4.0, unit="ratio", minimum=0.01, doc="Above 1 swirls are taller than wide, below flatter.")
+    ] = 1.6
     rise: Annotated[float, Slider(-2.0, 2.0, unit="height", doc="How far swirls rise in a second.")] = 0.25
-    change: Annotated[float, Slider(
-        0.0, 8.0, unit="ratio", doc="How many times in a second swirls become others."
-    )] = 1.5
-    rate: Annotated[float, Slider(
-        12.0, 60.0, unit="ratio", minimum=0.01, doc="Frames per second of the sequence."
-    )] = 24.0
+    change: Annotated[float, Slider(0.0, 8.0, unit="ratio", doc="How many times in a second swirls become others.")] = (
+        1.5
+    )
+    rate: Annotated[float, Slider(12.0, 60.0, unit="ratio", minimum=0.01, doc="Frames per second of the sequence.")] = (
+        24.0
+    )
     seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another haze.")] = 0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "mirror"
 
@@ -35,7 +35,14 @@ class HeatHaze(Filter):
         # A picture of heat may hold any number; without one nothing moves farther than the amount.
         overlap = {"heat": 0} | ({} if draw.linked(self.heat) else {"image": math.ceil(abs(self.amount)) + 2})
         return draw(
-            "heat_haze", self.image, self.heat, edge=self.edge, overlap=overlap, amount=self.amount,
-            swirl=(self.size, self.size * self.stretch), rise=self.rise / self.rate, change=self.change / self.rate,
+            "heat_haze",
+            self.image,
+            self.heat,
+            edge=self.edge,
+            overlap=overlap,
+            amount=self.amount,
+            swirl=(self.size, self.size * self.stretch),
+            rise=self.rise / self.rate,
+            change=self.change / self.rate,
             seed=self.seed,
         )

@@ -7,13 +7,17 @@ class Kaleidoscope(Filter):
     """Mirror one slice of the picture all around, as in a tube of mirrors."""
 
     image = Image()
-    segments: Annotated[int, Slider(
-        2, 24, unit="count", minimum=1, maximum=360, doc="How many pairs of a slice and its mirror image there are."
-    )] = 6
+    segments: Annotated[
+        int,
+        Slider(
+            2, 24, unit="count", minimum=1, maximum=360, doc="How many pairs of a slice and its mirror image there are."
+        ),
+    ] = 6
     rotation: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="Turns the figure, clockwise.")] = 0.0
-    slice: Annotated[float, Slider(
-        -180.0, 180.0, unit="deg", doc="Where in the picture the slice lies, seen from the center; 0 is right."
-    )] = 0.0
+    slice: Annotated[
+        float,
+        Slider(-180.0, 180.0, unit="deg", doc="Where in the picture the slice lies, seen from the center; 0 is right."),
+    ] = 0.0
     zoom: Annotated[float, Slider(0.25, 4.0, unit="ratio", minimum=0.01, doc="Above 1 enlarges the slice.")] = 1.0
     center: Annotated[Position, Doc("Where the mirrors meet.")] = (0.5, 0.5)
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "mirror"
@@ -21,6 +25,10 @@ class Kaleidoscope(Filter):
     def passes(self, draw: Draw) -> Drawn:
         center = (self.center[0] * draw.size[0], self.center[1] * draw.size[1])
         return draw(
-            "kaleidoscope", self.image, edge=self.edge, segments=self.segments, center=center,
+            "kaleidoscope",
+            self.image,
+            edge=self.edge,
+            segments=self.segments,
+            center=center,
             tube=(self.rotation, self.slice, self.zoom),
         )

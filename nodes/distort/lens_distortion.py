@@ -21,20 +21,22 @@ class LensDistortion(Filter):
     """
 
     image = Image()
-    direction: Annotated[Literal["distort", "undistort"], Doc(
-        "Distort gives a render the bend of a lens; undistort straightens footage."
-    )] = "distort"
+    direction: Annotated[
+        Literal["distort", "undistort"],
+        Doc("Distort gives a render the bend of a lens; undistort straightens footage."),
+    ] = "distort"
     k1: Annotated[float, Slider(-0.5, 0.5, unit="ratio", doc="Below 0 is a barrel, above 0 a pincushion.")] = -0.15
     k2: Annotated[float, Slider(-0.5, 0.5, unit="ratio", doc="The same, more toward the corners.")] = 0.0
     k3: Annotated[float, Slider(-0.5, 0.5, unit="ratio", doc="The same, in the very corners.")] = 0.0
     p1: Annotated[float, Slider(-0.1, 0.1, unit="ratio", doc="A lens tilted up or down.")] = 0.0
     p2: Annotated[float, Slider(-0.1, 0.1, unit="ratio", doc="A lens tilted sideways.")] = 0.0
-    focal: Annotated[float, Slider(
-        0.25, 4.0, unit="height", minimum=0.01, doc="Focal length; a longer lens bends less of what it sees."
-    )] = 1.0
-    zoom: Annotated[float, Slider(
-        0.5, 2.0, unit="ratio", minimum=0.01, doc="Above 1 enlarges the result, to hide bent borders."
-    )] = 1.0
+    focal: Annotated[
+        float,
+        Slider(0.25, 4.0, unit="height", minimum=0.01, doc="Focal length; a longer lens bends less of what it sees."),
+    ] = 1.0
+    zoom: Annotated[
+        float, Slider(0.5, 2.0, unit="ratio", minimum=0.01, doc="Above 1 enlarges the result, to hide bent borders.")
+    ] = 1.0
     center: Annotated[Position, Doc("The optical axis.")] = (0.5, 0.5)
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "black"
 
@@ -52,9 +54,17 @@ class LensDistortion(Filter):
             matrix = (part, 0.0, center[0] * (1.0 - part), 0.0, part, center[1] * (1.0 - part))
             overlap = Reach(matrix, (reach, reach))
         return draw(
-            "lens_distortion", self.image, edge=self.edge, overlap=overlap, direction=self.direction,
-            radial=(self.k1, self.k2, self.k3), tangential=(self.p1, self.p2), focal=self.focal, zoom=self.zoom,
-            center=center, far=far,
+            "lens_distortion",
+            self.image,
+            edge=self.edge,
+            overlap=overlap,
+            direction=self.direction,
+            radial=(self.k1, self.k2, self.k3),
+            tangential=(self.p1, self.p2),
+            focal=self.focal,
+            zoom=self.zoom,
+            center=center,
+            far=far,
         )
 
     def _bounds(self, x: float, y: float) -> tuple[float, float | None]:

@@ -13,19 +13,23 @@ class NoiseWarp(Filter):
 
     image = Image()
     mask = Field(1.0, doc="Factor on the amount, pixel by pixel.")
-    amount: Annotated[float, Slider(
-        0.0, 0.2, unit="height", doc="How far points move at most, across and down."
-    )] = 0.06
-    kind: Annotated[Literal["push", "flow"], Doc(
-        "Push bulges and pinches; flow stirs and, while the amount is small, keeps areas."
-    )] = "push"
+    amount: Annotated[float, Slider(0.0, 0.2, unit="height", doc="How far points move at most, across and down.")] = (
+        0.06
+    )
+    kind: Annotated[
+        Literal["push", "flow"], Doc("Push bulges and pinches; flow stirs and, while the amount is small, keeps areas.")
+    ] = "push"
     size: Annotated[float, Slider(0.01, 1.0, unit="height", minimum=1e-4, doc="Size of the largest waves.")] = 0.25
-    octaves: Annotated[int, Slider(
-        1, 8, unit="count", minimum=1, maximum=16, doc="How many layers, each half as large as the one before."
-    )] = 2
-    gain: Annotated[float, Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, maximum=4.0, doc="How far each layer moves compared to the one before."
-    )] = 0.4
+    octaves: Annotated[
+        int,
+        Slider(1, 8, unit="count", minimum=1, maximum=16, doc="How many layers, each half as large as the one before."),
+    ] = 2
+    gain: Annotated[
+        float,
+        Slider(
+            0.0, 1.0, unit="ratio", minimum=0.0, maximum=4.0, doc="How far each layer moves compared to the one before."
+        ),
+    ] = 0.4
     evolution: Annotated[float, Slider(0.0, 10.0, unit="ratio", doc="Changes the waves smoothly.")] = 0.0
     speed: Annotated[float, Slider(-0.2, 0.2, unit="ratio", doc="How much evolution grows with every frame.")] = 0.02
     seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another pattern.")] = 0
@@ -36,8 +40,15 @@ class NoiseWarp(Filter):
 
     def passes(self, draw: Draw) -> Drawn:
         ways = draw(
-            "noise_warp_ways", result=Vector(width=2), kind=self.kind, wave=self.size, octaves=self.octaves,
-            gain=self.gain, evolution=self.evolution, speed=self.speed, seed=self.seed,
+            "noise_warp_ways",
+            result=Vector(width=2),
+            kind=self.kind,
+            wave=self.size,
+            octaves=self.octaves,
+            gain=self.gain,
+            evolution=self.evolution,
+            speed=self.speed,
+            seed=self.seed,
         )
         # A mask may hold any number; without one nothing moves farther than the amount.
         far = math.ceil(abs(self.amount))

@@ -11,12 +11,16 @@ class Pixelate(Filter):
     """
 
     image = Image()
-    size: Annotated[tuple[float, float], Slider(
-        1.0, 64.0, unit="px", minimum=0.01, doc="Width and height of a square, at least one pixel."
-    )] = (8.0, 8.0)
-    sampling: Annotated[Literal["average", "center"], Doc(
-        "Average keeps the light; center shows the pixel at the middle, as an enlarged small picture that aliases."
-    )] = "average"
+    size: Annotated[
+        tuple[float, float],
+        Slider(1.0, 64.0, unit="px", minimum=0.01, doc="Width and height of a square, at least one pixel."),
+    ] = (8.0, 8.0)
+    sampling: Annotated[
+        Literal["average", "center"],
+        Doc(
+            "Average keeps the light; center shows the pixel at the middle, as an enlarged small picture that aliases."
+        ),
+    ] = "average"
 
     def identity(self) -> str | None:
         return "image" if max(self.size) <= 1.0 else None

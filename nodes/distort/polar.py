@@ -13,16 +13,15 @@ class Polar(Filter):
 
     image = Image()
     direction: Annotated[Literal["wrap", "unwrap"], Doc("Wrap makes a disc, unwrap opens it.")] = "wrap"
-    radius: Annotated[float, Slider(
-        0.1, 1.5, unit="height", minimum=1e-3, doc="Radius of the disc."
-    )] = 0.5
-    rotation: Annotated[float, Slider(
-        -180.0, 180.0, unit="deg", doc="Where around the center the picture's left side lies; 0 is right."
-    )] = -90.0
+    radius: Annotated[float, Slider(0.1, 1.5, unit="height", minimum=1e-3, doc="Radius of the disc.")] = 0.5
+    rotation: Annotated[
+        float,
+        Slider(-180.0, 180.0, unit="deg", doc="Where around the center the picture's left side lies; 0 is right."),
+    ] = -90.0
     center: Annotated[Position, Doc("The middle of the disc.")] = (0.5, 0.5)
-    edge: Annotated[Edge, Doc(
-        "What lies outside: of the disc nothing for black, else its rim stretched; of the picture as usual."
-    )] = "clamp"
+    edge: Annotated[
+        Edge, Doc("What lies outside: of the disc nothing for black, else its rim stretched; of the picture as usual.")
+    ] = "clamp"
 
     def passes(self, draw: Draw) -> Drawn:
         center = (self.center[0] * draw.size[0], self.center[1] * draw.size[1])
@@ -31,6 +30,11 @@ class Polar(Filter):
                 "polar_unwrap", self.image, edge=self.edge, radius=self.radius, rotation=self.rotation, center=center
             )
         return draw(
-            "polar_wrap", self.image, edge="wrap", radius=self.radius, rotation=self.rotation, center=center,
+            "polar_wrap",
+            self.image,
+            edge="wrap",
+            radius=self.radius,
+            rotation=self.rotation,
+            center=center,
             empty=self.edge == "black",
         )

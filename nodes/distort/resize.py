@@ -13,13 +13,17 @@ class Resize(Filter):
     """
 
     image = Image()
-    scale: Annotated[tuple[float, float], Slider(
-        0.1, 4.0, unit="ratio", minimum=0.001, maximum=64.0, doc="Factor on the width and on the height."
-    )] = (1.0, 1.0)
-    kernel: Annotated[Literal["box", "triangle", "catmull-rom", "mitchell", "lanczos"], Doc(
-        "Box averages the very area that a pixel covers and keeps hard pixels, triangle is soft; Catmull-Rom and "
-        "Lanczos (3 lobes) are sharp and may ring around lights, Mitchell is between."
-    )] = "triangle"
+    scale: Annotated[
+        tuple[float, float],
+        Slider(0.1, 4.0, unit="ratio", minimum=0.001, maximum=64.0, doc="Factor on the width and on the height."),
+    ] = (1.0, 1.0)
+    kernel: Annotated[
+        Literal["box", "triangle", "catmull-rom", "mitchell", "lanczos"],
+        Doc(
+            "Box averages the very area that a pixel covers and keeps hard pixels, triangle is soft; Catmull-Rom and "
+            "Lanczos (3 lobes) are sharp and may ring around lights, Mitchell is between."
+        ),
+    ] = "triangle"
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
     def identity(self) -> str | None:
@@ -33,10 +37,22 @@ class Resize(Filter):
         before, after = draw.size_of(self.image), draw.size
         across, down = (math.ceil(3.0 * max(a / b, 1.0)) + 2 for a, b in zip(before, after, strict=True))
         wide = draw(
-            "resize", self.image, size=(after[0], before[1]), edge=self.edge, overlap=(across, 0),
-            axis=0, shrink=before[0] / after[0], kernel=self.kernel,
+            "resize",
+            self.image,
+            size=(after[0], before[1]),
+            edge=self.edge,
+            overlap=(across, 0),
+            axis=0,
+            shrink=before[0] / after[0],
+            kernel=self.kernel,
         )
         return draw(
-            "resize", image=wide, size=after, edge=self.edge, overlap=(0, down),
-            axis=1, shrink=before[1] / after[1], kernel=self.kernel,
+            "resize",
+            image=wide,
+            size=after,
+            edge=self.edge,
+            overlap=(0, down),
+            axis=1,
+            shrink=before[1] / after[1],
+            kernel=self.kernel,
         )

@@ -15,18 +15,18 @@ class Ripple(Filter):
     shape: Annotated[Literal["circular", "straight"], Doc("Rings around the center, or waves that run one way.")] = (
         "circular"
     )
-    motion: Annotated[Literal["along", "across"], Doc(
-        "Along pushes and pulls in the direction of the wave, across sideways."
-    )] = "along"
+    motion: Annotated[
+        Literal["along", "across"], Doc("Along pushes and pulls in the direction of the wave, across sideways.")
+    ] = "along"
     amplitude: Annotated[float, Slider(0.0, 0.1, unit="height", doc="How far points move.")] = 0.01
-    wavelength: Annotated[float, Slider(
-        0.01, 0.5, unit="height", minimum=1e-4, doc="From one crest to the next."
-    )] = 0.08
+    wavelength: Annotated[float, Slider(0.01, 0.5, unit="height", minimum=1e-4, doc="From one crest to the next.")] = (
+        0.08
+    )
     phase: Annotated[float, Slider(-4.0, 4.0, unit="ratio", doc="How many waves have passed; change it to move.")] = 0.0
     angle: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="Straight: where waves run, 0 is right.")] = 0.0
-    reach: Annotated[float, Slider(
-        0.1, 10.0, unit="height", minimum=1e-3, doc="Where waves have fallen to 37 percent."
-    )] = 1.0
+    reach: Annotated[
+        float, Slider(0.1, 10.0, unit="height", minimum=1e-3, doc="Where waves have fallen to 37 percent.")
+    ] = 1.0
     center: Annotated[Position, Doc("Where the waves begin.")] = (0.5, 0.5)
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "mirror"
 
@@ -36,7 +36,13 @@ class Ripple(Filter):
     def passes(self, draw: Draw) -> Drawn:
         center = (self.center[0] * draw.size[0], self.center[1] * draw.size[1])
         return draw(
-            "ripple", self.image, edge=self.edge, overlap=math.ceil(abs(self.amplitude)) + 2, shape=self.shape,
-            motion=self.motion, angle=self.angle, center=center,
+            "ripple",
+            self.image,
+            edge=self.edge,
+            overlap=math.ceil(abs(self.amplitude)) + 2,
+            shape=self.shape,
+            motion=self.motion,
+            angle=self.angle,
+            center=center,
             wave=(self.amplitude, self.wavelength, self.phase, self.reach),
         )

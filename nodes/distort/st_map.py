@@ -12,9 +12,10 @@ class StMap(Filter):
 
     image = Image()
     st = Vector(width=2, doc="Where to look: 0 to 1 across the picture, pixel centers at halves.")
-    origin: Annotated[Literal["bottom left", "top left"], Doc(
-        "Where 0, 0 lies: bottom left for renders and most compositors, top left for OpenImageIO and textures."
-    )] = "bottom left"
+    origin: Annotated[
+        Literal["bottom left", "top left"],
+        Doc("Where 0, 0 lies: bottom left for renders and most compositors, top left for OpenImageIO and textures."),
+    ] = "bottom left"
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "black"
 
     def passes(self, draw: Draw) -> Drawn:

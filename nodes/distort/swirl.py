@@ -13,9 +13,9 @@ class Swirl(Filter):
 
     image = Image()
     angle: Annotated[float, Slider(-720.0, 720.0, unit="deg", doc="How far the middle turns, clockwise.")] = 180.0
-    radius: Annotated[float, Slider(
-        0.0, 1.0, unit="height", minimum=0.0, doc="Where the turn has fallen to 37 percent."
-    )] = 0.25
+    radius: Annotated[
+        float, Slider(0.0, 1.0, unit="height", minimum=0.0, doc="Where the turn has fallen to 37 percent.")
+    ] = 0.25
     center: Annotated[Position, Doc("The point that stays.")] = (0.5, 0.5)
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
@@ -27,6 +27,11 @@ class Swirl(Filter):
         # x exp(-x^2) is 0.429 at most, and an arc no shorter than its chord.
         farthest = 0.429 * abs(self.angle * self.radius)
         return draw(
-            "swirl", self.image, edge=self.edge, overlap=math.ceil(farthest) + 2,
-            angle=self.angle, radius=self.radius, center=center,
+            "swirl",
+            self.image,
+            edge=self.edge,
+            overlap=math.ceil(farthest) + 2,
+            angle=self.angle,
+            radius=self.radius,
+            center=center,
         )

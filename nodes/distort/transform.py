@@ -17,19 +17,23 @@ class Transform(Filter):
     """
 
     image = Image()
-    position: Annotated[tuple[float, float], Slider(
-        -500.0, 500.0, unit="px", doc="How far the picture moves, right and down."
-    )] = (0.0, 0.0)
+    position: Annotated[
+        tuple[float, float], Slider(-500.0, 500.0, unit="px", doc="How far the picture moves, right and down.")
+    ] = (0.0, 0.0)
     rotation: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="Clockwise.")] = 0.0
-    scale: Annotated[tuple[float, float], Slider(
-        0.1, 4.0, unit="ratio", doc="Factor on the width and on the height; below 0 mirrors."
-    )] = (1.0, 1.0)
+    scale: Annotated[
+        tuple[float, float],
+        Slider(0.1, 4.0, unit="ratio", doc="Factor on the width and on the height; below 0 mirrors."),
+    ] = (1.0, 1.0)
     pivot: Annotated[Position, Doc("The point about which the picture turns and grows.")] = (0.5, 0.5)
     direction: Annotated[Literal["forward", "inverse"], Doc("Inverse takes back what forward did.")] = "forward"
-    kernel: Annotated[Kernel, Doc(
-        "Nearest keeps data as it is, triangle is bilinear; Catmull-Rom and Lanczos (3 lobes) are sharp and may ring "
-        "around lights, Mitchell is between."
-    )] = "triangle"
+    kernel: Annotated[
+        Kernel,
+        Doc(
+            "Nearest keeps data as it is, triangle is bilinear; Catmull-Rom and Lanczos (3 lobes) are sharp and may ring "
+            "around lights, Mitchell is between."
+        ),
+    ] = "triangle"
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "black"
 
     def identity(self) -> str | None:

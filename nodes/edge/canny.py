@@ -16,19 +16,39 @@ class Canny(Filter):
     """
 
     image = Image()
-    sigma: Annotated[float, Slider(
-        0.0, 8.0, unit="px", minimum=0.0, maximum=500.0, doc="Sigma of the blur that takes noise and fine detail away."
-    )] = 1.0
-    low: Annotated[float, Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, doc="Weaker edges are never drawn."
-    )] = 0.05
-    high: Annotated[float, Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, doc="Stronger edges are always drawn; those between, if they touch one."
-    )] = 0.15
-    reach: Annotated[float, Slider(
-        0.0, 200.0, unit="px", minimum=0.0, maximum=1000.0,
-        doc="How far a weak edge is followed from a strong one: at least so many pixels along the line.",
-    )] = 60.0
+    sigma: Annotated[
+        float,
+        Slider(
+            0.0,
+            8.0,
+            unit="px",
+            minimum=0.0,
+            maximum=500.0,
+            doc="Sigma of the blur that takes noise and fine detail away.",
+        ),
+    ] = 1.0
+    low: Annotated[float, Slider(0.0, 1.0, unit="ratio", minimum=0.0, doc="Weaker edges are never drawn.")] = 0.05
+    high: Annotated[
+        float,
+        Slider(
+            0.0,
+            1.0,
+            unit="ratio",
+            minimum=0.0,
+            doc="Stronger edges are always drawn; those between, if they touch one.",
+        ),
+    ] = 0.15
+    reach: Annotated[
+        float,
+        Slider(
+            0.0,
+            200.0,
+            unit="px",
+            minimum=0.0,
+            maximum=1000.0,
+            doc="How far a weak edge is followed from a strong one: at least so many pixels along the line.",
+        ),
+    ] = 60.0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
     out = Output(Image(doc="White lines on black."))
@@ -38,8 +58,13 @@ class Canny(Filter):
         tone = draw.blur(draw.point("canny_tone", self.image, result=Field()), self.sigma, self.edge)
         gradient = draw("canny_gradient", tone=tone, edge=self.edge, overlap=1, result=Vector(width=2))
         found = draw(
-            "canny_ridge", gradient=gradient, edge="black", overlap=1, result=Field(),
-            low=min(self.low, self.high), high=max(self.low, self.high),
+            "canny_ridge",
+            gradient=gradient,
+            edge="black",
+            overlap=1,
+            result=Field(),
+            low=min(self.low, self.high),
+            high=max(self.low, self.high),
         )
         for _ in range(ceil(self.reach / _STEP)):
             found = draw("canny_follow", state=found, edge="black", overlap=_STEP, result=Field())

@@ -16,32 +16,50 @@ class DifferenceOfGaussians(Filter):
 
     image = Image()
     kind: Annotated[Literal["xdog", "dog"], Doc("XDoG draws black on white, DoG shows the bare difference.")] = "xdog"
-    sigma: Annotated[float, Slider(
-        0.3, 6.0, unit="px", minimum=0.05, maximum=500.0, doc="Width of the lines."
-    )] = 1.0
-    ratio: Annotated[float, Slider(
-        1.1, 4.0, unit="ratio", minimum=1.0, maximum=16.0, doc="How much wider the second blur is: 1.6 is usual."
-    )] = 1.6
-    strength: Annotated[float, Slider(
-        0.0, 50.0, unit="ratio", minimum=0.0, doc="p of XDoG: how much lines stand out. The factor on DoG."
-    )] = 20.0
-    epsilon: Annotated[float, Slider(
-        0.0, 1.0, unit="ratio", doc="For XDoG: tones below this become ink."
-    )] = 0.4
-    phi: Annotated[float, Slider(
-        0.5, 50.0, unit="ratio", minimum=0.0, doc="For XDoG: how hard ink and paper part; low values keep grays."
-    )] = 6.0
-    guide: Annotated[Literal["none", "flow"], Doc(
-        "Blur round, or only across the lines of the picture, whose directions the structure tensor tells."
-    )] = "none"
-    smoothing: Annotated[float, Slider(
-        0.5, 8.0, unit="px", minimum=0.0, maximum=200.0,
-        doc="For flow: sigma over which the directions of lines are averaged.",
-    )] = 2.5
-    stroke: Annotated[float, Slider(
-        0.0, 20.0, unit="px", minimum=0.0, maximum=500.0,
-        doc="For flow: sigma over which lines are drawn together along themselves.",
-    )] = 3.0
+    sigma: Annotated[float, Slider(0.3, 6.0, unit="px", minimum=0.05, maximum=500.0, doc="Width of the lines.")] = 1.0
+    ratio: Annotated[
+        float,
+        Slider(
+            1.1, 4.0, unit="ratio", minimum=1.0, maximum=16.0, doc="How much wider the second blur is: 1.6 is usual."
+        ),
+    ] = 1.6
+    strength: Annotated[
+        float,
+        Slider(0.0, 50.0, unit="ratio", minimum=0.0, doc="p of XDoG: how much lines stand out. The factor on DoG."),
+    ] = 20.0
+    epsilon: Annotated[float, Slider(0.0, 1.0, unit="ratio", doc="For XDoG: tones below this become ink.")] = 0.4
+    phi: Annotated[
+        float,
+        Slider(
+            0.5, 50.0, unit="ratio", minimum=0.0, doc="For XDoG: how hard ink and paper part; low values keep grays."
+        ),
+    ] = 6.0
+    guide: Annotated[
+        Literal["none", "flow"],
+        Doc("Blur round, or only across the lines of the picture, whose directions the structure tensor tells."),
+    ] = "none"
+    smoothing: Annotated[
+        float,
+        Slider(
+            0.5,
+            8.0,
+            unit="px",
+            minimum=0.0,
+            maximum=200.0,
+            doc="For flow: sigma over which the directions of lines are averaged.",
+        ),
+    ] = 2.5
+    stroke: Annotated[
+        float,
+        Slider(
+            0.0,
+            20.0,
+            unit="px",
+            minimum=0.0,
+            maximum=500.0,
+            doc="For flow: sigma over which lines are drawn together along themselves.",
+        ),
+    ] = 3.0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
     out = Output()
@@ -49,12 +67,20 @@ class DifferenceOfGaussians(Filter):
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         tone = draw.point("difference_of_gaussians_tone", self.image, result=Field())
-        fine, coarse = self._guided(draw, tone) if self.guide == "flow" else (
-            draw.blur(tone, self.sigma, self.edge), draw.blur(tone, self.sigma * self.ratio, self.edge)
+        fine, coarse = (
+            self._guided(draw, tone)
+            if self.guide == "flow"
+            else (draw.blur(tone, self.sigma, self.edge), draw.blur(tone, self.sigma * self.ratio, self.edge))
         )
         value = draw.point(
-            "difference_of_gaussians_value", result=Field(), fine=fine, coarse=coarse, kind=self.kind,
-            strength=self.strength, epsilon=self.epsilon, phi=self.phi,
+            "difference_of_gaussians_value",
+            result=Field(),
+            fine=fine,
+            coarse=coarse,
+            kind=self.kind,
+            strength=self.strength,
+            epsilon=self.epsilon,
+            phi=self.phi,
         )
         return {"out": draw.point("difference_of_gaussians", self.image, value=value, kind=self.kind), "value": value}
 
@@ -62,14 +88,24 @@ class DifferenceOfGaussians(Filter):
         changes = draw("difference_of_gaussians_changes", tone=tone, edge=self.edge, overlap=1, result=Vector(width=3))
         tensor = draw.blur(changes, self.smoothing, self.edge)
         blurs = draw(
-            "difference_of_gaussians_across", tone=tone, tensor=tensor, edge=self.edge, result=Vector(width=2),
+            "difference_of_gaussians_across",
+            tone=tone,
+            tensor=tensor,
+            edge=self.edge,
+            result=Vector(width=2),
             overlap={"tone": _walked(self.sigma * max(self.ratio, 0.0)), "tensor": 0},
-            sigma=self.sigma, ratio=self.ratio,
+            sigma=self.sigma,
+            ratio=self.ratio,
         )
         if self.stroke > 0.0:
             blurs = draw(
-                "difference_of_gaussians_along", blurs=blurs, tensor=tensor, edge=self.edge, result=Vector(width=2),
-                overlap=_walked(self.stroke), stroke=self.stroke,
+                "difference_of_gaussians_along",
+                blurs=blurs,
+                tensor=tensor,
+                edge=self.edge,
+                result=Vector(width=2),
+                overlap=_walked(self.stroke),
+                stroke=self.stroke,
             )
         return (
             draw.point("difference_of_gaussians_fine", result=Field(), blurs=blurs),

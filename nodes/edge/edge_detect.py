@@ -32,11 +32,24 @@ class EdgeDetect(Filter):
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         out = draw(
-            "edge_detect", self.image, edge=self.edge, overlap=1,
-            operator=self.operator, channels=self.channels, strength=self.strength, threshold=self.threshold,
+            "edge_detect",
+            self.image,
+            edge=self.edge,
+            overlap=1,
+            operator=self.operator,
+            channels=self.channels,
+            strength=self.strength,
+            threshold=self.threshold,
         )
         magnitude = draw(
-            "edge_detect_magnitude", self.image, edge=self.edge, overlap=1, result=Field(),
-            operator=self.operator, channels=self.channels, strength=self.strength, threshold=self.threshold,
+            "edge_detect_magnitude",
+            self.image,
+            edge=self.edge,
+            overlap=1,
+            result=Field(),
+            operator=self.operator,
+            channels=self.channels,
+            strength=self.strength,
+            threshold=self.threshold,
         )
         return {"out": out, "magnitude": magnitude}

@@ -11,27 +11,45 @@ class Emboss(Filter):
     """
 
     image = Image()
-    kind: Annotated[Literal["relief", "bump"], Doc(
-        "Relief is gray, 0.18 where it is flat. Bump shades the picture's own colors."
-    )] = "relief"
-    direction: Annotated[float, Slider(
-        -180.0, 180.0, unit="deg", doc="Where the light stands: 0 is right, 90 is up."
-    )] = 135.0
-    elevation: Annotated[float, Slider(
-        5.0, 90.0, unit="deg", minimum=1.0, maximum=90.0, doc="How high the light stands; low light brings out detail."
-    )] = 30.0
-    height: Annotated[float, Slider(
-        -20.0, 20.0, unit="px", doc="How far white stands out above black; below 0 it is pressed in."
-    )] = 6.0
-    softness: Annotated[float, Slider(
-        0.0, 10.0, unit="px", minimum=0.0, maximum=500.0, doc="Sigma of a blur that rounds the relief off first."
-    )] = 0.7
+    kind: Annotated[
+        Literal["relief", "bump"], Doc("Relief is gray, 0.18 where it is flat. Bump shades the picture's own colors.")
+    ] = "relief"
+    direction: Annotated[
+        float, Slider(-180.0, 180.0, unit="deg", doc="Where the light stands: 0 is right, 90 is up.")
+    ] = 135.0
+    elevation: Annotated[
+        float,
+        Slider(
+            5.0,
+            90.0,
+            unit="deg",
+            minimum=1.0,
+            maximum=90.0,
+            doc="How high the light stands; low light brings out detail.",
+        ),
+    ] = 30.0
+    height: Annotated[
+        float, Slider(-20.0, 20.0, unit="px", doc="How far white stands out above black; below 0 it is pressed in.")
+    ] = 6.0
+    softness: Annotated[
+        float,
+        Slider(
+            0.0, 10.0, unit="px", minimum=0.0, maximum=500.0, doc="Sigma of a blur that rounds the relief off first."
+        ),
+    ] = 0.7
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
     def passes(self, draw: Draw) -> Drawn:
         tone = draw.point("emboss_tone", self.image, result=Field())
         relief = draw.blur(tone, self.softness, self.edge)
         return draw(
-            "emboss", self.image, relief=relief, edge=self.edge, overlap={"image": 0, "relief": 1},
-            kind=self.kind, direction=self.direction, elevation=self.elevation, height=self.height,
+            "emboss",
+            self.image,
+            relief=relief,
+            edge=self.edge,
+            overlap={"image": 0, "relief": 1},
+            kind=self.kind,
+            direction=self.direction,
+            elevation=self.elevation,
+            height=self.height,
         )

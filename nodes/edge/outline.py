@@ -17,12 +17,11 @@ class Outline(Filter):
     position: Annotated[Literal["outside", "inside", "center"], Doc("On which side of the contour the line lies.")] = (
         "outside"
     )
-    width: Annotated[float, Slider(
-        0.0, 50.0, unit="px", minimum=0.0, maximum=1000.0, doc="Width of the line."
-    )] = 4.0
-    softness: Annotated[float, Slider(
-        0.0, 50.0, unit="px", minimum=0.0, maximum=1000.0, doc="Over how many pixels the line's edges fade."
-    )] = 0.0
+    width: Annotated[float, Slider(0.0, 50.0, unit="px", minimum=0.0, maximum=1000.0, doc="Width of the line.")] = 4.0
+    softness: Annotated[
+        float,
+        Slider(0.0, 50.0, unit="px", minimum=0.0, maximum=1000.0, doc="Over how many pixels the line's edges fade."),
+    ] = 0.0
     color: Annotated[RGBA, Doc("The line's color; its alpha is how much it covers.")] = (1.0, 1.0, 1.0, 1.0)
 
     out = Output()
@@ -37,18 +36,26 @@ class Outline(Filter):
                 "outline_columns", seeds=columns, overlap=(0, 2**level), result=Vector(width=2), reach=2**level
             )
         contour = draw(
-            "outline_distance", mask=mask, columns=columns, overlap={"mask": reach + 1, "columns": (reach, 0)},
-            result=Field(), reach=reach,
+            "outline_distance",
+            mask=mask,
+            columns=columns,
+            overlap={"mask": reach + 1, "columns": (reach, 0)},
+            result=Field(),
+            reach=reach,
         )
         behind = self.position == "outside" and not draw.linked(self.mask)
         first, last = {
-            "outside": (0.0, self.width), "inside": (-self.width, 0.0), "center": (-self.width / 2, self.width / 2)
+            "outside": (0.0, self.width),
+            "inside": (-self.width, 0.0),
+            "center": (-self.width / 2, self.width / 2),
         }[self.position]
         line = draw.point(
             "outline_line", result=Field(), contour=contour, first=first, last=last, fade=1.0 + self.softness
         )
-        under = draw.point(
-            "outline_line", result=Field(), contour=contour, first=-1e6, last=last, fade=1.0 + self.softness
-        ) if behind else line
+        under = (
+            draw.point("outline_line", result=Field(), contour=contour, first=-1e6, last=last, fade=1.0 + self.softness)
+            if behind
+            else line
+        )
         out = draw.point("outline", self.image, line=under, color=self.color, behind=behind)
         return {"out": out, "line": line}

@@ -7,21 +7,23 @@ from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Kernel3x3, Slider
 
 _IDENTITY: Kernel3x3 = (0, 0, 0, 0, 1, 0, 0, 0, 0)
 
-_KERNELS: Mapping[str, Kernel3x3] = MappingProxyType({
-    "sharpen": (0, -1, 0, -1, 5, -1, 0, -1, 0),
-    "box": (1 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 9),
-    "laplacian 4": (0, 1, 0, 1, -4, 1, 0, 1, 0),
-    "laplacian 8": (1, 1, 1, 1, -8, 1, 1, 1, 1),
-    "laplacian isotropic": (1 / 6, 4 / 6, 1 / 6, 4 / 6, -20 / 6, 4 / 6, 1 / 6, 4 / 6, 1 / 6),
-    "emboss": (2, 0, 0, 0, -1, 0, 0, 0, -1),
-    "relief": (-1, -2, -1, 0, 1, 0, 1, 2, 1),
-    "sobel x": (-1, 0, 1, -2, 0, 2, -1, 0, 1),
-    "sobel y": (-1, -2, -1, 0, 0, 0, 1, 2, 1),
-    "prewitt x": (-1, 0, 1, -1, 0, 1, -1, 0, 1),
-    "prewitt y": (-1, -1, -1, 0, 0, 0, 1, 1, 1),
-    "scharr x": (-3, 0, 3, -10, 0, 10, -3, 0, 3),
-    "scharr y": (-3, -10, -3, 0, 0, 0, 3, 10, 3),
-})
+_KERNELS: Mapping[str, Kernel3x3] = MappingProxyType(
+    {
+        "sharpen": (0, -1, 0, -1, 5, -1, 0, -1, 0),
+        "box": (1 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 9, 1 / 9),
+        "laplacian 4": (0, 1, 0, 1, -4, 1, 0, 1, 0),
+        "laplacian 8": (1, 1, 1, 1, -8, 1, 1, 1, 1),
+        "laplacian isotropic": (1 / 6, 4 / 6, 1 / 6, 4 / 6, -20 / 6, 4 / 6, 1 / 6, 4 / 6, 1 / 6),
+        "emboss": (2, 0, 0, 0, -1, 0, 0, 0, -1),
+        "relief": (-1, -2, -1, 0, 1, 0, 1, 2, 1),
+        "sobel x": (-1, 0, 1, -2, 0, 2, -1, 0, 1),
+        "sobel y": (-1, -2, -1, 0, 0, 0, 1, 2, 1),
+        "prewitt x": (-1, 0, 1, -1, 0, 1, -1, 0, 1),
+        "prewitt y": (-1, -1, -1, 0, 0, 0, 1, 1, 1),
+        "scharr x": (-3, 0, 3, -10, 0, 10, -3, 0, 3),
+        "scharr y": (-3, -10, -3, 0, 0, 0, 3, 10, 3),
+    }
+)
 
 
 class Convolve3x3(Filter):
@@ -33,8 +35,20 @@ class Convolve3x3(Filter):
     image = Image()
     preset: Annotated[
         Literal[
-            "custom", "sharpen", "box", "laplacian 4", "laplacian 8", "laplacian isotropic", "emboss", "relief",
-            "sobel x", "sobel y", "prewitt x", "prewitt y", "scharr x", "scharr y",
+            "custom",
+            "sharpen",
+            "box",
+            "laplacian 4",
+            "laplacian 8",
+            "laplacian isotropic",
+            "emboss",
+            "relief",
+            "sobel x",
+            "sobel y",
+            "prewitt x",
+            "prewitt y",
+            "scharr x",
+            "scharr y",
         ],
         Doc("A well-known kernel; `custom` uses the nine numbers below."),
     ] = "sharpen"
@@ -64,6 +78,11 @@ class Convolve3x3(Filter):
 
     def passes(self, draw: Draw) -> Drawn:
         return draw(
-            "convolve3x3", self.image, edge=self.edge, overlap=1,
-            kernel=self.weights(), bias=self.bias, filter_alpha=self.filter_alpha,
+            "convolve3x3",
+            self.image,
+            edge=self.edge,
+            overlap=1,
+            kernel=self.weights(),
+            bias=self.bias,
+            filter_alpha=self.filter_alpha,
         )

@@ -28,9 +28,12 @@ class CameraVelocity(Filter):
             after = after or draw.camera(self.camera, draw.frame + 1)
         stay = (0.0,) * 12
         return draw.point(
-            "camera_velocity", self.depth, result=Vector(width=4),
+            "camera_velocity",
+            self.depth,
+            result=Vector(width=4),
             before=_change(now, before) if now and before else stay,
-            after=_change(now, after) if now and after else stay, ahead=after is not None,
+            after=_change(now, after) if now and after else stay,
+            ahead=after is not None,
         )
 
 

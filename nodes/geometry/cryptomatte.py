@@ -29,10 +29,14 @@ class Cryptomatte(Reader):
 
     path: Annotated[RenderPath, Doc("The render, relative to the graph's folder.")] = ""
     layer: Annotated[Literal["object", "material", "asset"], Doc("What is told apart.")] = "object"
-    pick: Annotated[str, Picks("layer"), Doc(
-        "Names, such as monkey, ring_*, \"with, comma\". In a name, * is any text, ? any letter, [ab] one of these. "
-        "What follows after a minus is left out: *, -floor."
-    )] = "*"
+    pick: Annotated[
+        str,
+        Picks("layer"),
+        Doc(
+            'Names, such as monkey, ring_*, "with, comma". In a name, * is any text, ? any letter, [ab] one of these. '
+            "What follows after a minus is left out: *, -floor."
+        ),
+    ] = "*"
     invert: Annotated[bool, Doc("Everything else.")] = False
 
     matte = Output(Field(doc="How much of each pixel is covered by what was picked, 0..1."))

@@ -16,12 +16,13 @@ class Curvature(Filter):
     position = Vector(0.0, width=3, doc="Places in the world.")
     depth = Field(0.0, doc="Distance from the camera, in place of positions.")
     camera = Viewpoint(0.0, doc="Without one, normals alone are the camera's own: x right, y up, z towards it.")
-    radius: Annotated[float, Slider(
-        0.01, 10.0, unit="scene", minimum=0.0, doc="A ball of this radius reads 1; larger ones less."
-    )] = 0.25
-    reach: Annotated[float, Slider(
-        1.0, 10.0, unit="px", minimum=0.0, maximum=100.0, doc="How far away the pixels lie that are compared."
-    )] = 1.0
+    radius: Annotated[
+        float, Slider(0.01, 10.0, unit="scene", minimum=0.0, doc="A ball of this radius reads 1; larger ones less.")
+    ] = 0.25
+    reach: Annotated[
+        float,
+        Slider(1.0, 10.0, unit="px", minimum=0.0, maximum=100.0, doc="How far away the pixels lie that are compared."),
+    ] = 1.0
 
     ridge = Output(Field(doc="How strongly it bends outwards, 0..1."))
     cavity = Output(Field(doc="How strongly it bends inwards, 0..1."))
@@ -34,13 +35,22 @@ class Curvature(Filter):
             places = draw.point("curvature_place", self.depth, result=Vector(width=3), rays=camera.inverse)
         if places:
             mean = draw(
-                "curvature_found", self.normal, places=places, overlap={"normal": reach, "places": 3 * reach},
-                result=field, reach=reach,
+                "curvature_found",
+                self.normal,
+                places=places,
+                overlap={"normal": reach, "places": 3 * reach},
+                result=field,
+                reach=reach,
             )
         else:
             mean = draw(
-                "curvature_alone", self.normal, overlap=reach, result=field, reach=reach,
-                right=camera.right if camera else (1.0, 0.0, 0.0), down=camera.down if camera else (0.0, -1.0, 0.0),
+                "curvature_alone",
+                self.normal,
+                overlap=reach,
+                result=field,
+                reach=reach,
+                right=camera.right if camera else (1.0, 0.0, 0.0),
+                down=camera.down if camera else (0.0, -1.0, 0.0),
                 forward=camera.forward if camera else (0.0, 0.0, -1.0),
             )
         ridge, cavity = (

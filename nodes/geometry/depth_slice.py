@@ -13,12 +13,12 @@ class DepthSlice(Pointwise):
     depth = Field(doc="Distance from the camera.")
     near: Annotated[float, Slider(0.0, 100.0, unit="scene", minimum=0.0, doc="What is nearer is cut away.")] = 6.0
     far: Annotated[float, Slider(0.0, 100.0, unit="scene", minimum=0.0, doc="What is farther is cut away.")] = 9.0
-    near_softness: Annotated[float, Slider(
-        0.0, 20.0, unit="scene", minimum=0.0, doc="The mask rises over so much depth before near."
-    )] = 1.0
-    far_softness: Annotated[float, Slider(
-        0.0, 20.0, unit="scene", minimum=0.0, doc="The mask falls over so much depth beyond far."
-    )] = 1.0
+    near_softness: Annotated[
+        float, Slider(0.0, 20.0, unit="scene", minimum=0.0, doc="The mask rises over so much depth before near.")
+    ] = 1.0
+    far_softness: Annotated[
+        float, Slider(0.0, 20.0, unit="scene", minimum=0.0, doc="The mask falls over so much depth beyond far.")
+    ] = 1.0
     invert: Annotated[bool, Doc("Mask what lies outside of the slice.")] = False
 
     mask = Output(Field(doc="How much of each pixel is in the slice, 0..1."))

@@ -18,44 +18,61 @@ class Fog(Filter):
     depth = Field(doc="Distance from the camera; what has none is sky.")
     position = Vector(0.0, width=3, doc="Places in the world, for the height without a camera.")
     camera = Viewpoint(0.0, doc="For the height, the sun, and true distances.")
-    mode: Annotated[Literal["linear", "exponential", "exponential squared", "height"], Doc(
-        "Linear: from start to end. Exponential squared keeps what is near clearer. Height: a layer on the ground; it "
-        "needs a camera, or positions and eye."
-    )] = "exponential"
+    mode: Annotated[
+        Literal["linear", "exponential", "exponential squared", "height"],
+        Doc(
+            "Linear: from start to end. Exponential squared keeps what is near clearer. Height: a layer on the ground; it "
+            "needs a camera, or positions and eye."
+        ),
+    ] = "exponential"
     color: Annotated[RGBA, Doc("Light of the thickest fog; its alpha is the most that fog covers.")] = (
-        0.3, 0.36, 0.45, 1.0
+        0.3,
+        0.36,
+        0.45,
+        1.0,
     )
-    density: Annotated[float, Slider(
-        0.0, 1.0, unit="scene", minimum=0.0, doc="How much fog one unit of distance holds; at the base of height fog."
-    )] = 0.08
-    start: Annotated[float, Slider(
-        0.0, 50.0, unit="scene", minimum=0.0, doc="What is nearer stays clear."
-    )] = 4.0
-    end: Annotated[float, Slider(
-        0.0, 100.0, unit="scene", minimum=0.0, doc="Where linear fog hides everything."
-    )] = 20.0
-    base: Annotated[float, Slider(
-        -10.0, 10.0, unit="scene", doc="The height at which height fog has its density."
-    )] = 0.0
-    thickness: Annotated[float, Slider(
-        0.1, 20.0, unit="scene", minimum=1e-3, doc="So much higher, height fog is thinner by a factor of e, 2.7."
-    )] = 1.0
+    density: Annotated[
+        float,
+        Slider(
+            0.0,
+            1.0,
+            unit="scene",
+            minimum=0.0,
+            doc="How much fog one unit of distance holds; at the base of height fog.",
+        ),
+    ] = 0.08
+    start: Annotated[float, Slider(0.0, 50.0, unit="scene", minimum=0.0, doc="What is nearer stays clear.")] = 4.0
+    end: Annotated[float, Slider(0.0, 100.0, unit="scene", minimum=0.0, doc="Where linear fog hides everything.")] = (
+        20.0
+    )
+    base: Annotated[float, Slider(-10.0, 10.0, unit="scene", doc="The height at which height fog has its density.")] = (
+        0.0
+    )
+    thickness: Annotated[
+        float,
+        Slider(
+            0.1, 20.0, unit="scene", minimum=1e-3, doc="So much higher, height fog is thinner by a factor of e, 2.7."
+        ),
+    ] = 1.0
     up: Annotated[Literal["z", "y"], Doc("The axis of the world that points up: z in Blender, y in Maya.")] = "z"
-    eye: Annotated[float, Slider(
-        -10.0, 10.0, unit="scene", doc="How high the camera stands, where only positions are linked."
-    )] = 1.6
+    eye: Annotated[
+        float, Slider(-10.0, 10.0, unit="scene", doc="How high the camera stands, where only positions are linked.")
+    ] = 1.6
     sky: Annotated[Fraction, Doc("How much of the fog lies before what has no depth.")] = 1.0
-    alpha: Annotated[Literal["keep", "fill"], Doc(
-        "Keep: fog only on what the picture covers, for a layer that goes over others. Fill: fog where it is empty too."
-    )] = "keep"
+    alpha: Annotated[
+        Literal["keep", "fill"],
+        Doc(
+            "Keep: fog only on what the picture covers, for a layer that goes over others. Fill: fog where it is empty too."
+        ),
+    ] = "keep"
     sun: Annotated[Fraction, Doc("How much the fog glows towards the sun; it needs a camera.")] = 0.0
     sun_color: Annotated[RGBA, Doc("Light of the fog right before the sun.")] = (1.6, 1.1, 0.6, 1.0)
-    sun_direction: Annotated[tuple[float, float, float], Slider(-1.0, 1.0, unit="ratio"), Doc(
-        "Towards the sun, in the world's axes."
-    )] = (0.3, 0.9, 0.3)
-    sun_focus: Annotated[float, Slider(
-        1.0, 100.0, unit="ratio", minimum=0.0, doc="Higher draws the glow closer around the sun."
-    )] = 8.0
+    sun_direction: Annotated[
+        tuple[float, float, float], Slider(-1.0, 1.0, unit="ratio"), Doc("Towards the sun, in the world's axes.")
+    ] = (0.3, 0.9, 0.3)
+    sun_focus: Annotated[
+        float, Slider(1.0, 100.0, unit="ratio", minimum=0.0, doc="Higher draws the glow closer around the sun.")
+    ] = 8.0
 
     out = Output()
     amount = Output(Field(doc="How much of each pixel the fog hides, 0..1."))
@@ -66,12 +83,34 @@ class Fog(Filter):
         length = math.hypot(*self.sun_direction)
         sun = tuple(part / length for part in self.sun_direction) if length and camera else (0.0, 0.0, 0.0)
         amount = draw.point(
-            "fog_amount", self.depth, self.position, result=Field(), rays=rays, seen=camera is not None, placed=placed,
-            mode=self.mode, density=self.density, start=self.start, end=self.end, base=self.base,
-            thickness=self.thickness, up=self.up, eye=self.eye, sky=self.sky, most=self.color[3],
+            "fog_amount",
+            self.depth,
+            self.position,
+            result=Field(),
+            rays=rays,
+            seen=camera is not None,
+            placed=placed,
+            mode=self.mode,
+            density=self.density,
+            start=self.start,
+            end=self.end,
+            base=self.base,
+            thickness=self.thickness,
+            up=self.up,
+            eye=self.eye,
+            sky=self.sky,
+            most=self.color[3],
         )
         out = draw.point(
-            "fog", self.image, amount=amount, rays=rays, color=self.color[:3], alpha=self.alpha, sun=self.sun,
-            sun_color=self.sun_color[:3], sun_direction=sun, sun_focus=self.sun_focus,
+            "fog",
+            self.image,
+            amount=amount,
+            rays=rays,
+            color=self.color[:3],
+            alpha=self.alpha,
+            sun=self.sun,
+            sun_color=self.sun_color[:3],
+            sun_direction=sun,
+            sun_focus=self.sun_focus,
         )
         return {"out": out, "amount": amount}

@@ -19,21 +19,26 @@ class GeometryEdges(Filter):
     depth = Field(0.0, doc="Distance from the camera.")
     normal = Vector(0.0, width=3, doc="Directions of surfaces.")
     ids = Field(0.0, doc="Numbers of objects or materials.")
-    width: Annotated[float, Slider(
-        0.0, 20.0, unit="px", minimum=0.0, maximum=1000.0, doc="Width of the lines, the same near and far."
-    )] = 2.0
+    width: Annotated[
+        float,
+        Slider(0.0, 20.0, unit="px", minimum=0.0, maximum=1000.0, doc="Width of the lines, the same near and far."),
+    ] = 2.0
     depth_amount: Annotated[Fraction, Doc("How strong lines by depth are.")] = 1.0
-    depth_threshold: Annotated[float, Slider(
-        0.0, 0.5, unit="ratio", minimum=0.0, doc="Gaps that are a smaller part of the depth make no line."
-    )] = 0.05
+    depth_threshold: Annotated[
+        float,
+        Slider(0.0, 0.5, unit="ratio", minimum=0.0, doc="Gaps that are a smaller part of the depth make no line."),
+    ] = 0.05
     crease_amount: Annotated[Fraction, Doc("How strong lines by normals are.")] = 1.0
-    crease_threshold: Annotated[float, Slider(
-        0.0, 90.0, unit="deg", minimum=0.0, maximum=180.0, doc="Folds by smaller angles make no line."
-    )] = 35.0
+    crease_threshold: Annotated[
+        float, Slider(0.0, 90.0, unit="deg", minimum=0.0, maximum=180.0, doc="Folds by smaller angles make no line.")
+    ] = 35.0
     id_amount: Annotated[Fraction, Doc("How strong lines between ids are.")] = 1.0
-    softness: Annotated[Fraction, Doc(
-        "Lines gain strength up to so much above their threshold, as a part of it. Lines wider than 2 pixels are hard."
-    )] = 0.5
+    softness: Annotated[
+        Fraction,
+        Doc(
+            "Lines gain strength up to so much above their threshold, as a part of it. Lines wider than 2 pixels are hard."
+        ),
+    ] = 0.5
 
     edges = Output(Field(doc="How much of each pixel lines cover, 0..1."))
     gap = Output(Field(doc="Between surfaces, as a part of the depth."))
@@ -44,9 +49,14 @@ class GeometryEdges(Filter):
         field = Field()
         found = draw("geometry_edges_found", self.depth, self.normal, self.ids, overlap=1, result=Vector(width=3))
         edges = draw.point(
-            "geometry_edges", result=field, found=found,
-            amounts=(self.depth_amount, self.crease_amount, self.id_amount), gap=self.depth_threshold,
-            crease=self.crease_threshold, softness=self.softness, cover=min(self.width / _SEAM, 1.0),
+            "geometry_edges",
+            result=field,
+            found=found,
+            amounts=(self.depth_amount, self.crease_amount, self.id_amount),
+            gap=self.depth_threshold,
+            crease=self.crease_threshold,
+            softness=self.softness,
+            cover=min(self.width / _SEAM, 1.0),
         )
         if self.width > _SEAM:
             edges = self._widened(draw, edges)
@@ -67,7 +77,11 @@ class GeometryEdges(Filter):
                 "geometry_edges_columns", seeds=columns, overlap=(0, 2**level), result=Vector(width=2), reach=2**level
             )
         contour = draw(
-            "geometry_edges_distance", mask=edges, columns=columns, overlap={"mask": reach + 1, "columns": (reach, 0)},
-            result=Field(), reach=reach,
+            "geometry_edges_distance",
+            mask=edges,
+            columns=columns,
+            overlap={"mask": reach + 1, "columns": (reach, 0)},
+            result=Field(),
+            reach=reach,
         )
         return draw.point("geometry_edges_line", result=Field(), contour=contour, beyond=beyond)

@@ -15,9 +15,12 @@ class NormalFromDepth(Filter):
 
     depth = Field(doc="Planar distance along the way the camera looks.")
     camera = Viewpoint(doc="The camera that the depth was rendered with.")
-    reach: Annotated[float, Slider(
-        1.0, 8.0, unit="px", minimum=1.0, maximum=64.0, doc="How far apart normals are compared for the curvature."
-    )] = 2.0
+    reach: Annotated[
+        float,
+        Slider(
+            1.0, 8.0, unit="px", minimum=1.0, maximum=64.0, doc="How far apart normals are compared for the curvature."
+        ),
+    ] = 2.0
 
     normal = Output(Vector(width=3, doc="Of length 1, in the world, towards the camera."))
     curvature = Output(Field())
@@ -28,7 +31,13 @@ class NormalFromDepth(Filter):
         normal = draw("normal_from_depth", self.depth, edge="black", overlap=2, result=Vector(width=3), rows=rows)
         reach = max(round(self.reach), 1)
         curvature = draw(
-            "normal_from_depth_curvature", self.depth, normal=normal, edge="black", overlap=reach, result=Field(),
-            rays=rays, reach=reach,
+            "normal_from_depth_curvature",
+            self.depth,
+            normal=normal,
+            edge="black",
+            overlap=reach,
+            result=Field(),
+            rays=rays,
+            reach=reach,
         )
         return {"normal": normal, "curvature": curvature}

@@ -36,7 +36,11 @@ class RebuildBeauty(Filter):
         for color, direct, indirect in self._lobes():
             if draw.linked(direct) or draw.linked(indirect):
                 total = draw.point(
-                    "rebuild_beauty_lobe", result=Vector(width=4), total=total, color=color, direct=direct,
+                    "rebuild_beauty_lobe",
+                    result=Vector(width=4),
+                    total=total,
+                    color=color,
+                    direct=direct,
                     indirect=indirect,
                 )
         for light in (self.volume_direct, self.volume_indirect, self.emission, self.environment, self.other):

@@ -18,13 +18,13 @@ class RimLight(Filter):
     mask = Field(1.0, doc="Where the light falls: flat ground seen aslant is all rim.")
     color: Annotated[RGBA, Doc("Color of the light; its alpha scales it.")] = (1.0, 0.85, 0.7, 1.0)
     intensity: Annotated[float, Slider(0.0, 10.0, unit="ratio", doc="How strong it is.")] = 2.0
-    power: Annotated[float, Slider(
-        0.5, 10.0, unit="ratio", minimum=0.0, maximum=1000.0, doc="Higher makes the rim narrower."
-    )] = 3.0
+    power: Annotated[
+        float, Slider(0.5, 10.0, unit="ratio", minimum=0.0, maximum=1000.0, doc="Higher makes the rim narrower.")
+    ] = 3.0
     focus: Annotated[Fraction, Doc("0: from all around; 1: from one side alone.")] = 0.0
-    angle: Annotated[float, Slider(
-        -180.0, 180.0, unit="deg", doc="The side it comes from: 0 is right, 90 above."
-    )] = 45.0
+    angle: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="The side it comes from: 0 is right, 90 above.")] = (
+        45.0
+    )
 
     out = Output()
     rim = Output(Field(doc="How much of the light every pixel takes, 0..1, whatever the mask."))
@@ -36,7 +36,13 @@ class RimLight(Filter):
         across, up = math.cos(self.angle), math.sin(self.angle)
         side = tuple(across * a - up * b for a, b in zip(right, down, strict=True))
         rim = draw(
-            "rim_light_rim", self.normal, overlap=1, result=Field(), rays=rays, power=self.power, focus=self.focus,
+            "rim_light_rim",
+            self.normal,
+            overlap=1,
+            result=Field(),
+            rays=rays,
+            power=self.power,
+            focus=self.focus,
             side=side,
         )
         gain = self.intensity * self.color[3]

@@ -41,15 +41,17 @@ class Bloom(Filter):
     image = Image()
     radius: Annotated[
         float,
-        Slider(
-            0.0, 0.5, unit="height", minimum=0.0, maximum=1.0, doc="Standard deviation of the glow at its widest."
-        ),
+        Slider(0.0, 0.5, unit="height", minimum=0.0, maximum=1.0, doc="Standard deviation of the glow at its widest."),
     ] = 0.1
     scatter: Annotated[Fraction, Doc("How much light goes on to wider levels: 0 a tight glow, 1 a wide one.")] = 0.7
-    levels: Annotated[Points, Curve(0.0, 2.0, minimum=0.0), Doc(
-        "How much each width counts, beside what scatter gives it: from a sixteenth of the radius, left, by doublings "
-        "to the whole radius, right. The sum stays."
-    )] = (0.0, 1.0, 1.0, 1.0)
+    levels: Annotated[
+        Points,
+        Curve(0.0, 2.0, minimum=0.0),
+        Doc(
+            "How much each width counts, beside what scatter gives it: from a sixteenth of the radius, left, by doublings "
+            "to the whole radius, right. The sum stays."
+        ),
+    ] = (0.0, 1.0, 1.0, 1.0)
     tint: Annotated[RGBA, Doc("Color of the glow; white keeps that of the light.")] = _WHITE
     intensity: Annotated[
         float, Slider(0.0, 1.0, unit="ratio", minimum=0.0, doc="How much glow reaches the picture.")
@@ -64,7 +66,11 @@ class Bloom(Filter):
     limit: Annotated[
         float,
         Slider(
-            1.0, 1000.0, unit="scene", minimum=0.0, maximum=_NO_LIMIT,
+            1.0,
+            1000.0,
+            unit="scene",
+            minimum=0.0,
+            maximum=_NO_LIMIT,
             doc="The luminance that glows at most, for suns and noise; 65504 sets no limit.",
         ),
     ] = _NO_LIMIT

@@ -18,17 +18,28 @@ class BrightPass(Pointwise):
     mode: Annotated[
         Literal["hard", "soft", "clamp", "exponential", "power"], Doc("How light is picked: see above.")
     ] = "soft"
-    measure: Annotated[Literal["luminance", "maximum"], Doc(
-        "Luminance is Rec.709. Maximum is of the three channels, so that blue and red lamps count as white ones do."
-    )] = "luminance"
-    threshold: Annotated[float, Slider(
-        0.0, 10.0, unit="scene", minimum=0.0, doc="Light counts as bright above this. Clamp does not use it."
-    )] = 1.0
+    measure: Annotated[
+        Literal["luminance", "maximum"],
+        Doc(
+            "Luminance is Rec.709. Maximum is of the three channels, so that blue and red lamps count as white ones do."
+        ),
+    ] = "luminance"
+    threshold: Annotated[
+        float,
+        Slider(0.0, 10.0, unit="scene", minimum=0.0, doc="Light counts as bright above this. Clamp does not use it."),
+    ] = 1.0
     knee: Annotated[Fraction, Doc("For soft: the part of the threshold over which light fades in.")] = 0.5
-    power: Annotated[float, Slider(
-        0.5, 8.0, unit="ratio", minimum=0.0, maximum=16.0, doc="For exponential and power: how steep."
-    )] = 2.0
-    limit: Annotated[float, Slider(
-        1.0, 1000.0, unit="scene", minimum=0.0, maximum=65504.0,
-        doc="Nothing counts as brighter than this, for suns and noise; 65504 sets no limit.",
-    )] = 65504.0
+    power: Annotated[
+        float, Slider(0.5, 8.0, unit="ratio", minimum=0.0, maximum=16.0, doc="For exponential and power: how steep.")
+    ] = 2.0
+    limit: Annotated[
+        float,
+        Slider(
+            1.0,
+            1000.0,
+            unit="scene",
+            minimum=0.0,
+            maximum=65504.0,
+            doc="Nothing counts as brighter than this, for suns and noise; 65504 sets no limit.",
+        ),
+    ] = 65504.0

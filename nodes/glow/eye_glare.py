@@ -24,17 +24,23 @@ class EyeGlare(Filter):
     """
 
     image = Image()
-    vision: Annotated[Literal["photopic", "mesopic", "scotopic"], Doc(
-        "What the eye is used to: daylight, dusk or night. The wider the pupil, the more halo."
-    )] = "scotopic"
-    field_of_view: Annotated[float, Slider(
-        5.0, 120.0, unit="deg", minimum=0.1, maximum=180.0,
-        doc="How high the picture stands in the eye. Smaller angles make the glare larger.",
-    )] = 40.0
+    vision: Annotated[
+        Literal["photopic", "mesopic", "scotopic"],
+        Doc("What the eye is used to: daylight, dusk or night. The wider the pupil, the more halo."),
+    ] = "scotopic"
+    field_of_view: Annotated[
+        float,
+        Slider(
+            5.0,
+            120.0,
+            unit="deg",
+            minimum=0.1,
+            maximum=180.0,
+            doc="How high the picture stands in the eye. Smaller angles make the glare larger.",
+        ),
+    ] = 40.0
     rays: Annotated[Fraction, Doc("How far the glare breaks up into rays, the ciliary corona.")] = 0.5
-    strength: Annotated[float, Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, doc="1 is what the eye does."
-    )] = 1.0
+    strength: Annotated[float, Slider(0.0, 1.0, unit="ratio", minimum=0.0, doc="1 is what the eye does.")] = 1.0
 
     out = Output()
     glow = Output()
@@ -65,6 +71,13 @@ class EyeGlare(Filter):
         first, last = (0.0, 0.0) if whole else ((factor or cell) * part for part in _NEAR)
         # "from" and "to" are words of Python's or of GLSL's: they travel as one.
         return draw(
-            "eye_glare_kernel", halo=halo, size=(2 * reach[0] - 1, 2 * reach[1] - 1), result=_DATA,
-            vision=self.vision, pitch=degrees, cell=cell, fade=(first, last), rays=self.rays,
+            "eye_glare_kernel",
+            halo=halo,
+            size=(2 * reach[0] - 1, 2 * reach[1] - 1),
+            result=_DATA,
+            vision=self.vision,
+            pitch=degrees,
+            cell=cell,
+            fade=(first, last),
+            rays=self.rays,
         )

@@ -42,27 +42,57 @@ class FilmHalation(Filter):
     """
 
     image = Image()
-    amount: Annotated[float, Slider(
-        0.0, 0.58, unit="ratio", minimum=0.0, maximum=16.0,
-        doc="How much of the bright light comes back. 0: the backing absorbs all of it; 0.58: there is no backing.",
-    )] = 0.2
+    amount: Annotated[
+        float,
+        Slider(
+            0.0,
+            0.58,
+            unit="ratio",
+            minimum=0.0,
+            maximum=16.0,
+            doc="How much of the bright light comes back. 0: the backing absorbs all of it; 0.58: there is no backing.",
+        ),
+    ] = 0.2
     color: Annotated[RGBA, Doc("How much of it the red, green and blue layers take up.")] = (1.0, 0.15, 0.02, 1.0)
-    radius: Annotated[float, Slider(
-        0.0, 0.06, unit="height", minimum=0.0, maximum=0.5,
-        doc="Radius of the ring: 0.015 for Super 35, 0.032 for 16 mm film, 0.01 for a still of 24 x 36 mm.",
-    )] = 0.015
-    reach: Annotated[tuple[float, float, float], Slider(
-        0.5, 1.0, unit="ratio", minimum=0.5, maximum=1.0, doc="The radius in red, green and blue, as a part of it."
-    )] = (1.0, 0.85, 0.7)
-    threshold: Annotated[tuple[float, float, float], Slider(
-        0.0, 10.0, unit="scene", minimum=0.0,
-        doc="Only light above this gets through the layers, in red, green and blue.",
-    )] = (1.0, 1.0, 1.0)
+    radius: Annotated[
+        float,
+        Slider(
+            0.0,
+            0.06,
+            unit="height",
+            minimum=0.0,
+            maximum=0.5,
+            doc="Radius of the ring: 0.015 for Super 35, 0.032 for 16 mm film, 0.01 for a still of 24 x 36 mm.",
+        ),
+    ] = 0.015
+    reach: Annotated[
+        tuple[float, float, float],
+        Slider(
+            0.5, 1.0, unit="ratio", minimum=0.5, maximum=1.0, doc="The radius in red, green and blue, as a part of it."
+        ),
+    ] = (1.0, 0.85, 0.7)
+    threshold: Annotated[
+        tuple[float, float, float],
+        Slider(
+            0.0,
+            10.0,
+            unit="scene",
+            minimum=0.0,
+            doc="Only light above this gets through the layers, in red, green and blue.",
+        ),
+    ] = (1.0, 1.0, 1.0)
     knee: Annotated[Fraction, Doc("Softness of the threshold: the part of it over which light fades in.")] = 0.5
-    limit: Annotated[float, Slider(
-        1.0, 1000.0, unit="scene", minimum=0.0, maximum=_NO_LIMIT,
-        doc="The light in a channel that comes back at most, for suns and noise; 65504 sets no limit.",
-    )] = 200.0
+    limit: Annotated[
+        float,
+        Slider(
+            1.0,
+            1000.0,
+            unit="scene",
+            minimum=0.0,
+            maximum=_NO_LIMIT,
+            doc="The light in a channel that comes back at most, for suns and noise; 65504 sets no limit.",
+        ),
+    ] = 200.0
 
     out = Output()
     glow = Output()

@@ -25,42 +25,63 @@ class Ghosts(Filter):
     image = Image()
     dirt = Image(1.0, doc="A picture of the front lens: the flare is multiplied by it. Unlinked, there are smudges.")
     count: Annotated[int, Slider(0, 12, unit="count", minimum=0, maximum=12, doc="How many ghosts.")] = 7
-    spread: Annotated[float, Slider(
-        0.2, 2.0, unit="ratio", minimum=0.05, maximum=8.0, doc="Factor on how large and how far out they lie."
-    )] = 1.0
-    ghosts: Annotated[float, Slider(
-        0.0, 0.2, unit="ratio", minimum=0.0, doc="How much of the bright light each ghost has."
-    )] = 0.015
-    halo: Annotated[float, Slider(
-        0.0, 0.2, unit="ratio", minimum=0.0, doc="How bright the halo is, of the light that it moves."
-    )] = 0.015
-    veil: Annotated[float, Slider(
-        0.0, 0.2, unit="ratio", minimum=0.0, doc="How much of the bright light strays over the lens."
-    )] = 0.04
-    radius: Annotated[float, Slider(
-        0.1, 0.8, unit="height", minimum=0.0, maximum=2.0, doc="Radius of the ring that a light on the axis makes."
-    )] = 0.42
-    softness: Annotated[float, Slider(
-        0.0, 0.05, unit="height", minimum=0.0, maximum=0.5, doc="Standard deviation of the blur of ghosts and halo."
-    )] = 0.015
-    chromatic: Annotated[float, Slider(
-        0.0, 0.2, unit="ratio", minimum=0.0, maximum=0.9,
-        doc="How much farther out red lies than green, and green than blue.",
-    )] = 0.03
+    spread: Annotated[
+        float,
+        Slider(0.2, 2.0, unit="ratio", minimum=0.05, maximum=8.0, doc="Factor on how large and how far out they lie."),
+    ] = 1.0
+    ghosts: Annotated[
+        float, Slider(0.0, 0.2, unit="ratio", minimum=0.0, doc="How much of the bright light each ghost has.")
+    ] = 0.015
+    halo: Annotated[
+        float, Slider(0.0, 0.2, unit="ratio", minimum=0.0, doc="How bright the halo is, of the light that it moves.")
+    ] = 0.015
+    veil: Annotated[
+        float, Slider(0.0, 0.2, unit="ratio", minimum=0.0, doc="How much of the bright light strays over the lens.")
+    ] = 0.04
+    radius: Annotated[
+        float,
+        Slider(
+            0.1, 0.8, unit="height", minimum=0.0, maximum=2.0, doc="Radius of the ring that a light on the axis makes."
+        ),
+    ] = 0.42
+    softness: Annotated[
+        float,
+        Slider(
+            0.0, 0.05, unit="height", minimum=0.0, maximum=0.5, doc="Standard deviation of the blur of ghosts and halo."
+        ),
+    ] = 0.015
+    chromatic: Annotated[
+        float,
+        Slider(
+            0.0,
+            0.2,
+            unit="ratio",
+            minimum=0.0,
+            maximum=0.9,
+            doc="How much farther out red lies than green, and green than blue.",
+        ),
+    ] = 0.03
     colors: Annotated[Fraction, Doc("How much each ghost has the color of a coating of its own.")] = 0.6
     tint: Annotated[RGBA, Doc("Color of the flare; white keeps that of the light.")] = (1.0, 1.0, 1.0, 1.0)
-    dirt_amount: Annotated[Fraction, Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="How much the dirt shows."
-    )] = 0.6
+    dirt_amount: Annotated[
+        Fraction, Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="How much the dirt shows.")
+    ] = 0.6
     center: Annotated[Position, Doc("The optical axis.")] = (0.5, 0.5)
-    threshold: Annotated[float, Slider(
-        0.0, 10.0, unit="scene", minimum=0.0, doc="Only light above this luminance is reflected."
-    )] = 2.0
+    threshold: Annotated[
+        float, Slider(0.0, 10.0, unit="scene", minimum=0.0, doc="Only light above this luminance is reflected.")
+    ] = 2.0
     knee: Annotated[Fraction, Doc("Softness of the threshold: the part of it over which light fades in.")] = 0.5
-    limit: Annotated[float, Slider(
-        1.0, 1000.0, unit="scene", minimum=0.0, maximum=_NO_LIMIT,
-        doc="The luminance that is reflected at most, for suns and noise; 65504 sets no limit.",
-    )] = 200.0
+    limit: Annotated[
+        float,
+        Slider(
+            1.0,
+            1000.0,
+            unit="scene",
+            minimum=0.0,
+            maximum=_NO_LIMIT,
+            doc="The luminance that is reflected at most, for suns and noise; 65504 sets no limit.",
+        ),
+    ] = 200.0
 
     out = Output()
     glow = Output()
@@ -74,8 +95,17 @@ class Ghosts(Filter):
             "ghosts_flare",
             image=draw.blur(light, max(self.softness, _FINEST) / 2.0, "black"),
             wide=draw.blur(light, _VEIL * half[1], "black"),
-            size=half, edge="black", center=center, count=self.count, spread=self.spread, ghosts=self.ghosts,
-            halo=self.halo, veil=self.veil, radius=self.radius / 2.0, chromatic=self.chromatic, colors=self.colors,
+            size=half,
+            edge="black",
+            center=center,
+            count=self.count,
+            spread=self.spread,
+            ghosts=self.ghosts,
+            halo=self.halo,
+            veil=self.veil,
+            radius=self.radius / 2.0,
+            chromatic=self.chromatic,
+            colors=self.colors,
         )
         flare = draw("ghosts_enlarge", image=flare, size=draw.size, overlap=Reach.within(2, 2, 1))
         if draw.linked(self.dirt):

@@ -30,15 +30,22 @@ class KernelGlare(Filter):
 
     image = Image()
     kernel = Image(0.0, own_size=True, doc="What a point of light becomes. Without a link, a starburst.")
-    size: Annotated[float, Slider(
-        0.01, 1.5, unit="height", minimum=0.0, maximum=4.0, doc="Height of the kernel."
-    )] = 0.8
+    size: Annotated[float, Slider(0.01, 1.5, unit="height", minimum=0.0, maximum=4.0, doc="Height of the kernel.")] = (
+        0.8
+    )
     blades: Annotated[int, Slider(3, 12, unit="count", minimum=3, maximum=32, doc="Of the iris.")] = 6
     rotation: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="Turns the iris counterclockwise.")] = 15.0
-    falloff: Annotated[float, Slider(
-        0.3, 1.0, unit="ratio", minimum=0.1, maximum=2.0,
-        doc="How fast the iris' rays fade: 1 is physical, below the light of weak lamps reaches further too.",
-    )] = 0.7
+    falloff: Annotated[
+        float,
+        Slider(
+            0.3,
+            1.0,
+            unit="ratio",
+            minimum=0.1,
+            maximum=2.0,
+            doc="How fast the iris' rays fade: 1 is physical, below the light of weak lamps reaches further too.",
+        ),
+    ] = 0.7
     intensity: Annotated[
         float, Slider(0.0, 1.0, unit="ratio", minimum=0.0, doc="How much glare reaches the picture.")
     ] = 0.2
@@ -49,14 +56,24 @@ class KernelGlare(Filter):
         float, Slider(0.0, 10.0, unit="scene", minimum=0.0, doc="Only light above this luminance glares.")
     ] = 1.0
     knee: Annotated[Fraction, Doc("Softness of the threshold: the part of it over which light fades in.")] = 0.5
-    limit: Annotated[float, Slider(
-        1.0, 1000.0, unit="scene", minimum=0.0, maximum=_NO_LIMIT,
-        doc="The luminance that glares at most, for suns and noise; 65504 sets no limit.",
-    )] = _NO_LIMIT
-    quality: Annotated[Literal["full", "half", "quarter"], Doc(
-        "The size at which light is spread. Half is nearly four times as fast as full, and softens rays by a pixel; "
-        "small pictures are always spread in full."
-    )] = "half"
+    limit: Annotated[
+        float,
+        Slider(
+            1.0,
+            1000.0,
+            unit="scene",
+            minimum=0.0,
+            maximum=_NO_LIMIT,
+            doc="The luminance that glares at most, for suns and noise; 65504 sets no limit.",
+        ),
+    ] = _NO_LIMIT
+    quality: Annotated[
+        Literal["full", "half", "quarter"],
+        Doc(
+            "The size at which light is spread. Half is nearly four times as fast as full, and softens rays by a pixel; "
+            "small pictures are always spread in full."
+        ),
+    ] = "half"
 
     out = Output()
     glow = Output()
@@ -68,9 +85,7 @@ class KernelGlare(Filter):
         factor, lines = _FACTORS[self.quality]
         while factor > 1 and draw.size[1] < factor * lines:
             factor //= 2
-        light = draw.point(
-            "kernel_glare_light", self.image, threshold=self.threshold, knee=self.knee, limit=self.limit
-        )
+        light = draw.point("kernel_glare_light", self.image, threshold=self.threshold, knee=self.knee, limit=self.limit)
         kernel = self._kernel(draw, self.size / factor)
         if factor == 1:
             glare = draw.convolve_2d(light, kernel)
@@ -80,9 +95,7 @@ class KernelGlare(Filter):
             spread = draw.convolve_2d(shrunk, kernel)
             glare = draw("kernel_glare_grow", small=spread, result=_DATA, factor=factor)
         glow = draw.point("kernel_glare_glow", self.image, glare=glare)
-        out = draw.point(
-            "kernel_glare", self.image, light=light, glare=glare, intensity=self.intensity, mode=self.mode
-        )
+        out = draw.point("kernel_glare", self.image, light=light, glare=glare, intensity=self.intensity, mode=self.mode)
         return {"out": out, "glow": glow}
 
     def _kernel(self, draw: Draw, height: float) -> Drawn:
@@ -100,8 +113,13 @@ class KernelGlare(Filter):
     def _iris(self, draw: Draw, size: Size) -> Drawn:
         wide = _odd(size[1] * _BLUEST + 2.0)
         iris = draw(
-            "kernel_glare_iris", size=(wide, wide), result=Field(), pitch=2.0 * _RINGS / size[1], blades=self.blades,
-            angle=-self.rotation, falloff=self.falloff,
+            "kernel_glare_iris",
+            size=(wide, wide),
+            result=Field(),
+            pitch=2.0 * _RINGS / size[1],
+            blades=self.blades,
+            angle=-self.rotation,
+            falloff=self.falloff,
         )
         return draw("kernel_glare_dispersed", iris=iris, size=size, result=_DATA)
 

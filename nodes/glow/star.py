@@ -21,25 +21,33 @@ class Star(Filter):
     """
 
     image = Image()
-    length: Annotated[float, Slider(
-        0.0, 0.3, unit="height", minimum=0.0, maximum=1.0, doc="Standard deviation along an arm."
-    )] = 0.08
+    length: Annotated[
+        float, Slider(0.0, 0.3, unit="height", minimum=0.0, maximum=1.0, doc="Standard deviation along an arm.")
+    ] = 0.08
     angle: Annotated[float, Slider(-45.0, 45.0, unit="deg", doc="How far the star is turned, counterclockwise.")] = 45.0
-    intensity: Annotated[float, Slider(
-        0.0, 4.0, unit="ratio", minimum=0.0, doc="How much of the bright light goes into the star."
-    )] = 0.4
+    intensity: Annotated[
+        float, Slider(0.0, 4.0, unit="ratio", minimum=0.0, doc="How much of the bright light goes into the star.")
+    ] = 0.4
     tint: Annotated[RGBA, Doc("Color of the star; white keeps that of the light.")] = (1.0, 1.0, 1.0, 1.0)
-    threshold: Annotated[float, Slider(
-        0.0, 10.0, unit="scene", minimum=0.0, doc="Only light above this luminance glows."
-    )] = 1.0
+    threshold: Annotated[
+        float, Slider(0.0, 10.0, unit="scene", minimum=0.0, doc="Only light above this luminance glows.")
+    ] = 1.0
     knee: Annotated[Fraction, Doc("Softness of the threshold: the part of it over which light fades in.")] = 0.5
-    limit: Annotated[float, Slider(
-        1.0, 1000.0, unit="scene", minimum=0.0, maximum=_NO_LIMIT,
-        doc="The luminance that glows at most, for suns and noise; 65504 sets no limit.",
-    )] = _NO_LIMIT
-    edge: Annotated[Edge, Doc(
-        "What lies outside the picture. Black: no light. Clamp suits glow without threshold, which it keeps even."
-    )] = "black"
+    limit: Annotated[
+        float,
+        Slider(
+            1.0,
+            1000.0,
+            unit="scene",
+            minimum=0.0,
+            maximum=_NO_LIMIT,
+            doc="The luminance that glows at most, for suns and noise; 65504 sets no limit.",
+        ),
+    ] = _NO_LIMIT
+    edge: Annotated[
+        Edge,
+        Doc("What lies outside the picture. Black: no light. Clamp suits glow without threshold, which it keeps even."),
+    ] = "black"
 
     out = Output()
     glow = Output()
@@ -73,6 +81,4 @@ def _turn(size: Size, read: Size, angle: float) -> Reach:
     """Where a picture of this size lies in the other one, which is turned about its middle."""
     cos, sin = math.cos(angle), math.sin(angle)
     x, y = (0.5 * side for side in size)
-    return Reach(
-        (cos, -sin, 0.5 * read[0] - cos * x + sin * y, sin, cos, 0.5 * read[1] - sin * x - cos * y), (2, 2)
-    )
+    return Reach((cos, -sin, 0.5 * read[0] - cos * x + sin * y, sin, cos, 0.5 * read[1] - sin * x - cos * y), (2, 2))

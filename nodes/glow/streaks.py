@@ -27,37 +27,59 @@ class Streaks(Filter):
     """
 
     image = Image()
-    arms: Annotated[int, Slider(
-        2, 16, unit="count", minimum=1, maximum=16, doc="An aperture of n blades has n arms, or 2 n where n is odd."
-    )] = 6
-    length: Annotated[float, Slider(
-        0.0, 1.0, unit="height", minimum=0.0, maximum=4.0, doc="Where a hundredth of an arm's light is left."
-    )] = 0.4
-    angle: Annotated[float, Slider(
-        -180.0, 180.0, unit="deg", doc="Where the first arm points: 0 is right, 90 is up."
-    )] = 15.0
-    dispersion: Annotated[float, Slider(
-        0.0, 4.0, unit="ratio", minimum=0.0, maximum=8.0,
-        doc="How much farther red reaches than blue. 1 is what diffraction does: in proportion to the wavelength.",
-    )] = 1.5
-    intensity: Annotated[float, Slider(
-        0.0, 4.0, unit="ratio", minimum=0.0, doc="How much of the bright light goes into the streaks."
-    )] = 0.5
+    arms: Annotated[
+        int,
+        Slider(
+            2, 16, unit="count", minimum=1, maximum=16, doc="An aperture of n blades has n arms, or 2 n where n is odd."
+        ),
+    ] = 6
+    length: Annotated[
+        float,
+        Slider(0.0, 1.0, unit="height", minimum=0.0, maximum=4.0, doc="Where a hundredth of an arm's light is left."),
+    ] = 0.4
+    angle: Annotated[
+        float, Slider(-180.0, 180.0, unit="deg", doc="Where the first arm points: 0 is right, 90 is up.")
+    ] = 15.0
+    dispersion: Annotated[
+        float,
+        Slider(
+            0.0,
+            4.0,
+            unit="ratio",
+            minimum=0.0,
+            maximum=8.0,
+            doc="How much farther red reaches than blue. 1 is what diffraction does: in proportion to the wavelength.",
+        ),
+    ] = 1.5
+    intensity: Annotated[
+        float, Slider(0.0, 4.0, unit="ratio", minimum=0.0, doc="How much of the bright light goes into the streaks.")
+    ] = 0.5
     tint: Annotated[RGBA, Doc("Color of the streaks; white keeps that of the light.")] = (1.0, 1.0, 1.0, 1.0)
-    threshold: Annotated[float, Slider(
-        0.0, 10.0, unit="scene", minimum=0.0, doc="Only light above this luminance makes streaks."
-    )] = 2.0
+    threshold: Annotated[
+        float, Slider(0.0, 10.0, unit="scene", minimum=0.0, doc="Only light above this luminance makes streaks.")
+    ] = 2.0
     knee: Annotated[Fraction, Doc("Softness of the threshold: the part of it over which light fades in.")] = 0.5
-    limit: Annotated[float, Slider(
-        1.0, 1000.0, unit="scene", minimum=0.0, maximum=_NO_LIMIT,
-        doc="The luminance that makes streaks at most, for suns and noise; 65504 sets no limit.",
-    )] = 200.0
-    quality: Annotated[Literal["full", "half", "quarter"], Doc(
-        "The size at which streaks are made: the smaller, the softer, and 4 or 16 times as fast."
-    )] = "half"
-    edge: Annotated[Literal["black", "clamp"], Doc(
-        "What lies outside the picture. Black: no light. Clamp would draw broad streaks from lights on the border."
-    )] = "black"
+    limit: Annotated[
+        float,
+        Slider(
+            1.0,
+            1000.0,
+            unit="scene",
+            minimum=0.0,
+            maximum=_NO_LIMIT,
+            doc="The luminance that makes streaks at most, for suns and noise; 65504 sets no limit.",
+        ),
+    ] = 200.0
+    quality: Annotated[
+        Literal["full", "half", "quarter"],
+        Doc("The size at which streaks are made: the smaller, the softer, and 4 or 16 times as fast."),
+    ] = "half"
+    edge: Annotated[
+        Literal["black", "clamp"],
+        Doc(
+            "What lies outside the picture. Black: no light. Clamp would draw broad streaks from lights on the border."
+        ),
+    ] = "black"
 
     out = Output()
     glow = Output()
@@ -85,8 +107,13 @@ class Streaks(Filter):
         while stride < _BEYOND * max(lengths):
             fade = tuple(_LEFT ** (stride / max(one, 1e-3)) for one in lengths)
             light = draw(
-                "streaks_pass", image=light, edge=self.edge, size=light.size, overlap=_far(back, 3 * stride),
-                stride=_times(back, stride), fade=fade,
+                "streaks_pass",
+                image=light,
+                edge=self.edge,
+                size=light.size,
+                overlap=_far(back, 3 * stride),
+                stride=_times(back, stride),
+                fade=fade,
             )
             stride *= 4
         return light

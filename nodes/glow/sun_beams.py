@@ -24,32 +24,55 @@ class SunBeams(Filter):
     image = Image()
     mask = Field(1.0, doc="Where light may come from: the sky, a window.")
     source: Annotated[Position, Doc("Where the light is; it may lie outside the picture.")] = (0.694, 0.063)
-    radius: Annotated[float, Slider(
-        0.0, 1.0, unit="height", minimum=0.0, maximum=16.0,
-        doc="Only light this near to the source throws beams; it fades out over as much again. Large: all light does.",
-    )] = 0.06
-    length: Annotated[Fraction, Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0,
-        doc="How far a pixel looks, as a part of its way to the source.",
-    )] = 0.93
-    decay: Annotated[Fraction, Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="How much light is lost on that way."
-    )] = 0.8
-    intensity: Annotated[float, Slider(
-        0.0, 4.0, unit="ratio", minimum=0.0, doc="How bright the beams are, of the light that they gather."
-    )] = 0.3
+    radius: Annotated[
+        float,
+        Slider(
+            0.0,
+            1.0,
+            unit="height",
+            minimum=0.0,
+            maximum=16.0,
+            doc="Only light this near to the source throws beams; it fades out over as much again. Large: all light does.",
+        ),
+    ] = 0.06
+    length: Annotated[
+        Fraction,
+        Slider(
+            0.0,
+            1.0,
+            unit="ratio",
+            minimum=0.0,
+            maximum=1.0,
+            doc="How far a pixel looks, as a part of its way to the source.",
+        ),
+    ] = 0.93
+    decay: Annotated[
+        Fraction, Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="How much light is lost on that way.")
+    ] = 0.8
+    intensity: Annotated[
+        float,
+        Slider(0.0, 4.0, unit="ratio", minimum=0.0, doc="How bright the beams are, of the light that they gather."),
+    ] = 0.3
     tint: Annotated[RGBA, Doc("Color of the beams; white keeps that of the light.")] = (1.0, 1.0, 1.0, 1.0)
-    threshold: Annotated[float, Slider(
-        0.0, 10.0, unit="scene", minimum=0.0, doc="Only light above this luminance throws beams."
-    )] = 1.5
+    threshold: Annotated[
+        float, Slider(0.0, 10.0, unit="scene", minimum=0.0, doc="Only light above this luminance throws beams.")
+    ] = 1.5
     knee: Annotated[Fraction, Doc("Softness of the threshold: the part of it over which light fades in.")] = 0.5
-    limit: Annotated[float, Slider(
-        1.0, 1000.0, unit="scene", minimum=0.0, maximum=_NO_LIMIT,
-        doc="The luminance that throws beams at most, for suns and noise; 65504 sets no limit.",
-    )] = 50.0
-    quality: Annotated[Literal["full", "half", "quarter"], Doc(
-        "The size at which beams are made: the smaller, the softer, and 4 or 16 times as fast."
-    )] = "full"
+    limit: Annotated[
+        float,
+        Slider(
+            1.0,
+            1000.0,
+            unit="scene",
+            minimum=0.0,
+            maximum=_NO_LIMIT,
+            doc="The luminance that throws beams at most, for suns and noise; 65504 sets no limit.",
+        ),
+    ] = 50.0
+    quality: Annotated[
+        Literal["full", "half", "quarter"],
+        Doc("The size at which beams are made: the smaller, the softer, and 4 or 16 times as fast."),
+    ] = "full"
 
     out = Output()
     glow = Output()
@@ -59,13 +82,17 @@ class SunBeams(Filter):
         size = (-(-draw.size[0] // factor), -(-draw.size[1] // factor))
         source = (self.source[0] * draw.size[0] / factor, self.source[1] * draw.size[1] / factor)
         beams = draw.point(
-            "sun_beams_light", self.image, self.mask, source=self.source, radius=self.radius,
-            threshold=self.threshold, knee=self.knee, limit=self.limit,
+            "sun_beams_light",
+            self.image,
+            self.mask,
+            source=self.source,
+            radius=self.radius,
+            threshold=self.threshold,
+            knee=self.knee,
+            limit=self.limit,
         )
         if factor > 1:
-            beams = draw(
-                "sun_beams_shrink", image=beams, size=size, overlap=Reach.block(factor, factor), factor=factor
-            )
+            beams = draw("sun_beams_shrink", image=beams, size=size, overlap=Reach.block(factor, factor), factor=factor)
         samples = _samples(source, size, self.length)
         shrink, fade = max(1.0 - self.length, _LEFT), max(1.0 - self.decay, _LEFT)
         # The longest steps first: they magnify, and what is magnified loses little to the bilinear samples after.
@@ -73,8 +100,13 @@ class SunBeams(Filter):
         while stride > 1:
             stride //= 4
             beams = draw(
-                "sun_beams_pass", image=beams, size=size, edge="black", source=source,
-                shrink=shrink ** (stride / samples), fade=fade ** (stride / samples),
+                "sun_beams_pass",
+                image=beams,
+                size=size,
+                edge="black",
+                source=source,
+                shrink=shrink ** (stride / samples),
+                fade=fade ** (stride / samples),
             )
         if factor > 1:
             beams = draw(

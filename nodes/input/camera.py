@@ -15,12 +15,20 @@ class Camera(Filter):
 
     eye: Annotated[Place, Doc("Where it stands.")] = (0.0, -5.0, 1.5)
     target: Annotated[Place, Doc("What it looks at.")] = (0.0, 0.0, 1.0)
-    focal: Annotated[float, Slider(
-        8.0, 200.0, unit="ratio", minimum=0.1, maximum=10000.0, doc="Focal length in millimeters."
-    )] = 50.0
-    sensor: Annotated[float, Slider(
-        4.0, 70.0, unit="ratio", minimum=0.1, maximum=1e3, doc="Width of the sensor in millimeters, 36 for full frame."
-    )] = 36.0
+    focal: Annotated[
+        float, Slider(8.0, 200.0, unit="ratio", minimum=0.1, maximum=10000.0, doc="Focal length in millimeters.")
+    ] = 50.0
+    sensor: Annotated[
+        float,
+        Slider(
+            4.0,
+            70.0,
+            unit="ratio",
+            minimum=0.1,
+            maximum=1e3,
+            doc="Width of the sensor in millimeters, 36 for full frame.",
+        ),
+    ] = 36.0
     up: Annotated[Literal["z", "y"], Doc("The axis of the world that points up: z in Blender, y in Maya.")] = "z"
 
     camera = Output(Viewpoint())

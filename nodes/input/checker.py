@@ -9,9 +9,10 @@ class Checker(Pointwise):
     size: Annotated[float, Slider(1.0, 256.0, unit="px", minimum=0.01, doc="Side of a square.")] = 32.0
     first: Annotated[RGBA, Doc("The color of the square at the offset, premultiplied.")] = (0.05, 0.05, 0.05, 1.0)
     second: Annotated[RGBA, Doc("The color of its neighbors, premultiplied.")] = (0.5, 0.5, 0.5, 1.0)
-    offset: Annotated[tuple[float, float], Slider(
-        -256.0, 256.0, unit="px", doc="Moves the board right and down."
-    )] = (0.0, 0.0)
+    offset: Annotated[tuple[float, float], Slider(-256.0, 256.0, unit="px", doc="Moves the board right and down.")] = (
+        0.0,
+        0.0,
+    )
 
     out = Output(Image(doc="The colors."))
     value = Output(Field(doc="0 on the first color's squares, 1 on the second's: a mask."))

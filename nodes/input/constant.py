@@ -7,5 +7,8 @@ class Constant(Pointwise):
     """One color everywhere."""
 
     color: Annotated[RGBA, Doc("Scene-linear and premultiplied: half-covering white is 0.5, 0.5, 0.5, 0.5.")] = (
-        0.18, 0.18, 0.18, 1.0,
+        0.18,
+        0.18,
+        0.18,
+        1.0,
     )

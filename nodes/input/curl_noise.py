@@ -11,19 +11,29 @@ class CurlNoise(Pointwise):
     """
 
     size: Annotated[float, Slider(1.0, 512.0, unit="px", minimum=0.01, doc="Size of the largest eddies.")] = 128.0
-    octaves: Annotated[int, Slider(
-        1, 10, unit="count", minimum=1, maximum=16, doc="How many layers, each finer than the one before."
-    )] = 3
-    lacunarity: Annotated[float, Slider(
-        1.5, 4.0, unit="ratio", minimum=1.0, maximum=16.0, doc="How many times finer each layer is."
-    )] = 2.0
-    gain: Annotated[float, Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, maximum=4.0,
-        doc="How far each layer carries compared to the one before; as fast as that one at 1 / lacunarity."
-    )] = 0.4
-    strength: Annotated[float, Slider(
-        0.0, 4.0, unit="ratio", doc="Factor on the vectors; at 1 none is longer than 1, and few are half as long."
-    )] = 1.0
+    octaves: Annotated[
+        int, Slider(1, 10, unit="count", minimum=1, maximum=16, doc="How many layers, each finer than the one before.")
+    ] = 3
+    lacunarity: Annotated[
+        float, Slider(1.5, 4.0, unit="ratio", minimum=1.0, maximum=16.0, doc="How many times finer each layer is.")
+    ] = 2.0
+    gain: Annotated[
+        float,
+        Slider(
+            0.0,
+            1.0,
+            unit="ratio",
+            minimum=0.0,
+            maximum=4.0,
+            doc="How far each layer carries compared to the one before; as fast as that one at 1 / lacunarity.",
+        ),
+    ] = 0.4
+    strength: Annotated[
+        float,
+        Slider(
+            0.0, 4.0, unit="ratio", doc="Factor on the vectors; at 1 none is longer than 1, and few are half as long."
+        ),
+    ] = 1.0
     seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another flow.")] = 0
     evolution: Annotated[float, Slider(0.0, 10.0, unit="ratio", doc="Changes the flow smoothly.")] = 0.0
 

@@ -11,38 +11,56 @@ class Noise(Pointwise):
     (Quilez, 2002). They are divided by the sum of their strengths: every output keeps its range whatever the values.
     """
 
-    kind: Annotated[Literal["gradient", "value", "white", "simplex"], Doc(
-        "Gradient is smooth and even (Perlin), value is smooth and blotchy, white has no relation between neighbors, "
-        "simplex is like gradient with more contrast, and as strong at every evolution."
-    )] = "gradient"
+    kind: Annotated[
+        Literal["gradient", "value", "white", "simplex"],
+        Doc(
+            "Gradient is smooth and even (Perlin), value is smooth and blotchy, white has no relation between neighbors, "
+            "simplex is like gradient with more contrast, and as strong at every evolution."
+        ),
+    ] = "gradient"
     size: Annotated[float, Slider(1.0, 512.0, unit="px", minimum=0.01, doc="Size of the largest features.")] = 64.0
-    octaves: Annotated[int, Slider(
-        1, 10, unit="count", minimum=1, maximum=16, doc="How many layers, each finer than the one before."
-    )] = 4
-    lacunarity: Annotated[float, Slider(
-        1.5, 4.0, unit="ratio", minimum=1.0, maximum=16.0, doc="How many times finer each layer is."
-    )] = 2.0
-    gain: Annotated[float, Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, maximum=4.0, doc="How strong each layer is compared to the one before."
-    )] = 0.5
-    contrast: Annotated[float, Slider(
-        0.0, 4.0, unit="ratio", minimum=0.0, maximum=64.0,
-        doc="1 keeps the noise's own range, of which it rarely reaches the ends; above, what passes the ends is cut."
-    )] = 2.0
+    octaves: Annotated[
+        int, Slider(1, 10, unit="count", minimum=1, maximum=16, doc="How many layers, each finer than the one before.")
+    ] = 4
+    lacunarity: Annotated[
+        float, Slider(1.5, 4.0, unit="ratio", minimum=1.0, maximum=16.0, doc="How many times finer each layer is.")
+    ] = 2.0
+    gain: Annotated[
+        float,
+        Slider(
+            0.0, 1.0, unit="ratio", minimum=0.0, maximum=4.0, doc="How strong each layer is compared to the one before."
+        ),
+    ] = 0.5
+    contrast: Annotated[
+        float,
+        Slider(
+            0.0,
+            4.0,
+            unit="ratio",
+            minimum=0.0,
+            maximum=64.0,
+            doc="1 keeps the noise's own range, of which it rarely reaches the ends; above, what passes the ends is cut.",
+        ),
+    ] = 2.0
     seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another pattern.")] = 0
-    evolution: Annotated[float, Slider(
-        0.0, 10.0, unit="ratio", doc="Changes the pattern smoothly; white noise is new at every whole number."
-    )] = 0.0
-    fractal: Annotated[Literal["fbm", "ridged", "turbulence", "warped"], Doc(
-        "How layers add up. Fbm: as they are, for clouds. Ridged: sharp crests, fine ones on coarse ones only, for "
-        "mountains and lightning. Turbulence: sharp creases, for smoke. Warped: fbm bent by fbm, for marble."
-    )] = "fbm"
-    warp: Annotated[float, Slider(
-        0.0, 8.0, unit="ratio", doc="How far warped noise is bent, in sizes."
-    )] = 2.0
+    evolution: Annotated[
+        float,
+        Slider(0.0, 10.0, unit="ratio", doc="Changes the pattern smoothly; white noise is new at every whole number."),
+    ] = 0.0
+    fractal: Annotated[
+        Literal["fbm", "ridged", "turbulence", "warped"],
+        Doc(
+            "How layers add up. Fbm: as they are, for clouds. Ridged: sharp crests, fine ones on coarse ones only, for "
+            "mountains and lightning. Turbulence: sharp creases, for smoke. Warped: fbm bent by fbm, for marble."
+        ),
+    ] = "fbm"
+    warp: Annotated[float, Slider(0.0, 8.0, unit="ratio", doc="How far warped noise is bent, in sizes.")] = 2.0
 
     out = Output(Image(doc="The value as an opaque gray."))
     value = Output(Field(doc="0..1; of fbm 0.5 on average."))
-    vector = Output(Vector(
-        width=2, doc="Two more noises, each -1..1, of fbm with average 0: an offset for Displace. See also Curl Noise."
-    ))
+    vector = Output(
+        Vector(
+            width=2,
+            doc="Two more noises, each -1..1, of fbm with average 0: an offset for Displace. See also Curl Noise.",
+        )
+    )

@@ -6,17 +6,28 @@ from .._declare import RGBA, Doc, Field, Fraction, Image, Output, Pointwise, Pos
 class Ramp(Pointwise):
     """A gradient between two colors: along a line, around a point outward, or as a clock hand sweeps."""
 
-    shape: Annotated[Literal["linear", "radial", "angular"], Doc(
-        "Linear runs from start to end; radial has its center at start and its rim at end; angular turns clockwise "
-        "around start, beginning in the direction of end."
-    )] = "linear"
+    shape: Annotated[
+        Literal["linear", "radial", "angular"],
+        Doc(
+            "Linear runs from start to end; radial has its center at start and its rim at end; angular turns clockwise "
+            "around start, beginning in the direction of end."
+        ),
+    ] = "linear"
     start: Annotated[Position, Doc("Where the first color is.")] = (0.0, 0.5)
     end: Annotated[Position, Doc("Where the second color is.")] = (1.0, 0.5)
     first: Annotated[RGBA, Doc("The color at the start, premultiplied.")] = (0.0, 0.0, 0.0, 1.0)
     second: Annotated[RGBA, Doc("The color at the end, premultiplied.")] = (1.0, 1.0, 1.0, 1.0)
-    smoothness: Annotated[Fraction, Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="0 is a straight line, 1 eases in and out (3t^2 - 2t^3)."
-    )] = 0.0
+    smoothness: Annotated[
+        Fraction,
+        Slider(
+            0.0,
+            1.0,
+            unit="ratio",
+            minimum=0.0,
+            maximum=1.0,
+            doc="0 is a straight line, 1 eases in and out (3t^2 - 2t^3).",
+        ),
+    ] = 0.0
 
     out = Output(Image(doc="The colors."))
     value = Output(Field(doc="0 at the start, 1 at the end: a mask."))

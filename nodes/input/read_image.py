@@ -14,10 +14,14 @@ class ReadImage(Reader):
 
     path: Annotated[str, File(layer="layer"), Doc("Image file, relative to the graph's folder.")] = ""
     layer: Annotated[str, Doc("Name of the layer; empty for the file's first color layer.")] = ""
-    color_space: Annotated[str, OfSpace(), Doc(
-        "What the color of `out` is in, by a name or role of the color config, such as ACEScg; empty finds out. Data "
-        "is never converted."
-    )] = ""
+    color_space: Annotated[
+        str,
+        OfSpace(),
+        Doc(
+            "What the color of `out` is in, by a name or role of the color config, such as ACEScg; empty finds out. Data "
+            "is never converted."
+        ),
+    ] = ""
 
     out = Output()
     field = Output(Field())

@@ -21,8 +21,14 @@ from .._declare import (
 
 _KINDS = ("planar", "radial", "inverse", "negative", "normalized")
 _PLAIN = {
-    "color": "beauty", "albedo": "albedo", "emission": "emission", "occlusion": "occlusion", "position": "position",
-    "object_id": "object_id", "material_id": "material_id", "uv": "uv",
+    "color": "beauty",
+    "albedo": "albedo",
+    "emission": "emission",
+    "occlusion": "occlusion",
+    "position": "position",
+    "object_id": "object_id",
+    "material_id": "material_id",
+    "uv": "uv",
 }
 """Outputs that show a layer as it is, and its role."""
 _FOUND = "empty for the one that was found"
@@ -43,12 +49,14 @@ class ReadRender(Reader):
     emission_layer: Annotated[str, OfLayer("emission"), Doc(f"The layer of light that surfaces give; {_FOUND}.")] = ""
     depth_layer: Annotated[str, OfLayer("depth"), Doc(f"The layer of depth; {_FOUND}.")] = ""
     depth_is: Annotated[
-        Literal["found", "planar", "radial", "inverse", "negative"], OfLayer("depth"),
+        Literal["found", "planar", "radial", "inverse", "negative"],
+        OfLayer("depth"),
         Doc("What the depth layer holds."),
     ] = "found"
     normal_layer: Annotated[str, OfLayer("normal"), Doc(f"The layer of normals; {_FOUND}.")] = ""
     normal_is: Annotated[
-        Literal["found", "world", "camera"], OfLayer("normal"),
+        Literal["found", "world", "camera"],
+        OfLayer("normal"),
         Doc("Whose axes normals refer to: x right, y up, z towards the viewer."),
     ] = "found"
     position_layer: Annotated[
@@ -56,16 +64,19 @@ class ReadRender(Reader):
     ] = ""
     velocity_layer: Annotated[str, OfLayer("velocity"), Doc(f"The layer of motion; {_FOUND}.")] = ""
     velocity_is: Annotated[
-        Literal["found", "from previous", "to next", "to previous", "from next"], OfLayer("velocity"),
+        Literal["found", "from previous", "to next", "to previous", "from next"],
+        OfLayer("velocity"),
         Doc("Which way the first two channels of the motion layer point, in pixels, y down."),
     ] = "found"
     occlusion_layer: Annotated[str, OfLayer("occlusion"), Doc(f"The layer of ambient occlusion; {_FOUND}.")] = ""
     object_id_layer: Annotated[str, OfLayer("object_id"), Doc(f"The layer of object numbers; {_FOUND}.")] = ""
     material_id_layer: Annotated[str, OfLayer("material_id"), Doc(f"The layer of material numbers; {_FOUND}.")] = ""
     uv_layer: Annotated[str, OfLayer("uv"), Doc(f"The layer of texture coordinates; {_FOUND}.")] = ""
-    color_space: Annotated[str, OfSpace(), Doc(
-        "What its color is in, by a name or role of the color config, such as ACEScg; empty finds out."
-    )] = ""
+    color_space: Annotated[
+        str,
+        OfSpace(),
+        Doc("What its color is in, by a name or role of the color config, such as ACEScg; empty finds out."),
+    ] = ""
 
     color = Output(Image())
     albedo = Output(Image())
@@ -109,8 +120,14 @@ class ReadRender(Reader):
         if kind == "planar" and (meaning.scale, meaning.offset) == ((1.0,), (0.0,)):
             return stored
         return draw.point(
-            "read_render_depth", result=Field(), stored=stored, kind=_KINDS.index(kind), scale=meaning.scale[0],
-            offset=meaning.offset[0], focal=focal, center=center,
+            "read_render_depth",
+            result=Field(),
+            stored=stored,
+            kind=_KINDS.index(kind),
+            scale=meaning.scale[0],
+            offset=meaning.offset[0],
+            focal=focal,
+            center=center,
         )
 
     def _normal(self, draw: Draw, render: Render, stored: Drawn, meaning: Meaning) -> Drawn:
@@ -123,8 +140,15 @@ class ReadRender(Reader):
             return stored
         towards = -1.0 if kind == "camera_ahead" else 1.0
         return draw.point(
-            "read_render_normal", result=Vector(), stored=stored, scale=scale, offset=offset, right=right, down=down,
-            ahead=ahead, towards=towards,
+            "read_render_normal",
+            result=Vector(),
+            stored=stored,
+            scale=scale,
+            offset=offset,
+            right=right,
+            down=down,
+            ahead=ahead,
+            towards=towards,
         )
 
     def _velocity(self, draw: Draw, render: Render, stored: Drawn, meaning: Meaning) -> Drawn:
@@ -134,8 +158,12 @@ class ReadRender(Reader):
             scale = (1.0,) if self.velocity_is in ("from previous", "to next") else (-1.0,)
         whole = scale if len(scale) == 4 else (*_two(scale), *_two(scale))
         return draw.point(
-            "read_render_velocity", result=Vector(width=4), stored=stored, scale=whole,
-            both=render.channels.get("velocity", 2) == 4, to_next=kind == "to_next",
+            "read_render_velocity",
+            result=Vector(width=4),
+            stored=stored,
+            scale=whole,
+            both=render.channels.get("velocity", 2) == 4,
+            to_next=kind == "to_next",
         )
 
 

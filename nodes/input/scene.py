@@ -38,35 +38,43 @@ class Scene(Source):
     sampled in their middle, so edges are hard and data is exact; with jitter, elsewhere in each frame (Halton 1960).
     """
 
-    scene: Annotated[Literal["stage", "corner", "blocks", "file"], Doc(
-        "A still life, a corner of a room, a town, or the meshes of a file."
-    )] = "stage"
+    scene: Annotated[
+        Literal["stage", "corner", "blocks", "file"],
+        Doc("A still life, a corner of a room, a town, or the meshes of a file."),
+    ] = "stage"
     file: Annotated[ScenePath, Doc("Meshes: .glb, .gltf, .obj, .ply or .stl, with their materials' plain colors.")] = ""
     up: Annotated[Literal["y", "z"], Doc("The axis that points up in the file: y in glTF and OBJ.")] = "y"
     target: Annotated[
         tuple[float, float, float], Slider(-10.0, 10.0, unit="scene"), Doc("What the camera looks at.")
     ] = (0.1, 0.2, 0.75)
-    distance: Annotated[float, Slider(
-        0.5, 50.0, unit="scene", minimum=1e-3, maximum=1e6, doc="How far away the camera is."
-    )] = 6.5
-    azimuth: Annotated[float, Slider(
-        -180.0, 180.0, unit="deg", doc="Where the camera stands around the target; at 0 it looks along y."
-    )] = 8.0
-    elevation: Annotated[float, Slider(
-        -89.0, 89.0, unit="deg", minimum=-90.0, maximum=90.0, doc="How high it stands."
-    )] = 14.0
-    focal: Annotated[float, Slider(
-        12.0, 200.0, unit="ratio", minimum=1.0, maximum=10000.0, doc="Focal length in mm, on a sensor 36 mm wide."
-    )] = 50.0
+    distance: Annotated[
+        float, Slider(0.5, 50.0, unit="scene", minimum=1e-3, maximum=1e6, doc="How far away the camera is.")
+    ] = 6.5
+    azimuth: Annotated[
+        float,
+        Slider(-180.0, 180.0, unit="deg", doc="Where the camera stands around the target; at 0 it looks along y."),
+    ] = 8.0
+    elevation: Annotated[
+        float, Slider(-89.0, 89.0, unit="deg", minimum=-90.0, maximum=90.0, doc="How high it stands.")
+    ] = 14.0
+    focal: Annotated[
+        float,
+        Slider(
+            12.0, 200.0, unit="ratio", minimum=1.0, maximum=10000.0, doc="Focal length in mm, on a sensor 36 mm wide."
+        ),
+    ] = 50.0
     orbit: Annotated[float, Slider(-10.0, 10.0, unit="deg", doc="How far the camera goes around, each frame.")] = 0.0
     turn: Annotated[float, Slider(-30.0, 30.0, unit="deg", doc="How far what can move turns, each frame.")] = 0.0
     drift: Annotated[
         tuple[float, float, float], Slider(-0.5, 0.5, unit="scene"), Doc("How far what can move goes, each frame.")
     ] = (0.0, 0.0, 0.0)
-    jitter: Annotated[Fraction, Doc(
-        "How far from their middle pixels are sampled, for Temporal AA: 1 is all over the pixel. Cameras and velocity "
-        "are those of the middle."
-    )] = 0.0
+    jitter: Annotated[
+        Fraction,
+        Doc(
+            "How far from their middle pixels are sampled, for Temporal AA: 1 is all over the pixel. Cameras and velocity "
+            "are those of the middle."
+        ),
+    ] = 0.0
 
     color = Output(Image(doc="Lit by one soft lamp and the sky, to see what is there."))
     albedo = Output(Image())
@@ -95,17 +103,24 @@ class Scene(Source):
         place, surface = drawn["place"], drawn["surface"]
         return {
             "color": draw.point(
-                "scene_color", albedo=drawn["albedo"], normal=drawn["normal"], emission=drawn["emission"],
+                "scene_color",
+                albedo=drawn["albedo"],
+                normal=drawn["normal"],
+                emission=drawn["emission"],
                 eye=now.forward,
             ),
-            "albedo": drawn["albedo"], "normal": drawn["normal"], "emission": drawn["emission"],
+            "albedo": drawn["albedo"],
+            "normal": drawn["normal"],
+            "emission": drawn["emission"],
             "position": draw.point("scene_position", result=Vector(), place=place),
             "depth": draw.point("scene_depth", result=Field(), place=place),
-            "material": drawn["metal_rough"], "velocity": drawn["velocity"],
+            "material": drawn["metal_rough"],
+            "velocity": drawn["velocity"],
             "uv": draw.point("scene_uv", result=Vector(width=2), surface=surface),
             "object_id": draw.point("scene_object", result=Field(), surface=surface),
             "material_id": draw.point("scene_material", result=Field(), surface=surface),
-            "camera": now, "camera_before": before,
+            "camera": now,
+            "camera_before": before,
         }
 
     def _camera(self, frame: int, aspect: float) -> Camera:

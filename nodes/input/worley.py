@@ -11,18 +11,22 @@ class Worley(Pointwise):
     Olano 2020), the same on every device.
     """
 
-    feature: Annotated[Literal["f1", "f2", "f2-f1"], Doc(
-        "F1 is the distance to the nearest point, F2 that to the second nearest; their difference draws the borders."
-    )] = "f1"
-    metric: Annotated[Literal["euclidean", "manhattan", "chebyshev"], Doc(
-        "Euclidean cells are round, Manhattan ones diamonds, Chebyshev ones square."
-    )] = "euclidean"
+    feature: Annotated[
+        Literal["f1", "f2", "f2-f1"],
+        Doc(
+            "F1 is the distance to the nearest point, F2 that to the second nearest; their difference draws the borders."
+        ),
+    ] = "f1"
+    metric: Annotated[
+        Literal["euclidean", "manhattan", "chebyshev"],
+        Doc("Euclidean cells are round, Manhattan ones diamonds, Chebyshev ones square."),
+    ] = "euclidean"
     size: Annotated[float, Slider(1.0, 512.0, unit="px", minimum=0.01, doc="Size of a cell.")] = 48.0
     jitter: Annotated[Fraction, Doc("How far points stray from the middle of their cells; 0 is a regular grid.")] = 1.0
     seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another pattern.")] = 0
-    evolution: Annotated[float, Slider(
-        0.0, 10.0, unit="ratio", doc="Moves the slice: changes the cells smoothly."
-    )] = 0.0
+    evolution: Annotated[float, Slider(0.0, 10.0, unit="ratio", doc="Moves the slice: changes the cells smoothly.")] = (
+        0.0
+    )
 
     out = Output(Image(doc="The distance as an opaque gray."))
     value = Output(Field(doc="The distance, in cells."))

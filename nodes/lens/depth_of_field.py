@@ -46,44 +46,70 @@ class DepthOfField(Filter):
     image = Image()
     depth = Field(doc="Planar distance along the way the camera looks.")
     mask = Field(1.0, doc="How much of its blur each pixel gets, 0..1.")
-    focus: Annotated[Literal["point", "distance"], Doc(
-        "Point: what lies there in the picture is sharp. Distance: what is so far away."
-    )] = "point"
+    focus: Annotated[
+        Literal["point", "distance"],
+        Doc("Point: what lies there in the picture is sharp. Distance: what is so far away."),
+    ] = "point"
     focus_point: Annotated[Position, Doc("What is sharp, for focus by point.")] = (0.5, 0.5)
-    focus_distance: Annotated[float, Slider(
-        0.1, 100.0, unit="scene", minimum=1e-3, doc="How far away it is sharp, for focus by distance."
-    )] = 8.0
-    f_number: Annotated[float, Slider(
-        0.7, 22.0, unit="ratio", minimum=0.01, maximum=1000.0, doc="Focal length over aperture: less blurs more."
-    )] = 1.4
-    focal: Annotated[float, Slider(
-        8.0, 300.0, unit="ratio", minimum=0.1, maximum=10000.0, doc="Focal length in millimeters."
-    )] = 85.0
-    sensor: Annotated[float, Slider(
-        4.0, 70.0, unit="ratio", minimum=0.1, maximum=1e3, doc="Width of the sensor in millimeters; full frame is 36."
-    )] = 36.0
-    meters: Annotated[float, Slider(
-        0.01, 10.0, unit="ratio", minimum=1e-6, maximum=1e6, doc="How long a unit of the scene is."
-    )] = 1.0
-    convention: Annotated[Literal["thin lens", "pinhole"], Doc(
-        "Thin lens: focusing near magnifies. Pinhole: it does not, as in Cycles."
-    )] = "thin lens"
-    max_blur: Annotated[float, Slider(
-        0.0, 0.1, unit="height", minimum=0.0, maximum=0.5, doc="Larger discs are this large."
-    )] = 0.03
+    focus_distance: Annotated[
+        float, Slider(0.1, 100.0, unit="scene", minimum=1e-3, doc="How far away it is sharp, for focus by distance.")
+    ] = 8.0
+    f_number: Annotated[
+        float,
+        Slider(
+            0.7, 22.0, unit="ratio", minimum=0.01, maximum=1000.0, doc="Focal length over aperture: less blurs more."
+        ),
+    ] = 1.4
+    focal: Annotated[
+        float, Slider(8.0, 300.0, unit="ratio", minimum=0.1, maximum=10000.0, doc="Focal length in millimeters.")
+    ] = 85.0
+    sensor: Annotated[
+        float,
+        Slider(
+            4.0,
+            70.0,
+            unit="ratio",
+            minimum=0.1,
+            maximum=1e3,
+            doc="Width of the sensor in millimeters; full frame is 36.",
+        ),
+    ] = 36.0
+    meters: Annotated[
+        float, Slider(0.01, 10.0, unit="ratio", minimum=1e-6, maximum=1e6, doc="How long a unit of the scene is.")
+    ] = 1.0
+    convention: Annotated[
+        Literal["thin lens", "pinhole"], Doc("Thin lens: focusing near magnifies. Pinhole: it does not, as in Cycles.")
+    ] = "thin lens"
+    max_blur: Annotated[
+        float, Slider(0.0, 0.1, unit="height", minimum=0.0, maximum=0.5, doc="Larger discs are this large.")
+    ] = 0.03
     aperture: Annotated[Literal["round", "blades"], Doc("The shape of bokeh.")] = "round"
     blades: Annotated[int, Slider(3, 12, unit="count", minimum=3, maximum=64, doc="Corners of bokeh by blades.")] = 6
     roundness: Annotated[Fraction, Doc("How far blades bend out to a circle.")] = 0.0
     rotation: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="How far the blades are turned.")] = 0.0
-    ratio: Annotated[float, Slider(
-        0.5, 2.0, unit="ratio", minimum=0.1, maximum=10.0, doc="Height over width of bokeh: 2 for an anamorphic lens."
-    )] = 1.0
-    cat_eye: Annotated[float, Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.5, doc="How far the barrel cuts off bokeh in the corners."
-    )] = 0.0
-    quality: Annotated[Literal["draft", "normal", "high", "exact"], Doc(
-        "Discs up to so many pixels across are made at full size: 8, 12, 24, all. Exact costs the square of the blur."
-    )] = "normal"
+    ratio: Annotated[
+        float,
+        Slider(
+            0.5,
+            2.0,
+            unit="ratio",
+            minimum=0.1,
+            maximum=10.0,
+            doc="Height over width of bokeh: 2 for an anamorphic lens.",
+        ),
+    ] = 1.0
+    cat_eye: Annotated[
+        float,
+        Slider(
+            0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.5, doc="How far the barrel cuts off bokeh in the corners."
+        ),
+    ] = 0.0
+    quality: Annotated[
+        Literal["draft", "normal", "high", "exact"],
+        Doc(
+            "Discs up to so many pixels across are made at full size: 8, 12, 24, all. Exact costs the square of the blur."
+        ),
+    ] = "normal"
 
     out = Output()
     coc = Output(Field())
@@ -95,19 +121,34 @@ class DepthOfField(Filter):
         largest = self.max_blur / 2.0
         radius = self._radius(draw, largest)
         kept, clean = draw.several(
-            "depth_of_field_apart", (Image(), Image()), self.image, radius=radius, edge="reflect",
+            "depth_of_field_apart",
+            (Image(), Image()),
+            self.image,
+            radius=radius,
+            edge="reflect",
             overlap={"image": 1, "radius": 2},
         )
         image = draw(
-            "depth_of_field_whole", self.image, clean=clean, kept=kept, radius=radius, edge="reflect",
+            "depth_of_field_whole",
+            self.image,
+            clean=clean,
+            kept=kept,
+            radius=radius,
+            edge="reflect",
             overlap={"image": 1, "clean": 1, "kept": 1, "radius": 2},
         )
         finest = min(_FINEST[self.quality], largest)
         levels = max(math.ceil(math.log2(largest / finest)), 0) if finest else 0
         tile = math.ceil(finest) + 1
         most = draw(
-            "depth_of_field_most_sharp", radius=radius, size=_blocks(draw.size, tile), result=Field(), edge="reflect",
-            overlap=Reach.block(tile, tile), tile=tile, sharpest=finest if levels else _ENDLESS,
+            "depth_of_field_most_sharp",
+            radius=radius,
+            size=_blocks(draw.size, tile),
+            result=Field(),
+            edge="reflect",
+            overlap=Reach.block(tile, tile),
+            tile=tile,
+            sharpest=finest if levels else _ENDLESS,
         )
         reach = draw("depth_of_field_reach", most=most, size=most.size, overlap=1, result=Field())
         looks: dict[str, Overlap] = {"image": tile, "kept": 0, "radius": tile, "reach": Reach.within(tile, tile)}
@@ -130,8 +171,19 @@ class DepthOfField(Filter):
             looks |= dict.fromkeys(("near", "hidden", "far", "filled"), Reach.within(2, 2, 1))
             looks["rest"] = Reach.within(2**levels, 2**levels, 1)
             out = draw(
-                "depth_of_field", image=image, kept=kept, radius=radius, reach=reach, near=near, hidden=hidden,
-                far=far, filled=filled, rest=rest, overlap=looks, **bokeh, coarsest=2.0**levels,
+                "depth_of_field",
+                image=image,
+                kept=kept,
+                radius=radius,
+                reach=reach,
+                near=near,
+                hidden=hidden,
+                far=far,
+                filled=filled,
+                rest=rest,
+                overlap=looks,
+                **bokeh,
+                coarsest=2.0**levels,
             )
         return {"out": out, "coc": draw.point("depth_of_field_coc", result=Field(), radius=radius)}
 
@@ -147,11 +199,21 @@ class DepthOfField(Filter):
                 for at, side in zip(self.focus_point, draw.size_of(self.depth), strict=True)
             )
             sharp = draw(
-                "depth_of_field_sharp", self.depth, size=(1, 1), overlap=Reach((0.0, 0.0, x, 0.0, 0.0, y), (1, 1)),
-                result=Number(), point=self.focus_point,
+                "depth_of_field_sharp",
+                self.depth,
+                size=(1, 1),
+                overlap=Reach((0.0, 0.0, x, 0.0, 0.0, y), (1, 1)),
+                result=Number(),
+                point=self.focus_point,
             )
         return draw.point(
-            "depth_of_field_radius", self.depth, self.mask, result=Field(), sharp=sharp, scale=scale, bend=bend,
+            "depth_of_field_radius",
+            self.depth,
+            self.mask,
+            result=Field(),
+            sharp=sharp,
+            scale=scale,
+            bend=bend,
             largest=largest,
         )
 
@@ -162,12 +224,22 @@ class DepthOfField(Filter):
             inner = 1.0 + (math.cos(math.pi / self.blades) - 1.0) * (1.0 - self.roundness)
             area, middle = self._area(inner), math.ceil(finest) + 1
         shape = draw(
-            "depth_of_field_blades", size=(2 * middle + 1, 2 * middle + 1), result=Field(), middle=middle,
-            blades=self.blades, roundness=self.roundness, rotation=self.rotation, stretch=stretch,
+            "depth_of_field_blades",
+            size=(2 * middle + 1, 2 * middle + 1),
+            result=Field(),
+            middle=middle,
+            blades=self.blades,
+            roundness=self.roundness,
+            rotation=self.rotation,
+            stretch=stretch,
         )
         return {
-            "shape": shape, "tile": math.ceil(finest) + 1, "finest": finest, "aperture": self.aperture,
-            "lens": (inner, area / (stretch[0] * stretch[1]), self.cat_eye), "stretch": stretch,
+            "shape": shape,
+            "tile": math.ceil(finest) + 1,
+            "finest": finest,
+            "aperture": self.aperture,
+            "lens": (inner, area / (stretch[0] * stretch[1]), self.cat_eye),
+            "stretch": stretch,
         }
 
     def _area(self, inner: float) -> float:
@@ -190,24 +262,47 @@ class DepthOfField(Filter):
             block = 2**level
             size = _blocks(draw.size, block)
             bounds: dict[str, Any] = {
-                "block": block, "side": side, "low": finest * block / 2.0,
+                "block": block,
+                "side": side,
+                "low": finest * block / 2.0,
                 "high": finest * block if level < levels else _ENDLESS,
             }
             own, extents = draw.several(
-                "depth_of_field_level", (Image(), Vector(width=3)), image=image, radius=radius, size=size,
-                edge="reflect", overlap=Reach.block(block, block), **bounds,
+                "depth_of_field_level",
+                (Image(), Vector(width=3)),
+                image=image,
+                radius=radius,
+                size=size,
+                edge="reflect",
+                overlap=Reach.block(block, block),
+                **bounds,
             )
             most = draw(
-                "depth_of_field_most", extents=extents, size=_blocks(size, tile), overlap=Reach.block(tile, tile),
-                result=Field(), tile=tile,
+                "depth_of_field_most",
+                extents=extents,
+                size=_blocks(size, tile),
+                overlap=Reach.block(tile, tile),
+                result=Field(),
+                tile=tile,
             )
             reach = draw("depth_of_field_reach", most=most, size=most.size, overlap=1, result=Field())
             light, cover = draw.several(
-                name, (Image(), Field()), own=own, extents=extents, reach=reach, light=light, cover=cover, size=size,
+                name,
+                (Image(), Field()),
+                own=own,
+                extents=extents,
+                reach=reach,
+                light=light,
+                cover=cover,
+                size=size,
                 overlap={
-                    "own": tile, "extents": tile, "reach": Reach.within(tile, tile), "light": Reach.within(2, 2, 1),
+                    "own": tile,
+                    "extents": tile,
+                    "reach": Reach.within(tile, tile),
+                    "light": Reach.within(2, 2, 1),
                     "cover": Reach.within(2, 2, 1),
-                }, **bokeh,
+                },
+                **bokeh,
             )
         return light, cover
 
@@ -216,12 +311,24 @@ class DepthOfField(Filter):
         block = 2**levels
         size, reach = _blocks(draw.size, block), math.ceil(finest) + 1
         light, weight = draw.several(
-            "depth_of_field_kept_light", (Image(), Field()), image=image, radius=radius, size=size, edge="reflect",
-            overlap=Reach.block(block, block), block=block, finest=finest,
+            "depth_of_field_kept_light",
+            (Image(), Field()),
+            image=image,
+            radius=radius,
+            size=size,
+            edge="reflect",
+            overlap=Reach.block(block, block),
+            block=block,
+            finest=finest,
         )
         return draw(
-            "depth_of_field_rest", image=image, light=light, weight=weight, size=size,
-            overlap={"image": Reach.block(block, block, 1), "light": reach, "weight": reach}, reach=reach,
+            "depth_of_field_rest",
+            image=image,
+            light=light,
+            weight=weight,
+            size=size,
+            overlap={"image": Reach.block(block, block, 1), "light": reach, "weight": reach},
+            reach=reach,
             block=float(block),
         )
 

@@ -14,28 +14,44 @@ class MotionBlur(Filter):
     """
 
     image = Image()
-    velocity = Vector(width=4, doc=(
-        "Pixels of the full-size picture, x right, y down: x and y from the frame before, z and w to the frame after. "
-        "Where z and w are 0, motion goes on evenly."
-    ))
+    velocity = Vector(
+        width=4,
+        doc=(
+            "Pixels of the full-size picture, x right, y down: x and y from the frame before, z and w to the frame after. "
+            "Where z and w are 0, motion goes on evenly."
+        ),
+    )
     depth = Field(0.0, doc="Says what passes before what. Without it, all is equally deep.")
-    shutter: Annotated[float, Slider(
-        0.0, 360.0, unit="deg", minimum=0.0, maximum=720.0,
-        doc="Shutter angle: 360 is open from frame to frame, 180 half the time.",
-    )] = 180.0
-    phase: Annotated[Literal["centered", "start", "end"], Doc(
-        "When the shutter is open: around the frame, from it on (start) or until it (end)."
-    )] = "centered"
-    path: Annotated[Literal["curved", "straight"], Doc(
-        "Straight ignores where things go after the frame."
-    )] = "curved"
-    max_length: Annotated[float, Slider(
-        0.0, 0.2, unit="height", minimum=0.0, maximum=1.0, doc="Longer paths are shortened to this."
-    )] = 0.06
-    samples: Annotated[int, Slider(
-        4, 128, unit="count", minimum=2, maximum=1024,
-        doc="Along a path; where it has more pixels, noise takes the place of those left out.",
-    )] = 64
+    shutter: Annotated[
+        float,
+        Slider(
+            0.0,
+            360.0,
+            unit="deg",
+            minimum=0.0,
+            maximum=720.0,
+            doc="Shutter angle: 360 is open from frame to frame, 180 half the time.",
+        ),
+    ] = 180.0
+    phase: Annotated[
+        Literal["centered", "start", "end"],
+        Doc("When the shutter is open: around the frame, from it on (start) or until it (end)."),
+    ] = "centered"
+    path: Annotated[Literal["curved", "straight"], Doc("Straight ignores where things go after the frame.")] = "curved"
+    max_length: Annotated[
+        float, Slider(0.0, 0.2, unit="height", minimum=0.0, maximum=1.0, doc="Longer paths are shortened to this.")
+    ] = 0.06
+    samples: Annotated[
+        int,
+        Slider(
+            4,
+            128,
+            unit="count",
+            minimum=2,
+            maximum=1024,
+            doc="Along a path; where it has more pixels, noise takes the place of those left out.",
+        ),
+    ] = 64
 
     def identity(self) -> str | None:
         return "image" if self.shutter == 0.0 or self.max_length == 0.0 else None
@@ -56,33 +72,68 @@ class MotionBlur(Filter):
         velocity: Pixels = self.velocity
         fronts: Pixels = self.image
         if draw.linked(self.depth):
-            velocity = draw(
-                "motion_blur_clean", self.velocity, self.depth, layer=layer, overlap=2, result=vector
-            )
+            velocity = draw("motion_blur_clean", self.velocity, self.depth, layer=layer, overlap=2, result=vector)
             fronts = draw("motion_blur_front", self.image, layer=layer, overlap=2)
         paths = draw.point(
-            "motion_blur_path", velocity=velocity, result=vector, path=self.path, times=times, longest=self.max_length,
+            "motion_blur_path",
+            velocity=velocity,
+            result=vector,
+            path=self.path,
+            times=times,
+            longest=self.max_length,
             reach=reach,
         )
         rows = draw(
-            "motion_blur_fastest", paths=paths, size=(across, height), overlap=Reach.block(tile, 1), result=vector,
-            axis=0, count=tile, times=times,
+            "motion_blur_fastest",
+            paths=paths,
+            size=(across, height),
+            overlap=Reach.block(tile, 1),
+            result=vector,
+            axis=0,
+            count=tile,
+            times=times,
         )
         tiles = draw(
-            "motion_blur_fastest", paths=rows, size=(across, down), overlap=Reach.block(1, tile), result=vector,
-            axis=1, count=tile, times=times,
+            "motion_blur_fastest",
+            paths=rows,
+            size=(across, down),
+            overlap=Reach.block(1, tile),
+            result=vector,
+            axis=1,
+            count=tile,
+            times=times,
         )
         around = draw("motion_blur_around", tiles=tiles, size=(across, down), overlap=1, result=vector, times=times)
         spread = draw(
-            "motion_blur_spread", paths=paths, tiles=tiles, size=(across, down), overlap={"paths": block, "tiles": 0},
-            result=Field(), tile=tile, times=times,
+            "motion_blur_spread",
+            paths=paths,
+            tiles=tiles,
+            size=(across, down),
+            overlap={"paths": block, "tiles": 0},
+            result=Field(),
+            tile=tile,
+            times=times,
         )
         variety = draw(
-            "motion_blur_variety", tiles=tiles, around=around, spread=spread, size=(across, down), overlap=1,
-            result=Field(), times=times,
+            "motion_blur_variety",
+            tiles=tiles,
+            around=around,
+            spread=spread,
+            size=(across, down),
+            overlap=1,
+            result=Field(),
+            times=times,
         )
         return draw(
-            "motion_blur", self.image, fronts=fronts, layer=layer, paths=paths, around=around, variety=variety,
+            "motion_blur",
+            self.image,
+            fronts=fronts,
+            layer=layer,
+            paths=paths,
+            around=around,
+            variety=variety,
             overlap={"image": 0, "fronts": looks, "layer": looks, "paths": looks, "around": within, "variety": within},
-            times=times, tile=tile, samples=self.samples,
+            times=times,
+            tile=tile,
+            samples=self.samples,
         )

@@ -22,7 +22,13 @@ def settled(
     """What was measured at every `factor`-th pixel, without noise and at full size, by functions of node `id`."""
     if denoise:
         made = draw(
-            f"{id}_denoise", depth=depth, normal=normal, open=made, size=made.size, result=DATA, rays=rays,
+            f"{id}_denoise",
+            depth=depth,
+            normal=normal,
+            open=made,
+            size=made.size,
+            result=DATA,
+            rays=rays,
             factor=factor,
         )
     if factor == 1:

@@ -20,34 +20,47 @@ class AmbientOcclusion(Filter):
     normal = Vector(0.0, width=3, doc="In the world. Without a link, from depth.")
     camera = Viewpoint(doc="The camera that the depth was rendered with.")
     albedo = Image((0.5, 0.5, 0.5, 1.0), doc="Color of the surfaces, for the tint. Without a link, a mid gray.")
-    mode: Annotated[Literal["gtao", "hbao", "bitmask", "hemisphere", "crytek", "alchemy"], Doc(
-        "How occlusion is measured. Bitmask is best for grass, hair and wires, gtao for all else."
-    )] = "gtao"
-    radius: Annotated[float, Slider(
-        0.01, 5.0, unit="scene", minimum=1e-6, maximum=1e6, doc="How far light is blocked, in world units."
-    )] = 1.0
-    falloff: Annotated[Fraction, Doc(
-        "The outer part of the radius over which occlusion fades out: 0 is a hard end. For gtao and hbao."
-    )] = 0.5
-    thickness: Annotated[float, Slider(
-        0.01, 5.0, unit="scene", minimum=0.0, maximum=1e9,
-        doc="How far objects go on behind what is seen of them. For bitmask, hemisphere and crytek."
-    )] = 0.5
-    power: Annotated[float, Slider(
-        0.25, 4.0, unit="ratio", minimum=0.01, maximum=16.0, doc="Contrast: 1 is physical, more is darker."
-    )] = 1.0
-    multi_bounce: Annotated[bool, Doc(
-        "Brighten and tint `out` by the light that walls hand on to each other (Jimenez et al. 2016)."
-    )] = False
-    quality: Annotated[Literal["preview", "quality", "reference"], Doc(
-        "3 x 3, 4 x 8 or 16 x 16 slices and steps: 18, 64 or 512 points of depth to a pixel."
-    )] = "quality"
-    resolution: Annotated[Literal["full", "half"], Doc(
-        "Half measures every other pixel of every other row: four times as fast, fine detail is lost."
-    )] = "full"
-    denoise: Annotated[bool, Doc(
-        "Average 4 x 4 pixels of the same surface, which makes up for their few samples: edges stay."
-    )] = True
+    mode: Annotated[
+        Literal["gtao", "hbao", "bitmask", "hemisphere", "crytek", "alchemy"],
+        Doc("How occlusion is measured. Bitmask is best for grass, hair and wires, gtao for all else."),
+    ] = "gtao"
+    radius: Annotated[
+        float,
+        Slider(0.01, 5.0, unit="scene", minimum=1e-6, maximum=1e6, doc="How far light is blocked, in world units."),
+    ] = 1.0
+    falloff: Annotated[
+        Fraction,
+        Doc("The outer part of the radius over which occlusion fades out: 0 is a hard end. For gtao and hbao."),
+    ] = 0.5
+    thickness: Annotated[
+        float,
+        Slider(
+            0.01,
+            5.0,
+            unit="scene",
+            minimum=0.0,
+            maximum=1e9,
+            doc="How far objects go on behind what is seen of them. For bitmask, hemisphere and crytek.",
+        ),
+    ] = 0.5
+    power: Annotated[
+        float,
+        Slider(0.25, 4.0, unit="ratio", minimum=0.01, maximum=16.0, doc="Contrast: 1 is physical, more is darker."),
+    ] = 1.0
+    multi_bounce: Annotated[
+        bool, Doc("Brighten and tint `out` by the light that walls hand on to each other (Jimenez et al. 2016).")
+    ] = False
+    quality: Annotated[
+        Literal["preview", "quality", "reference"],
+        Doc("3 x 3, 4 x 8 or 16 x 16 slices and steps: 18, 64 or 512 points of depth to a pixel."),
+    ] = "quality"
+    resolution: Annotated[
+        Literal["full", "half"],
+        Doc("Half measures every other pixel of every other row: four times as fast, fine detail is lost."),
+    ] = "full"
+    denoise: Annotated[
+        bool, Doc("Average 4 x 4 pixels of the same surface, which makes up for their few samples: edges stay.")
+    ] = True
 
     out = Output(Image(doc="The color that ambient light is multiplied with."))
     occlusion = Output(Field(doc="1 where all is open, 0 where nothing is."))
@@ -64,15 +77,37 @@ class AmbientOcclusion(Filter):
         slices, steps = SAMPLES[self.quality]
         if self.mode in ("gtao", "hbao", "bitmask"):
             open_ = draw(
-                "ambient_occlusion_horizons", depth=self.depth, normal=normal, size=size, result=DATA, mode=self.mode,
-                rows=rows, rays=rays, factor=factor, slices=slices, steps=steps, radius=self.radius,
-                falloff=self.falloff, thickness=self.thickness, matched=self.denoise,
+                "ambient_occlusion_horizons",
+                depth=self.depth,
+                normal=normal,
+                size=size,
+                result=DATA,
+                mode=self.mode,
+                rows=rows,
+                rays=rays,
+                factor=factor,
+                slices=slices,
+                steps=steps,
+                radius=self.radius,
+                falloff=self.falloff,
+                thickness=self.thickness,
+                matched=self.denoise,
             )
         else:
             open_ = draw(
-                "ambient_occlusion_points", depth=self.depth, normal=normal, size=size, result=DATA, mode=self.mode,
-                rows=rows, rays=rays, factor=factor, points=2 * slices * steps, radius=self.radius,
-                thickness=self.thickness, matched=self.denoise,
+                "ambient_occlusion_points",
+                depth=self.depth,
+                normal=normal,
+                size=size,
+                result=DATA,
+                mode=self.mode,
+                rows=rows,
+                rays=rays,
+                factor=factor,
+                points=2 * slices * steps,
+                radius=self.radius,
+                thickness=self.thickness,
+                matched=self.denoise,
             )
         open_ = settled(draw, "ambient_occlusion", self.depth, normal, open_, rays, factor, self.denoise)
         return {

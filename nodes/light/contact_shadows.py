@@ -23,25 +23,43 @@ class ContactShadows(Filter):
     normal = Vector(0.0, width=3, doc="In the world. Without a link, from depth.")
     camera = Viewpoint(doc="The camera that the depth was rendered with.")
     light: Annotated[Literal["sun", "lamp"], Doc("A sun has a direction, a lamp a position.")] = "sun"
-    direction: Annotated[tuple[float, float, float], Slider(-1.0, 1.0, unit="ratio"), Doc(
-        "Towards the sun, in the world's axes."
-    )] = (-0.5, -0.4, 0.75)
-    position: Annotated[tuple[float, float, float], Slider(-10.0, 10.0, unit="scene"), Doc(
-        "Where the lamp is in the world."
-    )] = (-2.0, -2.0, 3.0)
-    length: Annotated[float, Slider(
-        0.01, 5.0, unit="scene", minimum=1e-5, maximum=1e8, doc="How far away what throws a shadow may be."
-    )] = 0.5
-    softness: Annotated[float, Slider(
-        0.0, 20.0, unit="deg", minimum=0.0, maximum=60.0,
-        doc="How wide the light is, seen from the surface: the sun 0.5.",
-    )] = 4.0
-    thickness: Annotated[float, Slider(
-        0.01, 5.0, unit="scene", minimum=0.0, maximum=1e8,
-        doc="How far objects go on behind what is seen of them: rays that come deeper pass behind them.",
-    )] = 0.3
+    direction: Annotated[
+        tuple[float, float, float], Slider(-1.0, 1.0, unit="ratio"), Doc("Towards the sun, in the world's axes.")
+    ] = (-0.5, -0.4, 0.75)
+    position: Annotated[
+        tuple[float, float, float], Slider(-10.0, 10.0, unit="scene"), Doc("Where the lamp is in the world.")
+    ] = (-2.0, -2.0, 3.0)
+    length: Annotated[
+        float,
+        Slider(0.01, 5.0, unit="scene", minimum=1e-5, maximum=1e8, doc="How far away what throws a shadow may be."),
+    ] = 0.5
+    softness: Annotated[
+        float,
+        Slider(
+            0.0,
+            20.0,
+            unit="deg",
+            minimum=0.0,
+            maximum=60.0,
+            doc="How wide the light is, seen from the surface: the sun 0.5.",
+        ),
+    ] = 4.0
+    thickness: Annotated[
+        float,
+        Slider(
+            0.01,
+            5.0,
+            unit="scene",
+            minimum=0.0,
+            maximum=1e8,
+            doc="How far objects go on behind what is seen of them: rays that come deeper pass behind them.",
+        ),
+    ] = 0.3
     color: Annotated[RGBA, Doc("What is left of the picture in the shadow; alpha is how dark shadows are.")] = (
-        0.0, 0.0, 0.0, 0.8
+        0.0,
+        0.0,
+        0.0,
+        0.8,
     )
     quality: Annotated[Literal["preview", "quality", "reference"], Doc("1, 4 or 32 rays to a pixel.")] = "quality"
 
@@ -55,14 +73,27 @@ class ContactShadows(Filter):
         length = math.hypot(*self.direction)
         sun = tuple(part / length for part in self.direction) if length else (0.0, 0.0, 1.0)
         shadow = draw(
-            "contact_shadows_open", self.normal, surfaces=all_surfaces, result=Field(), rows=rows, rays=rays,
-            light=self.light, to=sun if self.light == "sun" else self.position, reach=self.length,
-            spread=math.tan(0.5 * self.softness), thickness=self.thickness,
+            "contact_shadows_open",
+            self.normal,
+            surfaces=all_surfaces,
+            result=Field(),
+            rows=rows,
+            rays=rays,
+            light=self.light,
+            to=sun if self.light == "sun" else self.position,
+            reach=self.length,
+            spread=math.tan(0.5 * self.softness),
+            thickness=self.thickness,
             count=_RAYS[self.quality] if self.softness else 1,
         )
         if self.softness:
             shadow = draw(
-                "contact_shadows_denoise", self.normal, surfaces=all_surfaces, open=shadow, result=Field(), rows=rows,
+                "contact_shadows_denoise",
+                self.normal,
+                surfaces=all_surfaces,
+                open=shadow,
+                result=Field(),
+                rows=rows,
                 rays=rays,
             )
         out = draw.point("contact_shadows", self.image, shadow=shadow, color=self.color)

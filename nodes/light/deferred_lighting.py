@@ -46,8 +46,31 @@ _RIG = (
 """A warm key from the left, a cool spot from the right, a rim from behind and the moon."""
 
 _NEON = (
-    0.0, 1.0, 0.1, 0.35, 1.0, 0.25, 1.0, 0.4, 0.08, 1.0, 0.5, 0.1, 0.9, 0.8, 1.0, 0.75, 0.12, 0.35, 1.0, 1.0,
-    1.0, 0.65, 0.12, 1.0, 1.0,
+    0.0,
+    1.0,
+    0.1,
+    0.35,
+    1.0,
+    0.25,
+    1.0,
+    0.4,
+    0.08,
+    1.0,
+    0.5,
+    0.1,
+    0.9,
+    0.8,
+    1.0,
+    0.75,
+    0.12,
+    0.35,
+    1.0,
+    1.0,
+    1.0,
+    0.65,
+    0.12,
+    1.0,
+    1.0,
 )
 """Pink, orange, teal, blue, violet."""
 
@@ -83,20 +106,25 @@ class DeferredLighting(Filter):
     intensity: Annotated[float, Slider(0.0, 4.0, unit="ratio", doc="Scales all lights, those of the swarm too.")] = 1.0
     ambient: Annotated[RGBA, Doc("Light from everywhere; its alpha scales it.")] = (0.35, 0.5, 0.8, 1.0)
     ambient_intensity: Annotated[float, Slider(0.0, 2.0, unit="ratio", doc="How strong it is.")] = 0.06
-    swarm: Annotated[int, Slider(
-        0, 128, unit="count", minimum=0, maximum=MAX_LIGHTS, doc="How many point lights are strewn about."
-    )] = 0
+    swarm: Annotated[
+        int, Slider(0, 128, unit="count", minimum=0, maximum=MAX_LIGHTS, doc="How many point lights are strewn about.")
+    ] = 0
     swarm_place: Annotated[
         _Place, Slider(-10.0, 10.0, unit="scene"), Doc("The middle of the box that the swarm fills evenly.")
     ] = (0.0, 0.0, 0.8)
-    swarm_spread: Annotated[
-        _Place, Slider(0.0, 10.0, unit="scene"), Doc("From its middle to its sides.")
-    ] = (5.0, 4.0, 0.7)
+    swarm_spread: Annotated[_Place, Slider(0.0, 10.0, unit="scene"), Doc("From its middle to its sides.")] = (
+        5.0,
+        4.0,
+        0.7,
+    )
     swarm_colors: Annotated[Stops, Doc("What the swarm's colors are taken from, evenly.")] = _NEON
     swarm_intensity: Annotated[float, Slider(-10.0, 10.0, unit="scene", doc="Of each of them, in W/sr.")] = 2.0
-    swarm_reach: Annotated[float, Slider(
-        0.0, 10.0, unit="scene", minimum=0.0, doc="The distance at which their light has faded out; 0 for none."
-    )] = 3.0
+    swarm_reach: Annotated[
+        float,
+        Slider(
+            0.0, 10.0, unit="scene", minimum=0.0, doc="The distance at which their light has faded out; 0 for none."
+        ),
+    ] = 3.0
     swarm_seed: Annotated[int, Slider(0, 100, unit="count", doc="Another number strews them otherwise.")] = 0
 
     out = Output()
@@ -109,8 +137,12 @@ class DeferredLighting(Filter):
         place = draw.point(
             "deferred_lighting_place", self.depth, self.position, result=Vector(width=4), rays=rays, placed=placed
         )
-        normal = self.normal if draw.linked(self.normal) else draw(
-            "deferred_lighting_normal", self.depth, edge="black", overlap=2, result=Vector(width=3), rows=rows
+        normal = (
+            self.normal
+            if draw.linked(self.normal)
+            else draw(
+                "deferred_lighting_normal", self.depth, edge="black", overlap=2, result=Vector(width=3), rows=rows
+            )
         )
         lights = [light for light in lights_of(self.lights) if light.on]
         lights += self._swarm(MAX_LIGHTS - len(lights))
@@ -122,17 +154,32 @@ class DeferredLighting(Filter):
 
         def lit(scattered: float, mirrored: float) -> Drawn:
             return draw(
-                "deferred_lighting_lit", self.albedo, self.material, self.occlusion, normal=normal, place=place,
-                lights=table, words=words, overlap=dict.fromkeys(_HERE, 0),
-                model=self.model, texels=texels, tiled=tiled, share=(scattered, mirrored),
-                mapped=draw.linked(self.material), metal=self.metal, roughness=self.roughness,
-                specular=self.specular, ambient=ambient, seen=camera is not None,
+                "deferred_lighting_lit",
+                self.albedo,
+                self.material,
+                self.occlusion,
+                normal=normal,
+                place=place,
+                lights=table,
+                words=words,
+                overlap=dict.fromkeys(_HERE, 0),
+                model=self.model,
+                texels=texels,
+                tiled=tiled,
+                share=(scattered, mirrored),
+                mapped=draw.linked(self.material),
+                metal=self.metal,
+                roughness=self.roughness,
+                specular=self.specular,
+                ambient=ambient,
+                seen=camera is not None,
                 eye=camera.eye if camera else (0.0,) * 3,
             )
 
         return {
             "out": draw.point("deferred_lighting", lit=lit(1.0, 1.0), emission=self.emission),
-            "diffuse": lit(1.0, 0.0), "specular_light": lit(0.0, 1.0),
+            "diffuse": lit(1.0, 0.0),
+            "specular_light": lit(0.0, 1.0),
         }
 
     def _tiles(self, draw: Draw, place: Drawn, lights: list[Light], texels: int) -> Drawn:
@@ -140,15 +187,25 @@ class DeferredLighting(Filter):
         width, height = (-(-length // TILE) for length in draw.size)
         low, high = (
             draw(
-                "deferred_lighting_corner", place=place, size=(width, height), overlap=2 * TILE,
-                result=Vector(width=4), side=side,
+                "deferred_lighting_corner",
+                place=place,
+                size=(width, height),
+                overlap=2 * TILE,
+                result=Vector(width=4),
+                side=side,
             )
             for side in (1.0, -1.0)
         )
         balls = draw.table(tuple(part for light in lights for part in _ball(light, 1e18)), 1)
         return draw(
-            "deferred_lighting_tile", low=low, high=high, balls=balls, size=(width * texels, height),
-            result=Vector(width=4), count=len(lights), texels=texels,
+            "deferred_lighting_tile",
+            low=low,
+            high=high,
+            balls=balls,
+            size=(width * texels, height),
+            result=Vector(width=4),
+            count=len(lights),
+            texels=texels,
         )
 
     def _swarm(self, most: int) -> Iterable[Light]:
@@ -162,7 +219,9 @@ class DeferredLighting(Filter):
             )
             red, green, blue, alpha = ramp_at(self.swarm_colors, (number + 0.5) / count)
             yield Light(
-                place=(x, y, z), color=(red, green, blue), intensity=alpha * self.swarm_intensity,
+                place=(x, y, z),
+                color=(red, green, blue),
+                intensity=alpha * self.swarm_intensity,
                 reach=self.swarm_reach,
             )
 

@@ -25,33 +25,41 @@ class DirectionalOcclusion(Filter):
     camera = Viewpoint(doc="The camera that the depth was rendered with.")
     albedo = Image((1.0, 1.0, 1.0, 1.0), doc="Color of the surfaces. Without a link white: the light alone.")
     environment = Image(
-        0.0, own_size=True,
+        0.0,
+        own_size=True,
         doc="All that surrounds the scene, by longitude and latitude. Without a link black: only surfaces give light.",
     )
-    radius: Annotated[float, Slider(
-        0.01, 5.0, unit="scene", minimum=1e-6, maximum=1e6,
-        doc="How far surfaces block and hand on light, in world units.",
-    )] = 1.0
+    radius: Annotated[
+        float,
+        Slider(
+            0.01,
+            5.0,
+            unit="scene",
+            minimum=1e-6,
+            maximum=1e6,
+            doc="How far surfaces block and hand on light, in world units.",
+        ),
+    ] = 1.0
     falloff: Annotated[Fraction, Doc("The outer part of the radius over which that fades out: 0 is a hard end.")] = 0.5
-    intensity: Annotated[float, Slider(
-        0.0, 4.0, unit="ratio", minimum=0.0, doc="How bright the environment is."
-    )] = 1.0
-    bounce: Annotated[float, Slider(
-        0.0, 4.0, unit="ratio", minimum=0.0, doc="How much light bounces on: 1 is physical."
-    )] = 1.0
-    rotation: Annotated[float, Slider(
-        -180.0, 180.0, unit="deg", doc="Turns the environment counterclockwise, seen from above."
-    )] = 0.0
+    intensity: Annotated[float, Slider(0.0, 4.0, unit="ratio", minimum=0.0, doc="How bright the environment is.")] = 1.0
+    bounce: Annotated[
+        float, Slider(0.0, 4.0, unit="ratio", minimum=0.0, doc="How much light bounces on: 1 is physical.")
+    ] = 1.0
+    rotation: Annotated[
+        float, Slider(-180.0, 180.0, unit="deg", doc="Turns the environment counterclockwise, seen from above.")
+    ] = 0.0
     up: Annotated[Literal["z", "y"], Doc("The axis of the world that points up: z in Blender, y in Maya.")] = "z"
-    quality: Annotated[Literal["preview", "quality", "reference"], Doc(
-        "3 x 3, 4 x 8 or 16 x 16 slices and steps: 18, 64 or 512 points of depth to a pixel."
-    )] = "quality"
-    resolution: Annotated[Literal["full", "half"], Doc(
-        "Half measures every other pixel of every other row: four times as fast, fine detail is lost."
-    )] = "full"
-    denoise: Annotated[bool, Doc(
-        "Average 4 x 4 pixels of the same surface, which makes up for their few samples: edges stay."
-    )] = True
+    quality: Annotated[
+        Literal["preview", "quality", "reference"],
+        Doc("3 x 3, 4 x 8 or 16 x 16 slices and steps: 18, 64 or 512 points of depth to a pixel."),
+    ] = "quality"
+    resolution: Annotated[
+        Literal["full", "half"],
+        Doc("Half measures every other pixel of every other row: four times as fast, fine detail is lost."),
+    ] = "full"
+    denoise: Annotated[
+        bool, Doc("Average 4 x 4 pixels of the same surface, which makes up for their few samples: edges stay.")
+    ] = True
 
     out = Output()
     light = Output(Image(doc="The light that is added, opaque."))
@@ -66,15 +74,36 @@ class DirectionalOcclusion(Filter):
         factor = FACTORS[self.resolution]
         slices, steps = SAMPLES[self.quality]
         seen = draw(
-            "directional_occlusion_seen", self.image, self.depth, normal=normal,
-            sky=shrunk(draw, "directional_occlusion", sky, _COARSE), size=measured(draw.size, factor), result=DATA,
-            rows=rows, rays=rays, factor=factor, slices=slices, steps=steps, radius=self.radius, falloff=self.falloff,
-            intensity=self.intensity, bounce=self.bounce, rotation=self.rotation, up=self.up, matched=self.denoise,
+            "directional_occlusion_seen",
+            self.image,
+            self.depth,
+            normal=normal,
+            sky=shrunk(draw, "directional_occlusion", sky, _COARSE),
+            size=measured(draw.size, factor),
+            result=DATA,
+            rows=rows,
+            rays=rays,
+            factor=factor,
+            slices=slices,
+            steps=steps,
+            radius=self.radius,
+            falloff=self.falloff,
+            intensity=self.intensity,
+            bounce=self.bounce,
+            rotation=self.rotation,
+            up=self.up,
+            matched=self.denoise,
         )
         light = draw(
-            "directional_occlusion_light", self.depth, self.albedo, normal=normal,
+            "directional_occlusion_light",
+            self.depth,
+            self.albedo,
+            normal=normal,
             gathered=settled(draw, "directional_occlusion", self.depth, normal, seen, rays, factor, self.denoise),
-            sky=irradiance(draw, "directional_occlusion", sky), rays=rays, intensity=self.intensity,
-            rotation=self.rotation, up=self.up,
+            sky=irradiance(draw, "directional_occlusion", sky),
+            rays=rays,
+            intensity=self.intensity,
+            rotation=self.rotation,
+            up=self.up,
         )
         return {"out": draw.point("directional_occlusion", self.image, light=light), "light": light}

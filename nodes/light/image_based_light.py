@@ -31,23 +31,23 @@ class ImageBasedLight(Filter):
 
     normal = Vector(width=3, doc="In the world.")
     camera = Viewpoint(doc="The camera that the normals were rendered with.")
-    environment = Image((1.0, 1.0, 1.0, 1.0), own_size=True, doc=(
-        "All that surrounds the scene, by longitude and latitude. Without a link, an even white."
-    ))
+    environment = Image(
+        (1.0, 1.0, 1.0, 1.0),
+        own_size=True,
+        doc=("All that surrounds the scene, by longitude and latitude. Without a link, an even white."),
+    )
     albedo = Image((0.8, 0.8, 0.8, 1.0), doc="Color of the surfaces. Without a link, a light gray.")
     roughness = Field(0.5, doc="0 is a mirror, 1 is matte. As in Blender, the square root of GGX's alpha.")
     metallic = Field(0.0, doc="1 where surfaces are metal: they only reflect, in their own color.")
     occlusion = Field(1.0, doc="Of the light, what gets there: 1 is all.")
-    intensity: Annotated[float, Slider(
-        0.0, 4.0, unit="ratio", minimum=0.0, doc="How bright the environment is."
-    )] = 1.0
-    rotation: Annotated[float, Slider(
-        -180.0, 180.0, unit="deg", doc="Turns the environment counterclockwise, seen from above."
-    )] = 0.0
+    intensity: Annotated[float, Slider(0.0, 4.0, unit="ratio", minimum=0.0, doc="How bright the environment is.")] = 1.0
+    rotation: Annotated[
+        float, Slider(-180.0, 180.0, unit="deg", doc="Turns the environment counterclockwise, seen from above.")
+    ] = 0.0
     up: Annotated[Literal["z", "y"], Doc("The axis of the world that points up: z in Blender, y in Maya.")] = "z"
-    specular: Annotated[Fraction, Doc(
-        "How much surfaces reflect that are no metal: 0.5 is 4 percent head on, as most things do."
-    )] = 0.5
+    specular: Annotated[
+        Fraction, Doc("How much surfaces reflect that are no metal: 0.5 is 4 percent head on, as most things do.")
+    ] = 0.5
 
     out = Output(Image(doc="All of it, opaque where there is a surface."))
     diffuse = Output(Image(doc="The matte part."))
@@ -62,22 +62,49 @@ class ImageBasedLight(Filter):
             skies.append(shrunk(draw, "image_based_light", skies[-1], size))
         lobes = [
             draw(
-                "image_based_light_lobe", level0=skies[1], level1=skies[2], level2=skies[3], level3=skies[4],
-                level4=skies[5], size=size, result=DATA, roughness=roughness,
+                "image_based_light_lobe",
+                level0=skies[1],
+                level1=skies[2],
+                level2=skies[3],
+                level3=skies[4],
+                level4=skies[5],
+                size=size,
+                result=DATA,
+                roughness=roughness,
             )
             for roughness, size in _LOBES
         ]
         diffuse = draw(
-            "image_based_light_diffuse", self.normal, self.albedo, self.metallic, self.occlusion, overlap=_HERE,
-            sky=irradiance(draw, "image_based_light", skies[3]), intensity=self.intensity, rotation=self.rotation,
+            "image_based_light_diffuse",
+            self.normal,
+            self.albedo,
+            self.metallic,
+            self.occlusion,
+            overlap=_HERE,
+            sky=irradiance(draw, "image_based_light", skies[3]),
+            intensity=self.intensity,
+            rotation=self.rotation,
             up=self.up,
         )
         reflection = draw(
-            "image_based_light_reflection", self.normal, self.albedo, self.roughness, self.metallic, self.occlusion,
+            "image_based_light_reflection",
+            self.normal,
+            self.albedo,
+            self.roughness,
+            self.metallic,
+            self.occlusion,
             overlap=_HERE,
-            level0=mirror, level1=lobes[0], level2=lobes[1], level3=lobes[2], level4=lobes[3],
-            shares=draw("image_based_light_shares", size=_SHARES, result=Vector(width=2)), rays=rays,
-            intensity=self.intensity, rotation=self.rotation, up=self.up, specular=self.specular,
+            level0=mirror,
+            level1=lobes[0],
+            level2=lobes[1],
+            level3=lobes[2],
+            level4=lobes[3],
+            shares=draw("image_based_light_shares", size=_SHARES, result=Vector(width=2)),
+            rays=rays,
+            intensity=self.intensity,
+            rotation=self.rotation,
+            up=self.up,
+            specular=self.specular,
         )
         out = draw.point("image_based_light", diffuse=diffuse, reflection=reflection)
         return {"out": out, "diffuse": diffuse, "reflection": reflection}

@@ -21,37 +21,56 @@ class LightShafts(Filter):
     image = Image()
     depth = Field(doc="Planar distance along the way the camera looks.")
     camera = Viewpoint(doc="The camera that the depth was rendered with.")
-    light: Annotated[Literal["picture", "sun", "lamp"], Doc(
-        "A sun at a place in the picture, a sun in a direction of the world, or a lamp somewhere in it."
-    )] = "picture"
+    light: Annotated[
+        Literal["picture", "sun", "lamp"],
+        Doc("A sun at a place in the picture, a sun in a direction of the world, or a lamp somewhere in it."),
+    ] = "picture"
     source: Annotated[Position, Doc("Where the sun is in the picture, or outside of it.")] = (0.4, -0.1)
-    direction: Annotated[tuple[float, float, float], Slider(-1.0, 1.0, unit="ratio"), Doc(
-        "Towards the sun, in the world's axes."
-    )] = (-0.3, 0.9, 0.4)
-    position: Annotated[tuple[float, float, float], Slider(-10.0, 10.0, unit="scene"), Doc(
-        "Where the lamp is in the world."
-    )] = (-0.5, 1.0, 2.2)
+    direction: Annotated[
+        tuple[float, float, float], Slider(-1.0, 1.0, unit="ratio"), Doc("Towards the sun, in the world's axes.")
+    ] = (-0.3, 0.9, 0.4)
+    position: Annotated[
+        tuple[float, float, float], Slider(-10.0, 10.0, unit="scene"), Doc("Where the lamp is in the world.")
+    ] = (-0.5, 1.0, 2.2)
     color: Annotated[RGBA, Doc("Color of the light; its alpha scales it.")] = (1.0, 0.85, 0.65, 1.0)
-    intensity: Annotated[float, Slider(
-        0.0, 20.0, unit="scene", minimum=0.0, doc="Light of the sun, or of the lamp one unit away from it."
-    )] = 1.0
-    density: Annotated[float, Slider(
-        0.0, 0.5, unit="scene", minimum=0.0, doc="How much of the light one unit of distance scatters."
-    )] = 0.05
-    forward: Annotated[float, Slider(
-        -0.9, 0.9, unit="ratio", minimum=-0.99, maximum=0.99,
-        doc="Above 0, haze is brightest around the light, as dust and mist are; at 0, as bright everywhere.",
-    )] = 0.4
-    distance: Annotated[float, Slider(
-        1.0, 100.0, unit="scene", minimum=1e-3, maximum=1e8, doc="How far away haze ends, where nothing else does."
-    )] = 20.0
-    thickness: Annotated[float, Slider(
-        0.01, 10.0, unit="scene", minimum=0.0, maximum=1e8,
-        doc="How far objects go on behind what is seen of them: rays that come deeper pass behind them.",
-    )] = 1.0
-    quality: Annotated[Literal["preview", "quality", "reference"], Doc(
-        "4, 12 or 64 places on the way to every pixel."
-    )] = "quality"
+    intensity: Annotated[
+        float,
+        Slider(0.0, 20.0, unit="scene", minimum=0.0, doc="Light of the sun, or of the lamp one unit away from it."),
+    ] = 1.0
+    density: Annotated[
+        float, Slider(0.0, 0.5, unit="scene", minimum=0.0, doc="How much of the light one unit of distance scatters.")
+    ] = 0.05
+    forward: Annotated[
+        float,
+        Slider(
+            -0.9,
+            0.9,
+            unit="ratio",
+            minimum=-0.99,
+            maximum=0.99,
+            doc="Above 0, haze is brightest around the light, as dust and mist are; at 0, as bright everywhere.",
+        ),
+    ] = 0.4
+    distance: Annotated[
+        float,
+        Slider(
+            1.0, 100.0, unit="scene", minimum=1e-3, maximum=1e8, doc="How far away haze ends, where nothing else does."
+        ),
+    ] = 20.0
+    thickness: Annotated[
+        float,
+        Slider(
+            0.01,
+            10.0,
+            unit="scene",
+            minimum=0.0,
+            maximum=1e8,
+            doc="How far objects go on behind what is seen of them: rays that come deeper pass behind them.",
+        ),
+    ] = 1.0
+    quality: Annotated[
+        Literal["preview", "quality", "reference"], Doc("4, 12 or 64 places on the way to every pixel.")
+    ] = "quality"
 
     out = Output(Image(doc="The picture with the light of the haze."))
     shafts = Output(Image(doc="The light of the haze alone; it covers nothing."))
@@ -63,9 +82,19 @@ class LightShafts(Filter):
         length = math.hypot(*self.direction)
         to = tuple(part / length for part in self.direction) if length else (0.0, 0.0, 1.0)
         haze = draw(
-            "light_shafts_haze", surfaces=all_surfaces, result=Field(), rows=rows, rays=rays, light=self.light,
-            to=self.position if self.light == "lamp" else to, source=self.source, density=self.density,
-            ahead=self.forward, longest=self.distance, thickness=self.thickness, count=_SAMPLES[self.quality],
+            "light_shafts_haze",
+            surfaces=all_surfaces,
+            result=Field(),
+            rows=rows,
+            rays=rays,
+            light=self.light,
+            to=self.position if self.light == "lamp" else to,
+            source=self.source,
+            density=self.density,
+            ahead=self.forward,
+            longest=self.distance,
+            thickness=self.thickness,
+            count=_SAMPLES[self.quality],
         )
         haze = draw("light_shafts_denoise", surfaces=all_surfaces, haze=haze, result=Field())
         gain = self.intensity * self.color[3]

@@ -27,30 +27,54 @@ class ScreenReflections(Filter):
     albedo = Image((1.0, 1.0, 1.0, 1.0), doc="Color of the surfaces: metals tint what they mirror.")
     mask = Field(1.0, doc="What mirrors, and how much: the floor, puddles.")
     strength: Annotated[float, Slider(0.0, 2.0, unit="ratio", minimum=0.0, doc="1 is physical.")] = 1.0
-    reflectance: Annotated[Fraction, Doc(
-        "How much is mirrored straight on, F0: 0.02 water, 0.04 plastic and glass, 1 a perfect mirror."
-    )] = 0.04
+    reflectance: Annotated[
+        Fraction, Doc("How much is mirrored straight on, F0: 0.02 water, 0.04 plastic and glass, 1 a perfect mirror.")
+    ] = 0.04
     roughness: Annotated[Fraction, Doc("0 mirrors sharply. As in Blender: GGX's alpha is its square.")] = 0.2
-    distance: Annotated[float, Slider(
-        0.1, 100.0, unit="scene", minimum=1e-4, maximum=1e8, doc="How far away things are mirrored, in world units."
-    )] = 20.0
+    distance: Annotated[
+        float,
+        Slider(
+            0.1, 100.0, unit="scene", minimum=1e-4, maximum=1e8, doc="How far away things are mirrored, in world units."
+        ),
+    ] = 20.0
     fade: Annotated[Fraction, Doc("The last part of that distance, over which reflections fade out.")] = 0.5
-    border: Annotated[float, Slider(
-        0.0, 0.5, unit="height", minimum=0.0, maximum=1.0,
-        doc="How wide reflections of what is near the border of the picture fade out.",
-    )] = 0.08
-    thickness: Annotated[float, Slider(
-        0.01, 5.0, unit="scene", minimum=0.0, maximum=1e8,
-        doc="How far objects go on behind what is seen of them: rays that come deeper pass behind them.",
-    )] = 0.3
+    border: Annotated[
+        float,
+        Slider(
+            0.0,
+            0.5,
+            unit="height",
+            minimum=0.0,
+            maximum=1.0,
+            doc="How wide reflections of what is near the border of the picture fade out.",
+        ),
+    ] = 0.08
+    thickness: Annotated[
+        float,
+        Slider(
+            0.01,
+            5.0,
+            unit="scene",
+            minimum=0.0,
+            maximum=1e8,
+            doc="How far objects go on behind what is seen of them: rays that come deeper pass behind them.",
+        ),
+    ] = 0.3
     sky: Annotated[bool, Doc("Mirror what shows through where nothing is, as if it were infinitely far.")] = True
-    quality: Annotated[Literal["preview", "quality", "reference"], Doc(
-        "4, 16 or 64 rays to a pixel where surfaces are rough."
-    )] = "quality"
-    steps: Annotated[int, Slider(
-        32, 1024, unit="count", minimum=1, maximum=8192,
-        doc="The most steps that a ray takes. Too few, and far reflections are lost where the picture is busy.",
-    )] = 256
+    quality: Annotated[
+        Literal["preview", "quality", "reference"], Doc("4, 16 or 64 rays to a pixel where surfaces are rough.")
+    ] = "quality"
+    steps: Annotated[
+        int,
+        Slider(
+            32,
+            1024,
+            unit="count",
+            minimum=1,
+            maximum=8192,
+            doc="The most steps that a ray takes. Too few, and far reflections are lost where the picture is busy.",
+        ),
+    ] = 256
 
     out = Output(Image(doc="The picture with its reflections, instead of the part that is mirrored."))
     reflection = Output(Image(doc="What was added to it; its alpha is how much was taken away."))
@@ -61,37 +85,89 @@ class ScreenReflections(Filter):
         rows, rays = (camera.rows, camera.inverse) if camera else ((0.0,) * 12, (0.0,) * 12)
         all_surfaces = surfaces(draw, self.depth, "screen_reflections")
         normal = draw(
-            "screen_reflections_normal", self.normal, surfaces=all_surfaces, result=Vector(width=3), rows=rows,
+            "screen_reflections_normal",
+            self.normal,
+            surfaces=all_surfaces,
+            result=Vector(width=3),
+            rows=rows,
             rays=rays,
         )
         rough = draw.point(
-            "screen_reflections_roughness", self.material, result=Field(), linked=draw.linked(self.material),
+            "screen_reflections_roughness",
+            self.material,
+            result=Field(),
+            linked=draw.linked(self.material),
             roughness=self.roughness,
         )
         mirror = draw(
-            "screen_reflections_mirror", surfaces=all_surfaces, normal=normal, result=_FOUND, rows=rows, rays=rays,
-            thickness=self.thickness, longest=self.distance, fade=self.fade, border=self.border, sky=self.sky,
+            "screen_reflections_mirror",
+            surfaces=all_surfaces,
+            normal=normal,
+            result=_FOUND,
+            rows=rows,
+            rays=rays,
+            thickness=self.thickness,
+            longest=self.distance,
+            fade=self.fade,
+            border=self.border,
+            sky=self.sky,
             steps=self.steps,
         )
         if draw.linked(self.material) or self.roughness > 0.0:
             scattered = draw(
-                "screen_reflections_scattered", self.image, surfaces=all_surfaces, normal=normal, rough=rough,
-                mirror=mirror, result=_FOUND, rows=rows, rays=rays, thickness=self.thickness, longest=self.distance,
-                fade=self.fade, border=self.border, sky=self.sky, steps=self.steps, count=_RAYS[self.quality],
+                "screen_reflections_scattered",
+                self.image,
+                surfaces=all_surfaces,
+                normal=normal,
+                rough=rough,
+                mirror=mirror,
+                result=_FOUND,
+                rows=rows,
+                rays=rays,
+                thickness=self.thickness,
+                longest=self.distance,
+                fade=self.fade,
+                border=self.border,
+                sky=self.sky,
+                steps=self.steps,
+                count=_RAYS[self.quality],
             )
             light = draw(
-                "screen_reflections_denoise", surfaces=all_surfaces, normal=normal, rough=rough, mirror=mirror,
-                scattered=scattered, result=_FOUND, rays=rays,
+                "screen_reflections_denoise",
+                surfaces=all_surfaces,
+                normal=normal,
+                rough=rough,
+                mirror=mirror,
+                scattered=scattered,
+                result=_FOUND,
+                rays=rays,
             )
         else:
             light = draw("screen_reflections_sharp", self.image, mirror=mirror, result=_FOUND)
         reflection = draw.point(
-            "screen_reflections_light", light=light, normal=normal, rough=rough, material=self.material,
-            albedo=self.albedo, mask=self.mask, rays=rays, reflectance=self.reflectance, strength=self.strength,
+            "screen_reflections_light",
+            light=light,
+            normal=normal,
+            rough=rough,
+            material=self.material,
+            albedo=self.albedo,
+            mask=self.mask,
+            rays=rays,
+            reflectance=self.reflectance,
+            strength=self.strength,
         )
         out = draw.point(
-            "screen_reflections", self.image, light=light, normal=normal, rough=rough, material=self.material,
-            albedo=self.albedo, mask=self.mask, rays=rays, reflectance=self.reflectance, strength=self.strength,
+            "screen_reflections",
+            self.image,
+            light=light,
+            normal=normal,
+            rough=rough,
+            material=self.material,
+            albedo=self.albedo,
+            mask=self.mask,
+            rays=rays,
+            reflectance=self.reflectance,
+            strength=self.strength,
         )
         confidence = draw.point("screen_reflections_confidence", light=light, result=Field())
         return {"out": out, "reflection": reflection, "confidence": confidence}

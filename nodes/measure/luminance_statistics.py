@@ -27,8 +27,11 @@ class LuminanceStatistics(Filter):
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         terms = draw.point(
-            "luminance_statistics_terms", self.image, result=Vector(width=3),
-            delta=self.delta, alpha_weighted=self.alpha_weighted,
+            "luminance_statistics_terms",
+            self.image,
+            result=Vector(width=3),
+            delta=self.delta,
+            alpha_weighted=self.alpha_weighted,
         )
         ends = draw.point(
             "luminance_statistics_ends", self.image, result=Vector(width=2), alpha_weighted=self.alpha_weighted

@@ -3,10 +3,34 @@ from typing import Annotated, Literal
 from .._declare import Doc, Field, Output, Pointwise, Slider
 
 Operation = Literal[
-    "add", "subtract", "multiply", "divide", "multiply add", "power", "minimum", "maximum", "modulo",
-    "greater", "less", "absolute", "negate", "sign", "floor", "ceiling", "round", "fraction",
-    "square root", "exponential", "logarithm", "sine", "cosine", "arc tangent",
-    "clamp", "remap", "smoothstep", "mix",
+    "add",
+    "subtract",
+    "multiply",
+    "divide",
+    "multiply add",
+    "power",
+    "minimum",
+    "maximum",
+    "modulo",
+    "greater",
+    "less",
+    "absolute",
+    "negate",
+    "sign",
+    "floor",
+    "ceiling",
+    "round",
+    "fraction",
+    "square root",
+    "exponential",
+    "logarithm",
+    "sine",
+    "cosine",
+    "arc tangent",
+    "clamp",
+    "remap",
+    "smoothstep",
+    "mix",
 ]
 
 
@@ -14,12 +38,15 @@ class Math(Pointwise):
     """Arithmetic with Fields and Numbers. What has no result (a division by 0, a root of less than 0) is 0."""
 
     a = Field(0.0)
-    operation: Annotated[Operation, Doc(
-        "Multiply add: a b + c. Power: a^b for a above 0. Greater, less: 1 where a is greater (less) than b. "
-        "Modulo takes the sign of b. Sine, cosine: of a in radians; arc tangent: of a / b, all around. Logarithm and "
-        "exponential: base e. Clamp: a within b..c. Remap: 0 at a = b, 1 at a = c, on and on. Smoothstep: the same "
-        "with soft ends. Mix: a (1 - c) + b c."
-    )] = "add"
+    operation: Annotated[
+        Operation,
+        Doc(
+            "Multiply add: a b + c. Power: a^b for a above 0. Greater, less: 1 where a is greater (less) than b. "
+            "Modulo takes the sign of b. Sine, cosine: of a in radians; arc tangent: of a / b, all around. Logarithm and "
+            "exponential: base e. Clamp: a within b..c. Remap: 0 at a = b, 1 at a = c, on and on. Smoothstep: the same "
+            "with soft ends. Mix: a (1 - c) + b c."
+        ),
+    ] = "add"
     b: Annotated[float, Slider(-10.0, 10.0, unit="scene", doc="The second number.")] = 0.0
     c: Annotated[float, Slider(-10.0, 10.0, unit="scene", doc="The third number, where there is one.")] = 1.0
 

@@ -4,10 +4,33 @@ from typing import Annotated, Literal
 from .._declare import Doc, Field, Fraction, Image, Pointwise, Size, Slider
 
 Mode = Literal[
-    "over", "under", "in", "out", "atop", "xor", "clear", "plus",
-    "multiply", "screen", "overlay", "soft light", "hard light", "color dodge", "color burn",
-    "darken", "lighten", "difference", "exclusion", "subtract", "divide", "hypot", "average",
-    "hue", "saturation", "color", "luminosity",
+    "over",
+    "under",
+    "in",
+    "out",
+    "atop",
+    "xor",
+    "clear",
+    "plus",
+    "multiply",
+    "screen",
+    "overlay",
+    "soft light",
+    "hard light",
+    "color dodge",
+    "color burn",
+    "darken",
+    "lighten",
+    "difference",
+    "exclusion",
+    "subtract",
+    "divide",
+    "hypot",
+    "average",
+    "hue",
+    "saturation",
+    "color",
+    "luminosity",
 ]
 
 
@@ -23,13 +46,16 @@ class Merge(Pointwise):
     a = Image(doc="The foreground.")
     b = Image(doc="The background.")
     mask = Field(1.0, doc="Where the result is seen; elsewhere the background stays.")
-    mode: Annotated[Mode, Doc(
-        "Over covers, plus adds light. Subtract is b - a, divide is b / a. Hue, saturation, color and luminosity take "
-        "that of the foreground and the rest of the background."
-    )] = "over"
-    amount: Annotated[Fraction, Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="Mix of the background and the result."
-    )] = 1.0
+    mode: Annotated[
+        Mode,
+        Doc(
+            "Over covers, plus adds light. Subtract is b - a, divide is b / a. Hue, saturation, color and luminosity take "
+            "that of the foreground and the rest of the background."
+        ),
+    ] = "over"
+    amount: Annotated[
+        Fraction, Slider(0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0, doc="Mix of the background and the result.")
+    ] = 1.0
 
     def output_size(self, inputs: Mapping[str, Size], canvas: Size) -> Size:
         return inputs.get("b") or super().output_size(inputs, canvas)

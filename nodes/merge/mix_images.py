@@ -8,9 +8,9 @@ class MixImages(Pointwise):
 
     a = Image()
     b = Image()
-    factor: Annotated[float, Slider(
-        0.0, 1.0, unit="ratio", doc="0 is a, 1 is b. Beyond, the difference of both is exaggerated."
-    )] = 0.5
+    factor: Annotated[
+        float, Slider(0.0, 1.0, unit="ratio", doc="0 is a, 1 is b. Beyond, the difference of both is exaggerated.")
+    ] = 0.5
 
     def identity(self) -> str | None:
         return {0.0: "a", 1.0: "b"}.get(self.factor)

@@ -14,8 +14,8 @@ class Crosshatch(Pointwise):
     size: Annotated[float, Slider(2.0, 40.0, unit="px", minimum=0.5, doc="From one stroke to the next.")] = 7.0
     thickness: Annotated[Fraction, Doc("How thick strokes get, as a part of the space that they have.")] = 0.35
     layers: Annotated[int, Slider(1, 6, unit="count", minimum=1, maximum=16, doc="How often strokes cross.")] = 4
-    angle: Annotated[float, Slider(
-        -90.0, 90.0, unit="deg", doc="Direction of the first layer: 0 is level, 45 rises to the right."
-    )] = 45.0
+    angle: Annotated[
+        float, Slider(-90.0, 90.0, unit="deg", doc="Direction of the first layer: 0 is level, 45 rises to the right.")
+    ] = 45.0
     ink: Annotated[RGBA, Doc("Color of the strokes.")] = (0.01, 0.01, 0.015, 1.0)
     paper: Annotated[RGBA, Doc("Color between the strokes.")] = (0.9, 0.88, 0.82, 1.0)

@@ -13,21 +13,28 @@ class FilmGrain(Pointwise):
     """
 
     image = Image()
-    amount: Annotated[float, Slider(
-        0.0, 1.0, unit="EV", minimum=0.0, maximum=8.0,
-        doc="How far middle gray strays, as a standard deviation; clumps finer than pixels stray less."
-    )] = 0.2
+    amount: Annotated[
+        float,
+        Slider(
+            0.0,
+            1.0,
+            unit="EV",
+            minimum=0.0,
+            maximum=8.0,
+            doc="How far middle gray strays, as a standard deviation; clumps finer than pixels stray less.",
+        ),
+    ] = 0.2
     size: Annotated[float, Slider(0.5, 8.0, unit="px", minimum=0.01, doc="Size of a clump of grains.")] = 1.5
     color: Annotated[Fraction, Doc("0 is silver, the same for all colors; 1 is dye, each layer's grain its own.")] = 0.4
-    shadows: Annotated[float, Slider(
-        0.0, 2.0, unit="ratio", minimum=0.0, maximum=16.0, doc="Factor on the grain of dark tones."
-    )] = 1.0
-    midtones: Annotated[float, Slider(
-        0.0, 2.0, unit="ratio", minimum=0.0, maximum=16.0, doc="Factor on the grain around middle gray."
-    )] = 1.0
-    highlights: Annotated[float, Slider(
-        0.0, 2.0, unit="ratio", minimum=0.0, maximum=16.0, doc="Factor on the grain of bright tones."
-    )] = 1.0
+    shadows: Annotated[
+        float, Slider(0.0, 2.0, unit="ratio", minimum=0.0, maximum=16.0, doc="Factor on the grain of dark tones.")
+    ] = 1.0
+    midtones: Annotated[
+        float, Slider(0.0, 2.0, unit="ratio", minimum=0.0, maximum=16.0, doc="Factor on the grain around middle gray.")
+    ] = 1.0
+    highlights: Annotated[
+        float, Slider(0.0, 2.0, unit="ratio", minimum=0.0, maximum=16.0, doc="Factor on the grain of bright tones.")
+    ] = 1.0
     seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another grain.")] = 0
     animate: Annotated[bool, Doc("Another grain for each frame, as film has.")] = True
 

@@ -14,9 +14,7 @@ class Halftone(Pointwise):
     image = Image()
     inks: Annotated[Literal["cmyk", "black"], Doc("Cyan, magenta, yellow and black ink, or black alone.")] = "cmyk"
     pattern: Annotated[Literal["dot", "line", "cross"], Doc("Round dots, parallel lines, or a grid of lines.")] = "dot"
-    size: Annotated[float, Slider(
-        2.0, 40.0, unit="px", minimum=0.5, doc="From one dot or line to the next."
-    )] = 6.0
-    angle: Annotated[float, Slider(
-        -90.0, 90.0, unit="deg", doc="Turns all screens, on top of each ink's own angle."
-    )] = 0.0
+    size: Annotated[float, Slider(2.0, 40.0, unit="px", minimum=0.5, doc="From one dot or line to the next.")] = 6.0
+    angle: Annotated[
+        float, Slider(-90.0, 90.0, unit="deg", doc="Turns all screens, on top of each ink's own angle.")
+    ] = 0.0

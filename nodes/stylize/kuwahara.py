@@ -14,20 +14,38 @@ class Kuwahara(Filter):
     """
 
     image = Image()
-    kind: Annotated[Literal["anisotropic", "generalized", "classic"], Doc(
-        "Anisotropic paints along edges, generalized in round dabs, classic in squares."
-    )] = "anisotropic"
-    radius: Annotated[float, Slider(
-        1.0, 16.0, unit="px", minimum=0.0, maximum=64.0, doc="Size of the brush. The cost grows with its square."
-    )] = 5.0
-    sharpness: Annotated[float, Slider(
-        1.0, 12.0, unit="ratio", minimum=0.0, maximum=12.0,
-        doc="How strictly the calmest sectors win; without effect on classic.",
-    )] = 8.0
-    smoothing: Annotated[float, Slider(
-        0.5, 8.0, unit="px", minimum=0.0, maximum=200.0,
-        doc="For anisotropic: sigma over which the directions of strokes are averaged.",
-    )] = 2.0
+    kind: Annotated[
+        Literal["anisotropic", "generalized", "classic"],
+        Doc("Anisotropic paints along edges, generalized in round dabs, classic in squares."),
+    ] = "anisotropic"
+    radius: Annotated[
+        float,
+        Slider(
+            1.0, 16.0, unit="px", minimum=0.0, maximum=64.0, doc="Size of the brush. The cost grows with its square."
+        ),
+    ] = 5.0
+    sharpness: Annotated[
+        float,
+        Slider(
+            1.0,
+            12.0,
+            unit="ratio",
+            minimum=0.0,
+            maximum=12.0,
+            doc="How strictly the calmest sectors win; without effect on classic.",
+        ),
+    ] = 8.0
+    smoothing: Annotated[
+        float,
+        Slider(
+            0.5,
+            8.0,
+            unit="px",
+            minimum=0.0,
+            maximum=200.0,
+            doc="For anisotropic: sigma over which the directions of strokes are averaged.",
+        ),
+    ] = 2.0
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
     def identity(self) -> str | None:
@@ -43,8 +61,14 @@ class Kuwahara(Filter):
         else:
             changes = draw("kuwahara_changes", tones=tones, edge=self.edge, overlap=1, result=Vector(width=3))
             found = draw(
-                "kuwahara_sectors", tones=tones, changes=draw.blur(changes, self.smoothing, self.edge), edge=self.edge,
-                overlap={"tones": ceil(2.0 * self.radius), "changes": 0}, result=Vector(width=4),
-                kind=self.kind, radius=self.radius, sharpness=self.sharpness,
+                "kuwahara_sectors",
+                tones=tones,
+                changes=draw.blur(changes, self.smoothing, self.edge),
+                edge=self.edge,
+                overlap={"tones": ceil(2.0 * self.radius), "changes": 0},
+                result=Vector(width=4),
+                kind=self.kind,
+                radius=self.radius,
+                sharpness=self.sharpness,
             )
         return draw.point("kuwahara", tones=found)

@@ -12,12 +12,15 @@ class Oil(Filter):
     """
 
     image = Image()
-    radius: Annotated[float, Slider(
-        1.0, 16.0, unit="px", minimum=0.0, maximum=64.0, doc="Size of the brush. The cost grows with its square."
-    )] = 4.0
-    levels: Annotated[int, Slider(
-        2, 32, unit="count", minimum=2, maximum=32, doc="How many steps of tone: few make large flat dabs."
-    )] = 12
+    radius: Annotated[
+        float,
+        Slider(
+            1.0, 16.0, unit="px", minimum=0.0, maximum=64.0, doc="Size of the brush. The cost grows with its square."
+        ),
+    ] = 4.0
+    levels: Annotated[
+        int, Slider(2, 32, unit="count", minimum=2, maximum=32, doc="How many steps of tone: few make large flat dabs.")
+    ] = 12
     edge: Annotated[Edge, Doc("What lies outside the picture.")] = "clamp"
 
     def identity(self) -> str | None:
@@ -27,7 +30,13 @@ class Oil(Filter):
         tones = draw.point("oil_tones", self.image, result=Vector(width=4))
         reach = ceil(self.radius)
         painted = draw(
-            "oil_dab", tones=tones, edge=self.edge, overlap=reach, result=Vector(width=4),
-            reach=reach, radius=self.radius, levels=self.levels,
+            "oil_dab",
+            tones=tones,
+            edge=self.edge,
+            overlap=reach,
+            result=Vector(width=4),
+            reach=reach,
+            radius=self.radius,
+            levels=self.levels,
         )
         return draw.point("oil", tones=painted)

@@ -12,12 +12,13 @@ class Toon(Pointwise):
     """
 
     image = Image()
-    levels: Annotated[float, Slider(
-        2.0, 16.0, unit="count", minimum=2.0, maximum=1024.0, doc="How many steps from black to white."
-    )] = 5.0
-    sharpness: Annotated[float, Slider(
-        0.0, 50.0, unit="ratio", minimum=0.0, doc="0 changes nothing, 10 leaves soft steps, 50 hard ones."
-    )] = 14.0
+    levels: Annotated[
+        float, Slider(2.0, 16.0, unit="count", minimum=2.0, maximum=1024.0, doc="How many steps from black to white.")
+    ] = 5.0
+    sharpness: Annotated[
+        float,
+        Slider(0.0, 50.0, unit="ratio", minimum=0.0, doc="0 changes nothing, 10 leaves soft steps, 50 hard ones."),
+    ] = 14.0
 
     def identity(self) -> str | None:
         return "image" if self.sharpness == 0.0 else None

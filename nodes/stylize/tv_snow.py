@@ -13,21 +13,29 @@ class TvSnow(Pointwise):
 
     image = Image()
     amount: Annotated[Fraction, Doc("How much of the picture is lost; 1 leaves nothing but snow.")] = 0.35
-    mode: Annotated[Literal["mix", "multiply"], Doc(
-        "Mix lays snow over the picture, black parts too; multiply makes the picture itself flicker."
-    )] = "mix"
-    size: Annotated[float, Slider(
-        1.0, 16.0, unit="px", minimum=0.01, doc="Height of a scan line and width of a flake."
-    )] = 2.0
-    contrast: Annotated[float, Slider(
-        0.0, 4.0, unit="ratio", minimum=0.0, maximum=64.0,
-        doc="1 keeps the noise's own range; above, snow is harsher and what passes black and white is cut."
-    )] = 1.6
+    mode: Annotated[
+        Literal["mix", "multiply"],
+        Doc("Mix lays snow over the picture, black parts too; multiply makes the picture itself flicker."),
+    ] = "mix"
+    size: Annotated[
+        float, Slider(1.0, 16.0, unit="px", minimum=0.01, doc="Height of a scan line and width of a flake.")
+    ] = 2.0
+    contrast: Annotated[
+        float,
+        Slider(
+            0.0,
+            4.0,
+            unit="ratio",
+            minimum=0.0,
+            maximum=64.0,
+            doc="1 keeps the noise's own range; above, snow is harsher and what passes black and white is cut.",
+        ),
+    ] = 1.6
     lines: Annotated[Fraction, Doc("How much whole lines differ in brightness.")] = 0.3
     color: Annotated[Fraction, Doc("0 is gray, as sets with a color killer show it; 1 is as colorful as can be.")] = 0.0
-    interlaced: Annotated[bool, Doc(
-        "Only every second line is new in a frame, even and odd ones in turn: for frames that are fields."
-    )] = False
+    interlaced: Annotated[
+        bool, Doc("Only every second line is new in a frame, even and odd ones in turn: for frames that are fields.")
+    ] = False
     hold: Annotated[int, Slider(1, 24, unit="count", minimum=1, doc="How many frames snow stays.")] = 1
     seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another snow.")] = 0
 

@@ -14,13 +14,15 @@ class Echo(Filter):
 
     image = Image()
     echoes: Annotated[int, Slider(0, 12, unit="count", minimum=0, maximum=127, doc="How many frames besides this.")] = 4
-    spacing: Annotated[int, Slider(
-        -8, 8, unit="count", doc="How many frames lie between two echoes; below 0 they come from the future."
-    )] = 2
+    spacing: Annotated[
+        int,
+        Slider(-8, 8, unit="count", doc="How many frames lie between two echoes; below 0 they come from the future."),
+    ] = 2
     decay: Annotated[Fraction, Doc("How strong each echo is compared to the one before.")] = 0.6
-    mode: Annotated[Literal["brightest", "add", "screen", "average", "behind", "in front"], Doc(
-        "How echoes join the picture. Brightest compares channel by channel, screen is gentle up to white."
-    )] = "brightest"
+    mode: Annotated[
+        Literal["brightest", "add", "screen", "average", "behind", "in front"],
+        Doc("How echoes join the picture. Brightest compares channel by channel, screen is gentle up to white."),
+    ] = "brightest"
 
     def identity(self) -> str | None:
         return "image" if self.echoes == 0 or self.spacing == 0 or self.decay == 0.0 else None
@@ -36,7 +38,11 @@ class Echo(Filter):
             strength = self.decay**back
             total += strength
             seen = draw.point(
-                "echo_join", image=draw.at(self.image, draw.frame - back * self.spacing), seen=seen, strength=strength,
-                mode=self.mode, result=vector,
+                "echo_join",
+                image=draw.at(self.image, draw.frame - back * self.spacing),
+                seen=seen,
+                strength=strength,
+                mode=self.mode,
+                result=vector,
             )
         return draw.point("echo", seen=seen, total=total if self.mode == "average" else 1.0)

@@ -18,27 +18,38 @@ class EyeAdaptation(Temporal):
     model: Annotated[Literal["custom", "natural"], Doc("How fast the eye is, and what it makes of what it knows.")] = (
         "custom"
     )
-    to_bright: Annotated[float, Slider(
-        0.05, 5.0, unit="s", minimum=0.0, maximum=1e4, doc="Custom: how long the eye needs in more light."
-    )] = 0.4
-    to_dark: Annotated[float, Slider(
-        0.05, 10.0, unit="s", minimum=0.0, maximum=1e4, doc="Custom: how long the eye needs in less light."
-    )] = 1.2
-    scale: Annotated[Literal["stops", "light"], Doc(
-        "What follows evenly: stops, as things look, or light itself, as published, which is quick towards the bright."
-    )] = "stops"
-    key: Annotated[float, Slider(
-        0.045, 0.72, unit="scene", minimum=1e-3, doc="Custom: what the adapted luminance becomes."
-    )] = 0.18
-    nits: Annotated[float, Slider(
-        0.01, 1000.0, unit="ratio", minimum=0.0, doc="Natural: cd/m2 of a luminance of 1 in the scene."
-    )] = 100.0
-    minimum: Annotated[float, Slider(
-        -16.0, 0.0, unit="EV", minimum=-32.0, maximum=32.0, doc="The exposure is never less, before compensation."
-    )] = -8.0
-    maximum: Annotated[float, Slider(
-        0.0, 16.0, unit="EV", minimum=-32.0, maximum=32.0, doc="The exposure is never more, before compensation."
-    )] = 8.0
+    to_bright: Annotated[
+        float,
+        Slider(0.05, 5.0, unit="s", minimum=0.0, maximum=1e4, doc="Custom: how long the eye needs in more light."),
+    ] = 0.4
+    to_dark: Annotated[
+        float,
+        Slider(0.05, 10.0, unit="s", minimum=0.0, maximum=1e4, doc="Custom: how long the eye needs in less light."),
+    ] = 1.2
+    scale: Annotated[
+        Literal["stops", "light"],
+        Doc(
+            "What follows evenly: stops, as things look, or light itself, as published, which is quick towards the bright."
+        ),
+    ] = "stops"
+    key: Annotated[
+        float, Slider(0.045, 0.72, unit="scene", minimum=1e-3, doc="Custom: what the adapted luminance becomes.")
+    ] = 0.18
+    nits: Annotated[
+        float, Slider(0.01, 1000.0, unit="ratio", minimum=0.0, doc="Natural: cd/m2 of a luminance of 1 in the scene.")
+    ] = 100.0
+    minimum: Annotated[
+        float,
+        Slider(
+            -16.0, 0.0, unit="EV", minimum=-32.0, maximum=32.0, doc="The exposure is never less, before compensation."
+        ),
+    ] = -8.0
+    maximum: Annotated[
+        float,
+        Slider(
+            0.0, 16.0, unit="EV", minimum=-32.0, maximum=32.0, doc="The exposure is never more, before compensation."
+        ),
+    ] = 8.0
     compensation: Annotated[float, Slider(-4.0, 4.0, unit="EV", doc="Brighter or darker than the eye makes it.")] = 0.0
 
     out = Output()
@@ -53,16 +64,30 @@ class EyeAdaptation(Temporal):
             terms = draw.point("eye_adaptation_terms", self.image, result=Vector(width=2))
             seen = draw.point("eye_adaptation_average", sums=draw.reduce(terms, "sum"), result=number)
         adapted = draw.point(
-            "eye_adaptation_follow", seen=seen, before=draw.history(seen), passed=1.0 / draw.rate, model=self.model,
-            times=(self.to_bright, self.to_dark), scale=self.scale, nits=self.nits, result=number,
+            "eye_adaptation_follow",
+            seen=seen,
+            before=draw.history(seen),
+            passed=1.0 / draw.rate,
+            model=self.model,
+            times=(self.to_bright, self.to_dark),
+            scale=self.scale,
+            nits=self.nits,
+            result=number,
         )
         draw.remember(adapted)
         exposure = draw.point(
-            "eye_adaptation_stops", adapted=adapted, key=self.key, natural=natural, nits=self.nits,
-            minimum=min(self.minimum, self.maximum), maximum=self.maximum, compensation=self.compensation,
+            "eye_adaptation_stops",
+            adapted=adapted,
+            key=self.key,
+            natural=natural,
+            nits=self.nits,
+            minimum=min(self.minimum, self.maximum),
+            maximum=self.maximum,
+            compensation=self.compensation,
             result=number,
         )
         return {
-            "out": draw.point("eye_adaptation", self.image, exposure=exposure), "exposure": exposure,
+            "out": draw.point("eye_adaptation", self.image, exposure=exposure),
+            "exposure": exposure,
             "adapted": adapted,
         }

@@ -17,23 +17,29 @@ class Feedback(Temporal):
     """
 
     image = Image()
-    position: Annotated[tuple[float, float], Slider(
-        -50.0, 50.0, unit="px", doc="How far the past moves each frame, right and down."
-    )] = (0.0, 0.0)
+    position: Annotated[
+        tuple[float, float], Slider(-50.0, 50.0, unit="px", doc="How far the past moves each frame, right and down.")
+    ] = (0.0, 0.0)
     rotation: Annotated[float, Slider(-15.0, 15.0, unit="deg", doc="How far it turns each frame, clockwise.")] = 2.0
-    scale: Annotated[float, Slider(
-        0.8, 1.25, unit="ratio", minimum=_SMALLEST, maximum=1000.0, doc="How much it grows each frame."
-    )] = 1.06
+    scale: Annotated[
+        float, Slider(0.8, 1.25, unit="ratio", minimum=_SMALLEST, maximum=1000.0, doc="How much it grows each frame.")
+    ] = 1.06
     pivot: Annotated[Position, Doc("The point about which the past turns and grows.")] = (0.5, 0.5)
     hue: Annotated[float, Slider(-60.0, 60.0, unit="deg", doc="How far colors go around the wheel each frame.")] = 10.0
     decay: Annotated[Fraction, Doc("What is left after one frame.")] = 0.9
-    mode: Annotated[Literal["brightest", "add", "screen", "over", "mix"], Doc(
-        "How the picture joins its past. Over covers it by alpha; mix keeps the exposure: 1 - decay of it, and "
-        "decay of the past."
-    )] = "brightest"
-    ceiling: Annotated[float, Slider(
-        1.0, 100.0, unit="scene", minimum=0.0, maximum=65504.0, doc="Nothing that comes back is brighter than this."
-    )] = 50.0
+    mode: Annotated[
+        Literal["brightest", "add", "screen", "over", "mix"],
+        Doc(
+            "How the picture joins its past. Over covers it by alpha; mix keeps the exposure: 1 - decay of it, and "
+            "decay of the past."
+        ),
+    ] = "brightest"
+    ceiling: Annotated[
+        float,
+        Slider(
+            1.0, 100.0, unit="scene", minimum=0.0, maximum=65504.0, doc="Nothing that comes back is brighter than this."
+        ),
+    ] = 50.0
     edge: Annotated[Edge, Doc("What lies outside the screen.")] = "black"
 
     def passes(self, draw: Draw) -> Drawn:
@@ -46,11 +52,16 @@ class Feedback(Temporal):
         moved = (pivot[0] + self.position[0], pivot[1] + self.position[1])
         start = tuple(at - row[0] * moved[0] - row[1] * moved[1] for at, row in zip(pivot, (across, down), strict=True))
         past = draw(
-            "feedback_past", history=draw.history(first), edge=self.edge, result=Vector(width=4),
-            across=across, down=down, start=start, hue_turn=self.hue / (2.0 * math.pi), decay=self.decay,
+            "feedback_past",
+            history=draw.history(first),
+            edge=self.edge,
+            result=Vector(width=4),
+            across=across,
+            down=down,
+            start=start,
+            hue_turn=self.hue / (2.0 * math.pi),
+            decay=self.decay,
         )
-        joined = draw.point(
-            "feedback", self.image, past=past, mode=self.mode, decay=self.decay, result=Vector(width=4)
-        )
+        joined = draw.point("feedback", self.image, past=past, mode=self.mode, decay=self.decay, result=Vector(width=4))
         draw.remember(draw.point("feedback_first", image=joined, ceiling=self.ceiling, result=Vector(width=4)))
         return joined

@@ -48,9 +48,8 @@ class FrameAverage(Filter):
         else:
             reach = self.frames // 2
             found = {
-                offset: _weight(self.weights, 2.0 * abs(offset) / (self.frames + 1)) * (
-                    0.5 if 2 * abs(offset) == self.frames else 1.0
-                )
+                offset: _weight(self.weights, 2.0 * abs(offset) / (self.frames + 1))
+                * (0.5 if 2 * abs(offset) == self.frames else 1.0)
                 for offset in range(-reach, reach + 1)
             }
         total = sum(found.values())
@@ -60,6 +59,8 @@ class FrameAverage(Filter):
 def _weight(shape: Shape, away: float) -> float:
     """At a distance from this frame; from 1 on lies outside the window."""
     return {
-        "box": 1.0, "tent": 1.0 - away, "gaussian": math.exp(-0.5 * (_SIGMAS * away) ** 2),
+        "box": 1.0,
+        "tent": 1.0 - away,
+        "gaussian": math.exp(-0.5 * (_SIGMAS * away) ** 2),
         "exponential": math.exp(-_SIGMAS * away),
     }[shape]

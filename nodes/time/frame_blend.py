@@ -14,9 +14,10 @@ class FrameBlend(Temporal):
 
     image = Image()
     mode: Annotated[Literal["time", "persistence"], Doc("What says how fast the past fades.")] = "time"
-    time: Annotated[float, Slider(
-        0.0, 1.0, unit="s", minimum=0.0, maximum=1e4, doc="By time: after so long, 1 / e (37 percent) is left."
-    )] = 0.1
+    time: Annotated[
+        float,
+        Slider(0.0, 1.0, unit="s", minimum=0.0, maximum=1e4, doc="By time: after so long, 1 / e (37 percent) is left."),
+    ] = 0.1
     persistence: Annotated[Fraction, Doc("By persistence: what is left after one frame, a.")] = 0.7
 
     def passes(self, draw: Draw) -> Drawn:
@@ -24,8 +25,6 @@ class FrameBlend(Temporal):
         if self.mode == "time" and self.time > 0.0:
             kept = math.exp(-1.0 / (draw.rate * self.time))
         first = draw.point("frame_blend_first", self.image, result=Vector(width=4))
-        blended = draw.point(
-            "frame_blend", self.image, before=draw.history(first), kept=kept, result=Vector(width=4)
-        )
+        blended = draw.point("frame_blend", self.image, before=draw.history(first), kept=kept, result=Vector(width=4))
         draw.remember(blended)
         return blended

@@ -14,10 +14,16 @@ class Freeze(Filter):
     field = Field(0.0)
     vector = Vector(0.0, width=4)
     frame: Annotated[int, Slider(1, 240, unit="count", doc="The frame that is held, or one of those that are.")] = 1
-    every: Annotated[int, Slider(
-        0, 12, unit="count", minimum=0,
-        doc="0 holds one frame for ever; above, so many frames pass until another one is shown: 2 is on twos.",
-    )] = 0
+    every: Annotated[
+        int,
+        Slider(
+            0,
+            12,
+            unit="count",
+            minimum=0,
+            doc="0 holds one frame for ever; above, so many frames pass until another one is shown: 2 is on twos.",
+        ),
+    ] = 0
 
     out = Output(Image())
     field_out = Output(Field())

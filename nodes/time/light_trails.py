@@ -13,15 +13,22 @@ class LightTrails(Temporal):
     """
 
     image = Image()
-    fade: Annotated[Literal["time", "never"], Doc(
-        "Trails fade with time, or stay for ever, as stars and the lamps of cars on film."
-    )] = "time"
-    time: Annotated[float, Slider(
-        0.02, 5.0, unit="s", minimum=0.0, maximum=1e4, doc="After so long, 1 / e (37 percent) of the light is left."
-    )] = 0.5
-    threshold: Annotated[float, Slider(
-        0.0, 5.0, unit="scene", minimum=0.0, doc="Only what is brighter than this leaves a trail; 0 is everything."
-    )] = 1.0
+    fade: Annotated[
+        Literal["time", "never"],
+        Doc("Trails fade with time, or stay for ever, as stars and the lamps of cars on film."),
+    ] = "time"
+    time: Annotated[
+        float,
+        Slider(
+            0.02, 5.0, unit="s", minimum=0.0, maximum=1e4, doc="After so long, 1 / e (37 percent) of the light is left."
+        ),
+    ] = 0.5
+    threshold: Annotated[
+        float,
+        Slider(
+            0.0, 5.0, unit="scene", minimum=0.0, doc="Only what is brighter than this leaves a trail; 0 is everything."
+        ),
+    ] = 1.0
     knee: Annotated[Fraction, Doc("The part of the threshold over which light fades in.")] = 0.5
     intensity: Annotated[float, Slider(0.0, 2.0, unit="ratio", minimum=0.0, doc="How bright the trails are.")] = 1.0
 
@@ -33,9 +40,7 @@ class LightTrails(Temporal):
         if self.fade == "time":
             kept = math.exp(-1.0 / (draw.rate * self.time)) if self.time > 0.0 else 0.0
         vector = Vector(width=4)
-        bright = draw.point(
-            "light_trails_bright", self.image, threshold=self.threshold, knee=self.knee, result=vector
-        )
+        bright = draw.point("light_trails_bright", self.image, threshold=self.threshold, knee=self.knee, result=vector)
         trail = draw.point("light_trails_fade", bright=bright, before=draw.history(bright), kept=kept, result=vector)
         draw.remember(trail)
         out = draw.point("light_trails", self.image, trail=trail, intensity=self.intensity)

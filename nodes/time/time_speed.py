@@ -16,17 +16,28 @@ class TimeSpeed(Filter):
     field = Field(0.0)
     vector = Vector(0.0, width=4)
     mode: Annotated[Literal["speed", "source"], Doc("What says which frame is shown.")] = "speed"
-    speed: Annotated[float, Slider(
-        -4.0, 4.0, unit="ratio", minimum=-1000.0, maximum=1000.0,
-        doc="By speed: 2 is twice as fast, 0.5 slow motion, below 0 backward.",
-    )] = 0.5
+    speed: Annotated[
+        float,
+        Slider(
+            -4.0,
+            4.0,
+            unit="ratio",
+            minimum=-1000.0,
+            maximum=1000.0,
+            doc="By speed: 2 is twice as fast, 0.5 slow motion, below 0 backward.",
+        ),
+    ] = 0.5
     pivot: Annotated[int, Slider(1, 240, unit="count", doc="By speed: the frame that stays where it is.")] = 1
-    source: Annotated[float, Slider(
-        1.0, 240.0, unit="count", minimum=-1e6, maximum=1e6, doc="By source: the frame that is shown now, for keys."
-    )] = 1.0
-    between: Annotated[Literal["nearest", "blend"], Doc(
-        "Between two frames of an image, show the nearest one or dissolve. Fields and vectors are never mixed."
-    )] = "nearest"
+    source: Annotated[
+        float,
+        Slider(
+            1.0, 240.0, unit="count", minimum=-1e6, maximum=1e6, doc="By source: the frame that is shown now, for keys."
+        ),
+    ] = 1.0
+    between: Annotated[
+        Literal["nearest", "blend"],
+        Doc("Between two frames of an image, show the nearest one or dissolve. Fields and vectors are never mixed."),
+    ] = "nearest"
 
     out = Output(Image())
     field_out = Output(Field())
@@ -42,7 +53,9 @@ class TimeSpeed(Filter):
         before, near, part = math.floor(seen), _nearest(seen), seen - math.floor(seen)
         if self.between == "blend" and part > 0.0:
             image = draw.point(
-                "time_speed_dissolve", before=draw.at(self.image, before), after=draw.at(self.image, before + 1),
+                "time_speed_dissolve",
+                before=draw.at(self.image, before),
+                after=draw.at(self.image, before + 1),
                 part=part,
             )
         else:

@@ -22,32 +22,43 @@ class AutoExposure(Filter):
 
     image = Image()
     mask = Field(1.0, doc="How much each pixel counts.")
-    metering: Annotated[Literal["histogram", "log average", "average", "maximum"], Doc(
-        "Histogram leaves extremes out. Log average heeds dark areas, average bright ones; maximum clips nothing."
-    )] = "histogram"
+    metering: Annotated[
+        Literal["histogram", "log average", "average", "maximum"],
+        Doc("Histogram leaves extremes out. Log average heeds dark areas, average bright ones; maximum clips nothing."),
+    ] = "histogram"
     low: Annotated[Fraction, Doc("Histogram: this share of the pixels is too dark to count.")] = 0.1
     high: Annotated[Fraction, Doc("Histogram: all above this share is too bright to count.")] = 0.9
-    key: Annotated[float, Slider(
-        0.045, 0.72, unit="scene", minimum=1e-3, doc="What the average becomes, low for night, high for snow."
-    )] = 0.18
-    auto_key: Annotated[bool, Doc(
-        "Let the average decide the key: 1.03 - 2 / (2 + log10(1 + average in cd/m2)) (Krawczyk et al. 2005)."
-    )] = False
-    nits: Annotated[float, Slider(
-        0.01, 1000.0, unit="ratio", minimum=0.0, doc="For auto key: cd/m2 of a luminance of 1 in the scene."
-    )] = 100.0
+    key: Annotated[
+        float,
+        Slider(0.045, 0.72, unit="scene", minimum=1e-3, doc="What the average becomes, low for night, high for snow."),
+    ] = 0.18
+    auto_key: Annotated[
+        bool,
+        Doc("Let the average decide the key: 1.03 - 2 / (2 + log10(1 + average in cd/m2)) (Krawczyk et al. 2005)."),
+    ] = False
+    nits: Annotated[
+        float,
+        Slider(0.01, 1000.0, unit="ratio", minimum=0.0, doc="For auto key: cd/m2 of a luminance of 1 in the scene."),
+    ] = 100.0
     compensation: Annotated[float, Slider(-4.0, 4.0, unit="EV", doc="Brighter or darker than metered.")] = 0.0
-    minimum: Annotated[float, Slider(
-        -16.0, 0.0, unit="EV", minimum=-32.0, maximum=32.0, doc="The exposure is never less, before compensation."
-    )] = -8.0
-    maximum: Annotated[float, Slider(
-        0.0, 16.0, unit="EV", minimum=-32.0, maximum=32.0, doc="The exposure is never more, before compensation."
-    )] = 8.0
+    minimum: Annotated[
+        float,
+        Slider(
+            -16.0, 0.0, unit="EV", minimum=-32.0, maximum=32.0, doc="The exposure is never less, before compensation."
+        ),
+    ] = -8.0
+    maximum: Annotated[
+        float,
+        Slider(
+            0.0, 16.0, unit="EV", minimum=-32.0, maximum=32.0, doc="The exposure is never more, before compensation."
+        ),
+    ] = 8.0
     center_weight: Annotated[Fraction, Doc("How much more the center counts: 1 is a spot meter.")] = 0.0
     center: Annotated[Position, Doc("What the camera is pointed at.")] = (0.5, 0.5)
-    radius: Annotated[float, Slider(
-        0.02, 0.5, unit="height", minimum=1e-3, doc="Standard deviation of what counts around the center."
-    )] = 0.2
+    radius: Annotated[
+        float,
+        Slider(0.02, 0.5, unit="height", minimum=1e-3, doc="Standard deviation of what counts around the center."),
+    ] = 0.2
 
     out = Output()
     exposure = Output(Number(doc="In stops."))
@@ -55,14 +66,26 @@ class AutoExposure(Filter):
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         light = draw.point(
-            "auto_exposure_light", self.image, self.mask, result=Vector(width=2),
-            center_weight=self.center_weight, center=self.center, radius=self.radius,
+            "auto_exposure_light",
+            self.image,
+            self.mask,
+            result=Vector(width=2),
+            center_weight=self.center_weight,
+            center=self.center,
+            radius=self.radius,
         )
         average = self._histogram(draw, light) if self.metering == "histogram" else self._statistic(draw, light)
         exposure = draw.point(
-            "auto_exposure_stops", result=Number(), average=average, metering=self.metering, key=self.key,
-            auto_key=self.auto_key, nits=self.nits, compensation=self.compensation,
-            minimum=min(self.minimum, self.maximum), maximum=self.maximum,
+            "auto_exposure_stops",
+            result=Number(),
+            average=average,
+            metering=self.metering,
+            key=self.key,
+            auto_key=self.auto_key,
+            nits=self.nits,
+            compensation=self.compensation,
+            minimum=min(self.minimum, self.maximum),
+            maximum=self.maximum,
         )
         out = draw.point("auto_exposure", self.image, exposure=exposure)
         return {"out": out, "exposure": exposure, "average": average}
@@ -83,22 +106,38 @@ class AutoExposure(Filter):
             end = min(first + _LONGEST, width)
             piece = Reach((0.0, 0.0, 0.5 * (first + end), 0.0, 1.0, 0.0), (ceil(0.5 * (end - first)), 0))
             row = draw(
-                "auto_exposure_row", place=place, size=(_BINS // 4, rows), overlap=piece, result=bins, first=first,
+                "auto_exposure_row",
+                place=place,
+                size=(_BINS // 4, rows),
+                overlap=piece,
+                result=bins,
+                first=first,
                 end=end,
             )
-            table = row if table is None else draw(
-                "auto_exposure_both", one=table, other=row, size=row.size, overlap=0, result=bins
+            table = (
+                row
+                if table is None
+                else draw("auto_exposure_both", one=table, other=row, size=row.size, overlap=0, result=bins)
             )
         assert table is not None
         part: Reach | None = Reach.block(1, _FOLD)
         while rows > 1:
             rows = ceil(rows / _FOLD)
             table = draw(
-                "auto_exposure_fold", table=table, size=(_BINS // 4, rows), overlap=part, result=bins, count=_FOLD,
+                "auto_exposure_fold",
+                table=table,
+                size=(_BINS // 4, rows),
+                overlap=part,
+                result=bins,
+                count=_FOLD,
             )
             part = None  # what is left is made as a whole, so that not all rows are needed at once
         low = min(self.low, self.high, 0.999)
         return draw(
-            "auto_exposure_percentiles", table=table, size=(1, 1), result=Number(),
-            low=low, high=max(self.high, low + 0.001),
+            "auto_exposure_percentiles",
+            table=table,
+            size=(1, 1),
+            result=Number(),
+            low=low,
+            high=max(self.high, low + 0.001),
         )

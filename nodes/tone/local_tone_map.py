@@ -21,35 +21,73 @@ class LocalToneMap(Filter):
     image = Image()
     average = Number(0.0, doc="Log-average luminance of the scene; without a link it is measured.")
     maximum = Number(0.0, doc="The luminance that becomes white; without a link it is measured.")
-    key: Annotated[float, Slider(
-        0.045, 0.72, unit="scene", minimum=1e-3, doc="What the average becomes, low for night, high for snow."
-    )] = 0.18
-    auto_key: Annotated[bool, Doc(
-        "Let the average decide the key: 1.03 - 2 / (2 + log10(1 + average in cd/m2)) (Krawczyk et al. 2005)."
-    )] = False
-    nits: Annotated[float, Slider(
-        0.01, 1000.0, unit="ratio", minimum=0.0, doc="For auto key: cd/m2 of a luminance of 1 in the scene."
-    )] = 100.0
-    size: Annotated[float, Slider(
-        0.5, 8.0, unit="px", minimum=0.1, maximum=50.0,
-        doc="The smallest area; the largest is 43 times as wide. Raise it for large pictures.",
-    )] = 1.0
-    sharpness: Annotated[float, Slider(
-        1.0, 15.0, unit="ratio", minimum=0.0, maximum=30.0,
-        doc="Phi: higher stops at weaker edges, which brings out more detail and in the end dark seams.",
-    )] = 8.0
-    threshold: Annotated[float, Slider(
-        0.01, 0.2, unit="ratio", minimum=1e-4, maximum=10.0, doc="How uneven an area may be. Low stops at weak edges."
-    )] = 0.05
-    saturation: Annotated[float, Slider(
-        0.0, 1.5, unit="ratio", minimum=0.0, maximum=4.0, doc="Power of the channel ratios; 0 is gray, 1 keeps them."
-    )] = 1.0
+    key: Annotated[
+        float,
+        Slider(0.045, 0.72, unit="scene", minimum=1e-3, doc="What the average becomes, low for night, high for snow."),
+    ] = 0.18
+    auto_key: Annotated[
+        bool,
+        Doc("Let the average decide the key: 1.03 - 2 / (2 + log10(1 + average in cd/m2)) (Krawczyk et al. 2005)."),
+    ] = False
+    nits: Annotated[
+        float,
+        Slider(0.01, 1000.0, unit="ratio", minimum=0.0, doc="For auto key: cd/m2 of a luminance of 1 in the scene."),
+    ] = 100.0
+    size: Annotated[
+        float,
+        Slider(
+            0.5,
+            8.0,
+            unit="px",
+            minimum=0.1,
+            maximum=50.0,
+            doc="The smallest area; the largest is 43 times as wide. Raise it for large pictures.",
+        ),
+    ] = 1.0
+    sharpness: Annotated[
+        float,
+        Slider(
+            1.0,
+            15.0,
+            unit="ratio",
+            minimum=0.0,
+            maximum=30.0,
+            doc="Phi: higher stops at weaker edges, which brings out more detail and in the end dark seams.",
+        ),
+    ] = 8.0
+    threshold: Annotated[
+        float,
+        Slider(
+            0.01,
+            0.2,
+            unit="ratio",
+            minimum=1e-4,
+            maximum=10.0,
+            doc="How uneven an area may be. Low stops at weak edges.",
+        ),
+    ] = 0.05
+    saturation: Annotated[
+        float,
+        Slider(
+            0.0,
+            1.5,
+            unit="ratio",
+            minimum=0.0,
+            maximum=4.0,
+            doc="Power of the channel ratios; 0 is gray, 1 keeps them.",
+        ),
+    ] = 1.0
     clip: Annotated[bool, Doc("Limit the result to 0..1. Off keeps what strong colors have beyond.")] = True
 
     def passes(self, draw: Draw) -> Drawn:
         scene = draw.point(
-            "local_tone_map_scene", result=Vector(width=3), average=self._average(draw), maximum=self._maximum(draw),
-            key=self.key, auto_key=self.auto_key, nits=self.nits,
+            "local_tone_map_scene",
+            result=Vector(width=3),
+            average=self._average(draw),
+            maximum=self._maximum(draw),
+            key=self.key,
+            auto_key=self.auto_key,
+            nits=self.nits,
         )
         light = draw.point("local_tone_map_light", self.image, result=Vector(width=2), scene=scene)
         center = draw.blur(light, _SIGMA * self.size)
@@ -58,8 +96,15 @@ class LocalToneMap(Filter):
             scale = _RATIO**index
             surround = draw.blur(light, _SIGMA * self.size * scale * _RATIO)
             area = draw.point(
-                "local_tone_map_grow", result=Vector(width=2), area=area, center=center, surround=surround,
-                scene=scene, scale=scale, sharpness=self.sharpness, threshold=self.threshold,
+                "local_tone_map_grow",
+                result=Vector(width=2),
+                area=area,
+                center=center,
+                surround=surround,
+                scene=scene,
+                scale=scale,
+                sharpness=self.sharpness,
+                threshold=self.threshold,
             )
             center = surround
         return draw.point(

@@ -14,11 +14,18 @@ class OverExposure(Pointwise):
 
     image = Image()
     stops: Annotated[float, Slider(0.0, 6.0, unit="EV", doc="How much too long: +1 doubles the light.")] = 2.0
-    white: Annotated[float, Slider(
-        0.5, 32.0, unit="scene", minimum=1e-3, maximum=60000.0,
-        doc="The most light that film or sensor hold: 1 for a plain sRGB display, 16 for the view AgX.",
-    )] = 16.0
+    white: Annotated[
+        float,
+        Slider(
+            0.5,
+            32.0,
+            unit="scene",
+            minimum=1e-3,
+            maximum=60000.0,
+            doc="The most light that film or sensor hold: 1 for a plain sRGB display, 16 for the view AgX.",
+        ),
+    ] = 16.0
     shoulder: Annotated[Fraction, Doc("How soon highlights are held back: 0 clips hard, 1 bends from black on.")] = 0.7
-    bleach: Annotated[float, Slider(
-        0.0, 4.0, unit="ratio", minimum=0.0, doc="How much highlights lose their color: 0 keeps it."
-    )] = 1.0
+    bleach: Annotated[
+        float, Slider(0.0, 4.0, unit="ratio", minimum=0.0, doc="How much highlights lose their color: 0 keeps it.")
+    ] = 1.0

@@ -12,29 +12,43 @@ class PhotoreceptorToneMap(Filter):
     """
 
     image = Image()
-    brightness: Annotated[float, Slider(
-        -4.0, 4.0, unit="ratio", minimum=-8.0, maximum=8.0, doc="f = exp(-brightness): higher is brighter."
-    )] = 0.0
-    contrast: Annotated[float, Slider(
-        0.0, 1.0, unit="ratio", minimum=0.0, maximum=1.0,
-        doc="The exponent m. 0 finds it: 0.3 for a mostly bright scene to 1 for one with a few bright spots.",
-    )] = 0.0
+    brightness: Annotated[
+        float,
+        Slider(-4.0, 4.0, unit="ratio", minimum=-8.0, maximum=8.0, doc="f = exp(-brightness): higher is brighter."),
+    ] = 0.0
+    contrast: Annotated[
+        float,
+        Slider(
+            0.0,
+            1.0,
+            unit="ratio",
+            minimum=0.0,
+            maximum=1.0,
+            doc="The exponent m. 0 finds it: 0.3 for a mostly bright scene to 1 for one with a few bright spots.",
+        ),
+    ] = 0.0
     light_adaptation: Annotated[Fraction, Doc("Adapt to: 0 the average of the scene, 1 the pixel itself.")] = 0.5
-    color_adaptation: Annotated[Fraction, Doc(
-        "Adapt red, green and blue: 0 together, 1 each on its own, which takes a color cast away."
-    )] = 0.0
+    color_adaptation: Annotated[
+        Fraction, Doc("Adapt red, green and blue: 0 together, 1 each on its own, which takes a color cast away.")
+    ] = 0.0
     stretch: Annotated[bool, Doc("Stretch the result so that its darkest channel is 0 and its brightest 1.")] = True
 
     def passes(self, draw: Draw) -> Drawn:
         scene = draw.point(
-            "photoreceptor_tone_map_scene", result=Vector(width=4), contrast=self.contrast,
+            "photoreceptor_tone_map_scene",
+            result=Vector(width=4),
+            contrast=self.contrast,
             means=draw.reduce(draw.point("photoreceptor_tone_map_light", self.image), "sum"),
             logs=draw.reduce(draw.point("photoreceptor_tone_map_log", self.image, result=Field()), "sum"),
             ends=draw.reduce(draw.point("photoreceptor_tone_map_ends", self.image, result=Vector(width=2)), "max"),
         )
         toned = draw.point(
-            "photoreceptor_tone_map", self.image, scene=scene, brightness=self.brightness,
-            light_adaptation=self.light_adaptation, color_adaptation=self.color_adaptation,
+            "photoreceptor_tone_map",
+            self.image,
+            scene=scene,
+            brightness=self.brightness,
+            light_adaptation=self.light_adaptation,
+            color_adaptation=self.color_adaptation,
         )
         if not self.stretch:
             return toned

@@ -21,34 +21,56 @@ class ScotopicVision(Filter):
 
     image = Image()
     adaptation = Number(0.0, doc="Luminance that the eye is used to; without a link it is every pixel's own.")
-    nits: Annotated[float, Slider(
-        0.001, 10.0, unit="ratio", minimum=0.0, doc="cd/m2 of a luminance of 1 in the scene. Moonlight is about 0.05."
-    )] = 0.1
+    nits: Annotated[
+        float,
+        Slider(
+            0.001,
+            10.0,
+            unit="ratio",
+            minimum=0.0,
+            doc="cd/m2 of a luminance of 1 in the scene. Moonlight is about 0.05.",
+        ),
+    ] = 0.1
     amount: Annotated[Fraction, Doc("0 leaves the picture as it is.")] = 1.0
-    blue_shift: Annotated[float, Slider(
-        0.0, 2.0, unit="ratio", minimum=0.0, maximum=4.0, doc="How bluish the night is: 0 gray, 1 as published."
-    )] = 1.0
-    brightness: Annotated[float, Slider(
-        0.0, 2.0, unit="ratio", minimum=0.0, doc="How bright rods see: 1 keeps the luminance of white."
-    )] = 1.0
-    blur: Annotated[float, Slider(
-        0.0, 3.0, unit="ratio", minimum=0.0, maximum=20.0, doc="Loss of sharpness: 0 none, 1 as an eye has it."
-    )] = 1.0
-    field_of_view: Annotated[float, Slider(
-        10.0, 120.0, unit="deg", minimum=0.1, maximum=360.0, doc="Of the width of the picture, for the sharpness."
-    )] = 50.0
+    blue_shift: Annotated[
+        float,
+        Slider(
+            0.0, 2.0, unit="ratio", minimum=0.0, maximum=4.0, doc="How bluish the night is: 0 gray, 1 as published."
+        ),
+    ] = 1.0
+    brightness: Annotated[
+        float, Slider(0.0, 2.0, unit="ratio", minimum=0.0, doc="How bright rods see: 1 keeps the luminance of white.")
+    ] = 1.0
+    blur: Annotated[
+        float,
+        Slider(0.0, 3.0, unit="ratio", minimum=0.0, maximum=20.0, doc="Loss of sharpness: 0 none, 1 as an eye has it."),
+    ] = 1.0
+    field_of_view: Annotated[
+        float,
+        Slider(
+            10.0, 120.0, unit="deg", minimum=0.1, maximum=360.0, doc="Of the width of the picture, for the sharpness."
+        ),
+    ] = 50.0
 
     def identity(self) -> str | None:
         return "image" if self.amount == 0.0 else None
 
     def passes(self, draw: Draw) -> Drawn:
         light = draw.point(
-            "scotopic_vision_light", self.image, result=Field(),
-            adaptation=self.adaptation, local=not draw.linked(self.adaptation), nits=self.nits,
+            "scotopic_vision_light",
+            self.image,
+            result=Field(),
+            adaptation=self.adaptation,
+            local=not draw.linked(self.adaptation),
+            nits=self.nits,
         )
         seen = draw.point(
-            "scotopic_vision", self.image, light=light,
-            amount=self.amount, blue_shift=self.blue_shift, brightness=self.brightness,
+            "scotopic_vision",
+            self.image,
+            light=light,
+            amount=self.amount,
+            blue_shift=self.blue_shift,
+            brightness=self.brightness,
         )
         # Pixels that a stripe per degree is wide: the sigma that takes stripes down to 0.3 percent is 1 / 1.86 of it.
         scale = self.amount * self.blur * draw.size[0] / degrees(self.field_of_view) / 1.86

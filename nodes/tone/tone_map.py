@@ -1,4 +1,5 @@
 """Tone."""
+
 from typing import Annotated, Literal
 
 from .._declare import Doc, Image, Pointwise, Slider
@@ -20,8 +21,19 @@ class ToneMap(Pointwise):
     image = Image()
     operator: Annotated[
         Literal[
-            "reinhard", "reinhard extended", "reinhard unsquared", "exponential", "logarithmic", "drago",
-            "aces", "aces narkowicz", "agx", "khronos neutral", "hable", "uchimura", "lottes",
+            "reinhard",
+            "reinhard extended",
+            "reinhard unsquared",
+            "exponential",
+            "logarithmic",
+            "drago",
+            "aces",
+            "aces narkowicz",
+            "agx",
+            "khronos neutral",
+            "hable",
+            "uchimura",
+            "lottes",
         ],
         Doc(
             "Reinhard never reaches white; extended does at the maximum; unsquared, its form without the square of the "
@@ -31,38 +43,80 @@ class ToneMap(Pointwise):
         ),
     ] = "agx"
     exposure: Annotated[float, Slider(-6.0, 6.0, unit="EV", doc="Brightens the picture before it is mapped.")] = 0.0
-    key: Annotated[float, Slider(
-        0.045, 0.72, unit="scene", minimum=0.0,
-        doc="Reinhard, exponential: what the average becomes, low for night, high for snow.",
-    )] = 0.18
-    auto_key: Annotated[bool, Doc(
-        "Reinhard, exponential: let the average decide the key, 1.03 - 2 / (2 + log10(1 + average in cd/m2))."
-    )] = False
-    nits: Annotated[float, Slider(
-        0.01, 1000.0, unit="ratio", minimum=0.0, doc="For auto key: cd/m2 of a luminance of 1 in the scene."
-    )] = 100.0
-    average: Annotated[float, Slider(
-        0.001, 10.0, unit="scene", minimum=0.0,
-        doc="Log-average luminance of the scene (Reinhard, exponential, Drago).",
-    )] = 0.18
-    maximum: Annotated[float, Slider(
-        1.0, 100.0, unit="scene", minimum=0.0,
-        doc="The luminance that becomes white (Reinhard extended and unsquared, logarithmic, Drago, Lottes).",
-    )] = 16.0
-    bias: Annotated[float, Slider(
-        0.5, 1.0, unit="ratio", minimum=0.1, maximum=1.0, doc="Drago: lower opens the shadows, higher gives contrast."
-    )] = 0.85
-    q: Annotated[float, Slider(
-        0.1, 10.0, unit="ratio", minimum=1e-3, maximum=1e6, doc="Logarithmic: log(1 + q L) / log(1 + k maximum)."
-    )] = 1.0
-    k: Annotated[float, Slider(
-        0.1, 10.0, unit="ratio", minimum=1e-3, maximum=1e6, doc="Logarithmic: above q darker, below q brighter."
-    )] = 1.0
-    contrast: Annotated[float, Slider(
-        0.5, 1.5, unit="ratio", minimum=0.25, maximum=3.0, doc="Uchimura, Lottes: contrast of the midtones."
-    )] = 1.0
-    saturation: Annotated[float, Slider(
-        0.0, 1.5, unit="ratio", minimum=0.0, maximum=4.0,
-        doc="Reinhard, exponential, logarithmic, Drago: power of the channel ratios; 0 is gray, 1 keeps them.",
-    )] = 1.0
+    key: Annotated[
+        float,
+        Slider(
+            0.045,
+            0.72,
+            unit="scene",
+            minimum=0.0,
+            doc="Reinhard, exponential: what the average becomes, low for night, high for snow.",
+        ),
+    ] = 0.18
+    auto_key: Annotated[
+        bool,
+        Doc("Reinhard, exponential: let the average decide the key, 1.03 - 2 / (2 + log10(1 + average in cd/m2))."),
+    ] = False
+    nits: Annotated[
+        float,
+        Slider(0.01, 1000.0, unit="ratio", minimum=0.0, doc="For auto key: cd/m2 of a luminance of 1 in the scene."),
+    ] = 100.0
+    average: Annotated[
+        float,
+        Slider(
+            0.001,
+            10.0,
+            unit="scene",
+            minimum=0.0,
+            doc="Log-average luminance of the scene (Reinhard, exponential, Drago).",
+        ),
+    ] = 0.18
+    maximum: Annotated[
+        float,
+        Slider(
+            1.0,
+            100.0,
+            unit="scene",
+            minimum=0.0,
+            doc="The luminance that becomes white (Reinhard extended and unsquared, logarithmic, Drago, Lottes).",
+        ),
+    ] = 16.0
+    bias: Annotated[
+        float,
+        Slider(
+            0.5,
+            1.0,
+            unit="ratio",
+            minimum=0.1,
+            maximum=1.0,
+            doc="Drago: lower opens the shadows, higher gives contrast.",
+        ),
+    ] = 0.85
+    q: Annotated[
+        float,
+        Slider(
+            0.1, 10.0, unit="ratio", minimum=1e-3, maximum=1e6, doc="Logarithmic: log(1 + q L) / log(1 + k maximum)."
+        ),
+    ] = 1.0
+    k: Annotated[
+        float,
+        Slider(
+            0.1, 10.0, unit="ratio", minimum=1e-3, maximum=1e6, doc="Logarithmic: above q darker, below q brighter."
+        ),
+    ] = 1.0
+    contrast: Annotated[
+        float,
+        Slider(0.5, 1.5, unit="ratio", minimum=0.25, maximum=3.0, doc="Uchimura, Lottes: contrast of the midtones."),
+    ] = 1.0
+    saturation: Annotated[
+        float,
+        Slider(
+            0.0,
+            1.5,
+            unit="ratio",
+            minimum=0.0,
+            maximum=4.0,
+            doc="Reinhard, exponential, logarithmic, Drago: power of the channel ratios; 0 is gray, 1 keeps them.",
+        ),
+    ] = 1.0
     clip: Annotated[bool, Doc("Limit the result to 0..1. Off keeps what strong colors have beyond.")] = True

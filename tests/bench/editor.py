@@ -35,12 +35,28 @@ from halation.nodes import Kind, catalogue
 from imgui_bundle import ImVec2, immapp
 
 _TEN = (
-    "exposure", "saturation", "grade", "gaussian_blur", "vignette", "exposure", "clip", "saturation", "bloom",
+    "exposure",
+    "saturation",
+    "grade",
+    "gaussian_blur",
+    "vignette",
+    "exposure",
+    "clip",
+    "saturation",
+    "bloom",
     "exposure",
 )
 _STACK = ("exposure", "gaussian_blur", "vignette", "tone_map", "grade", "saturation")
 _CAST = (
-    "exposure", "grade", "saturation", "vignette", "clip", "gaussian_blur", "tone_map", "bloom", "edge_detect",
+    "exposure",
+    "grade",
+    "saturation",
+    "vignette",
+    "clip",
+    "gaussian_blur",
+    "tone_map",
+    "bloom",
+    "edge_detect",
     "mix_images",
 )
 
@@ -201,7 +217,8 @@ def start(folder: Path) -> float:
         started = time.perf_counter()
         process = subprocess.Popen(
             [sys.executable, "-c", code, str(Path(__file__).parents[1]), str(folder), str(preset)],
-            stdout=subprocess.PIPE, text=True,
+            stdout=subprocess.PIPE,
+            text=True,
         )
         assert process.stdout
         assert any("shown" in line for line in process.stdout)

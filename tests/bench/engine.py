@@ -52,10 +52,18 @@ def main() -> None:
         before = time.perf_counter()
         made = engine.runner.run(plan)["out"]
         seconds.append(time.perf_counter() - before)
-    print(json.dumps({
-        "seconds": seconds[1:], "first": first, "plan": planned - started, "passes": len(plan.passes),
-        "device": engine.device.description, "finite": bool(np.isfinite(made).all()),
-    }))
+    print(
+        json.dumps(
+            {
+                "seconds": seconds[1:],
+                "first": first,
+                "plan": planned - started,
+                "passes": len(plan.passes),
+                "device": engine.device.description,
+                "finite": bool(np.isfinite(made).all()),
+            }
+        )
+    )
     engine.close()
 
 

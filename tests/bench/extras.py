@@ -87,4 +87,3 @@ def _long(place: Place) -> dict[str, float]:
             raise SystemExit(ended.said)
         found[str(count)] = ended.memory
     return found
-

@@ -37,8 +37,12 @@ def options(words: Sequence[str] | None = None) -> argparse.Namespace:
     reader.add_argument("--presets", default="", help="some presets, by name; by default all of them")
     reader.add_argument("--rounds", type=int, default=3, help="how often all of it takes its turn")
     reader.add_argument("--repeat", type=int, default=20, help="how often in each turn")
-    reader.add_argument("--software", type=Path, metavar="FOLDER",
-                        help="pictures of the software rasterizer; what is missing in it is made")
+    reader.add_argument(
+        "--software",
+        type=Path,
+        metavar="FOLDER",
+        help="pictures of the software rasterizer; what is missing in it is made",
+    )
     reader.add_argument("--dry", action="store_true", help="tiny pictures and few presets: see whether all of it runs")
     reader.add_argument("--json", type=Path, metavar="FILE", help="keep the results")
     reader.add_argument("--from", dest="earlier", type=Path, metavar="FILE", help="print these, measure nothing")
@@ -72,10 +76,18 @@ def measured(given: argparse.Namespace, say: Say) -> Results:
     given.dry = given.dry or software
     if given.dry:
         given.rounds, given.repeat = min(given.rounds, 2), min(given.repeat, 3)
-    results = Results({
-        **machine(), "card": device.target.renderer, "driver": device.driver, "form": device.target.form,
-        "why": device.target.why, "software": software, "dry": given.dry, "nvidia": nvidia(),
-    })
+    results = Results(
+        {
+            **machine(),
+            "card": device.target.renderer,
+            "driver": device.driver,
+            "form": device.target.form,
+            "why": device.target.why,
+            "software": software,
+            "dry": given.dry,
+            "nvidia": nvidia(),
+        }
+    )
     parts = {"copies": measure_copies, "work": measure_work, "presets": measure_presets}
     for name in PARTS:
         if name in given.parts:

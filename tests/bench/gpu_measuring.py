@@ -83,7 +83,8 @@ def take(
         one.error = str(fault)
         return
     known: dict[str, Any] = {
-        "moved": sum(timed.read + timed.written for timed in passes), "passes": len(passes),
+        "moved": sum(timed.read + timed.written for timed in passes),
+        "passes": len(passes),
         "floor": floor(renderer.compile(graph, wanted)),
         "each": [
             {"functions": list(timed.functions), "median": timed.median, "moved": timed.read + timed.written}

@@ -57,8 +57,20 @@ def listing(results: Results) -> str:
         ]
         lines.append("")
     if results.runs:
-        names = ("what", "size", "passes are", "number", "ms", "fastest", "frame by the clock ms", "MiB moved", "GB/s",
-                 "of a copy", "floor ms", "times the floor")
+        names = (
+            "what",
+            "size",
+            "passes are",
+            "number",
+            "ms",
+            "fastest",
+            "frame by the clock ms",
+            "MiB moved",
+            "GB/s",
+            "of a copy",
+            "floor ms",
+            "times the floor",
+        )
         lines += [f"| {' | '.join(names)} |", "|" + "---|" * len(names)]
         lines += [f"| {' | '.join(_cells(results, one))} |" for one in results.runs]
         lines.append("")
@@ -84,8 +96,16 @@ def _cells(results: Results, one: Run) -> list[str]:
         share, least = f"{moved / speed:.0%}", f"{known['floor'] / speed * 1e3:.3f}"
         times = f"{seconds * speed / known['floor']:.2f}"
     return [
-        *first, str(known["passes"]), f"{seconds * 1e3:.3f}", f"{min(one.op) * 1e3:.3f}",
-        f"{median(one.wall) * 1e3:.3f}", f"{known['moved'] / 2**20:.1f}", f"{moved / 1e9:.0f}", share, least, times,
+        *first,
+        str(known["passes"]),
+        f"{seconds * 1e3:.3f}",
+        f"{min(one.op) * 1e3:.3f}",
+        f"{median(one.wall) * 1e3:.3f}",
+        f"{known['moved'] / 2**20:.1f}",
+        f"{moved / 1e9:.0f}",
+        share,
+        least,
+        times,
     ]
 
 
@@ -101,15 +121,20 @@ def rows(results: Results) -> Iterator[Row]:
 
     yield Row(
         "ten fused nodes at 7680x4320, in times of copying input to output",
-        f"{1 / COPY:.2f}: {COPY:.0%} of the bandwidth", (floors("chain", 1.0 / COPY),),
+        f"{1 / COPY:.2f}: {COPY:.0%} of the bandwidth",
+        (floors("chain", 1.0 / COPY),),
     )
     yield Row(
         "Gaussian blur and bloom at 3840x2160, in times of reading the input once and writing the output once",
-        f"{FLOORS:g}", tuple(floors(task, FLOORS) for task in ("T1s3", "T1s10", "T1s50", "bloom")),
+        f"{FLOORS:g}",
+        tuple(floors(task, FLOORS) for task in ("T1s3", "T1s10", "T1s50", "bloom")),
     )
     stack = _run(results, "stack", own)
-    yield Row("the preset post_stack at 3840x2160, all passes", f"{STACK * 1e3:g} ms", (
-        Figure("", median(stack.op) * 1e3 if stack else None, STACK * 1e3, " ms"),))
+    yield Row(
+        "the preset post_stack at 3840x2160, all passes",
+        f"{STACK * 1e3:g} ms",
+        (Figure("", median(stack.op) * 1e3 if stack else None, STACK * 1e3, " ms"),),
+    )
     forms, precisions = [f"{form} half" for form in FORMS], [f"{results.machine['form']} {one}" for one in PRECISIONS]
     yield Row("compute against fragment passes", "to be known", tuple(_ratios(results, *forms)))
     yield Row("half against float intermediates", "to be known", tuple(_ratios(results, *precisions)))
@@ -140,7 +165,8 @@ def table(results: Results) -> str:
     for row in rows(results):
         known = ", ".join(
             str(one) if worth else f"{one.label} {number_text(one.number)}{one.unit}".strip()
-            for one in row.figures if one.number is not None
+            for one in row.figures
+            if one.number is not None
         )
         lines.append(f"| {row.what} | {row.wanted} | {known or 'not measured'} | {row.verdict if worth else 'dry'} |")
     return "\n".join(lines)

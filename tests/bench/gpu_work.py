@@ -45,13 +45,18 @@ def _own(name: str) -> Path:
 
 
 _STACK = next(path for path in paths() if path.stem == "post_stack")
-WORK: Mapping[str, Work] = MappingProxyType({work.name: work for work in (
-    Work("chain", "ten nodes, fused", _own("chain"), UHD2),
-    *(Work(name, TASKS[name].title, TASKS[name].path, UHD) for name in ("T1s3", "T1s10", "T1s50")),
-    Work("bloom", "the node bloom", _own("bloom"), UHD),
-    Work("T2", TASKS["T2"].title, TASKS["T2"].path, UHD),
-    Work("stack", "the preset post_stack", _STACK, UHD, ()),
-)})
+WORK: Mapping[str, Work] = MappingProxyType(
+    {
+        work.name: work
+        for work in (
+            Work("chain", "ten nodes, fused", _own("chain"), UHD2),
+            *(Work(name, TASKS[name].title, TASKS[name].path, UHD) for name in ("T1s3", "T1s10", "T1s50")),
+            Work("bloom", "the node bloom", _own("bloom"), UHD),
+            Work("T2", TASKS["T2"].title, TASKS["T2"].path, UHD),
+            Work("stack", "the preset post_stack", _STACK, UHD, ()),
+        )
+    }
+)
 
 
 def picture(size: Size) -> Array:

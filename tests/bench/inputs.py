@@ -100,8 +100,12 @@ def pictures(width: int, height: int) -> dict[str, Array]:
     depth, normal, velocity = geometry(width, height)
     mask = np.clip(np.abs(depth - Lens.focus) / Lens.focus, 0.0, 1.0)
     return {
-        "a": light(width, height, 1), "b": light(width, height, 42), "depth": depth, "normal": normal,
-        "velocity": velocity, "mask": np.repeat(mask[..., None], 4, 2).astype(np.float16),
+        "a": light(width, height, 1),
+        "b": light(width, height, 42),
+        "depth": depth,
+        "normal": normal,
+        "velocity": velocity,
+        "mask": np.repeat(mask[..., None], 4, 2).astype(np.float16),
         "noise": np.dstack([noise(width, height, 128.0, 3, seed) for seed in (11, 12)]),
     }
 

@@ -35,7 +35,9 @@ def graph_of(path: Path, size: int, frames: int) -> Graph:
     """A graph of one shader. Raises CodeFault."""
     vertex = path.with_suffix(".vs")
     code = Code(
-        "isf", path.read_text("utf-8", "replace"), str(path.resolve()),
+        "isf",
+        path.read_text("utf-8", "replace"),
+        str(path.resolve()),
         vertex.read_text("utf-8", "replace") if vertex.is_file() else "",
     )
     kind = node_type(code)
@@ -89,8 +91,10 @@ def main() -> None:
             tiles.append(pixels)
         engine.runner.textures.forget()
     compiled = sum(len(names) for kind, names in found.items() if kind not in ("refused", "failed"))
-    print(f"{len(paths)} shaders, {options.size}x{options.size}, {options.frames} frames, "
-          f"{time.perf_counter() - started:.0f} s on {engine.device.target.renderer}")
+    print(
+        f"{len(paths)} shaders, {options.size}x{options.size}, {options.frames} frames, "
+        f"{time.perf_counter() - started:.0f} s on {engine.device.target.renderer}"
+    )
     print(f"compiled  {compiled}")
     for kind, names in sorted(found.items()):
         print(f"{kind:<9} {len(names)}")

@@ -21,8 +21,16 @@ from halation.nodes import Kind, catalogue
 
 TIMES = 7
 TYPES = (
-    "exposure", "grade", "saturation", "gaussian_blur", "cdl", "mix_images", "vignette", "edge_detect",
-    "clip", "merge",
+    "exposure",
+    "grade",
+    "saturation",
+    "gaussian_blur",
+    "cdl",
+    "mix_images",
+    "vignette",
+    "edge_detect",
+    "clip",
+    "merge",
 )
 """In turn. Those of two pictures take the node before and the one five before it."""
 
@@ -67,8 +75,12 @@ def measured(engine: Renderer, count: int) -> dict[str, object]:
     change = timed(lambda turn: engine.compile(changed[turn], wanted))
     after = {one.shader for one in engine.compile(changed[-1], wanted).passes}
     return {
-        "nodes": count, "passes": len(engine.compile(graph, wanted).passes), "plan": plan, "change": change,
-        "programs": len(after - first), "read": timed(lambda turn: loads(text)),
+        "nodes": count,
+        "passes": len(engine.compile(graph, wanted).passes),
+        "plan": plan,
+        "change": change,
+        "programs": len(after - first),
+        "read": timed(lambda turn: loads(text)),
     }
 
 

@@ -90,7 +90,8 @@ def _python(
     tasks = tuple(run([python, path, "--list"], environment).result.get("tasks", ()))
     if tasks:
         yield Program(
-            name, only or tasks,
+            name,
+            only or tasks,
             None if only else lambda task, folder, size, out: [python, path, task, str(folder), "--out", str(out)],
             lambda task, folder, repeat: [python, path, task, str(folder), "--repeat", str(repeat)],
             environment,

@@ -95,9 +95,13 @@ def occlusion(depth: Array, normal: Array) -> Array:
 
     def place(at: Array, down: Array) -> Array:
         far = depth[down, at]
-        return np.dstack([
-            ((at + 0.5) / width * 2.0 - 1.0) * view[0] * far, (1.0 - (down + 0.5) / height * 2.0) * view[1] * far, -far
-        ])
+        return np.dstack(
+            [
+                ((at + 0.5) / width * 2.0 - 1.0) * view[0] * far,
+                (1.0 - (down + 0.5) / height * 2.0) * view[1] * far,
+                -far,
+            ]
+        )
 
     center, hidden = place(x, y), np.zeros(depth.shape)
     for i in range(Occlusion.samples):
@@ -145,8 +149,17 @@ def reference(task: str, pictures: Mapping[str, Array]) -> Array:
     if task in SIGMAS:
         return blurred(given[0], SIGMAS[task])
     made = {
-        "copy": lambda a: a, "T2": bloom, "T3": mapped, "T4": lambda a: np.dstack([edges(a[..., :3]), a[..., 3]]),
-        "T5": ten, "T5_catalogue": ten, "T10": ten, "T6": displaced, "T7": occlusion, "T8": gathered, "T9": smeared,
+        "copy": lambda a: a,
+        "T2": bloom,
+        "T3": mapped,
+        "T4": lambda a: np.dstack([edges(a[..., :3]), a[..., 3]]),
+        "T5": ten,
+        "T5_catalogue": ten,
+        "T10": ten,
+        "T6": displaced,
+        "T7": occlusion,
+        "T8": gathered,
+        "T9": smeared,
     }
     return made[task](*given)
 

@@ -32,9 +32,13 @@ def listing(results: Results, earlier: Results | None = None) -> str:
 def _numbers(results: Results, one: Run) -> list[str]:
     middle = {what: results.middle(one.size, one.task, one.program, what) for what in ("wall", "cpu", "memory", "op")}
     return [
-        _text(middle["wall"], ".2f"), _text(min(one.wall, default=None), ".2f"), _text(middle["cpu"], ".2f"),
-        _text(middle["memory"], ".0f"), _text(middle["op"], ".1f", 1e3),
-        number_text(one.rms) if one.rms is not None else "", number_text(one.peak) if one.peak is not None else "",
+        _text(middle["wall"], ".2f"),
+        _text(min(one.wall, default=None), ".2f"),
+        _text(middle["cpu"], ".2f"),
+        _text(middle["memory"], ".0f"),
+        _text(middle["op"], ".1f", 1e3),
+        number_text(one.rms) if one.rms is not None else "",
+        number_text(one.peak) if one.peak is not None else "",
     ]
 
 

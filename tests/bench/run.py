@@ -45,7 +45,10 @@ def options() -> argparse.Namespace:
     reader.add_argument("--repeat", type=int, default=3, help="how often in each of half as many rounds in memory")
     reader.add_argument("--parts", default="whole,memory,extras", help="what to measure")
     reader.add_argument(
-        "--venvs", type=Path, default=Path(venvs) if venvs else None, metavar="FOLDER",
+        "--venvs",
+        type=Path,
+        default=Path(venvs) if venvs else None,
+        metavar="FOLDER",
         help="virtual environments of peers: blender, blender5, numba, opencv; or HALATION_BENCH_VENVS",
     )
     reader.add_argument("--data", type=Path, default=cache, metavar="FOLDER", help=f"pictures, made once; {cache}")
@@ -85,7 +88,9 @@ def machine() -> dict[str, object]:
     except (OSError, StopIteration):
         pass
     return {
-        "processor": processor, "processors": len(os.sched_getaffinity(0)), "system": platform.platform(),
+        "processor": processor,
+        "processors": len(os.sched_getaffinity(0)),
+        "system": platform.platform(),
         "python": platform.python_version(),
     }
 

@@ -45,8 +45,12 @@ def run(command: Sequence[str], environment: Mapping[str, str] | None = None, pa
     with tempfile.TemporaryFile() as out:
         started = time.perf_counter()
         process = subprocess.Popen(
-            command, env={**os.environ, **WARM, **(environment or {})}, stdin=subprocess.DEVNULL, stdout=out,
-            stderr=subprocess.STDOUT, start_new_session=True,
+            command,
+            env={**os.environ, **WARM, **(environment or {})},
+            stdin=subprocess.DEVNULL,
+            stdout=out,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,
         )
         timer = threading.Timer(patience, os.killpg, (process.pid, signal.SIGKILL))
         timer.daemon = True

@@ -12,9 +12,14 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-SIZES: Mapping[str, tuple[int, int]] = MappingProxyType({
-    "tiny": (96, 54), "small": (480, 270), "hd": (1920, 1080), "uhd": (3840, 2160),
-})
+SIZES: Mapping[str, tuple[int, int]] = MappingProxyType(
+    {
+        "tiny": (96, 54),
+        "small": (480, 270),
+        "hd": (1920, 1080),
+        "uhd": (3840, 2160),
+    }
+)
 FRAMES = 24
 PICTURES = 1
 """The version of the pictures: goes up when they change."""

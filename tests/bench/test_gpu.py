@@ -31,10 +31,18 @@ def device():
 
 def card(**machine):
     """Results of a card that copies a gigabyte a millisecond."""
-    found = Results({
-        "card": "A card", "driver": "1.0", "form": "compute", "why": "asked for", "software": False, "dry": False,
-        "nvidia": "", **machine,
-    })
+    found = Results(
+        {
+            "card": "A card",
+            "driver": "1.0",
+            "form": "compute",
+            "why": "asked for",
+            "software": False,
+            "dry": False,
+            "nvidia": "",
+            **machine,
+        }
+    )
     found.extras["copies"] = {
         "compute rgba16f": {"nbytes": 5 * 10**8, "seconds": [1e-3], "bandwidth": 1e12, "same": True},
         "buffer": {"nbytes": 5 * 10**8, "seconds": [2e-3], "bandwidth": 5e11, "same": True},
@@ -90,15 +98,24 @@ def test_the_floor_is_input_and_output_once(name, precision):
         assert floor(planned(name, precision)) == pixels * (each + each + 4 + FLOAT + FLOAT)
 
 
-@pytest.mark.parametrize(("name", "limit"), [
-    ("chain", 1.0), ("T1s3", FLOORS), ("T1s10", FLOORS), ("T1s50", FLOORS), ("bloom", FLOORS),
-])
+@pytest.mark.parametrize(
+    ("name", "limit"),
+    [
+        ("chain", 1.0),
+        ("T1s3", FLOORS),
+        ("T1s10", FLOORS),
+        ("T1s50", FLOORS),
+        ("bloom", FLOORS),
+    ],
+)
 def test_plans_leave_room_for_what_is_wanted(name, limit):
     """No card can move fewer bytes than the plan says, but for those that its caches hold."""
     plan = planned(name, "half")
     moved = sum(
         plan.surfaces[number].nbytes
-        for one in plan.passes if not FITTING.issuperset(one.functions) for number in (*one.textures, *one.targets)
+        for one in plan.passes
+        if not FITTING.issuperset(one.functions)
+        for number in (*one.textures, *one.targets)
     )
     assert moved <= limit * floor(plan)
 
@@ -146,19 +163,28 @@ def test_seventy_percent_of_a_copy(seconds, verdict):
     assert row(measured(card(), "chain", seconds, 10**9), "ten fused").verdict == verdict
 
 
-@pytest.mark.parametrize(("half", "rounding", "verdict"), [
-    (1.9e-2, 1e-2, "yes"), (2.1e-2, 1e-2, "no"), (9e-4, 0.0, "yes"), (1.1e-3, 0.0, "no"),
-])
+@pytest.mark.parametrize(
+    ("half", "rounding", "verdict"),
+    [
+        (1.9e-2, 1e-2, "yes"),
+        (2.1e-2, 1e-2, "no"),
+        (9e-4, 0.0, "yes"),
+        (1.1e-3, 0.0, "no"),
+    ],
+)
 def test_presets_may_be_as_far_off_as_rounding(half, rounding, verdict):
     found = card()
     found.extras["presets"] = {"one": {"half": half, "float": 0.0, "rounding": rounding}}
     assert row(found, "presets").verdict == verdict
 
 
-@pytest.mark.parametrize(("machine", "said"), [
-    ({"software": True, "dry": True}, "A card is a software rasterizer: these figures mean nothing"),
-    ({"dry": True}, "A dry run, of pictures far too small: these figures mean nothing"),
-])
+@pytest.mark.parametrize(
+    ("machine", "said"),
+    [
+        ({"software": True, "dry": True}, "A card is a software rasterizer: these figures mean nothing"),
+        ({"dry": True}, "A dry run, of pictures far too small: these figures mean nothing"),
+    ],
+)
 def test_figures_that_mean_nothing_are_not_judged(machine, said):
     found = measured(card(**machine), "T1s3", 1.0, 10**8)
     assert said in listing(found)

@@ -6,8 +6,11 @@ import json
 
 import pytest
 
-NODES = {"blur": {"type": "gaussian_blur", "values": {"sigma": 3.0}}, "more": {"type": "saturation"},
-         "last": {"type": "grade", "values": {"gain": [2.0, 1.0, 1.0, 1.0]}}}
+NODES = {
+    "blur": {"type": "gaussian_blur", "values": {"sigma": 3.0}},
+    "more": {"type": "saturation"},
+    "last": {"type": "grade", "values": {"gain": [2.0, 1.0, 1.0, 1.0]}},
+}
 LINKS = {"blur.image": "light.out", "more.image": "blur.out", "last.image": "more.out", "outputs.image": "last.out"}
 FAST = ("-n", "3", "--warm-up", "1")
 
@@ -57,8 +60,11 @@ def test_the_table(cli, graph):
 
 
 def test_frames_with_a_history(cli, graphs):
-    path = graphs(nodes={"trail": {"type": "frame_blend"}}, settings={"frames": [1, 9]},
-                  links={"trail.image": "light.out", "outputs.image": "trail.out"})
+    path = graphs(
+        nodes={"trail": {"type": "frame_blend"}},
+        settings={"frames": [1, 9]},
+        links={"trail.image": "light.out", "outputs.image": "trail.out"},
+    )
     found = measured(cli, path, "--frames", "2,5")
     assert found["lead"] == 1 + 4 and found["repeats"] == 6
     assert any("trail" in one["nodes"] for one in found["passes"])
@@ -134,8 +140,15 @@ def test_what_makes_no_sense(cli, graph, baseline, words, sentence):
 
 
 @pytest.mark.parametrize(
-    "text", ["", "[]", '{"median": 1}', '{"median": "x", "fastest": 1, "passes": [], "size": [1, 2], "device": ""}',
-             '{"median": 0, "fastest": 0, "passes": [], "size": [48, 32], "device": ""}', "[" * 100_000]
+    "text",
+    [
+        "",
+        "[]",
+        '{"median": 1}',
+        '{"median": "x", "fastest": 1, "passes": [], "size": [1, 2], "device": ""}',
+        '{"median": 0, "fastest": 0, "passes": [], "size": [48, 32], "device": ""}',
+        "[" * 100_000,
+    ],
 )
 def test_baselines_that_are_none(cli, graph, tmp_path, text):
     path = tmp_path / "base.json"

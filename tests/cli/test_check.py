@@ -61,9 +61,12 @@ def test_every_problem_of_every_file_and_the_worst_code(cli, tidy, graphs, tmp_p
     result = cli("check", good, bad, missing, broken)
     assert result.code == 4 and result.out.startswith(f"{good}: ok\n")
     assert lines(result) == [
-        ("bad.json", 1, "error", "bad-value"), ("bad.json", 1, "error", "unknown-type"),
-        ("bad.json", 1, "warning", "not-canonical"), ("bad.json", 1, "warning", "unfinished-node"),
-        ("missing.json", line_of(missing, "no.exr"), "error", "unreadable-file"), ("broken.json", 3, "error", "syntax"),
+        ("bad.json", 1, "error", "bad-value"),
+        ("bad.json", 1, "error", "unknown-type"),
+        ("bad.json", 1, "warning", "not-canonical"),
+        ("bad.json", 1, "warning", "unfinished-node"),
+        ("missing.json", line_of(missing, "no.exr"), "error", "unreadable-file"),
+        ("broken.json", 3, "error", "syntax"),
     ]
     assert result.err == "4 graphs: 4 errors, 2 warnings\n"
     told = cli("check", good, bad, missing, broken, "--json").json["graphs"]
@@ -74,43 +77,62 @@ def test_every_problem_of_every_file_and_the_worst_code(cli, tidy, graphs, tmp_p
 
 def test_pictures_and_layers_that_are_missing(cli, tidy, shot, tmp_path):
     path = tidy(
-        inputs={"beauty": {"type": "Image", "file": "no.exr"},
-                "depth": {"type": "Field", "file": "shot.exr", "layer": "Depht"}},
+        inputs={
+            "beauty": {"type": "Image", "file": "no.exr"},
+            "depth": {"type": "Field", "file": "shot.exr", "layer": "Depht"},
+        },
         nodes={"read": {"type": "read_image", "values": {"path": "gone.png"}}},
         outputs={"far": {"type": "Field"}, "more": {"type": "Image"}},
         links={"outputs.far": "inputs.depth", "outputs.more": "read.out"},
     )
     result = cli("check", path)
     assert result.code == 4
-    for words, near in ((f"{tmp_path / 'no.exr'}: there is no such file", '"no.exr"'), (f"{tmp_path / 'gone.png'}: ",
-                        '"gone.png"'), (f"{shot}: ", '"Depht"')):
+    for words, near in (
+        (f"{tmp_path / 'no.exr'}: there is no such file", '"no.exr"'),
+        (f"{tmp_path / 'gone.png'}: ", '"gone.png"'),
+        (f"{shot}: ", '"Depht"'),
+    ):
         assert f"{path}:{line_of(path, near)}: error: {words}" in result.out
     assert [rule for *_, rule in lines(result)] == ["unreadable-file"] * 3
     assert cli("check", path, "--off", "unreadable-file").code == 0
 
 
 def test_inputs_to_be_bound_are_a_warning(cli, tidy):
-    path = tidy(inputs={"beauty": {"type": "Image"}, "mask": {"type": "Field", "file": "no.exr"}},
-                nodes={"merge": {"type": "merge"}},
-                links={"merge.a": "light.out", "merge.b": "inputs.beauty", "merge.mask": "inputs.mask",
-                       "outputs.image": "merge.out"})
+    path = tidy(
+        inputs={"beauty": {"type": "Image"}, "mask": {"type": "Field", "file": "no.exr"}},
+        nodes={"merge": {"type": "merge"}},
+        links={
+            "merge.a": "light.out",
+            "merge.b": "inputs.beauty",
+            "merge.mask": "inputs.mask",
+            "outputs.image": "merge.out",
+        },
+    )
     result = cli("check", path)
     assert result.code == 4 and sorted(rule for *_, rule in lines(result)) == ["unbound-input", "unreadable-file"]
 
 
 TWICE = {
-    "nodes": {"turn": {"type": "transform", "values": {"rotation": 9.0}},
-              "move": {"type": "transform", "values": {"rotation": 1.0}}},
-    "links": {"turn.image": "inputs.beauty", "light.image": "turn.out", "move.image": "light.out",
-              "outputs.image": "move.out"},
+    "nodes": {
+        "turn": {"type": "transform", "values": {"rotation": 9.0}},
+        "move": {"type": "transform", "values": {"rotation": 1.0}},
+    },
+    "links": {
+        "turn.image": "inputs.beauty",
+        "light.image": "turn.out",
+        "move.image": "light.out",
+        "outputs.image": "move.out",
+    },
 }
 
 
 def test_warnings_fail_only_where_they_are_asked_to(cli, tidy):
     path = tidy(**TWICE)
     for words, code, rules in (
-        ((), 0, ["filtering-twice"]), (("--strict",), 3, ["filtering-twice"]),
-        (("--strict", "--off", "filtering-twice"), 0, []), (("--off", "loop", "--off", "filtering-twice"), 0, []),
+        ((), 0, ["filtering-twice"]),
+        (("--strict",), 3, ["filtering-twice"]),
+        (("--strict", "--off", "filtering-twice"), 0, []),
+        (("--off", "loop", "--off", "filtering-twice"), 0, []),
     ):
         result = cli("check", path, *words)
         assert (result.code, [rule for *_, rule in lines(result)]) == (code, rules)
@@ -137,8 +159,13 @@ def test_folders_patterns_and_names(cli, tidy, tmp_path, monkeypatch):
     (tmp_path / ".git").mkdir()
     for name in ("a.json", "deep/b.json", "deep/er/c with ü.JSON", ".git/d.json"):
         tidy(name, inputs={"beauty": {"type": "Image", "file": os.path.relpath("shot.exr", Path(name).parent)}})
-    for name, text in (("deep/package.json", '{"dependencies": {"halation": "1"}}'), ("deep/list.json", "[1]"),
-                       ("deep/notes.txt", "{"), ("deep/bad.json", "{]"), ("deep/odd.json", "\xff")):
+    for name, text in (
+        ("deep/package.json", '{"dependencies": {"halation": "1"}}'),
+        ("deep/list.json", "[1]"),
+        ("deep/notes.txt", "{"),
+        ("deep/bad.json", "{]"),
+        ("deep/odd.json", "\xff"),
+    ):
         (tmp_path / name).write_text(text, "latin-1")
     monkeypatch.chdir(tmp_path)
 
@@ -148,8 +175,15 @@ def test_folders_patterns_and_names(cli, tidy, tmp_path, monkeypatch):
     assert files(".") == ["a.json", "deep/b.json", "deep/er/c with ü.JSON"]
     assert files("deep", "a.json", "deep/b.json", tmp_path) == ["deep/b.json", "deep/er/c with ü.JSON", "a.json"]
     assert files("**/?.json") == ["a.json", "deep/b.json"]
-    assert files("deep/*") == ["deep/b.json", "deep/bad.json", "deep/er/c with ü.JSON", "deep/list.json",
-                               "deep/notes.txt", "deep/odd.json", "deep/package.json"]
+    assert files("deep/*") == [
+        "deep/b.json",
+        "deep/bad.json",
+        "deep/er/c with ü.JSON",
+        "deep/list.json",
+        "deep/notes.txt",
+        "deep/odd.json",
+        "deep/package.json",
+    ]
     result = cli("check", ".")
     assert (result.code, result.out, result.err) == (0, "", "3 graphs: 0 errors, 0 warnings\n")
     assert cli("check", "no.json").code == cli("check", "deep/list.json").code == cli("check", "no*.json").code == 3
@@ -199,12 +233,23 @@ def test_paths_that_a_clone_does_not_have(cli, tidy, shot, tmp_path):
 
 def test_groups_in_the_file_and_beside_it(cli, tidy):
     body = {
-        "inputs": {"a": {"type": "Image"}}, "outputs": {"b": {"type": "Image"}},
+        "inputs": {"a": {"type": "Image"}},
+        "outputs": {"b": {"type": "Image"}},
         "nodes": {"dim": {"type": "vignette", "values": {"amount": 99.0}}},
         "links": {"dim.image": "inputs.a", "outputs.b": "dim.out"},
     }
-    tidy("inner.json", **{**body, "links": {"light.image": "inputs.a", "dim.image": "inputs.a", "outputs.b": "dim.out",
-                                            "outputs.image": "light.out"}})
+    tidy(
+        "inner.json",
+        **{
+            **body,
+            "links": {
+                "light.image": "inputs.a",
+                "dim.image": "inputs.a",
+                "outputs.b": "dim.out",
+                "outputs.image": "light.out",
+            },
+        },
+    )
     links = {"in.a": "inputs.beauty", "outputs.image": "in.b", "light.image": "inputs.beauty"}
     here = tidy("here.json", nodes={"in": {"type": "group", "graph": body}}, links=links)
     there = tidy("there.json", nodes={"in": {"type": "group", "path": "inner.json"}}, links=links)
@@ -230,7 +275,8 @@ def test_rules_are_listed(cli):
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        ((), "no graph is given"), (("x.json", "--off", "filtering"), "did you mean 'filtering-twice'"),
+        ((), "no graph is given"),
+        (("x.json", "--off", "filtering"), "did you mean 'filtering-twice'"),
         (("x.json", "--json", "--sarif", "-"), "choose one"),
     ],
 )
@@ -285,8 +331,10 @@ def test_a_picture_is_looked_at_once_however_many_graphs_name_it(cli, tidy, shot
     headers, looked = importlib.import_module("halation.app.media.info"), []
     real = headers.info
     monkeypatch.setattr(headers, "info", lambda path: looked.append(path) or real(path))
-    paths = [tidy(f"{number}.json", nodes={"light": {"type": "exposure", "values": {"stops": float(number)}}})
-             for number in range(1, 6)]
+    paths = [
+        tidy(f"{number}.json", nodes={"light": {"type": "exposure", "values": {"stops": float(number)}}})
+        for number in range(1, 6)
+    ]
     assert cli("check", *paths).code == 0 and looked == [str(shot)]
     shot.unlink()
     result = cli("check", *paths)

@@ -70,8 +70,11 @@ def test_views_displays_and_looks_of_a_house(cli, graphs, tmp_path, house):
     graph = wide(graphs, config="house.ocio", working="scene_linear")
     found = {}
     for name, flags in {
-        "plain": (), "warm": ("--view", "warm"), "same": ("--view", "Plain", "--look", "warm"),
-        "dim": ("--display", "Projector"), "cold": ("--view", "warm", "--look", "none"),
+        "plain": (),
+        "warm": ("--view", "warm"),
+        "same": ("--view", "Plain", "--look", "warm"),
+        "dim": ("--display", "Projector"),
+        "cold": ("--view", "warm", "--look", "none"),
     }.items():
         path = tmp_path / f"{name}.png"
         result = cli("render", graph, "-o", path, *flags)
@@ -110,11 +113,14 @@ def test_resuming_sees_a_config_that_changed(cli, graphs, tmp_path, house):
     assert kept == [[], [1], [], [1]]
 
 
-@pytest.mark.parametrize(("color", "said"), [
-    ({"config": "hause.ocio"}, "hause.ocio: there is no such color config; did you mean 'house.ocio'?"),
-    ({"working": "ACESgc"}, "settings.color.working: 'ACESgc' is unknown: did you mean 'ACEScg'?"),
-    ({"config": "ocio://nothing"}, "settings.color.config: ocio://nothing: there is no such built-in config"),
-])
+@pytest.mark.parametrize(
+    ("color", "said"),
+    [
+        ({"config": "hause.ocio"}, "hause.ocio: there is no such color config; did you mean 'house.ocio'?"),
+        ({"working": "ACESgc"}, "settings.color.working: 'ACESgc' is unknown: did you mean 'ACEScg'?"),
+        ({"config": "ocio://nothing"}, "settings.color.config: ocio://nothing: there is no such built-in config"),
+    ],
+)
 def test_a_graph_at_fault(cli, fails, graphs, house, color, said):
     graph = wide(graphs, **color)
     checked = cli("check", graph)
@@ -133,11 +139,15 @@ def test_an_environment_at_fault(cli, fails, graphs, monkeypatch, tmp_path):
     assert cli("nodes", "color_space").code == 0
 
 
-@pytest.mark.parametrize(("words", "said"), [
-    (("--colorspace", "ARRI LogC5"), "there is no color space 'ARRI LogC5': did you mean 'ARRI LogC4'"),
-    (("--look", "x"), "there is no look 'x'"), (("--display", "x"), "there is no display 'x'"),
-    (("--view", "none", "--colorspace", "ACEScg"), "give one of them"),
-])
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--colorspace", "ARRI LogC5"), "there is no color space 'ARRI LogC5': did you mean 'ARRI LogC4'"),
+        (("--look", "x"), "there is no look 'x'"),
+        (("--display", "x"), "there is no display 'x'"),
+        (("--view", "none", "--colorspace", "ACEScg"), "give one of them"),
+    ],
+)
 def test_flags_that_make_no_sense(fails, graphs, words, said):
     assert said in fails(2, "render", graphs(), *words)
 

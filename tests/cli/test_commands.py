@@ -180,7 +180,10 @@ def test_demo_renders_every_preset(cli, graphs, tmp_path, monkeypatch):
     folder = tmp_path / "a" / "b"
     result = cli("demo", "-o", folder)
     assert result.code == 0 and sorted(item.name for item in folder.iterdir()) == [
-        "one.exr", "one.png", "two.exr", "two.png",
+        "one.exr",
+        "one.png",
+        "two.exr",
+        "two.png",
     ]
     np.testing.assert_allclose(read(folder / "one.exr"), read(folder / "two.exr") * (4, 4, 4, 1), rtol=1e-3)
     lines = result.err.splitlines()

@@ -31,7 +31,8 @@ def no_pass(monkeypatch):
     [
         (("-o", "{tmp}/no/out.exr"), 1, "{tmp}/no/out.exr: cannot be written: there is no such folder: create it"),
         (
-            ("-o", "{tmp}/shot.exr/out.exr"), 1,
+            ("-o", "{tmp}/shot.exr/out.exr"),
+            1,
             "{tmp}/shot.exr/out.exr: cannot be written: part of the path is a file, not a folder",
         ),
         (("-o", "{tmp}"), 2, "{tmp}: its name has no ending that says what to write: use one of .exr, "),
@@ -39,7 +40,8 @@ def no_pass(monkeypatch):
         (("-o", "{tmp}/out.xyz"), 2, "{tmp}/out.xyz: cannot write '.xyz' files: use one of .exr, .png"),
         (("-o", "{tmp}/out.png", "--view", "filmc"), 2, "there is no view 'filmc'"),
         (
-            ("-o", "{tmp}/out.exr", "--compression", "zap"), 2,
+            ("-o", "{tmp}/out.exr", "--compression", "zap"),
+            2,
             "{tmp}/out.exr: there is no compression 'zap': did you mean 'zip'?",
         ),
         (("-o", "{tmp}/out.exr", "-o", "{tmp}/./out.exr"), 2, "-o {tmp}/out.exr: this file is given twice"),
@@ -61,8 +63,10 @@ def test_a_destination_that_cannot_be(fails, no_pass, graphs, shot, tmp_path, wo
 def test_one_picture_for_two_outputs(fails, no_pass, graphs, tmp_path):
     two = {"outputs": {"image": {"type": "Image"}, "raw": {"type": "Image"}}, "links": {"outputs.raw": "inputs.beauty"}}
     said = fails(2, "render", graphs(**two), "-o", tmp_path / "two.png")
-    assert said == (f"{tmp_path / 'two.png'}: .png holds one picture, but the graph has the outputs image, raw; "
-                    f"choose one with -o image={tmp_path / 'two.png'}")
+    assert said == (
+        f"{tmp_path / 'two.png'}: .png holds one picture, but the graph has the outputs image, raw; "
+        f"choose one with -o image={tmp_path / 'two.png'}"
+    )
     said = fails(2, "render", graphs(**two), "-o", f"raw={tmp_path / 'a.png'}", "-o", f"image={tmp_path / 'a.png'}")
     assert "this file is given twice" in said
     two["outputs"]["raw"]["layer"] = "image"
@@ -77,8 +81,11 @@ def test_vectors_are_no_picture(fails, no_pass, graphs, tmp_path):
 
 def test_layers_of_several_sizes(fails, no_pass, graphs, tmp_path):
     assert oiio.ImageBuf(np.zeros((5, 7, 3), np.float32)).write(str(tmp_path / "small.exr"))
-    path = graphs(inputs={"small": {"type": "Image", "file": "small.exr"}}, outputs={"small": {"type": "Image"}},
-                  links={"outputs.small": "inputs.small"})
+    path = graphs(
+        inputs={"small": {"type": "Image", "file": "small.exr"}},
+        outputs={"small": {"type": "Image"}},
+        links={"outputs.small": "inputs.small"},
+    )
     assert "layers of one size, but there are 'image' 48x32, 'small' 7x5" in fails(2, "render", path)
 
 

@@ -49,7 +49,10 @@ def test_for_machines(cli, two):
     a, b = two
     found = cli("diff", a, b, "--json")
     assert found.code == 1 and found.json == {
-        "a": str(a), "b": str(b), "same": False, "renamed": [],
+        "a": str(a),
+        "b": str(b),
+        "same": False,
+        "renamed": [],
         "changes": [{"at": ["nodes", "light", "values", "stops"], "before": 1.0, "after": 2.0}],
         "lines": ["~ light.stops: 1 EV -> 2 EV"],
     }
@@ -72,8 +75,12 @@ def test_standard_input(cli, two, monkeypatch):
 
 @pytest.mark.parametrize(
     ("words", "colored"),
-    [({}, False), ({"GIT_PAGER_IN_USE": "true"}, True), ({"GIT_PAGER_IN_USE": "true", "NO_COLOR": "1"}, False),
-     ({"GIT_PAGER_IN_USE": "true", "TERM": "dumb"}, False)],
+    [
+        ({}, False),
+        ({"GIT_PAGER_IN_USE": "true"}, True),
+        ({"GIT_PAGER_IN_USE": "true", "NO_COLOR": "1"}, False),
+        ({"GIT_PAGER_IN_USE": "true", "TERM": "dumb"}, False),
+    ],
 )
 def test_color(cli, two, monkeypatch, words, colored):
     monkeypatch.setenv("TERM", "xterm")
@@ -118,8 +125,11 @@ def test_pictures(cli, two, tmp_path, shot):
 
 
 def test_pictures_of_graphs_that_differ_in_their_ends(cli, graphs):
-    more: dict[str, Any] = {"outputs": {"far": {"type": "Field"}}, "inputs": {
-        "depth": {"type": "Field", "file": "shot.exr", "layer": "Depth"}}, "links": {"outputs.far": "inputs.depth"}}
+    more: dict[str, Any] = {
+        "outputs": {"far": {"type": "Field"}},
+        "inputs": {"depth": {"type": "Field", "file": "shot.exr", "layer": "Depth"}},
+        "links": {"outputs.far": "inputs.depth"},
+    }
     a, b = graphs("a.json"), graphs("b.json", **more)
     found = cli("diff", a, b, "--render", "-i", "depth=shot.exr:Depth", "--json")
     assert found.code == 4, "a path on the command line starts at this folder"

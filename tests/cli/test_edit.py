@@ -94,25 +94,36 @@ def test_without_a_display_it_says_so(place: dict[str, str]) -> None:
     assert (code, said.count("\n")) == (5, 0) and "needs a display" in said
 
 
-@pytest.mark.parametrize(("words", "code", "sentence"), [
-    (["missing.json"], 3, "missing.json: there is no such file"),
-    (["."], 3, "this is a folder"),
-    (["broken.json"], 3, "broken.json: not valid JSON"),
-    ([LOOK, "-i", "nothing=shot.exr"], 2, "the graph has no input 'nothing'"),
-    (["-i", "beauty=shot.exr"], 2, "name the graph file too"),
-])
+@pytest.mark.parametrize(
+    ("words", "code", "sentence"),
+    [
+        (["missing.json"], 3, "missing.json: there is no such file"),
+        (["."], 3, "this is a folder"),
+        (["broken.json"], 3, "broken.json: not valid JSON"),
+        ([LOOK, "-i", "nothing=shot.exr"], 2, "the graph has no input 'nothing'"),
+        (["-i", "beauty=shot.exr"], 2, "name the graph file too"),
+    ],
+)
 def test_what_cannot_be_opened_is_a_sentence(place, tmp_path: Path, words, code: int, sentence: str) -> None:
     (tmp_path / "broken.json").write_text("{")
     found, said = ended(place, *words, cwd=tmp_path)
     assert (found, said.count("\n")) == (code, 0) and sentence in said and "Traceback" not in said
 
 
-@pytest.mark.parametrize(("what", "fault", "code", "sentence"), [
-    ("window.adopt", "DeviceError('this driver is too old')", 5, "halation: this driver is too old"),
-    ("window.assemble", "ValueError('oh')", 70, "this is a bug in Halation (ValueError: oh)"),
-    ("window.open_first", "document.DocumentError('x.json', '', 'it vanished')", 3, "halation: x.json: it vanished"),
-    ("window.fonts.load", "ValueError('oh')", 70, "this is a bug in Halation (ValueError: oh)"),
-])
+@pytest.mark.parametrize(
+    ("what", "fault", "code", "sentence"),
+    [
+        ("window.adopt", "DeviceError('this driver is too old')", 5, "halation: this driver is too old"),
+        ("window.assemble", "ValueError('oh')", 70, "this is a bug in Halation (ValueError: oh)"),
+        (
+            "window.open_first",
+            "document.DocumentError('x.json', '', 'it vanished')",
+            3,
+            "halation: x.json: it vanished",
+        ),
+        ("window.fonts.load", "ValueError('oh')", 70, "this is a bug in Halation (ValueError: oh)"),
+    ],
+)
 def test_a_fault_at_the_start_is_a_sentence_and_no_crash(place, what: str, fault: str, code: int, sentence) -> None:
     script = BROKEN_PARTS.format(fault=fault, what=what, how="broken").replace(
         "import DeviceError", "import DeviceError\nfrom halation.app import errors as document"
@@ -206,7 +217,11 @@ def test_a_state_folder_that_cannot_be_is_said_once_and_stops_nothing(place, tmp
     (tmp_path / "file").write_text("precious")
     here = place | {"HALATION_STATE": str(tmp_path / state)}
     found = subprocess.run(
-        [sys.executable, "-c", EDITED, str(LOOK)], env=here, capture_output=True, text=True, timeout=60,
+        [sys.executable, "-c", EDITED, str(LOOK)],
+        env=here,
+        capture_output=True,
+        text=True,
+        timeout=60,
         preexec_fn=limited if state == "full" else None,
     )
     assert found.returncode == 0, found.stderr

@@ -10,17 +10,22 @@ import pytest
 from exr_files import read
 from isf_files import IMAGE, isf
 
-BLUR = {"nodes": {"blur": {"type": "gaussian_blur", "values": {"sigma": 1.5}}},
-        "links": {"blur.image": "light.out", "outputs.image": "blur.out"},
-        "controls": {"gain": {"target": "light.stops", "label": "Gain"}, "soft": {"target": "blur.sigma"}}}
+BLUR = {
+    "nodes": {"blur": {"type": "gaussian_blur", "values": {"sigma": 1.5}}},
+    "links": {"blur.image": "light.out", "outputs.image": "blur.out"},
+    "controls": {"gain": {"target": "light.stops", "label": "Gain"}, "soft": {"target": "blur.sigma"}},
+}
 
 
 def test_a_shader_renders_as_its_graph_does(cli, graphs, tmp_path: Path) -> None:
     graph = graphs(**BLUR)
     result = cli("export-isf", graph, "-o", tmp_path / "blur.fs")
     assert (result.code, result.out) == (0, "") and "control 'soft' keeps its value" in result.err
-    again = graphs("again.json", nodes={"light": {"type": "isf", "file": "blur.fs", "values": {"gain": 1.0}}},
-                   links={"light.inputImage": "inputs.beauty", "outputs.image": "light.out"})
+    again = graphs(
+        "again.json",
+        nodes={"light": {"type": "isf", "file": "blur.fs", "values": {"gain": 1.0}}},
+        links={"light.inputImage": "inputs.beauty", "outputs.image": "light.out"},
+    )
     tree = json.loads(again.read_text())
     del tree["links"]["light.image"]
     again.write_text(json.dumps(tree))
@@ -57,10 +62,16 @@ def test_reasons_name_nodes(cli, graphs, tmp_path: Path) -> None:
     assert not (tmp_path / "no.fs").exists()
 
 
-@pytest.mark.parametrize(("words", "code", "said"), [
-    (["--json"], 2, "both go to standard output"), (["--select", "nobody"], 2, "there is no node 'nobody'"),
-    (["--node", "nobody"], 2, "nobody"), (["--size", "0x3"], 2, "size"), (["-o", "none/a.fs"], 1, "none"),
-])
+@pytest.mark.parametrize(
+    ("words", "code", "said"),
+    [
+        (["--json"], 2, "both go to standard output"),
+        (["--select", "nobody"], 2, "there is no node 'nobody'"),
+        (["--node", "nobody"], 2, "nobody"),
+        (["--size", "0x3"], 2, "size"),
+        (["-o", "none/a.fs"], 1, "none"),
+    ],
+)
 def test_mistakes(cli, graphs, words: list[str], code: int, said: str) -> None:
     result = cli("export-isf", graphs(), *words)
     assert (result.code, "Traceback" in result.err) == (code, False) and said in result.err
@@ -68,8 +79,14 @@ def test_mistakes(cli, graphs, words: list[str], code: int, said: str) -> None:
 
 def test_nodes_of_a_file(cli, tmp_path: Path) -> None:
     path = tmp_path / "Glow.fs"
-    path.write_text(isf("gl_FragColor = IMG_THIS_PIXEL(inputImage) * amount;", IMAGE,
-                        {"NAME": "amount", "TYPE": "float", "DEFAULT": 0.5, "MAX": 4}, DESCRIPTION="Shines."))
+    path.write_text(
+        isf(
+            "gl_FragColor = IMG_THIS_PIXEL(inputImage) * amount;",
+            IMAGE,
+            {"NAME": "amount", "TYPE": "float", "DEFAULT": 0.5, "MAX": 4},
+            DESCRIPTION="Shines.",
+        )
+    )
     found = cli("nodes", path)
     assert found.code == 0 and "Shines." in found.out and "inputImage" in found.out and "Glow.fs" in found.out
     assert cli("nodes", path, "--json").json["values"]["amount"]["default"] == 0.5

@@ -20,8 +20,11 @@ REAL_DEVICE = renderer.open_device
 def test_a_truncated_exr(fails, graphs, shot, share):
     data = shot.read_bytes()
     shot.write_bytes(data[: int(len(data) * share)])
-    path = graphs(inputs={"depth": {"type": "Field", "file": "shot.exr", "layer": "Depth"}},
-                  outputs={"far": {"type": "Field"}}, links={"outputs.far": "inputs.depth"})
+    path = graphs(
+        inputs={"depth": {"type": "Field", "file": "shot.exr", "layer": "Depth"}},
+        outputs={"far": {"type": "Field"}},
+        links={"outputs.far": "inputs.depth"},
+    )
     assert fails(4, "render", path) == f"{shot}: is cut short or damaged: copy or render it again"
 
 
@@ -33,8 +36,11 @@ def test_an_empty_picture(fails, graphs, shot):
 def test_a_missing_layer(fails, graphs, shot):
     said = fails(4, "render", graphs(), "-i", f"beauty={shot}:Depht")
     assert said.startswith(f"{shot}: ") and "'Depht'" in said and "Depth" in said
-    path = graphs(inputs={"depth": {"type": "Field", "file": "shot.exr", "layer": "Depht"}},
-                  outputs={"far": {"type": "Field"}}, links={"outputs.far": "inputs.depth"})
+    path = graphs(
+        inputs={"depth": {"type": "Field", "file": "shot.exr", "layer": "Depht"}},
+        outputs={"far": {"type": "Field"}},
+        links={"outputs.far": "inputs.depth"},
+    )
     assert fails(4, "render", path) == said
 
 
@@ -107,8 +113,13 @@ def test_a_graph_that_is_not_there(fails, tmp_path):
         ({"links": {"light.imgae": "inputs.beauty"}}, "node 'light' has no input 'imgae'; did you mean 'image'?"),
         ({"links": {"outputs.image": "light.uot"}}, "node 'light' has no output 'uot'"),
         ({"links": {"outputs.image": "lihgt.out"}}, "there is no node 'lihgt'; did you mean 'light'?"),
-        ({"nodes": {"pair": {"type": "combine_vector2"}, "light": {"type": "exposure"}},
-          "links": {"light.image": "pair.out"}}, "'pair.out' cannot feed 'light.image'"),
+        (
+            {
+                "nodes": {"pair": {"type": "combine_vector2"}, "light": {"type": "exposure"}},
+                "links": {"light.image": "pair.out"},
+            },
+            "'pair.out' cannot feed 'light.image'",
+        ),
         (
             {"nodes": {"back": {"type": "exposure"}}, "links": {"back.image": "light.out", "light.image": "back.out"}},
             "back",

@@ -12,6 +12,7 @@ import pytest
 @pytest.fixture
 def piped(monkeypatch):
     """Standard input."""
+
     def given(data: bytes) -> None:
         monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(data)))
 
@@ -62,7 +63,8 @@ def test_folders_and_patterns(cli, graphs, tmp_path):
     found = cli("fmt", tmp_path / "shots", "--check", "--json")
     assert found.code == 1
     assert found.json == {
-        "changed": [str(tmp_path / "shots/a.json"), str(tmp_path / "shots/deep/b.json")], "checked": 2,
+        "changed": [str(tmp_path / "shots/a.json"), str(tmp_path / "shots/deep/b.json")],
+        "checked": 2,
         "written": False,
     }
     assert cli("fmt", tmp_path / "shots/**/b.json", tmp_path / "shots/deep", "--json").json["checked"] == 1

@@ -135,7 +135,8 @@ def test_an_expression_at_fault_is_pointed_at(cli, movie, tmp_path):
 def test_what_stays_the_same_is_computed_once(cli, movie):
     """The noise and its blur are the same in all frames; the exposure that is keyed takes one pass for each."""
     nodes = {
-        "noise": {"type": "noise"}, "mix": {"type": "merge"},
+        "noise": {"type": "noise"},
+        "mix": {"type": "merge"},
         "soft": {"type": "gaussian_blur", "values": {"sigma": 2.0}},
     }
     links = {"soft.image": "noise.out", "mix.a": "soft.out", "mix.b": "light.out", "outputs.image": "mix.out"}
@@ -177,9 +178,26 @@ def test_several_processes(cli, movie, tmp_path):
 @POSIX
 def test_several_processes_share_a_graph_from_standard_input(movie, tmp_path):
     result = subprocess.run(
-        [sys.executable, "-m", "halation.app.cli", "render", "-", "-o", tmp_path / "out.####.exr", "-j", "2",
-         "--set", "light.stops=1", "--frames=1-3", "--precision=float"],
-        input=movie().read_text(), capture_output=True, text=True, cwd=tmp_path, timeout=100,
+        [
+            sys.executable,
+            "-m",
+            "halation.app.cli",
+            "render",
+            "-",
+            "-o",
+            tmp_path / "out.####.exr",
+            "-j",
+            "2",
+            "--set",
+            "light.stops=1",
+            "--frames=1-3",
+            "--precision=float",
+        ],
+        input=movie().read_text(),
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        timeout=100,
     )
     assert result.returncode == 0, result.stderr
     assert pixels(tmp_path, "out", (1, 2, 3)) == [2 / 8, 4 / 8, 6 / 8]
@@ -243,12 +261,16 @@ def test_no_mark_of_an_input_goes_on(cli, movie, graphs, tmp_path):
 
 @POSIX
 def test_an_interruption_leaves_what_is_finished(movie, tmp_path):
-    slow = movie({"blur": {"type": "gaussian_blur", "values": {"sigma": 40.0}}},
-                 {"blur.image": "light.out", "outputs.image": "blur.out"}, settings={"frames": [1, 5000]},
-                 beauty={"missing": "nearest"})
+    slow = movie(
+        {"blur": {"type": "gaussian_blur", "values": {"sigma": 40.0}}},
+        {"blur.image": "light.out", "outputs.image": "blur.out"},
+        settings={"frames": [1, 5000]},
+        beauty={"missing": "nearest"},
+    )
     process = subprocess.Popen(
         [sys.executable, "-m", "halation.app.cli", "render", slow, "-o", tmp_path / "out.####.exr", "--progress=json"],
-        stderr=subprocess.PIPE, text=True,
+        stderr=subprocess.PIPE,
+        text=True,
     )
     for line in process.stderr:
         if '"done": 3' in line:

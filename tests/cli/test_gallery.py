@@ -47,7 +47,8 @@ def test_it_writes_three_sheets(cli, graphs, tmp_path, monkeypatch):
     assert len(lines) == 4 and lines[1].startswith("presets ") and lines[3].endswith(str(folder / "nodes.jpg"))
     found = cli("gallery", "--output", folder, "--json").json["sheets"]
     assert [(item["sheet"], item["pictures"]) for item in found] == [
-        (str(folder / "presets.jpg"), ["one", "two"]), (str(folder / "time.jpg"), ["two"]),
+        (str(folder / "presets.jpg"), ["one", "two"]),
+        (str(folder / "time.jpg"), ["two"]),
         (str(folder / "nodes.jpg"), [*few]),
     ]
 
@@ -69,6 +70,7 @@ def test_every_node_has_all_that_it_needs(id):
 
 def test_what_a_node_makes_is_made_visible(renderer: Renderer) -> None:
     """Light through the view, what is finished as it is, data by its range, numbers in words."""
+
     def made(id: str) -> np.ndarray:
         return gallery.picture_of(catalogue()[id], renderer, sample())
 
@@ -109,9 +111,7 @@ def test_the_sheet_of_presets_is_current(renderer: Renderer, tmp_path: Path) -> 
     assert (IMAGES / "presets.jpg").stat().st_size < 900_000
 
 
-def test_the_sheet_of_time_is_current(
-    renderer: Renderer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_sheet_of_time_is_current(renderer: Renderer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every third row is made again and compared; the others stay black."""
     names, frames_of = described(IMAGES / "time.jpg"), gallery.frames_of
     assert names == [*gallery.moving()] and (IMAGES / "time.jpg").stat().st_size < 900_000
@@ -130,9 +130,7 @@ def test_the_sheet_of_time_is_current(
     compare("time", written(sheets[1], tmp_path), (sheets[0].light != sheets[1].light).any(2))
 
 
-def test_the_sheet_of_nodes_is_current(
-    renderer: Renderer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_sheet_of_nodes_is_current(renderer: Renderer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It may lack nodes that are newer. Every ninth picture is made again and compared; the others stay black."""
     ids = tuple(described(IMAGES / "nodes.jpg"))
     assert {*ids} <= {*catalogue()} and (IMAGES / "nodes.jpg").stat().st_size < 1_500_000

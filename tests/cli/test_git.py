@@ -24,8 +24,12 @@ def repository(tmp_path, monkeypatch, graphs) -> Path:
     for name in [name for name in os.environ if name.startswith("GIT_")]:
         monkeypatch.delenv(name)
     for name, text in {
-        "HOME": str(home), "XDG_CONFIG_HOME": str(home), "GIT_CONFIG_NOSYSTEM": "1",
-        "GIT_CEILING_DIRECTORIES": str(tmp_path), "NO_COLOR": "1", "LC_ALL": "C.UTF-8",
+        "HOME": str(home),
+        "XDG_CONFIG_HOME": str(home),
+        "GIT_CONFIG_NOSYSTEM": "1",
+        "GIT_CEILING_DIRECTORIES": str(tmp_path),
+        "NO_COLOR": "1",
+        "LC_ALL": "C.UTF-8",
     }.items():
         monkeypatch.setenv(name, text)
     (home / ".gitconfig").write_text("[user]\n name = n\n email = e@f\n[init]\n defaultBranch = main\n")
@@ -80,8 +84,9 @@ def test_setting_up_says_what_it_changed_and_does_it_once(cli, git, repository):
     before = (repository / ".git" / "config").read_text()
     (repository / ".gitattributes").write_text("*.exr binary\n")
     said = cli("git-setup", "--json").json["changed"]
-    assert len(said) == 5 and all(" -m halation.app.cli git-driver " in one for one in said if ".name" not in one
-                                  and "git config" in one)
+    assert len(said) == 5 and all(
+        " -m halation.app.cli git-driver " in one for one in said if ".name" not in one and "git config" in one
+    )
     lines = (repository / ".gitattributes").read_text().splitlines()
     assert lines == ["*.exr binary", '"/my graphs/*.json" diff=halation merge=halation']
     assert git("check-attr", "merge", "my graphs/shot.json").stdout.endswith(": merge: halation\n")
@@ -95,7 +100,8 @@ def test_setting_up_says_what_it_changed_and_does_it_once(cli, git, repository):
 def test_patterns_and_the_configuration_of_a_person(cli, git, repository, tmp_path, monkeypatch):
     assert cli("git-setup", "*.graph.json", "shots/**/*.json", "--global").code == 0
     assert (repository / ".gitattributes").read_text().splitlines() == [
-        "*.graph.json diff=halation merge=halation", "shots/**/*.json diff=halation merge=halation",
+        "*.graph.json diff=halation merge=halation",
+        "shots/**/*.json diff=halation merge=halation",
     ]
     assert "halation" in (tmp_path / "home" / ".gitconfig").read_text()
     assert "halation" not in (repository / ".git" / "config").read_text()
@@ -137,7 +143,9 @@ def test_git_shows_what_changed(cli, git, branches, repository):
     for words in (("show", "theirs"), ("log", "-p", "-1", "theirs")):
         lines = git(*words).stdout.splitlines()
         assert [line for line in lines if line.startswith(("+", "-")) and line[:3] not in ("+++", "---")] == [
-            "-light.stops: 1 EV", "+light.stops: 2.5 EV"]
+            "-light.stops: 1 EV",
+            "+light.stops: 2.5 EV",
+        ]
     git("checkout", "-q", "my graphs")
     git("mv", "my graphs/shot.json", "my graphs/moved.json")
     git("rm", "-q", "--cached", "my graphs/package.json")
@@ -150,7 +158,9 @@ def test_layout_and_new_and_deleted_graphs(cli, git, branches, repository):
     tree = json.loads(path.read_text())
     path.write_text(json.dumps({**tree, "ui": {"nodes": {"light": {"x": 1, "y": 2}}}}))
     assert git("diff").stdout.splitlines() == [
-        "graph my graphs/shot.json", "  only the layout, or how the file is written"]
+        "graph my graphs/shot.json",
+        "  only the layout, or how the file is written",
+    ]
     path.rename(path.with_name("other.json"))
     git("add", "-A")
     said = git("diff", "--no-renames", "HEAD").stdout.splitlines()

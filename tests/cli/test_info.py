@@ -25,19 +25,32 @@ def test_a_render_is_told_in_full(cli):
     result = cli("info", NEON)
     assert (result.code, result.err) == (0, "")
     head = result.out.splitlines()[:3]
-    assert head == [str(NEON), "  480 x 270, openexr, 12 parts, 12 layers",
-                    "  made by Blender: Software is 'Blender 5.0.1'"]
+    assert head == [
+        str(NEON),
+        "  480 x 270, openexr, 12 parts, 12 layers",
+        "  made by Blender: Software is 'Blender 5.0.1'",
+    ]
     sections = re.findall(r"^(\w[\w ]+)$", result.out, re.M)
     assert sections == ["parts", "layers", "color", "conventions", "camera", "metadata"]
     assert len(section(result.out, "parts")) == len(section(result.out, "layers")) == 12
-    assert section(result.out, "parts")[4].split() == ["4", "ViewLayer.Vector", *"XYZW", "float", "piz", "scan",
-                                                       "lines", "data"]
+    assert section(result.out, "parts")[4].split() == [
+        "4",
+        "ViewLayer.Vector",
+        *"XYZW",
+        "float",
+        "piz",
+        "scan",
+        "lines",
+        "data",
+    ]
     rows = section(result.out, "layers")
     assert "  Diffuse Color   RGB   half   albedo              Blender's name for albedo" in rows
     assert len({match.end() for row in rows for match in re.finditer(r" (half|float) +", row)}) == 1
     rules = section(result.out, "conventions")
     assert [row.split()[:3] for row in rules[:3]] == [
-        ["depth", "planar", "measured"], ["normal", "world", "measured"], ["position", "world", "measured"],
+        ["depth", "planar", "measured"],
+        ["normal", "world", "measured"],
+        ["position", "world", "measured"],
     ]
     camera = dict(re.split(r"\s{2,}", row.strip(), maxsplit=1) for row in section(result.out, "camera"))
     assert camera["eye"] == "-0.23478, -8.5043, 2.2043" and camera["field of view"] == "50.69 x 29.84 degrees"
@@ -52,9 +65,19 @@ def test_a_render_for_machines(cli, path):
     found = json.loads(said.out, parse_constant=lambda word: pytest.fail(f"{word} is not JSON"))
     assert said.code == 0 and said.err == ""
     assert set(found) == {
-        "file", "format", "size", "renderer", "renderer_reason", "parts", "layers", "color_spaces", "roles",
+        "file",
+        "format",
+        "size",
+        "renderer",
+        "renderer_reason",
+        "parts",
+        "layers",
+        "color_spaces",
+        "roles",
         "undecided",
-        "conventions", "camera", "metadata",
+        "conventions",
+        "camera",
+        "metadata",
     }
     assert found["renderer"] == "Blender" and found["roles"]["depth"] == "Depth" and found["undecided"] == {}
     assert {layer["role"] for layer in found["layers"]} >= {"beauty", "albedo", "object_id", "cryptomatte_object"}
@@ -71,7 +94,8 @@ def test_what_is_open_is_listed(cli, tmp_path):
     result = cli("info", path)
     assert "made by an unknown program: neither its header nor its layers say who made it" in result.out
     assert [re.split(r"\s{2,}", row.strip()) for row in section(result.out, "to be decided")] == [
-        ["diffuse", "may be diffuse or albedo"], ["foo", "may be normal, position or velocity"],
+        ["diffuse", "may be diffuse or albedo"],
+        ["foo", "may be normal, position or velocity"],
         ["normal", "may be worldNormals or normalsCS"],
     ]
     assert section(result.out, "camera") == ["  none  no positions to solve it from, and the header names none"]
@@ -118,7 +142,11 @@ def test_a_sequence_is_told_first_and_then_its_first_frame(cli, frames, name):
     shown = frames / (name or "shot.####.exr")
     assert (result.code, result.err) == (0, "")
     assert result.out.splitlines()[:5] == [
-        str(shown), "  4 frames: 1-3,5", "  1 missing: 4", "", str(frames / "shot.0001.exr"),
+        str(shown),
+        "  4 frames: 1-3,5",
+        "  1 missing: 4",
+        "",
+        str(frames / "shot.0001.exr"),
     ]
     first = cli("info", frames / "shot.0001.exr").out
     said = f"\n  one of 4 frames of {frames / 'shot.####.exr'}: 1-3,5"
@@ -129,8 +157,13 @@ def test_a_sequence_for_machines(cli, frames):
     found = cli("info", frames / "shot.####.exr", "--json").json
     alone = cli("info", frames / "shot.0001.exr", "--json").json
     assert found.pop("sequence") == {
-        "pattern": str(frames / "shot.####.exr"), "count": 4, "first": 1, "last": 5, "frames": [1, 2, 3, 5],
-        "gaps": [[4, 4]], "missing": 1,
+        "pattern": str(frames / "shot.####.exr"),
+        "count": 4,
+        "first": 1,
+        "last": 5,
+        "frames": [1, 2, 3, 5],
+        "gaps": [[4, 4]],
+        "missing": 1,
     }
     assert found == alone
 

@@ -75,7 +75,9 @@ def test_tables_are_whole(tokens):
     """A stray bar would add a cell, which readers of Markdown drop."""
     made = tables(tokens)
     assert {tuple(one[0]) for one in made} == {
-        ("node", "what it does", "inputs", "outputs"), ("input", "type", ""), ("output", "type", ""),
+        ("node", "what it does", "inputs", "outputs"),
+        ("input", "type", ""),
+        ("output", "type", ""),
         ("value", "type", "default", "range", "limits", "unit", ""),
     }
     menus = [row for one in made if one[0][0] == "node" for row in one[1:]]

@@ -54,8 +54,13 @@ def test_conflicts_keep_a_graph_from_rendering_until_they_are_decided(cli, fight
 
 @pytest.mark.parametrize(
     ("choice", "stops"),
-    [("ours", 2.0), ("theirs", 3.0), ("base", 1.0), ("nodes.light.values.stops=theirs", 3.0),
-     ("nodes.light=theirs", 3.0)],
+    [
+        ("ours", 2.0),
+        ("theirs", 3.0),
+        ("base", 1.0),
+        ("nodes.light.values.stops=theirs", 3.0),
+        ("nodes.light=theirs", 3.0),
+    ],
 )
 def test_resolving(cli, fight, choice, stops):
     found = cli("merge", "--resolve", choice, fight)
@@ -67,8 +72,10 @@ def test_resolving(cli, fight, choice, stops):
 
 
 def test_resolving_one_of_several(cli, graphs, tmp_path):
-    sides = [graphs(f"{name}.json", nodes=exposed(stops, wide={"type": "saturation", "values": {"saturation": stops}}))
-             for name, stops in (("b", 0.5), ("o", 2.0), ("t", 3.0))]
+    sides = [
+        graphs(f"{name}.json", nodes=exposed(stops, wide={"type": "saturation", "values": {"saturation": stops}}))
+        for name, stops in (("b", 0.5), ("o", 2.0), ("t", 3.0))
+    ]
     out = tmp_path / "out.json"
     assert cli("merge", *sides, "-o", out, "--json").code == 1
     found = cli("merge", "--resolve", "nodes.wide=theirs", out, "--json")
@@ -84,8 +91,9 @@ def test_an_edit_in_place_is_kept_by_ours(cli, fight):
     assert json.loads(fight.read_text())["nodes"]["light"]["values"]["stops"] == 2.5
 
 
-@pytest.mark.parametrize("words", [("a",), ("a", "b"), ("-", "-", "a"), ("--resolve", "mine", "a"),
-                                   ("--resolve", "ours", "a", "-o", "x")])
+@pytest.mark.parametrize(
+    "words", [("a",), ("a", "b"), ("-", "-", "a"), ("--resolve", "mine", "a"), ("--resolve", "ours", "a", "-o", "x")]
+)
 def test_words_that_make_no_sense(cli, words):
     assert cli("merge", *words).code == 2
 

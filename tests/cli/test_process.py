@@ -37,8 +37,10 @@ def ten(tmp_path):
     links = {f"{id}.{socket}": source for id, (_, _, wires) in TEN.items() for socket, source in wires.items()}
     sample = Path(__file__).parents[2] / "presets" / "samples" / "neon.exr"
     tree = {
-        "halation": 1, "inputs": {"beauty": {"type": "Image", "file": str(sample), "layer": "Combined"}},
-        "outputs": {"image": {"type": "Image"}}, "links": {**links, "outputs.image": "tone.out"},
+        "halation": 1,
+        "inputs": {"beauty": {"type": "Image", "file": str(sample), "layer": "Combined"}},
+        "outputs": {"image": {"type": "Image"}},
+        "links": {**links, "outputs.image": "tone.out"},
         "nodes": {id: {"type": type, "values": values} for id, (type, values, _) in TEN.items()},
     }
     path = tmp_path / "ten.json"
@@ -73,24 +75,66 @@ PIXELS = {"numpy", "OpenImageIO", "PyOpenColorIO", "moderngl", "glcontext", "ric
 
 def test_what_needs_no_pixels_loads_no_library_for_them(tmp_path):
     path = tmp_path / "graph.json"
-    path.write_text(json.dumps({
-        "halation": 1, "outputs": {"image": {"type": "Image"}}, "nodes": {"fill": {"type": "constant"}},
-        "links": {"outputs.image": "fill.out"},
-    }))
-    for words in (("--help",), ("--version",), ("render", "--help"), ("nodes",), ("check", path), ("explain", path),
-                  ("fmt", path)):
+    path.write_text(
+        json.dumps(
+            {
+                "halation": 1,
+                "outputs": {"image": {"type": "Image"}},
+                "nodes": {"fill": {"type": "constant"}},
+                "links": {"outputs.image": "fill.out"},
+            }
+        )
+    )
+    for words in (
+        ("--help",),
+        ("--version",),
+        ("render", "--help"),
+        ("nodes",),
+        ("check", path),
+        ("explain", path),
+        ("fmt", path),
+    ):
         assert not loaded(*words) & (WINDOWS | PIXELS), words
 
 
 SELDOM = {
-    "importlib.metadata", "importlib.resources", "PyOpenColorIO", "av", "rich", "trimesh", "asyncio", "multiprocessing",
-    "unittest", "unicodedata", "zipfile",
-    *(f"halation.app.{name}" for name in (
-        "editor", "lint", "suite", "cli.edit", "cli.nodes", "cli.batch", "document.versions", "document.schema",
-        "graph.expressions.parser", "glsl.loops", "written.glsl", "written.isf", "compiler.isf", "media.survey",
-        "media.video", "media.video_file", "media.meshes", "renderer.viewing.display", "renderer.viewing.probe",
-        "renderer.jobs.sweep", "renderer.reproducing",
-    )),
+    "importlib.metadata",
+    "importlib.resources",
+    "PyOpenColorIO",
+    "av",
+    "rich",
+    "trimesh",
+    "asyncio",
+    "multiprocessing",
+    "unittest",
+    "unicodedata",
+    "zipfile",
+    *(
+        f"halation.app.{name}"
+        for name in (
+            "editor",
+            "lint",
+            "suite",
+            "cli.edit",
+            "cli.nodes",
+            "cli.batch",
+            "document.versions",
+            "document.schema",
+            "graph.expressions.parser",
+            "glsl.loops",
+            "written.glsl",
+            "written.isf",
+            "compiler.isf",
+            "media.survey",
+            "media.video",
+            "media.video_file",
+            "media.meshes",
+            "renderer.viewing.display",
+            "renderer.viewing.probe",
+            "renderer.jobs.sweep",
+            "renderer.reproducing",
+        )
+    ),
 }
 """What most renderings do without."""
 
@@ -148,7 +192,9 @@ def test_interrupting_stops_at_once_and_leaves_nothing(long, tmp_path, delay):
     out.parent.mkdir()
     out.write_bytes(b"precious")
     with subprocess.Popen(
-        [*HALATION, "render", long, "-o", out, "--size", "1920x1080"], stderr=subprocess.PIPE, text=True,
+        [*HALATION, "render", long, "-o", out, "--size", "1920x1080"],
+        stderr=subprocess.PIPE,
+        text=True,
         env={**os.environ, "LIBGL_ALWAYS_SOFTWARE": "1"},
     ) as running:
         assert running.stderr is not None
@@ -212,7 +258,7 @@ def test_progress_shows_on_a_terminal_only(long, tmp_path):
     os.close(ours)
     assert re.search(rb"\d+/\d+ passes", said), said
     assert said.count(b"\x1b[?25l") == said.count(b"\x1b[?25h")  # the cursor is hidden and shown again
-    quiet = halation(*words[len(HALATION):])
+    quiet = halation(*words[len(HALATION) :])
     assert "\x1b" not in quiet.stderr and len(quiet.stderr.splitlines()) == 2
 
 
@@ -224,7 +270,12 @@ def test_progress_for_programs(ten, tmp_path):
     count = json.loads(result.stdout)["passes"]
     frame = told.pop()
     assert frame == {
-        "frame": 1, "done": 1, "frames": 1, "written": [str(tmp_path / "out.exr")], "kept": False, "passes": count
+        "frame": 1,
+        "done": 1,
+        "frames": 1,
+        "written": [str(tmp_path / "out.exr")],
+        "kept": False,
+        "passes": count,
     }
     assert [(one["pass"], one["passes"]) for one in told] == [(number, count) for number in range(1, count + 1)]
     assert told[-1]["nodes"][-1] == "tone" and {name for one in told for name in one["nodes"]} <= set(TEN)
@@ -251,8 +302,9 @@ def test_a_graph_from_standard_input(ten, tmp_path):
 def test_names_that_no_encoding_knows(ten, tmp_path):
     folder = os.fsencode(tmp_path) + b"/caf\xe9"
     result = subprocess.run([*HALATION, "render", os.fspath(ten), "-o", folder + b"/out.exr"], capture_output=True)
-    assert result.returncode == 1 and result.stderr.endswith(b"caf\\udce9/out.exr: cannot be written: "
-                                                             b"there is no such folder: create it first\n")
+    assert result.returncode == 1 and result.stderr.endswith(
+        b"caf\\udce9/out.exr: cannot be written: there is no such folder: create it first\n"
+    )
 
 
 def test_the_installed_command(ten):

@@ -99,8 +99,10 @@ def test_set_a_color(cli, graphs, out):
 
 
 def test_set_a_choice_and_a_boolean(cli, graphs, out):
-    path = graphs(nodes={"tone": {"type": "tone_map", "values": {"exposure": 6.0}}},
-                  links={"tone.image": "light.out", "outputs.image": "tone.out"})
+    path = graphs(
+        nodes={"tone": {"type": "tone_map", "values": {"exposure": 6.0}}},
+        links={"tone.image": "light.out", "outputs.image": "tone.out"},
+    )
     seen = []
     choice = ("--set", "tone.operator=reinhard")
     for words in ((), choice, (*choice, "--set", "tone.clip=false")):
@@ -161,8 +163,11 @@ def test_size(cli, graphs, out):
 
 
 def test_scale_shrinks_lengths_in_pixels_too(cli, graphs, out, tmp_path):
-    path = graphs(nodes={"tiles": {"type": "checker", "values": {"size": 8.0}}},
-                  links={"outputs.image": "tiles.out"}, settings={"size": [64, 32]})
+    path = graphs(
+        nodes={"tiles": {"type": "checker", "values": {"size": 8.0}}},
+        links={"outputs.image": "tiles.out"},
+        settings={"size": [64, 32]},
+    )
     small = tmp_path / "small.exr"
     assert cli("render", path, "-o", out).code == 0
     assert cli("render", path, "--scale", "0.5", "-o", small).code == 0
@@ -187,11 +192,15 @@ def test_frame_reaches_the_shaders(cli, graphs, out, monkeypatch):
 
 def test_precision_of_files_and_of_what_lies_between(cli, graphs, out):
     """1 + 2^-12 is lost in half: in the file by default, and between two passes when half is asked for."""
-    nodes = {"blur": {"type": "gaussian_blur", "values": {"sigma": 1.0}},
-             "minus": {"type": "grade", "values": {"offset": [-1.0, -1.0, -1.0, 0.0]}}}
+    nodes = {
+        "blur": {"type": "gaussian_blur", "values": {"sigma": 1.0}},
+        "minus": {"type": "grade", "values": {"offset": [-1.0, -1.0, -1.0, 0.0]}},
+    }
     value = 1.0 + 2.0**-12
-    path = graphs(nodes={**nodes, "fill": {"type": "constant", "values": {"color": [value] * 3 + [1.0]}}},
-                  links={"blur.image": "fill.out", "minus.image": "blur.out", "outputs.image": "minus.out"})
+    path = graphs(
+        nodes={**nodes, "fill": {"type": "constant", "values": {"color": [value] * 3 + [1.0]}}},
+        links={"blur.image": "fill.out", "minus.image": "blur.out", "outputs.image": "minus.out"},
+    )
     found = {}
     for precision in ("half", "float"):
         assert cli("render", path, "--precision", precision, "-o", out).code == 0
@@ -229,8 +238,10 @@ def test_compression(cli, graphs, out, compression):
 
 def test_form_of_passes(cli, graphs, out, tmp_path):
     other = tmp_path / "other.exr"
-    path = graphs(nodes={"blur": {"type": "gaussian_blur", "values": {"sigma": 3.0}}},
-                  links={"blur.image": "light.out", "outputs.image": "blur.out"})
+    path = graphs(
+        nodes={"blur": {"type": "gaussian_blur", "values": {"sigma": 3.0}}},
+        links={"blur.image": "light.out", "outputs.image": "blur.out"},
+    )
     for form, file in (("fragment", out), ("compute", other)):
         result = cli("render", path, "--form", form, "--precision", "float", "-o", file)
         assert result.code == 0 and f"{form} passes" in result.err
@@ -298,12 +309,17 @@ def test_a_written_exr_can_be_rendered_again(cli, graphs, out, tmp_path):
 def test_the_header_holds_the_bodies_of_groups_as_they_were(cli, graphs, out, tmp_path):
     """The file of a group may change, and --set reaches into it: a reference would not say what was rendered."""
     body = {
-        "halation": 1, "inputs": {"image": {"type": "Image"}}, "outputs": {"image": {"type": "Image"}},
-        "nodes": {"more": {"type": "exposure"}}, "links": {"more.image": "inputs.image", "outputs.image": "more.out"},
+        "halation": 1,
+        "inputs": {"image": {"type": "Image"}},
+        "outputs": {"image": {"type": "Image"}},
+        "nodes": {"more": {"type": "exposure"}},
+        "links": {"more.image": "inputs.image", "outputs.image": "more.out"},
     }
     (tmp_path / "body.json").write_text(json.dumps(body))
-    path = graphs(nodes={"group": {"type": "group", "path": "body.json"}},
-                  links={"group.image": "light.out", "outputs.image": "group.image"})
+    path = graphs(
+        nodes={"group": {"type": "group", "path": "body.json"}},
+        links={"group.image": "light.out", "outputs.image": "group.image"},
+    )
     assert cli("render", path, "--set", "group.more.stops=2", "-o", out).code == 0
     np.testing.assert_allclose(read(out)[0, :, 0], 8.0 * RED, rtol=2e-3)
     again, third = tmp_path / "again.json", tmp_path / "third.exr"

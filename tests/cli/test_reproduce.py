@@ -14,10 +14,12 @@ from halation.presets import paths as presets
 
 PRESETS = {path.stem: path for path in presets()}
 TRAIL = {
-    "nodes": {"trail": {"type": "frame_blend"}}, "links": {"trail.image": "light.out", "outputs.image": "trail.out"},
+    "nodes": {"trail": {"type": "frame_blend"}},
+    "links": {"trail.image": "light.out", "outputs.image": "trail.out"},
 }
 BODY = {
-    "halation": 1, "inputs": {"image": {"type": "Image"}, "more": {"type": "Image", "file": "dust.exr"}},
+    "halation": 1,
+    "inputs": {"image": {"type": "Image"}, "more": {"type": "Image", "file": "dust.exr"}},
     "outputs": {"image": {"type": "Image"}},
     "nodes": {"mix": {"type": "merge", "values": {"mode": "plus"}}},
     "links": {"mix.a": "inputs.image", "mix.b": "inputs.more", "outputs.image": "mix.out"},
@@ -54,12 +56,15 @@ def movie(tmp_path, graphs):
 @pytest.mark.parametrize(
     ("preset", "words", "ending"),
     [
-        ("soft_bloom", ("--scale", "0.5"), "exr"), ("soft_bloom", ("--set", "bloom.intensity=0.7"), "png"),
-        ("night_street", ("--size", "120x68"), "tif"), ("x_ray", ("--scale", "0.25", "--precision", "float"), "png"),
+        ("soft_bloom", ("--scale", "0.5"), "exr"),
+        ("soft_bloom", ("--set", "bloom.intensity=0.7"), "png"),
+        ("night_street", ("--size", "120x68"), "tif"),
+        ("x_ray", ("--scale", "0.25", "--precision", "float"), "png"),
         ("rack_focus", ("--frame", "7", "--scale", "0.25"), "exr"),
         ("feedback_tunnel", ("--frame", "5", "--scale", "0.25"), "exr"),
         ("long_exposure", ("--frame", "5", "--scale", "0.25"), "png"),
-        ("comic_ink", ("--node", "ink", "--scale", "0.25"), "exr"), ("moonlight", ("--scale", "0.25"), "jpg"),
+        ("comic_ink", ("--node", "ink", "--scale", "0.25"), "exr"),
+        ("moonlight", ("--scale", "0.25"), "jpg"),
     ],
 )
 def test_presets_come_again_bit_for_bit(cli, tmp_path, preset, words, ending):
@@ -77,7 +82,8 @@ def test_presets_come_again_bit_for_bit(cli, tmp_path, preset, words, ending):
 def test_what_is_kept_is_the_same_file(cli, graphs, tmp_path):
     parts = {
         "inputs": {"depth": {"type": "Field", "file": "shot.exr", "layer": "Depth"}},
-        "outputs": {"image": {"type": "Image"}, "far": {"type": "Field"}}, "links": {"outputs.far": "inputs.depth"},
+        "outputs": {"image": {"type": "Image"}, "far": {"type": "Field"}},
+        "links": {"outputs.far": "inputs.depth"},
     }
     words = ("--compression", "piz", "--set", "light.stops=0.37")
     picture = render(cli, graphs(**parts), tmp_path / "out.exr", *words)
@@ -170,8 +176,10 @@ def test_a_frame_of_a_sequence_needs_that_file_only(cli, movie, tmp_path):
 
 def test_frames_around_the_one_that_is_made(cli, movie, tmp_path):
     """A node that looks at other frames reads several files of one sequence."""
-    late = {"late": {"type": "time_offset", "values": {"frames": 2}},
-            "mix": {"type": "merge", "values": {"mode": "plus"}}}
+    late = {
+        "late": {"type": "time_offset", "values": {"frames": 2}},
+        "mix": {"type": "merge", "values": {"mode": "plus"}},
+    }
     links = {"late.image": "light.out", "mix.a": "late.out", "mix.b": "light.out", "outputs.image": "mix.out"}
     graph = movie(nodes=late, links=links)
     picture = render(cli, graph, tmp_path / "out.exr", "--frame", "3", "--precision", "float")
@@ -187,8 +195,10 @@ def test_groups_and_what_they_read_are_inside(cli, graphs, tmp_path):
     library.mkdir()
     write_exr(library / "dust.exr", {"Combined": np.full((32, 48, 4), 0.5, np.float32)}, {"Combined": "half"})
     (library / "dusty.json").write_text(json.dumps(BODY))
-    graph = graphs(nodes={"dusty": {"type": "group", "path": "library/dusty.json"}},
-                   links={"dusty.image": "light.out", "outputs.image": "dusty.image"})
+    graph = graphs(
+        nodes={"dusty": {"type": "group", "path": "library/dusty.json"}},
+        links={"dusty.image": "light.out", "outputs.image": "dusty.image"},
+    )
     picture = render(cli, graph, tmp_path / "out.png")
     (library / "dusty.json").unlink()
     graph.unlink()
@@ -244,8 +254,12 @@ def test_files_that_hold_no_graph(cli, graphs, shot, tmp_path):
 @pytest.mark.parametrize(
     ("name", "text"),
     [
-        ("halation:graph", "{"), ("halation:graph", '{"halation": 99}'), ("halation:settings", "frame=soon"),
-        ("halation:settings", "size=3x"), ("halation:settings", "view='"), ("halation:input:inputs.beauty", "shot.exr"),
+        ("halation:graph", "{"),
+        ("halation:graph", '{"halation": 99}'),
+        ("halation:settings", "frame=soon"),
+        ("halation:settings", "size=3x"),
+        ("halation:settings", "view='"),
+        ("halation:input:inputs.beauty", "shot.exr"),
     ],
 )
 def test_damaged_headers_are_a_sentence(cli, graphs, tmp_path, name, text):

@@ -37,10 +37,16 @@ def yard(tmp_path: Path) -> Path:
     (out / "mesh.obj").write_text(TRIANGLE)
     (out / "code.glsl").write_text(GLSL)
     (out / "code.fs").write_text(SHADER)
-    (out / "group.json").write_text(json.dumps({
-        "halation": 1, "outputs": {"out": {"type": "Image"}}, "nodes": {"n": {"type": "noise"}},
-        "links": {"outputs.out": "n.out"},
-    }))
+    (out / "group.json").write_text(
+        json.dumps(
+            {
+                "halation": 1,
+                "outputs": {"out": {"type": "Image"}},
+                "nodes": {"n": {"type": "noise"}},
+                "links": {"outputs.out": "n.out"},
+            }
+        )
+    )
     (out / "config.ocio").write_text(ocio.Config.CreateFromBuiltinConfig("cg-config-latest").serialize())
     (tmp_path / "fence" / "link").symlink_to(out)
     return tmp_path
@@ -56,12 +62,20 @@ def node(type: str, output: str = "out", **parts: object) -> dict[str, object]:
 
 
 NAMED = {
-    "an input": ("shot.exr", lambda path: {
-        "inputs": {"b": {"type": "Image", "file": path}}, "links": {"outputs.image": "inputs.b"},
-    }),
-    "a sequence": ("shot.####.exr", lambda path: {
-        "inputs": {"b": {"type": "Image", "file": path}}, "links": {"outputs.image": "inputs.b"},
-    }),
+    "an input": (
+        "shot.exr",
+        lambda path: {
+            "inputs": {"b": {"type": "Image", "file": path}},
+            "links": {"outputs.image": "inputs.b"},
+        },
+    ),
+    "a sequence": (
+        "shot.####.exr",
+        lambda path: {
+            "inputs": {"b": {"type": "Image", "file": path}},
+            "links": {"outputs.image": "inputs.b"},
+        },
+    ),
     "read_image": ("shot.exr", lambda path: node("read_image", values={"path": path})),
     "a render": ("shot.exr", lambda path: node("read_render", "color", values={"path": path})),
     "a table": ("table.cube", lambda path: node("lut_file", values={"file": path})),
@@ -69,10 +83,14 @@ NAMED = {
     "a group": ("group.json", lambda path: node("group", path=path)),
     "code": ("code.glsl", lambda path: node("glsl", file=path)),
     "a shader": ("code.fs", lambda path: node("isf", file=path)),
-    "a config": ("config.ocio", lambda path: {
-        "nodes": {"n": {"type": "noise"}}, "links": {"outputs.image": "n.out"},
-        "settings": {"size": [16, 16], "color": {"config": path}},
-    }),
+    "a config": (
+        "config.ocio",
+        lambda path: {
+            "nodes": {"n": {"type": "noise"}},
+            "links": {"outputs.image": "n.out"},
+            "settings": {"size": [16, 16], "color": {"config": path}},
+        },
+    ),
 }
 
 
@@ -119,8 +137,17 @@ def test_tables_of_a_config(cli, yard):
 
 @pytest.mark.parametrize("name", ["../a.png", "link/a.png", "../a.####.png", "../a.exr", "../a.mkv"])
 def test_what_is_written_outside_is_refused(cli, yard, name):
-    graph, fence = written(yard, {"nodes": {"n": {"type": "noise"}}, "links": {"outputs.image": "n.out"},
-                                  "settings": {"size": [16, 16], "frames": [1, 2]}}), yard / "fence"
+    graph, fence = (
+        written(
+            yard,
+            {
+                "nodes": {"n": {"type": "noise"}},
+                "links": {"outputs.image": "n.out"},
+                "settings": {"size": [16, 16], "frames": [1, 2]},
+            },
+        ),
+        yard / "fence",
+    )
     if name.endswith("mkv"):
         pytest.importorskip("av", reason="PyAV is not installed: pip install halation[video]")
     words = ("--frame", 1) if name.endswith(("exr", "a.png")) else ()
@@ -147,7 +174,9 @@ def test_processes_that_share_frames_are_inside_too(yard):
     graph = written(yard, NAMED["an input"][1]("in.####.exr"))
     result = subprocess.run(
         [sys.executable, "-m", "halation.app.cli", "render", graph, "-o", fence / "a.####.png", "--root", fence, "-j2"],
-        capture_output=True, text=True, env={**os.environ, "LP_NUM_THREADS": "1"},
+        capture_output=True,
+        text=True,
+        env={**os.environ, "LP_NUM_THREADS": "1"},
     )
     assert result.returncode == 4 and "in.0002.exr: lies outside of" in result.stderr
     assert not (fence / "a.0002.png").exists()

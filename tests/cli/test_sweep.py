@@ -37,8 +37,11 @@ def test_cells_alone_are_what_render_makes(cli, graphs, tmp_path, ending):
 
 def test_a_sheet_shows_each_picture_where_it_should(cli, graphs, tmp_path):
     """Rows of one value, columns of the other: flat colors are found again in the middle of their cells."""
-    path = graphs(nodes={"fill": {"type": "constant"}, "dim": {"type": "exposure"}},
-                  links={"dim.image": "fill.out", "outputs.image": "dim.out"}, settings={"size": [48, 32]})
+    path = graphs(
+        nodes={"fill": {"type": "constant"}, "dim": {"type": "exposure"}},
+        links={"dim.image": "fill.out", "outputs.image": "dim.out"},
+        settings={"size": [48, 32]},
+    )
     words = ("--set", "dim.stops=0,-1,-2", "--set", "fill.color=0.8,0,0,1;0,0.8,0,1", "--view", "none")
     found = swept(cli, path, *words)
     assert [cell["label"] for cell in found["cells"]] == [
@@ -68,19 +71,28 @@ def test_one_value_makes_rows_that_wrap(cli, graphs, tmp_path):
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("light.stops=0..3/4", ["0", "1", "2", "3"]), ("light.stops=1..100/3log", ["1", "10", "100"]),
-        ("light.stops=-1..1/3,5", ["-1", "0", "1", "5"]), ("light.stops=1;2,3", None),
+        ("light.stops=0..3/4", ["0", "1", "2", "3"]),
+        ("light.stops=1..100/3log", ["1", "10", "100"]),
+        ("light.stops=-1..1/3,5", ["-1", "0", "1", "5"]),
+        ("light.stops=1;2,3", None),
         ("light.stops=1,1,2", ["1", "2"]),
-        ("light.stops=2..0/3", ["2", "1", "0"]), ("light.stops==frame;0", ["=frame", "0"]),
+        ("light.stops=2..0/3", ["2", "1", "0"]),
+        ("light.stops==frame;0", ["=frame", "0"]),
         ("light.stops=1@1,4@24;2", ["1@1,4@24", "2"]),
-        ("noise.octaves=1..4/4", ["1", "2", "3", "4"]), ("mix.mode=plus,over", ["plus", "over"]),
-        ("tone.clip=*", ["false", "true"]), ("fill.color=1,0,0,1;0,1,0,1", ["1,0,0,1", "0,1,0,1"]),
+        ("noise.octaves=1..4/4", ["1", "2", "3", "4"]),
+        ("mix.mode=plus,over", ["plus", "over"]),
+        ("tone.clip=*", ["false", "true"]),
+        ("fill.color=1,0,0,1;0,1,0,1", ["1,0,0,1", "0,1,0,1"]),
         ("glow=1,2", ["1", "2"]),
     ],
 )
 def test_lists_and_ranges(cli, graphs, text, expected):
-    nodes = {"noise": {"type": "noise"}, "mix": {"type": "merge"}, "tone": {"type": "tone_map"},
-             "fill": {"type": "constant"}}
+    nodes = {
+        "noise": {"type": "noise"},
+        "mix": {"type": "merge"},
+        "tone": {"type": "tone_map"},
+        "fill": {"type": "constant"},
+    }
     path = graphs(nodes=nodes, controls={"glow": {"target": "light.stops"}})
     sheet = path.parent / "sheet.png"
     result = cli("sweep", path, "-o", sheet, "--cell", "16", "--set", text, "--json")
@@ -121,8 +133,12 @@ def test_frames(cli, graphs, tmp_path):
 
 def test_what_a_history_makes_of_values(cli, graphs, tmp_path):
     """Every cell has its own past."""
-    path = graphs(nodes={"trail": {"type": "frame_blend", "values": {"amount": 0.5}}}, settings={"frames": [1, 8]},
-                  links={"trail.image": "light.out", "outputs.image": "trail.out"}, animation={})
+    path = graphs(
+        nodes={"trail": {"type": "frame_blend", "values": {"amount": 0.5}}},
+        settings={"frames": [1, 8]},
+        links={"trail.image": "light.out", "outputs.image": "trail.out"},
+        animation={},
+    )
     words = ("--set", "light.stops==frame;=-frame", "--frame", "4", "--cells", tmp_path / "cells")
     found = swept(cli, path, *words)
     for cell in found["cells"]:
@@ -132,8 +148,11 @@ def test_what_a_history_makes_of_values(cli, graphs, tmp_path):
 
 
 def test_data_is_shown_between_its_limits(cli, graphs):
-    parts = {"inputs": {"depth": {"type": "Field", "file": "shot.exr", "layer": "Depth"}},
-             "outputs": {"far": {"type": "Field"}}, "links": {"outputs.far": "inputs.depth"}}
+    parts = {
+        "inputs": {"depth": {"type": "Field", "file": "shot.exr", "layer": "Depth"}},
+        "outputs": {"far": {"type": "Field"}},
+        "links": {"outputs.far": "inputs.depth"},
+    }
     found = swept(cli, graphs(**parts), "--set", "light.stops=0,1", "--show", "far")
     assert len(found["cells"]) == 2
 

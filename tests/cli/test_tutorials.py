@@ -20,7 +20,12 @@ _NAME = re.compile(r"`([\w/.-]+\.(?:json|toml|glsl))`")
 def halation(words: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
     path = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
     return subprocess.run(
-        words, cwd=folder, capture_output=True, text=True, timeout=300, env={**os.environ, "PATH": path},
+        words,
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        env={**os.environ, "PATH": path},
     )
 
 

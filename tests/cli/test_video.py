@@ -52,7 +52,8 @@ def test_a_video_bound_to_an_input_or_read_by_a_node(cli, graphs, clip, tmp_path
     bound = graphs("bound.json", nodes={"light": {"type": "exposure"}})
     assert cli("render", bound, "-i", f"beauty={clip}", "--frame", 6, "-o", tmp_path / "a.exr").code == 0
     node = graphs(
-        "node.json", nodes={"read": {"type": "read_image", "values": {"path": clip.name}}},
+        "node.json",
+        nodes={"read": {"type": "read_image", "values": {"path": clip.name}}},
         links={"outputs.image": "read.out"},
     )
     tree = json.loads(node.read_text())
@@ -129,11 +130,32 @@ def test_what_cannot_be_written_is_said_before_anything_is_rendered(fails, movie
         (("-o", "a.mp4", "--codec", "vp9"), 2, "such a file holds no codec 'vp9'"),
         (("-o", "a.mkv", "--codec", "h256"), 2, "did you mean 'h265'"),
         (("-o", "a.mp4", "--size", "81x32"), 2, "width and height must be even, not 81x32"),
-        (("-o", "a.####.mp4",), 2, "leave the place for their number out"),
+        (
+            (
+                "-o",
+                "a.####.mp4",
+            ),
+            2,
+            "leave the place for their number out",
+        ),
         (("-o", "a.mp4", "--resume"), 2, "leave out --resume"),
-        (("-o", "a.avi",), 2, "videos are written as .mp4"),
+        (
+            (
+                "-o",
+                "a.avi",
+            ),
+            2,
+            "videos are written as .mp4",
+        ),
         (("-o", "a.png", "--codec", "h264", "--frame", "1"), 2, "that is for videos"),
-        (("-o", "nowhere/a.mp4",), 1, "there is no such folder"),
+        (
+            (
+                "-o",
+                "nowhere/a.mp4",
+            ),
+            1,
+            "there is no such folder",
+        ),
     ):
         assert said in fails(code, "render", graph, *words)
 
@@ -158,7 +180,8 @@ def test_an_interruption_leaves_nothing_half_written(movie, tmp_path):
     out = tmp_path / "out.mp4"
     process = subprocess.Popen(
         [sys.executable, "-m", "halation.app.cli", "render", graph, "-o", out, "--frames", "1-5000", "--progress=json"],
-        stderr=subprocess.PIPE, text=True,
+        stderr=subprocess.PIPE,
+        text=True,
     )
     for line in process.stderr:
         if '"done": 3' in line:

@@ -18,7 +18,9 @@ from exr_files import read, write_exr
 
 PATIENCE = 60.0
 BODY = {
-    "halation": 1, "inputs": {"image": {"type": "Image"}}, "outputs": {"image": {"type": "Image"}},
+    "halation": 1,
+    "inputs": {"image": {"type": "Image"}},
+    "outputs": {"image": {"type": "Image"}},
     "nodes": {"more": {"type": "exposure", "values": {"stops": 1.0}}},
     "links": {"more.image": "inputs.image", "outputs.image": "more.out"},
 }
@@ -59,7 +61,10 @@ class Watching:
 def watching(graph, *words):
     command = [sys.executable, "-m", "halation.app.cli", "watch", graph, *words, "--json"]
     with subprocess.Popen(
-        [str(word) for word in command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        [str(word) for word in command],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
         env={**os.environ, "LP_NUM_THREADS": "1"},
     ) as process:
         watch = Watching(process)

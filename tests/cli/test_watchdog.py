@@ -25,7 +25,9 @@ ENDLESS = """vec4 spin(vec4 image) {
 
 def graph(folder: Path, code: str) -> Path:
     tree = {
-        "halation": 1, "settings": {"size": [640, 480]}, "outputs": {"image": {"type": "Image"}},
+        "halation": 1,
+        "settings": {"size": [640, 480]},
+        "outputs": {"image": {"type": "Image"}},
         "nodes": {"ramp": {"type": "ramp"}, "user": {"type": "glsl", "code": code.split("\n")}},
         "links": {"user.image": "ramp.out", "outputs.image": "user.out"},
     }
@@ -65,7 +67,11 @@ def test_an_interrupt_reaches_the_code(tmp_path: Path) -> None:
     """As from a terminal: both processes hear it, and both are gone when the command is."""
     command = [*HALATION, "render", str(graph(tmp_path, ENDLESS)), "-o", str(tmp_path / "out.exr")]
     started = subprocess.Popen(
-        [*command, "--timeout", "3"], start_new_session=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        [*command, "--timeout", "3"],
+        start_new_session=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
     )
     time.sleep(2.0)
     os.killpg(started.pid, signal.SIGINT)

@@ -59,11 +59,14 @@ def test_only_what_differs_is_saved_and_the_rest_is_kept():
         document.loads('{"halation": 1, "settings": {"color": {"config": 3}}}')
 
 
-@pytest.mark.parametrize(("config", "said"), [
-    ("hause.ocio", r"color\.config: .*hause\.ocio: there is no such color config; did you mean 'house\.ocio'"),
-    ("broken.ocio", r"settings\.color\.config: .*broken\.ocio: is no color config that can be read"),
-    ("ocio://studio-config-latst", r"no such built-in config; did you mean 'ocio://studio-config-latest'"),
-])
+@pytest.mark.parametrize(
+    ("config", "said"),
+    [
+        ("hause.ocio", r"color\.config: .*hause\.ocio: there is no such color config; did you mean 'house\.ocio'"),
+        ("broken.ocio", r"settings\.color\.config: .*broken\.ocio: is no color config that can be read"),
+        ("ocio://studio-config-latst", r"no such built-in config; did you mean 'ocio://studio-config-latest'"),
+    ],
+)
 def test_a_config_that_is_not_there(house, tmp_path, config, said):
     (tmp_path / "broken.ocio").write_text("hello: [")
     path = config if config.startswith("ocio:") else str(tmp_path / config)
@@ -113,10 +116,14 @@ def test_what_a_config_lacks_comes_over_the_interchange_space(house, light):
     np.testing.assert_allclose(made, expected, atol=2e-5)
 
 
-@pytest.mark.parametrize(("working", "said"), [
-    ("ACESgc", "'ACESgc' is unknown: did you mean 'ACEScg'"), ("house log", "'house log' is not scene-linear"),
-    ("numbers", "'numbers' holds numbers, not color"),
-])
+@pytest.mark.parametrize(
+    ("working", "said"),
+    [
+        ("ACESgc", "'ACESgc' is unknown: did you mean 'ACEScg'"),
+        ("house log", "'house log' is not scene-linear"),
+        ("numbers", "'numbers' holds numbers, not color"),
+    ],
+)
 def test_a_working_space_that_makes_no_sense(house, working, said):
     config = "" if working == "ACESgc" else str(house)
     with pytest.raises(GraphError, match=rf"^settings\.color\.working: {said}") as fault:

@@ -72,10 +72,13 @@ def test_rules_of_the_config(tmp_path, color, reference, light, name, space, rea
     np.testing.assert_allclose(rgb(path, color), expected, rtol=2e-5, atol=2e-6)
 
 
-@pytest.mark.parametrize(("attributes", "reason"), [
-    ({"colorInteropID": "lin_ap1_scene"}, "its header says so"),
-    ({"chromaticities": CHROMATICITIES}, "its chromaticities"),
-])
+@pytest.mark.parametrize(
+    ("attributes", "reason"),
+    [
+        ({"colorInteropID": "lin_ap1_scene"}, "its header says so"),
+        ({"chromaticities": CHROMATICITIES}, "its chromaticities"),
+    ],
+)
 def test_a_header_is_stronger_than_a_rule(tmp_path, color, light, attributes, reason):
     path = made(tmp_path / "plates" / "a.exr", light, **attributes)
     (found,) = layer_spaces(path, color).values()
@@ -132,8 +135,10 @@ def test_data_is_never_converted(tmp_path, color, light):
     for space in ("", "house log"):
         assert np.abs(rgb(path, color, space) - light).max() > 0.1
         for kind, layer, width, expected in (
-            (Kind.FIELD, "Depth", 1, depth), (Kind.VECTOR, "Normal", 3, light),
-            (Kind.FIELD, "Combined", 1, light[..., :1]), (Kind.VECTOR, "CryptoObject00", 3, light),
+            (Kind.FIELD, "Depth", 1, depth),
+            (Kind.VECTOR, "Normal", 3, light),
+            (Kind.FIELD, "Combined", 1, light[..., :1]),
+            (Kind.VECTOR, "CryptoObject00", 3, light),
         ):
             array = read(path, layer, kind, width, space=space, color=color).array
             np.testing.assert_array_equal(array, expected)
@@ -147,8 +152,10 @@ def test_data_is_never_converted(tmp_path, color, light):
 
 def graph_of(tmp_path: Path, **parts: object):
     tree = {
-        "halation": 1, "settings": {"color": {"config": "house.ocio", "working": "scene_linear"}},
-        "inputs": {"a": {"type": "Image", "file": "tex/wood.png", **parts}}, "outputs": {"o": {"type": "Image"}},
+        "halation": 1,
+        "settings": {"color": {"config": "house.ocio", "working": "scene_linear"}},
+        "inputs": {"a": {"type": "Image", "file": "tex/wood.png", **parts}},
+        "outputs": {"o": {"type": "Image"}},
         "nodes": {"r": {"type": "read_image", "values": {"path": "tex/wood.png", **parts}}},
         "links": {"outputs.o": "inputs.a"},
     }

@@ -29,8 +29,11 @@ def shot(tmp_path_factory):
 
 def rendered(folder, working, nodes, links, file="a.png", **values):
     tree = {
-        "halation": 1, "settings": {"color": {"working": working}} if working else {},
-        "inputs": {"a": {"type": "Image", "file": file}}, "outputs": {"o": {"type": "Image"}}, "nodes": nodes,
+        "halation": 1,
+        "settings": {"color": {"working": working}} if working else {},
+        "inputs": {"a": {"type": "Image", "file": file}},
+        "outputs": {"o": {"type": "Image"}},
+        "nodes": nodes,
         "links": links,
     }
     graph = document.loads(json.dumps(tree), folder=str(folder))
@@ -42,9 +45,11 @@ def one(type, **values):
 
 
 LINEAR = [
-    ("exposure", {"stops": 1.5}), ("gaussian_blur", {"sigma": 4.0}),
+    ("exposure", {"stops": 1.5}),
+    ("gaussian_blur", {"sigma": 4.0}),
     ("white_balance", {"temperature": 3200.0, "tint": 12.0}),
-    ("white_balance", {"temperature": 9000.0, "method": "cat16"}), ("transform", {"angle": 20.0}),
+    ("white_balance", {"temperature": 9000.0, "method": "cat16"}),
+    ("transform", {"angle": 20.0}),
     ("hue_saturation", {"mode": "perceptual", "hue": 40.0, "saturation": 0.6}),
     ("color_space", {"source": "working", "target": "linear p3"}),
 ]
@@ -81,11 +86,18 @@ def test_luminance_is_that_of_the_primaries(shot):
 
 def test_the_house_names_its_own_spaces(tmp_path, house, reference):
     random = np.random.default_rng(4).random((16, 16, 3)).astype(np.float32)
-    write(tmp_path / "a.exr", {"": random}, kinds={"": Kind.IMAGE}, precision="float",
-          encoding=Encoding(color=ColorSettings(str(house), "scene_linear")))
+    write(
+        tmp_path / "a.exr",
+        {"": random},
+        kinds={"": Kind.IMAGE},
+        precision="float",
+        encoding=Encoding(color=ColorSettings(str(house), "scene_linear")),
+    )
     tree = {
-        "halation": 1, "settings": {"color": {"config": "house.ocio", "working": "scene_linear"}},
-        "inputs": {"a": {"type": "Image", "file": "a.exr"}}, "outputs": {"o": {"type": "Image"}},
+        "halation": 1,
+        "settings": {"color": {"config": "house.ocio", "working": "scene_linear"}},
+        "inputs": {"a": {"type": "Image", "file": "a.exr"}},
+        "outputs": {"o": {"type": "Image"}},
         "nodes": {"n": {"type": "color_space", "values": {"target_name": "color_timing"}}},
         "links": {"n.image": "inputs.a", "outputs.o": "n.out"},
     }
@@ -98,15 +110,21 @@ def test_the_house_names_its_own_spaces(tmp_path, house, reference):
 
 def test_a_group_works_in_the_space_of_its_graph(shot, tmp_path):
     inner = {
-        "halation": 1, "settings": {"color": {"working": "ACES2065-1"}}, "inputs": {"a": {"type": "Image"}},
-        "outputs": {"o": {"type": "Image"}}, "nodes": {"s": {"type": "saturation", "values": {"saturation": 0.0}}},
+        "halation": 1,
+        "settings": {"color": {"working": "ACES2065-1"}},
+        "inputs": {"a": {"type": "Image"}},
+        "outputs": {"o": {"type": "Image"}},
+        "nodes": {"s": {"type": "saturation", "values": {"saturation": 0.0}}},
         "links": {"s.image": "inputs.a", "outputs.o": "s.out"},
     }
     (tmp_path / "inner.json").write_text(json.dumps(inner))
     tree = {
-        "halation": 1, "settings": {"color": {"working": "ACEScg"}},
-        "inputs": {"a": {"type": "Image", "file": str(shot / "b.exr")}}, "outputs": {"o": {"type": "Image"}},
-        "nodes": {"g": {"type": "group", "path": "inner.json"}}, "links": {"g.a": "inputs.a", "outputs.o": "g.o"},
+        "halation": 1,
+        "settings": {"color": {"working": "ACEScg"}},
+        "inputs": {"a": {"type": "Image", "file": str(shot / "b.exr")}},
+        "outputs": {"o": {"type": "Image"}},
+        "nodes": {"g": {"type": "group", "path": "inner.json"}},
+        "links": {"g.a": "inputs.a", "outputs.o": "g.o"},
     }
     (tmp_path / "outer.json").write_text(json.dumps(tree))
     made = hal.render(hal.load(tmp_path / "outer.json"), precision="float")["o"][..., :3]

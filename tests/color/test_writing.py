@@ -37,9 +37,11 @@ def seen(reference, light, display, view, look=None):
 
 
 VIEWS = [
-    ("", "", "", ("Screen", "Plain")), ("warm", "", "", ("Screen", "Warm")),
+    ("", "", "", ("Screen", "Plain")),
+    ("warm", "", "", ("Screen", "Warm")),
     ("dim", "projector", "", ("Projector", "Dim")),
-    ("Plain", "", "warm", ("Screen", "Plain", "warm")), ("Warm", "", "none", ("Screen", "Plain")),
+    ("Plain", "", "warm", ("Screen", "Plain", "warm")),
+    ("Warm", "", "none", ("Screen", "Plain")),
     ("", "Projector", "warm", ("Projector", "Dim", "warm")),
 ]
 
@@ -92,9 +94,9 @@ def test_the_viewer_shows_the_same(color, light):
         texture = device.context.texture((light.shape[1], light.shape[0]), 4, opaque.tobytes(), dtype="f4")
     display = Display(device, "f4")
     for view, screen, look, _ in VIEWS:
-        shown = display.draw("x", texture.size, Picture(texture), None, Look(
-            view=view, display=screen, look=look, color=color
-        ))
+        shown = display.draw(
+            "x", texture.size, Picture(texture), None, Look(view=view, display=screen, look=look, color=color)
+        )
         with device.current():
             pixels = np.frombuffer(shown.read(), np.float32).reshape(*light.shape[:2], 4)[..., :3]
         expected = to_display(light, view, bits=32, display=screen, look=look, color=color)
@@ -123,12 +125,19 @@ def test_exr_says_what_it_is(tmp_path, light, color):
 
 
 @pytest.mark.parametrize("settings", [ColorSettings(), ACESCG], ids=["rec709", "acescg"])
-@pytest.mark.parametrize(("name", "space", "depth", "says"), [
-    ("a.exr", "ARRI LogC4", "half", True), ("a.exr", "arri logc3", "float", True), ("a.exr", "ACEScg", "half", True),
-    ("a.dpx", "ARRI LogC4", "half", False), ("a.dpx", "ARRI LogC4", "float", False),
-    ("a.png", "ARRI LogC4", "float", True),
-    ("a.tif", "ACEScct", "float", False), ("a.png", "sRGB Encoded P3-D65", "float", True),
-])
+@pytest.mark.parametrize(
+    ("name", "space", "depth", "says"),
+    [
+        ("a.exr", "ARRI LogC4", "half", True),
+        ("a.exr", "arri logc3", "float", True),
+        ("a.exr", "ACEScg", "half", True),
+        ("a.dpx", "ARRI LogC4", "half", False),
+        ("a.dpx", "ARRI LogC4", "float", False),
+        ("a.png", "ARRI LogC4", "float", True),
+        ("a.tif", "ACEScct", "float", False),
+        ("a.png", "sRGB Encoded P3-D65", "float", True),
+    ],
+)
 def test_there_and_back(tmp_path, settings, name, space, depth, says):
     """A ramp of grays and mild colors into a space, against OpenColorIO, and read again."""
     ramp = np.exp2(np.linspace(-6.0, -0.5 if "sRGB" in space else 4.0, 256, dtype=np.float32))[None, :, None]
@@ -185,11 +194,15 @@ def test_a_screen_is_named_in_png(tmp_path, light):
     assert header(path).get_string_attribute("oiio:ColorSpace") == "srgb_rec709_scene"
 
 
-@pytest.mark.parametrize(("encoding", "said"), [
-    (Encoding(space="ARRI LogC5"), "there is no color space 'ARRI LogC5': did you mean 'ARRI LogC4'"),
-    (Encoding(view="none", space="ACEScg"), "through a view or into a color space: give one of them"),
-    (Encoding(look="warmm"), "there is no look 'warmm'"), (Encoding(display="CRT"), "there is no display 'CRT'"),
-])
+@pytest.mark.parametrize(
+    ("encoding", "said"),
+    [
+        (Encoding(space="ARRI LogC5"), "there is no color space 'ARRI LogC5': did you mean 'ARRI LogC4'"),
+        (Encoding(view="none", space="ACEScg"), "through a view or into a color space: give one of them"),
+        (Encoding(look="warmm"), "there is no look 'warmm'"),
+        (Encoding(display="CRT"), "there is no display 'CRT'"),
+    ],
+)
 def test_what_there_is_not(tmp_path, light, encoding, said):
     with pytest.raises(UsageError, match=said):
         write(tmp_path / "a.exr", {"": light}, kinds=IMAGE, encoding=encoding)

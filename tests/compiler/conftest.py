@@ -18,7 +18,8 @@ def plan():
         asked = {name: options.pop(name) for name in ("scale", "size", "targets", "frame") if name in options}
         bindings = {
             name: Picture(name, "", item.kind, item.socket().channels, in_memory=True)
-            for name, item in graph.inputs.items() if item.default is None or not item.socket().single
+            for name, item in graph.inputs.items()
+            if item.default is None or not item.socket().single
         }
         return compile_graph(graph, Request(bindings=bindings, **asked), Headers(SIZE), **options)
 

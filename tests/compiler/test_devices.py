@@ -10,8 +10,10 @@ from halation.app.errors import DeviceError
 
 LLVMPIPE = "llvmpipe (LLVM 15.0.6, 256 bits)"
 CARDS = (
-    "NVIDIA GeForce RTX 4090/PCIe/SSE2", "AMD Radeon RX 7900 XTX (radeonsi, navi31, LLVM 17.0.6, DRM 3.54, 6.5.0)",
-    "Mesa Intel(R) UHD Graphics 620 (KBL GT2)", "NVIDIA A100-SXM4-80GB/PCIe/SSE2",
+    "NVIDIA GeForce RTX 4090/PCIe/SSE2",
+    "AMD Radeon RX 7900 XTX (radeonsi, navi31, LLVM 17.0.6, DRM 3.54, 6.5.0)",
+    "Mesa Intel(R) UHD Graphics 620 (KBL GT2)",
+    "NVIDIA A100-SXM4-80GB/PCIe/SSE2",
 )
 
 
@@ -23,12 +25,20 @@ def never():
     raise AssertionError("this device is not to be measured")
 
 
-@pytest.mark.parametrize(("renderer", "version", "form"), [
-    (LLVMPIPE, 450, "compute"), ("softpipe", 430, "compute"), ("Google SwiftShader", 450, "compute"),
-    ("Microsoft Basic Render Driver", 460, "compute"), ("Apple M2", 410, "fragment"), (LLVMPIPE, 410, "fragment"),
-    ("Intel Iris Pro OpenGL Engine", 410, "fragment"), ("NVIDIA H200/PCIe/SSE2", 460, "compute"),
-    ("NVIDIA H100 80GB HBM3/PCIe/SSE2", 460, "compute"),
-])
+@pytest.mark.parametrize(
+    ("renderer", "version", "form"),
+    [
+        (LLVMPIPE, 450, "compute"),
+        ("softpipe", 430, "compute"),
+        ("Google SwiftShader", 450, "compute"),
+        ("Microsoft Basic Render Driver", 460, "compute"),
+        ("Apple M2", 410, "fragment"),
+        (LLVMPIPE, 410, "fragment"),
+        ("Intel Iris Pro OpenGL Engine", 410, "fragment"),
+        ("NVIDIA H200/PCIe/SSE2", 460, "compute"),
+        ("NVIDIA H100 80GB HBM3/PCIe/SSE2", 460, "compute"),
+    ],
+)
 def test_what_the_table_knows_is_not_measured(renderer, version, form):
     made = choose(renderer, version, None, never)
     assert made.form == form and made.why.startswith("by the table: ")
@@ -49,13 +59,16 @@ def test_compute_passes_cannot_be_asked_of_an_old_opengl():
         choose("Apple M2", 410, "compute", never)
 
 
-@pytest.mark.parametrize(("found", "form", "why"), [
-    (Measured(4.0e-3, 3.1e-3), "fragment", "measured: 3.10 ms against 4.00 in compute passes"),
-    (Measured(3.1e-3, 4.0e-3), "compute", "measured: 3.10 ms against 4.00 in fragment passes"),
-    (Measured(1.0, 1.0), "compute", "measured: 1000.00 ms against 1000.00 in fragment passes"),
-    (Measured(inf, 0.25), "fragment", "measured: the driver refuses compute passes"),
-    (Measured(0.25, inf), "compute", "measured: the driver refuses fragment passes"),
-])
+@pytest.mark.parametrize(
+    ("found", "form", "why"),
+    [
+        (Measured(4.0e-3, 3.1e-3), "fragment", "measured: 3.10 ms against 4.00 in compute passes"),
+        (Measured(3.1e-3, 4.0e-3), "compute", "measured: 3.10 ms against 4.00 in fragment passes"),
+        (Measured(1.0, 1.0), "compute", "measured: 1000.00 ms against 1000.00 in fragment passes"),
+        (Measured(inf, 0.25), "fragment", "measured: the driver refuses compute passes"),
+        (Measured(0.25, inf), "compute", "measured: the driver refuses fragment passes"),
+    ],
+)
 @pytest.mark.parametrize("renderer", CARDS)
 def test_other_devices_are_given_what_was_faster(renderer, found, form, why):
     made = chosen(renderer, found=found)

@@ -41,7 +41,8 @@ def test_both_refuse_the_same(seed, rng, lost) -> None:
         graph = graph.disconnect(rng.choice(sorted(graph.links)))
     bound = {
         name: Picture(name, "", end.kind, end.socket().channels, in_memory=True)
-        for name, end in graph.inputs.items() if end.default is None and rng.random() < 0.9
+        for name, end in graph.inputs.items()
+        if end.default is None and rng.random() < 0.9
     }
     size = rng.choice((None, (64, 48), (40000, 9)))
     request = Request(bindings=bound, size=size)

@@ -37,11 +37,15 @@ def test_what_looks_around_joins_a_pointwise_reader_if_it_is_light(plan) -> None
 def test_what_it_reads_is_a_texture(plan) -> None:
     """It wants neighbors, so what makes them cannot be part of its pass, whoever else reads it."""
     nodes = {
-        "before": NODES["exposure"](stops=1.0), "edges": NODES["edge_detect"](),
+        "before": NODES["exposure"](stops=1.0),
+        "edges": NODES["edge_detect"](),
         "sum": NODES["merge"](mode="plus"),
     }
     links = {
-        "before.image": "inputs.image", "edges.image": "before.out", "sum.a": "edges.out", "sum.b": "before.out",
+        "before.image": "inputs.image",
+        "edges.image": "before.out",
+        "sum.a": "edges.out",
+        "sum.b": "before.out",
         "outputs.out": "sum.out",
     }
     assert passes(plan(graph(nodes, links))) == [{"exposure"}, {"edge_detect", "merge"}]
@@ -60,7 +64,10 @@ def test_several_of_one_kind_keep_their_names_apart(plan, run) -> None:
     shift = node_type(Code("glsl", "vec4 f(vec4 image, int x /* = 0 */) { return image_at(pixel + ivec2(x, 0)); }"))
     nodes = {"left": shift(x=1), "right": shift(x=-2), "sum": NODES["merge"](mode="plus")}
     links = {
-        "left.image": "inputs.image", "right.image": "inputs.image", "sum.a": "left.out", "sum.b": "right.out",
+        "left.image": "inputs.image",
+        "right.image": "inputs.image",
+        "sum.a": "left.out",
+        "sum.b": "right.out",
         "outputs.out": "sum.out",
     }
     made = graph(nodes, links)

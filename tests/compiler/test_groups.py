@@ -22,8 +22,12 @@ def graph(nodes, links: dict[str, str], inputs=IMAGE, outputs=None, **rest) -> G
 
 
 PASSING = graph({}, {"outputs.image": "inputs.image"})
-GENERATOR = graph({"c": Checker()}, {"outputs.image": "c.out", "outputs.mask": "c.value"}, {},
-                  {"image": Output(), "mask": Output(Kind.FIELD)})
+GENERATOR = graph(
+    {"c": Checker()},
+    {"outputs.image": "c.out", "outputs.mask": "c.value"},
+    {},
+    {"image": Output(), "mask": Output(Kind.FIELD)},
+)
 
 
 def key(plan, made: Graph, **options) -> str:
@@ -40,10 +44,14 @@ def test_an_input_may_be_linked_straight_to_an_output(plan):
     assert key(plan, wrapped) == key(plan, PASSING)
 
 
-@pytest.mark.parametrize("links", [
-    {"g.image": "g.image", "outputs.image": "g.image"},
-    {"g.image": "h.image", "h.image": "g.image", "outputs.image": "g.image"},
-], ids=["itself", "two"])
+@pytest.mark.parametrize(
+    "links",
+    [
+        {"g.image": "g.image", "outputs.image": "g.image"},
+        {"g.image": "h.image", "h.image": "g.image", "outputs.image": "g.image"},
+    ],
+    ids=["itself", "two"],
+)
 def test_groups_that_feed_themselves_are_an_error(plan, links):
     with pytest.raises(GraphError, match=r"group '[gh]' feeds itself"):
         plan(graph({"g": Group(PASSING), "h": Group(PASSING)}, links))
@@ -56,10 +64,14 @@ def test_a_group_output_can_be_asked_for(plan):
 
 def test_two_instances_have_values_of_their_own(plan):
     body = light(0.5).add_control("light", Control(Port("a", "stops")))
-    two = graph({"g": Group(body, values={"light": 1.0}), "h": Group(body, values={"light": 2.0})},
-                {"g.image": "inputs.image", "h.image": "g.image", "outputs.image": "h.image"})
-    flat = graph({"a": Exposure(stops=1.0), "b": Exposure(stops=2.0)},
-                 {"a.image": "inputs.image", "b.image": "a.out", "outputs.image": "b.out"})
+    two = graph(
+        {"g": Group(body, values={"light": 1.0}), "h": Group(body, values={"light": 2.0})},
+        {"g.image": "inputs.image", "h.image": "g.image", "outputs.image": "h.image"},
+    )
+    flat = graph(
+        {"a": Exposure(stops=1.0), "b": Exposure(stops=2.0)},
+        {"a.image": "inputs.image", "b.image": "a.out", "outputs.image": "b.out"},
+    )
     assert key(plan, two) == key(plan, flat)
 
 
@@ -97,8 +109,10 @@ def test_an_unknown_output_is_named(plan):
 
 
 def test_an_unknown_node_is_an_error_only_where_it_is_needed(plan):
-    beside = graph({"u": Unknown("lens"), "a": Exposure(stops=1.0)},
-                   {"a.image": "inputs.image", "u.image": "a.out", "outputs.image": "a.out"})
+    beside = graph(
+        {"u": Unknown("lens"), "a": Exposure(stops=1.0)},
+        {"a.image": "inputs.image", "u.image": "a.out", "outputs.image": "a.out"},
+    )
     assert key(plan, beside) == key(plan, light(1.0))
     with pytest.raises(GraphError, match="node 'u': its type 'lens' is unknown"):
         plan(beside, targets={"x": Port("u", "out")})
@@ -128,8 +142,14 @@ def test_muted_outputs_keep_their_type(plan, name):
 
 
 def test_a_muted_group_that_makes_pictures_makes_none(plan):
-    muted = graph({"g": Group(GENERATOR)}, {"outputs.image": "g.image", "outputs.mask": "g.mask"}, {},
-                  {"image": Output(), "mask": Output(Kind.FIELD)}, settings=SETTINGS, muted=frozenset({"g"}))
+    muted = graph(
+        {"g": Group(GENERATOR)},
+        {"outputs.image": "g.image", "outputs.mask": "g.mask"},
+        {},
+        {"image": Output(), "mask": Output(Kind.FIELD)},
+        settings=SETTINGS,
+        muted=frozenset({"g"}),
+    )
     made = plan(muted)
     assert "checker" not in {name for one in made.passes for name in one.functions}
     assert {made.surfaces[number].channels for number in made.outputs.values()} == {4, 1}
@@ -141,8 +161,17 @@ def test_inside_a_muted_group_nothing_matters(plan):
     assert key(plan, muted) == key(plan, PASSING)
 
 
-@pytest.mark.parametrize("options", [{"scale": 0.0}, {"scale": -1.0}, {"scale": float("nan")},
-                                     {"scale": float("inf")}, {"size": (0, 4)}, {"size": (4, -1)}])
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"scale": 0.0},
+        {"scale": -1.0},
+        {"scale": float("nan")},
+        {"scale": float("inf")},
+        {"size": (0, 4)},
+        {"size": (4, -1)},
+    ],
+)
 def test_sizes_of_nothing_are_refused(plan, options):
     with pytest.raises(UsageError, match="give"):
         plan(PASSING, **options)

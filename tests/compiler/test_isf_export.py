@@ -52,8 +52,10 @@ def both(
 ) -> tuple[Array, Array]:
     """What the graph makes, and what the shader makes; pictures reach above white."""
     kind: type[Written] = shader(text)
-    pictures = {name: opaque(size[1], size[0], seed) * np.array([3, 3, 3, 1], np.float32)
-                for seed, name in enumerate(graph.inputs)}
+    pictures = {
+        name: opaque(size[1], size[0], seed) * np.array([3, 3, 3, 1], np.float32)
+        for seed, name in enumerate(graph.inputs)
+    }
     wanted = renderer.render(graph, Wanted(pictures, size=size, frame=frame, precision="float"))["out"]
     given = dict(zip(kind.inputs, pictures.values(), strict=True))
     item = alone(kind(**values), size)

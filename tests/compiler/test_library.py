@@ -24,16 +24,20 @@ def exposed() -> Graph:
     return graph.connect(Port("light", "out"), Port("outputs", "image"))
 
 
-@pytest.mark.parametrize(("text", "expected"), [
-    (GOOD, (("vec4", "image"), ("float", "stops"))),
-    (GOOD.replace("\n", "\r\n"), (("vec4", "image"), ("float", "stops"))),
-    ("\ufeff" + GOOD, (("vec4", "image"), ("float", "stops"))),
-    ("  highp vec4\nexposure(\n  const in vec4 image,  // one, two\n  float stops)\n{ if (true) { {} } }", None),
-    ("float exposure(void) { return 1.0; }", ()),
-    ("float exposure(float, vec2) { return 1.0; }", (("float", ""), ("vec2", ""))),
-    ("float exposure(float a[2], vec2[3] b) { return 1.0; }", (("float[2]", "a"), ("vec2[3]", "b"))),
-    ("void exposure(inout vec4 a) { }", (("inout vec4", "a"),)),
-], ids=["plain", "crlf", "byte order mark", "many lines", "void", "unnamed", "arrays", "inout"])
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (GOOD, (("vec4", "image"), ("float", "stops"))),
+        (GOOD.replace("\n", "\r\n"), (("vec4", "image"), ("float", "stops"))),
+        ("\ufeff" + GOOD, (("vec4", "image"), ("float", "stops"))),
+        ("  highp vec4\nexposure(\n  const in vec4 image,  // one, two\n  float stops)\n{ if (true) { {} } }", None),
+        ("float exposure(void) { return 1.0; }", ()),
+        ("float exposure(float, vec2) { return 1.0; }", (("float", ""), ("vec2", ""))),
+        ("float exposure(float a[2], vec2[3] b) { return 1.0; }", (("float[2]", "a"), ("vec2[3]", "b"))),
+        ("void exposure(inout vec4 a) { }", (("inout vec4", "a"),)),
+    ],
+    ids=["plain", "crlf", "byte order mark", "many lines", "void", "unnamed", "arrays", "inout"],
+)
 def test_signatures(text, expected):
     found = parse("color/exposure", text).functions["exposure"]
     assert found.parameters == ((("vec4", "image"), ("float", "stops")) if expected is None else expected)
@@ -63,17 +67,34 @@ def test_a_function_that_is_not_asked_for_is_left_out_and_lines_stay():
     assert "1.0" not in kept and "2.0" in kept and kept.count("\n") == text.body.count("\n")
 
 
-@pytest.mark.parametrize(("texts", "message"), [
-    ({"color__exposure": '#include "color/exposure.glsl"\n' + GOOD}, "shaders/color/exposure.glsl, line 1: .*circle"),
-    ({"color__exposure": '\n#include "lib/a.glsl"\n' + GOOD, "lib__a": '#include "lib/b.glsl"\n',
-      "lib__b": '// b\n\n#include "lib/a.glsl"\n'}, "'light': shaders/lib/b.glsl, line 3: .*lib/a.glsl.* circle"),
-    ({"color__exposure": '\n\n#include "lib/none.glsl"\n' + GOOD},
-     "'light': shaders/color/exposure.glsl, line 3: .*lib/none.glsl.* no shader file"),
-    ({"color__exposure": "\nvec4 exposure(float stops, vec4 image) { return image; }\n"},
-     r"line 2: 'exposure' takes \(float, vec4\) to \(vec4\), but the node declares \(vec4, float\) to \(vec4\)"),
-    ({"color__exposure": "vec3 exposure(vec4 image, float stops) { return image.rgb; }\n"}, r"to \(vec3\), but"),
-    ({"color__exposure": "vec4 other(vec4 image) { return image; }\n"}, "no function 'exposure'"),
-], ids=["itself", "circle", "missing", "order", "result", "absent"])
+@pytest.mark.parametrize(
+    ("texts", "message"),
+    [
+        (
+            {"color__exposure": '#include "color/exposure.glsl"\n' + GOOD},
+            "shaders/color/exposure.glsl, line 1: .*circle",
+        ),
+        (
+            {
+                "color__exposure": '\n#include "lib/a.glsl"\n' + GOOD,
+                "lib__a": '#include "lib/b.glsl"\n',
+                "lib__b": '// b\n\n#include "lib/a.glsl"\n',
+            },
+            "'light': shaders/lib/b.glsl, line 3: .*lib/a.glsl.* circle",
+        ),
+        (
+            {"color__exposure": '\n\n#include "lib/none.glsl"\n' + GOOD},
+            "'light': shaders/color/exposure.glsl, line 3: .*lib/none.glsl.* no shader file",
+        ),
+        (
+            {"color__exposure": "\nvec4 exposure(float stops, vec4 image) { return image; }\n"},
+            r"line 2: 'exposure' takes \(float, vec4\) to \(vec4\), but the node declares \(vec4, float\) to \(vec4\)",
+        ),
+        ({"color__exposure": "vec3 exposure(vec4 image, float stops) { return image.rgb; }\n"}, r"to \(vec3\), but"),
+        ({"color__exposure": "vec4 other(vec4 image) { return image; }\n"}, "no function 'exposure'"),
+    ],
+    ids=["itself", "circle", "missing", "order", "result", "absent"],
+)
 def test_faults_name_node_file_and_line(plan, texts, message):
     with pytest.raises(ShaderError, match=message):
         plan(exposed(), library=library(**texts))
@@ -82,7 +103,8 @@ def test_faults_name_node_file_and_line(plan, texts, message):
 def test_a_file_included_twice_appears_once(plan):
     twice = '#include "lib/a.glsl"\n#include "lib/b.glsl"\n'
     texts = {
-        "color__exposure": twice + GOOD.replace("return ", "return lib_b() * "), "lib__a": '#include "lib/b.glsl"\n',
+        "color__exposure": twice + GOOD.replace("return ", "return lib_b() * "),
+        "lib__a": '#include "lib/b.glsl"\n',
         "lib__b": "float lib_b() { return 1.0; }\nfloat unused() { return 2.0; }\n",
     }
     source = plan(exposed(), library=library(**texts)).passes[0].shader.source

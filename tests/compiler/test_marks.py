@@ -33,7 +33,8 @@ def told(graph: Graph, target=NULL, library: Library | None = None, frame: int =
     library, found = library or installed(), dict[str, set]()
     bindings = {
         name: Picture(name, "", item.kind, item.socket().channels, in_memory=True)
-        for name, item in graph.inputs.items() if item.default is None or not item.socket().single
+        for name, item in graph.inputs.items()
+        if item.default is None or not item.socket().single
     }
     try:
         program = lower(graph, Request(bindings=bindings, frame=frame, scale=scale), library, Headers(SIZE)).program

@@ -75,7 +75,8 @@ def test_keys_tell_different_pixels_apart(plan, seed):
         merged = {number for one in made.passes if one not in alone for number in one.targets}
         ways = {
             number: (one.shader, one.uniforms, one.textures, one.targets.index(number))
-            for one in alone for number in one.targets
+            for one in alone
+            for number in one.targets
         }
         for number in range(len(made.surfaces)):
             key = made.surfaces[number].key

@@ -38,7 +38,8 @@ def asked(graph: Graph, frame: int = 1, memories=None, region: Region | None = N
     """A request with every input bound, but single values with a default."""
     bindings = {
         name: Picture(name, "", item.kind, item.socket().channels, in_memory=True)
-        for name, item in graph.inputs.items() if item.default is None or not item.socket().single
+        for name, item in graph.inputs.items()
+        if item.default is None or not item.socket().single
     }
     return Request(bindings=bindings, frame=frame, memories=memories or {}, region=region)
 

@@ -44,11 +44,16 @@ def test_three_thresholds_of_a_picture_are_one_pass(plan) -> None:
 def test_what_is_made_on_the_way_is_not_read_again(plan) -> None:
     """The tone-mapped picture is blurred, so it is stored; what else is made of it is made in the same pass."""
     nodes = {
-        "tone": NODES["tone_map"](), "blur": NODES["bilateral_blur"](), "bright": NODES["bright_pass"](),
+        "tone": NODES["tone_map"](),
+        "blur": NODES["bilateral_blur"](),
+        "bright": NODES["bright_pass"](),
         "sum": NODES["merge"](mode="plus"),
     }
     links = {
-        "tone.image": "inputs.image", "blur.image": "tone.out", "bright.image": "tone.out", "sum.a": "bright.out",
+        "tone.image": "inputs.image",
+        "blur.image": "tone.out",
+        "bright.image": "tone.out",
+        "sum.a": "bright.out",
         "sum.b": "blur.out",
     }
     made = plan(graph(nodes, links, "sum"))
@@ -61,7 +66,9 @@ def test_what_is_made_on_the_way_is_not_read_again(plan) -> None:
 def test_what_nobody_else_wants_is_not_stored(plan) -> None:
     """Two that were each read by several: together they are all that reads what they have in common."""
     nodes = {
-        "tone": NODES["tone_map"](), "one": NODES["exposure"](stops=1.0), "two": NODES["saturation"](saturation=0.5),
+        "tone": NODES["tone_map"](),
+        "one": NODES["exposure"](stops=1.0),
+        "two": NODES["saturation"](saturation=0.5),
     }
     links = {"tone.image": "inputs.image", "one.image": "tone.out", "two.image": "tone.out"}
     made = plan(graph(nodes, links, "one", "two"))
@@ -72,10 +79,15 @@ def test_what_nobody_else_wants_is_not_stored(plan) -> None:
 def test_what_waits_for_another_pass_stays_behind_it(plan) -> None:
     """Both read the picture, but the second one also a blur of what the first one makes."""
     nodes = {
-        "first": NODES["tone_map"](), "blur": NODES["bilateral_blur"](), "second": NODES["merge"](mode="plus"),
+        "first": NODES["tone_map"](),
+        "blur": NODES["bilateral_blur"](),
+        "second": NODES["merge"](mode="plus"),
     }
     links = {
-        "first.image": "inputs.image", "blur.image": "first.out", "second.a": "inputs.image", "second.b": "blur.out",
+        "first.image": "inputs.image",
+        "blur.image": "first.out",
+        "second.a": "inputs.image",
+        "second.b": "blur.out",
     }
     made = plan(graph(nodes, links, "second", "first"))
     assert functions(made) == [("tone_map",), ("bilateral_blur",), ("merge",)]
@@ -97,20 +109,28 @@ def test_a_device_that_writes_less_gets_less(plan, most) -> None:
 
 def test_what_is_cheap_is_computed_twice_and_what_is_dear_stored(plan) -> None:
     """The blur comes between the two that read it, so they cannot be one pass."""
+
     def planned(middle: Any) -> Plan:
         nodes = {
-            "before": middle, "bright": NODES["bright_pass"](), "blur": NODES["bilateral_blur"](),
+            "before": middle,
+            "bright": NODES["bright_pass"](),
+            "blur": NODES["bilateral_blur"](),
             "sum": NODES["merge"](mode="plus"),
         }
         links = {
-            "before.image": "inputs.image", "bright.image": "before.out", "blur.image": "bright.out",
-            "sum.a": "before.out", "sum.b": "blur.out",
+            "before.image": "inputs.image",
+            "bright.image": "before.out",
+            "blur.image": "bright.out",
+            "sum.a": "before.out",
+            "sum.b": "blur.out",
         }
         return plan(graph(nodes, links, "sum"))
 
     cheap, dear = planned(NODES["exposure"](stops=1.0)), planned(NODES["tone_map"]())
     assert functions(cheap) == [
-        ("exposure", "bright_pass"), ("bilateral_blur",), ("exposure", "merge"),
+        ("exposure", "bright_pass"),
+        ("bilateral_blur",),
+        ("exposure", "merge"),
     ]
     assert [len(one.targets) for one in cheap.passes] == [1, 1, 1]
     assert functions(dear)[0] == ("tone_map", "bright_pass") and len(dear.passes[0].targets) == 2
@@ -119,6 +139,7 @@ def test_what_is_cheap_is_computed_twice_and_what_is_dear_stored(plan) -> None:
 
 def test_a_value_changes_no_key_but_its_own(plan) -> None:
     """What shares a pass does not depend on each other: the results of one outlive a change of the other."""
+
     def keys(threshold: float) -> dict[str, str]:
         nodes = {"tone": NODES["tone_map"](), "bright": NODES["bright_pass"](threshold=threshold)}
         made = plan(graph(nodes, {"tone.image": "inputs.image", "bright.image": "tone.out"}, "tone", "bright"))
@@ -153,7 +174,10 @@ def test_a_function_must_make_what_it_is_drawn_for(plan) -> None:
 def test_random_graphs_have_merged_passes(plan) -> None:
     """So that what the random graphs prove is proven of them as well."""
     merged = [
-        one for seed in range(40) for made in [plan(random_graph(seed))] for one in made.passes
+        one
+        for seed in range(40)
+        for made in [plan(random_graph(seed))]
+        for one in made.passes
         if len(set(labels(made, one.targets))) > 1
     ]
     assert len(merged) > 40

@@ -29,9 +29,9 @@ def glowing(name: str, first: tuple[float, ...], second: tuple[float, ...], stre
     material.use_nodes = True
     tree = material.node_tree
     tree.nodes.clear()
-    place, checker, light, out = (tree.nodes.new(f"ShaderNode{kind}") for kind in (
-        "TexCoord", "TexChecker", "Emission", "OutputMaterial"
-    ))
+    place, checker, light, out = (
+        tree.nodes.new(f"ShaderNode{kind}") for kind in ("TexCoord", "TexChecker", "Emission", "OutputMaterial")
+    )
     checker.inputs["Scale"].default_value = scale
     checker.inputs["Color1"].default_value, checker.inputs["Color2"].default_value = (*first, 1.0), (*second, 1.0)
     light.inputs["Strength"].default_value = strength
@@ -127,8 +127,10 @@ def motion(folder: Path) -> dict[str, Array]:
     scene.render.motion_blur_position = "CENTER"
     blurred = rendered(scene, folder)
     return {
-        "motion_image": sharp["Combined"][..., :3].astype(np.float16), "motion_depth": sharp["Depth"][..., 0],
-        "motion_velocity": sharp["Vector"], "motion_blurred": blurred["Combined"][..., :3].astype(np.float16),
+        "motion_image": sharp["Combined"][..., :3].astype(np.float16),
+        "motion_depth": sharp["Depth"][..., 0],
+        "motion_velocity": sharp["Vector"],
+        "motion_blurred": blurred["Combined"][..., :3].astype(np.float16),
     }
 
 
@@ -144,7 +146,11 @@ def focus(folder: Path, name: str, near: bool, width: int, height: int) -> dict[
             made(bpy.ops.mesh.primitive_uv_sphere_add, lamp, radius=0.12, location=(x, 7.5, z))
         ball = glowing("ball", (0.2, 0.3, 0.9), (0.9, 0.8, 0.1), 1.0, 4.03)
         made(
-            bpy.ops.mesh.primitive_uv_sphere_add, ball, radius=0.5, location=(-0.95, -4.0, -0.3), segments=64,
+            bpy.ops.mesh.primitive_uv_sphere_add,
+            ball,
+            radius=0.5,
+            location=(-0.95, -4.0, -0.3),
+            segments=64,
             ring_count=32,
         )
         post = glowing("post", (0.5, 0.1, 0.4), (0.3, 0.5, 0.5), 1.0, 3.0)
@@ -156,7 +162,8 @@ def focus(folder: Path, name: str, near: bool, width: int, height: int) -> dict[
     lens.aperture_fstop = 0.036 / 0.5  # a lens half a unit wide
     blurred = rendered(scene, folder)
     return {
-        f"{name}_image": sharp["Combined"][..., :3].astype(np.float16), f"{name}_depth": sharp["Depth"][..., 0],
+        f"{name}_image": sharp["Combined"][..., :3].astype(np.float16),
+        f"{name}_depth": sharp["Depth"][..., 0],
         f"{name}_blurred": blurred["Combined"][..., :3].astype(np.float16),
     }
 

@@ -112,7 +112,9 @@ def open_(folder: Path) -> dict[str, Array]:
     rows = lens @ np.column_stack([turned, -turned @ stand[:3, 3]])
     normal = found["Normal"].astype(float)
     return {
-        "open_rows": rows, "open_radius": RADIUS, "open_depth": shortened(found["Depth"][..., 0], 4),
+        "open_rows": rows,
+        "open_radius": RADIUS,
+        "open_depth": shortened(found["Depth"][..., 0], 4),
         "open_normal": found["Normal"].astype(np.float16),
         "open_share": found["Ambient Occlusion"][..., 0].astype(np.float16),
         "open_known": known(position, normal, depth, stand[:3, 3], rows),
@@ -143,7 +145,8 @@ def bounced(folder: Path) -> dict[str, Array]:
     return {
         "bounced_rows": lens @ np.column_stack([turned, -turned @ stand[:3, 3]]),
         "bounced_image": light(found["Diffuse Direct"] * found["Diffuse Color"], 0),
-        "bounced_depth": shortened(found["Depth"][..., 0], 4), "bounced_normal": found["Normal"].astype(np.float16),
+        "bounced_depth": shortened(found["Depth"][..., 0], 4),
+        "bounced_normal": found["Normal"].astype(np.float16),
         "bounced_light": light(found["Diffuse Indirect"], 3),
     }
 

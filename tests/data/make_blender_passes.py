@@ -53,8 +53,10 @@ def scene(width: int, height: int) -> bpy.types.Scene:
     add(mesh.primitive_plane_add, material("floor", (0.5, 0.45, 0.4), roughness=0.3), size=14.0)
     add(mesh.primitive_uv_sphere_add, material("red", (0.8, 0.1, 0.1), roughness=0.2), location=(-1.6, 0, 1))
     add(
-        mesh.primitive_uv_sphere_add, material("glass", (0.7, 0.9, 0.8), roughness=0.05, transmission_weight=1.0),
-        location=(0.6, -1.2, 0.8), radius=0.8,
+        mesh.primitive_uv_sphere_add,
+        material("glass", (0.7, 0.9, 0.8), roughness=0.05, transmission_weight=1.0),
+        location=(0.6, -1.2, 0.8),
+        radius=0.8,
     )
     add(mesh.primitive_cube_add, material("gold", (0.9, 0.6, 0.2), roughness=0.25, metallic=1.0), location=(2, 1, 0.8))
     lamp = material("lamp", (0.2, 0.5, 1.0), emission_strength=6.0)

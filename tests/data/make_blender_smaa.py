@@ -68,7 +68,9 @@ def main() -> None:
     picture = jagged()
     with tempfile.TemporaryDirectory() as folder:
         np.savez_compressed(
-            HERE / "blender_smaa.npz", picture=picture, found=antialiased(picture, Path(folder)),
+            HERE / "blender_smaa.npz",
+            picture=picture,
+            found=antialiased(picture, Path(folder)),
             version=bpy.app.version_string,
         )
 

@@ -46,14 +46,15 @@ def travel(folder: Path) -> dict[str, Array]:
     """A camera flies on and turns, over tiles; a box turns and a ball flies by; open from frame to frame, by half."""
     scene = started(1024, 176, 99)
     floor(1.1)
-    box = made(
-        bpy.ops.mesh.primitive_cube_add, glowing("box", (0.9, 0.2, 0.1), (0.1, 0.8, 0.3), 1.6, 1.51), size=1.6
-    )
+    box = made(bpy.ops.mesh.primitive_cube_add, glowing("box", (0.9, 0.2, 0.1), (0.1, 0.8, 0.3), 1.6, 1.51), size=1.6)
     box.location = (1.1, -1.2, -0.1)
     turned(box, [(10.0, -5.0, 12.0), (16.0, 0.0, 30.0), (22.0, 5.0, 48.0)])
     ball = made(
-        bpy.ops.mesh.primitive_uv_sphere_add, glowing("ball", (0.2, 0.3, 0.9), (0.9, 0.8, 0.1), 1.5, 2.03), radius=0.6,
-        segments=96, ring_count=48,
+        bpy.ops.mesh.primitive_uv_sphere_add,
+        glowing("ball", (0.2, 0.3, 0.9), (0.9, 0.8, 0.1), 1.5, 2.03),
+        radius=0.6,
+        segments=96,
+        ring_count=48,
     )
     moved(ball, [(-1.15 + 0.28 * step, -2.0 + 0.1 * step, 0.35 - 0.22 * step) for step in (-1, 0, 1)])
     moved(scene.camera, [(0.1 * step, -8.0 + 0.12 * step, 0.02 * step) for step in (-1, 0, 1)], [-0.9, 0.0, 0.9])
@@ -70,8 +71,10 @@ def travel(folder: Path) -> dict[str, Array]:
     scene.render.motion_blur_position = "CENTER"
     blurred = rendered(scene, folder)
     return {
-        "travel_image": light(sharp["Combined"]), "travel_depth": shortened(sharp["Depth"][..., 0], 8),
-        "travel_velocity": sharp["Vector"].astype(np.float16), "travel_blurred": light(blurred["Combined"]),
+        "travel_image": light(sharp["Combined"]),
+        "travel_depth": shortened(sharp["Depth"][..., 0], 8),
+        "travel_velocity": sharp["Vector"].astype(np.float16),
+        "travel_blurred": light(blurred["Combined"]),
     }
 
 
@@ -81,13 +84,15 @@ def lamps(folder: Path) -> dict[str, Array]:
     scene.world.node_tree.nodes["Background"].inputs[0].default_value = (0.02, 0.02, 0.03, 1.0)
     floor(1.3)
     ball = glowing("ball", (0.2, 0.3, 0.9), (0.9, 0.8, 0.1), 1.2, 2.03)
-    made(
-        bpy.ops.mesh.primitive_uv_sphere_add, ball, radius=0.9, location=(0.4, -2.0, -0.3), segments=96, ring_count=48
-    )
+    made(bpy.ops.mesh.primitive_uv_sphere_add, ball, radius=0.9, location=(0.4, -2.0, -0.3), segments=96, ring_count=48)
     pale = glowing("pale", (1.0, 0.8, 0.6), (1.0, 0.8, 0.6), 40.0, 1.0)
     for place, radius in (
-        ((-7.0, 14.0, 3.4), 0.22), ((-1.5, 14.0, 4.4), 0.22), ((6.4, 14.0, 2.6), 0.22),
-        ((-0.42, -5.6, 0.42), 0.024), ((0.35, -5.6, 0.4), 0.024), ((-0.55, -5.6, -0.3), 0.024),
+        ((-7.0, 14.0, 3.4), 0.22),
+        ((-1.5, 14.0, 4.4), 0.22),
+        ((6.4, 14.0, 2.6), 0.22),
+        ((-0.42, -5.6, 0.42), 0.024),
+        ((0.35, -5.6, 0.4), 0.024),
+        ((-0.55, -5.6, -0.3), 0.024),
     ):
         made(bpy.ops.mesh.primitive_uv_sphere_add, pale, radius=radius, location=place)
     sharp = rendered(scene, folder)
@@ -96,7 +101,8 @@ def lamps(folder: Path) -> dict[str, Array]:
     lens.use_dof, lens.focus_distance, lens.aperture_fstop = True, 5.2, 0.036 / 0.4
     blurred = rendered(scene, folder)
     return {
-        "lamps_image": light(sharp["Combined"], 1), "lamps_depth": shortened(sharp["Depth"][..., 0], 8),
+        "lamps_image": light(sharp["Combined"], 1),
+        "lamps_depth": shortened(sharp["Depth"][..., 0], 8),
         "lamps_blurred": light(blurred["Combined"], 2),
     }
 

@@ -82,11 +82,15 @@ BASE = chain("blur:gaussian_blur", "light:exposure")
         (BASE.remove("blur"), ["- node blur: gaussian_blur", "~ link light.image: blur.out -> inputs.beauty"]),
         (BASE.add("more", NODES["exposure"](stops=2.0)), ["+ node more: exposure, stops 2 EV"]),
         (BASE.disconnect(Port("light", "image")), ["- link light.image <- blur.out"]),
-        (BASE.animate(Port("blur", "sigma"), Keys((Key(1, 2.0), Key(9, 3.0, "linear")))),
-         ["+ animation of blur.sigma: 2 px at 1, 3 px linear at 9"]),
+        (
+            BASE.animate(Port("blur", "sigma"), Keys((Key(1, 2.0), Key(9, 3.0, "linear")))),
+            ["+ animation of blur.sigma: 2 px at 1, 3 px linear at 9"],
+        ),
         (BASE.animate(Port("light", "stops"), Expression("frame * 2")), ["+ animation of light.stops: = frame * 2"]),
-        (BASE.rename_input("beauty", "plate"), [
-            "~ link blur.image: inputs.beauty -> inputs.plate", "- input beauty: Image", "+ input plate: Image"]),
+        (
+            BASE.rename_input("beauty", "plate"),
+            ["~ link blur.image: inputs.beauty -> inputs.plate", "- input beauty: Image", "+ input plate: Image"],
+        ),
         (dataclasses.replace(BASE, settings=Settings((64, 32))), ["~ settings.size: none -> (64, 32)"]),
         (BASE.add("odd", Unknown("later", {"x": [1]})), ["+ node odd: later"]),
         (dataclasses.replace(BASE, ui={"nodes": {"blur": {"x": 1}}}), []),
@@ -102,7 +106,9 @@ def test_keys_are_told_one_by_one() -> None:
 
     before = keyed(Key(1, 2.0), Key(5, 3.0), Key(9, 4.0))
     assert lines(before, keyed(Key(1, 2.5), Key(9, 4.0), Key(12.5, 1.0))) == [
-        "~ blur.sigma at 1: 2 px -> 2.5 px", "- key of blur.sigma at 5: 3 px", "+ key of blur.sigma at 12.5: 1 px",
+        "~ blur.sigma at 1: 2 px -> 2.5 px",
+        "- key of blur.sigma at 5: 3 px",
+        "+ key of blur.sigma at 12.5: 1 px",
     ]
 
 
@@ -112,7 +118,8 @@ def test_groups_are_looked_into() -> None:
 
     after = BASE.set(Port("blur", "sigma"), 8.0).rename("light", "lit")
     assert lines(outer(BASE), outer(after)) == [
-        "~ node glow/deep/light is now called lit", "~ glow/deep/blur.sigma: 5 px (default) -> 8 px",
+        "~ node glow/deep/light is now called lit",
+        "~ glow/deep/blur.sigma: 5 px (default) -> 8 px",
     ]
 
 
@@ -138,7 +145,10 @@ def test_twins_are_not_said_to_be_renamed() -> None:
     found = difference(twins, twins.rename("a", "c").rename("b", "d"))
     assert not found.renamed
     assert {(change.at[-1], change.after is ABSENT) for change in found.changes} == {
-        ("a", True), ("b", True), ("c", False), ("d", False),
+        ("a", True),
+        ("b", True),
+        ("c", False),
+        ("d", False),
     }
 
 

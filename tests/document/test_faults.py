@@ -73,19 +73,31 @@ def test_sixty_four_levels_are_fine() -> None:
         ('"nodes": {"a": {"type": "gain", "version": "1"}}', "nodes.a.version", "expected a whole number"),
         ('"nodes": {"a": {"type": "gain", "version": 2}}', "nodes.a.version", "newer than 1.*update Halation"),
         ('"nodes": {"a": {"type": "gain", "values": 1}}', "nodes.a.values", "expected an object"),
-        ('"nodes": {"a": {"type": "gain", "values": {"gain": "2"}}}', "nodes.a.values.gain",
-         "expected a number, got the string '2'"),
+        (
+            '"nodes": {"a": {"type": "gain", "values": {"gain": "2"}}}',
+            "nodes.a.values.gain",
+            "expected a number, got the string '2'",
+        ),
         ('"nodes": {"a": {"type": "gain", "values": {"gain": true}}}', "nodes.a.values.gain", "got true"),
         ('"nodes": {"a": {"type": "gain", "values": {"gain": null}}}', "nodes.a.values.gain", "got null"),
-        ('"nodes": {"a": {"type": "gain", "values": {"steps": 1.0}}}', "nodes.a.values.steps",
-         "expected a whole number, got the number 1.0"),
-        ('"nodes": {"a": {"type": "gain", "values": {"tint": [1, 2, 3]}}}', "nodes.a.values.tint",
-         "expected a list of 4 numbers, got a list"),
+        (
+            '"nodes": {"a": {"type": "gain", "values": {"steps": 1.0}}}',
+            "nodes.a.values.steps",
+            "expected a whole number, got the number 1.0",
+        ),
+        (
+            '"nodes": {"a": {"type": "gain", "values": {"tint": [1, 2, 3]}}}',
+            "nodes.a.values.tint",
+            "expected a list of 4 numbers, got a list",
+        ),
         ('"nodes": {"a": {"type": "gain", "values": {"tint": [1, 2, 3, "4"]}}}', "nodes.a.values.tint", "4 numbers"),
         ('"nodes": {"a": {"type": "gain", "values": {"mode": 1}}}', "nodes.a.values.mode", "one of add, soft light"),
         ('"nodes": {"a": {"type": "gain", "values": {"gain": NaN}}}', "nodes.a.values.gain", "JSON has no NaN"),
-        ('"nodes": {"a": {"type": "gain", "values": {"tint": [1, -Infinity, 0, 1]}}}', "nodes.a.values.tint[1]",
-         "expected a finite number"),
+        (
+            '"nodes": {"a": {"type": "gain", "values": {"tint": [1, -Infinity, 0, 1]}}}',
+            "nodes.a.values.tint[1]",
+            "expected a finite number",
+        ),
         ('"nodes": {"a": {"type": "gain", "values": {"gain": 1e999}}}', "nodes.a.values.gain", "finite"),
         ('"nodes": {"a": {"type": "gain", "values": {"steps": 1' + "0" * 400 + "}}}", "nodes.a.values.steps", "finite"),
         ('"nodes": {"a": {"type": "gain"}, "a": {"type": "gain"}}', "nodes.a", "this key is there twice"),
@@ -95,8 +107,11 @@ def test_sixty_four_levels_are_fine() -> None:
         ('"nodes": {"inputs": {"type": "gain"}}', "nodes", "stands for the ends of the graph"),
         ('"nodes": {"g": {"type": "group"}}', "nodes.g", 'needs either "graph", its body, or "path"'),
         ('"nodes": {"g": {"type": "group", "graph": {}, "path": "x"}}', "nodes.g", "needs either"),
-        ('"nodes": {"g": {"type": "group", "graph": {"nodes": {"a": {"type": "gain", "values": {"gain": []}}}}}}',
-         "nodes.g.graph.nodes.a.values.gain", "expected a number, got a list"),
+        (
+            '"nodes": {"g": {"type": "group", "graph": {"nodes": {"a": {"type": "gain", "values": {"gain": []}}}}}}',
+            "nodes.g.graph.nodes.a.values.gain",
+            "expected a number, got a list",
+        ),
         ('"links": {"a.image": 5}', "links.a.image", "expected a string, got the number 5"),
         ('"links": {"image": "inputs.a"}', "links.image", "'image' names no socket"),
         ('"links": {"a.b": "inputs"}', "links.a.b", "'inputs' names no socket"),
@@ -124,14 +139,26 @@ def test_json_paths(body: str, path: str, says: str) -> None:
 
 
 @settings(max_examples=150, deadline=None)
-@given(st.recursive(
-    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | st.text(max_size=5),
-    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(
-        st.sampled_from(["halation", "nodes", "links", "inputs", "a", "type", "values", "graph", "path", "size"]),
-        inner | st.sampled_from(["gain", "group", 1]), max_size=4,
-    ),
-    max_leaves=20,
-))
+@given(
+    st.recursive(
+        st.none()
+        | st.booleans()
+        | st.integers()
+        | st.floats(allow_nan=False, allow_infinity=False)
+        | st.text(max_size=5),
+        lambda inner: (
+            st.lists(inner, max_size=3)
+            | st.dictionaries(
+                st.sampled_from(
+                    ["halation", "nodes", "links", "inputs", "a", "type", "values", "graph", "path", "size"]
+                ),
+                inner | st.sampled_from(["gain", "group", 1]),
+                max_size=4,
+            )
+        ),
+        max_leaves=20,
+    )
+)
 def test_no_tree_is_a_traceback(tree: object) -> None:
     document = {**tree, "halation": 1} if isinstance(tree, dict) else tree
     try:
@@ -149,7 +176,7 @@ def test_damaged_text_is_a_graph_or_one_sentence(seed: int) -> None:
     for _ in range(rng.randint(1, 4)):
         place = rng.randrange(len(text) + 1)
         length = rng.choice([0, 1, 1, 5, 500])
-        text[place:place + length] = rng.choice(["", "", '"', "}", "{", "[", ",", "0", "e", "NaN", "\x00"])
+        text[place : place + length] = rng.choice(["", "", '"', "}", "{", "[", ",", "0", "e", "NaN", "\x00"])
     try:
         graph = loads("".join(text), catalogue=TOYS)
     except DocumentError as error:
@@ -162,8 +189,11 @@ def test_damaged_text_is_a_graph_or_one_sentence(seed: int) -> None:
 
 
 def test_a_missing_file(tmp_path: Path) -> None:
-    for path, says in ((tmp_path / "no.json", "there is no such file"), (tmp_path, "this is a folder"),
-                       (tmp_path / "a\0b", "cannot be read")):
+    for path, says in (
+        (tmp_path / "no.json", "there is no such file"),
+        (tmp_path, "this is a folder"),
+        (tmp_path / "a\0b", "cannot be read"),
+    ):
         with pytest.raises(DocumentError, match=says) as caught:
             load(path)
         assert caught.value.file == str(path)
@@ -172,8 +202,10 @@ def test_a_missing_file(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("data", "says"),
     [
-        (b"", "the file is empty"), (b"\xff\xfe{\x00", r"not UTF-8 \(byte 0\)"),
-        (b'{"halation": 1, "\xe9": 1}', "not UTF-8"), (b"\x89PNG\r\n", "not UTF-8"),
+        (b"", "the file is empty"),
+        (b"\xff\xfe{\x00", r"not UTF-8 \(byte 0\)"),
+        (b'{"halation": 1, "\xe9": 1}', "not UTF-8"),
+        (b"\x89PNG\r\n", "not UTF-8"),
     ],
 )
 def test_bytes(tmp_path: Path, data: bytes, says: str) -> None:

@@ -195,8 +195,9 @@ class TestGroupFiles:
 
 def test_what_a_killed_process_left_goes_with_the_next_save_of_the_same_file(tmp_path: Path) -> None:
     path = tmp_path / "a[1].json"
-    old, fresh, other = (tmp_path / f".{name}.tmp"
-                         for name in ("a[1].json.01234567", "a[1].json.89abcdef", "a1.json.x"))
+    old, fresh, other = (
+        tmp_path / f".{name}.tmp" for name in ("a[1].json.01234567", "a[1].json.89abcdef", "a1.json.x")
+    )
     for left in (old, fresh, other):
         left.write_text("half")
     for left in (old, other):

@@ -23,7 +23,9 @@ def read(text: str) -> Graph:
 
 
 def test_the_text_of_a_graph() -> None:
-    assert dumps(small()) == """\
+    assert (
+        dumps(small())
+        == """\
 {
   "controls": {
     "glow": {"label": "Glow", "target": "gain.gain"}
@@ -47,6 +49,7 @@ def test_the_text_of_a_graph() -> None:
   "ui": {"nodes": {"gain": [10, 20.5], "soften": [200, 20]}, "zoom": 1.5}
 }
 """
+    )
 
 
 def test_an_empty_graph() -> None:
@@ -63,12 +66,15 @@ def test_only_what_differs_is_written() -> None:
 
 
 def test_ends_of_every_type() -> None:
-    inputs = {str(number): Input(kind, width) for number, (kind, width) in enumerate(
-        (kind, width) for kind in Kind for width in (2, 3, 4)
-    )}
+    inputs = {
+        str(number): Input(kind, width)
+        for number, (kind, width) in enumerate((kind, width) for kind in Kind for width in (2, 3, 4))
+    }
     graph = Graph(
-        inputs=inputs | {
-            "n": Input(Kind.NUMBER, default=1, doc="How much."), "c": Input(Kind.COLOR, default=(1, 0, 0, 1)),
+        inputs=inputs
+        | {
+            "n": Input(Kind.NUMBER, default=1, doc="How much."),
+            "c": Input(Kind.COLOR, default=(1, 0, 0, 1)),
         },
         outputs={name: Output(end.kind, end.width, layer="l") for name, end in inputs.items()},
         settings=Settings((1920, 1080)),
@@ -118,15 +124,21 @@ def test_unknown_nodes_and_keys_are_kept_to_the_byte(seed: int) -> None:
 
 def test_where_unknown_keys_are_kept() -> None:
     raw = {
-        "halation": 1, "author": "me", "settings": {"fps": 24},
+        "halation": 1,
+        "author": "me",
+        "settings": {"fps": 24},
         "nodes": {
-            "a": {"type": "gain", "version": 1, "memo": [1], "values": {"gian": 2}}, "z": {"type": "lens", "f": 2},
+            "a": {"type": "gain", "version": 1, "memo": [1], "values": {"gian": 2}},
+            "z": {"type": "lens", "f": 2},
         },
         "inputs": {"i": {"type": "Image", "raw": True}},
     }
     graph = read(json.dumps(raw))
     assert {path: dict(keys) for path, keys in graph.extra.items()} == {
-        "": {"author": "me"}, "settings": {"fps": 24}, "nodes.a": {"memo": (1,)}, "nodes.a.values": {"gian": 2},
+        "": {"author": "me"},
+        "settings": {"fps": 24},
+        "nodes.a": {"memo": (1,)},
+        "nodes.a.values": {"gian": 2},
         "inputs.i": {"raw": True},
     }
     assert graph.nodes["z"] == Unknown("lens", {"f": 2})
@@ -134,7 +146,10 @@ def test_where_unknown_keys_are_kept() -> None:
     renamed = json.loads(dumps(graph.rename("a", "b")))
     assert renamed["nodes"]["b"] == raw["nodes"]["a"]
     assert json.loads(dumps(graph.remove("a").remove_input("i"))) == {
-        "halation": 1, "author": "me", "settings": {"fps": 24}, "nodes": {"z": {"type": "lens", "f": 2}},
+        "halation": 1,
+        "author": "me",
+        "settings": {"fps": 24},
+        "nodes": {"z": {"type": "lens", "f": 2}},
     }
 
 
@@ -161,7 +176,7 @@ def test_numbers_are_exact() -> None:
 
 
 def test_text_is_exact() -> None:
-    graph = Graph({"a": Gain(note="über \u2028 \x00 \U0001f600 \\ \"")})
+    graph = Graph({"a": Gain(note='über \u2028 \x00 \U0001f600 \\ "')})
     assert read(dumps(graph)) == graph
     assert "über" in dumps(graph)
 
@@ -179,10 +194,12 @@ def test_lines_are_as_long_as_they_may_be() -> None:
 def test_a_node_is_a_line_in_a_diff() -> None:
     before = dumps(small()).splitlines()
     after = dumps(small().set(Port("soften", "sigma"), 5)).splitlines()
-    assert [(old, new) for old, new in zip(before, after, strict=True) if old != new] == [(
-        '    "soften": {"type": "soften", "values": {"sigma": 4.0}, "version": 1}',
-        '    "soften": {"type": "soften", "values": {"sigma": 5.0}, "version": 1}',
-    )]
+    assert [(old, new) for old, new in zip(before, after, strict=True) if old != new] == [
+        (
+            '    "soften": {"type": "soften", "values": {"sigma": 4.0}, "version": 1}',
+            '    "soften": {"type": "soften", "values": {"sigma": 5.0}, "version": 1}',
+        )
+    ]
 
 
 @pytest.mark.parametrize(

@@ -14,9 +14,40 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 KEYS = (
-    "halation", "nodes", "links", "inputs", "outputs", "controls", "settings", "animation", "type", "version", "values",
-    "path", "graph", "file", "code", "keys", "frame", "value", "expression", "target", "bloom", "bloom.image", "group",
-    "inputs.beauty", "outputs.image", "size", "frames", "rate", "layer", "__class__", "", "..", "a/b", "\u0000",
+    "halation",
+    "nodes",
+    "links",
+    "inputs",
+    "outputs",
+    "controls",
+    "settings",
+    "animation",
+    "type",
+    "version",
+    "values",
+    "path",
+    "graph",
+    "file",
+    "code",
+    "keys",
+    "frame",
+    "value",
+    "expression",
+    "target",
+    "bloom",
+    "bloom.image",
+    "group",
+    "inputs.beauty",
+    "outputs.image",
+    "size",
+    "frames",
+    "rate",
+    "layer",
+    "__class__",
+    "",
+    "..",
+    "a/b",
+    "\u0000",
     "\ud83d",
 )
 WORDS = (*KEYS, "Image", "Field", "glsl", "isf", "../../etc/passwd", "=1+", "x" * 2000, "\u202e", "🎬")
@@ -25,10 +56,12 @@ NUMBERS = st.one_of(
 )
 PLAIN = st.one_of(st.none(), st.booleans(), NUMBERS, st.sampled_from(WORDS), st.text(max_size=8))
 TREES = st.recursive(
-    PLAIN, lambda inner: st.one_of(
+    PLAIN,
+    lambda inner: st.one_of(
         st.lists(inner, max_size=4),
         st.dictionaries(st.one_of(st.sampled_from(KEYS), st.text(max_size=4)), inner, max_size=5),
-    ), max_leaves=25,
+    ),
+    max_leaves=25,
 )
 SAMPLES = tuple(path.read_text() for path in presets.paths())
 

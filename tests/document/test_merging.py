@@ -68,8 +68,10 @@ def test_nothing_that_a_side_did_is_lost(seed: int) -> None:
             assert there or is_open(change.at), change
             assert side is theirs or not is_open(change.at) or same(found, at_part(parts_of(ours), change.at)), change
     for conflict in made.conflicts:
-        assert [same(at_part(parts_of(side), conflict.at), said) for side, said in zip(
-            (base, ours, theirs), (conflict.base, conflict.ours, conflict.theirs), strict=True)] == [True] * 3
+        assert [
+            same(at_part(parts_of(side), conflict.at), said)
+            for side, said in zip((base, ours, theirs), (conflict.base, conflict.ours, conflict.theirs), strict=True)
+        ] == [True] * 3
 
 
 @settings(max_examples=40, deadline=None)
@@ -156,14 +158,20 @@ def key(frame: float, value: float) -> dict[str, float]:
         ({"nodes/blur/values": {"sigma": 3.0}}, {"nodes/blur/muted": True}),
         ({"nodes/blur/values": {"sigma": 3.0}}, {"links/light.image": "inputs.beauty"}),
         ({"ui/nodes/blur": {"x": 5, "y": 5}}, {"ui/nodes/light": {"x": 7, "y": 7}, "nodes/light/muted": True}),
-        ({"animation/light.stops/keys": [key(1, 0.5), key(9, 1.0)]},
-         {"animation/light.stops/keys": [key(1, 0.0), key(4, 2.0), key(9, 1.0)]}),
+        (
+            {"animation/light.stops/keys": [key(1, 0.5), key(9, 1.0)]},
+            {"animation/light.stops/keys": [key(1, 0.0), key(4, 2.0), key(9, 1.0)]},
+        ),
         ({"settings": {"size": [64, 32]}}, {"settings": {"frames": [1, 9]}}),
-        ({"nodes/a": NEW, "links/a.image": "blur.out"},
-         {"outputs/more": {"type": "Image"}, "links/outputs.more": "blur.out"}),
+        (
+            {"nodes/a": NEW, "links/a.image": "blur.out"},
+            {"outputs/more": {"type": "Image"}, "links/outputs.more": "blur.out"},
+        ),
         ({"later": {"one": 1}}, {"later": {"two": [2]}}),
-        ({"nodes/light": None, "links/light.image": None, "links/outputs.image": "blur.out", "animation": None},
-         {"ui/nodes/light": {"x": 5, "y": 5}}),
+        (
+            {"nodes/light": None, "links/light.image": None, "links/outputs.image": "blur.out", "animation": None},
+            {"ui/nodes/light": {"x": 5, "y": 5}},
+        ),
     ],
 )
 def test_what_two_people_may_do_at_once(ours: dict[str, Any], theirs: dict[str, Any]) -> None:
@@ -206,18 +214,30 @@ LOOPING = {"nodes/c": {"type": "merge"}, "links/c.a": "inputs.beauty", "links/c.
     [
         ({"nodes/blur/values": {"sigma": 3.0}}, {"nodes/blur/values": {"sigma": 4.5}}, {"nodes.blur.values.sigma"}),
         (REMOVED, {"nodes/blur/values": {"sigma": 4.5}}, {"nodes.blur", "links.blur.image", "links.light.image"}),
-        (REMOVED, {"nodes/a": NEW, "links/a.image": "blur.out"},
-         {"nodes.blur", "links.blur.image", "links.light.image", "links.a.image"}),
+        (
+            REMOVED,
+            {"nodes/a": NEW, "links/a.image": "blur.out"},
+            {"nodes.blur", "links.blur.image", "links.light.image", "links.a.image"},
+        ),
         ({"links/light.image": "inputs.beauty"}, {"nodes/a": NEW, "links/light.image": "a.out"}, {"links.light.image"}),
         ({"nodes/a": NEW}, {"nodes/a": {"type": "exposure"}}, {"nodes.a"}),
         ({"nodes/blur": {"type": "box_blur"}}, {"nodes/blur/values": {"sigma": 4.5}}, {"nodes.blur"}),
-        ({"animation/light.stops/keys": [key(9, 1.0)]}, {"animation/light.stops/keys": [key(1, 0.0)]},
-         {"animation.light.stops"}),
-        ({"animation/light.stops": {"expression": "frame"}}, {"animation/light.stops/keys": [key(1, 0.0)]},
-         {"animation.light.stops"}),
+        (
+            {"animation/light.stops/keys": [key(9, 1.0)]},
+            {"animation/light.stops/keys": [key(1, 0.0)]},
+            {"animation.light.stops"},
+        ),
+        (
+            {"animation/light.stops": {"expression": "frame"}},
+            {"animation/light.stops/keys": [key(1, 0.0)]},
+            {"animation.light.stops"},
+        ),
         ({"settings": {"size": [1, 2]}}, {"settings": {"size": [3, 4]}}, {"settings.size"}),
-        ({"inputs": None, "links/blur.image": None}, {"nodes/a": NEW, "links/a.image": "inputs.beauty"},
-         {"inputs.beauty", "links.blur.image", "links.a.image"}),
+        (
+            {"inputs": None, "links/blur.image": None},
+            {"nodes/a": NEW, "links/a.image": "inputs.beauty"},
+            {"inputs.beauty", "links.blur.image", "links.a.image"},
+        ),
     ],
 )
 def test_true_conflicts(ours: dict[str, Any], theirs: dict[str, Any], paths: set[str]) -> None:

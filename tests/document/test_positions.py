@@ -16,7 +16,8 @@ SPACES = st.sampled_from(["", "", " ", "\n", "\r\n", "\n\n  ", "\t"])
 KEYS = st.text(max_size=4) | st.sampled_from(["bloom.image", 'a"b', "\\", "{", "],", "\n", "é", "\U0001f600"])
 TREES = st.recursive(
     st.none() | st.booleans() | st.integers(-9, 9) | st.floats(-1, 1) | KEYS,
-    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(KEYS, inner, max_size=3), max_leaves=12,
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(KEYS, inner, max_size=3),
+    max_leaves=12,
 )
 
 
@@ -77,7 +78,10 @@ def test_damaged_text_has_lines_too(text, path) -> None:
 def test_what_is_not_there_is_where_it_would_be() -> None:
     found = Positions('{\n"nodes": {\n"a": {"type": "x",\n"values": {}}}}')
     assert [found.line(path) for path in ("nodes.a.values.b.c", "nodes.a.version", "nodes.b", "links.a.image")] == [
-        4, 3, 2, 1
+        4,
+        3,
+        2,
+        1,
     ]
 
 

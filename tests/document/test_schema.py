@@ -93,8 +93,11 @@ def test_it_refuses_what_reading_refuses(seed, rng: Random, wrong) -> None:
     for _ in range(rng.randrange(4)):
         holder, key = rng.choice(parts)
         inner = holder[key]
-        below = [(inner, k) for k in (inner if isinstance(inner, dict) else range(len(inner)))] if isinstance(
-            inner, dict | list) else []
+        below = (
+            [(inner, k) for k in (inner if isinstance(inner, dict) else range(len(inner)))]
+            if isinstance(inner, dict | list)
+            else []
+        )
         parts = below or parts
     holder, key = rng.choice(parts)
     holder[key] = wrong
@@ -105,21 +108,48 @@ def test_it_refuses_what_reading_refuses(seed, rng: Random, wrong) -> None:
 @pytest.mark.parametrize(
     ("path", "value"),
     [
-        ("halation", 2), ("halation", "1"), ("halation", 0), ("settings", []), ("settings/size", [0, 2]),
-        ("settings/size", [1, 2, 3]), ("settings/rate", 0), ("settings/allow", ["loop"]), ("settings/allow", {"a": 1}),
-        ("inputs/beauty/type", "Picture"), ("inputs/beauty/missing", "blue"), ("inputs/beauty/default", "red"),
-        ("inputs/a.b", {}), ("outputs/image/view", 1), ("controls/glow", {}), ("controls/glow", {"target": "bloom"}),
-        ("nodes/bloom", {}), ("nodes/bloom/type", 5), ("nodes/bloom/muted", 1), ("nodes/bloom/version", 2),
-        ("nodes/bloom/version", "1"), ("nodes/bloom/values", 1), ("nodes/bloom/values/intensity", "1"),
-        ("nodes/bloom/values/intensity", True), ("nodes/bloom/values/intensity", None), ("nodes/inputs", {"type": "a"}),
-        ("nodes/", {"type": "a"}), ("nodes/in/path", "also.json"), ("nodes/in/graph", None),
+        ("halation", 2),
+        ("halation", "1"),
+        ("halation", 0),
+        ("settings", []),
+        ("settings/size", [0, 2]),
+        ("settings/size", [1, 2, 3]),
+        ("settings/rate", 0),
+        ("settings/allow", ["loop"]),
+        ("settings/allow", {"a": 1}),
+        ("inputs/beauty/type", "Picture"),
+        ("inputs/beauty/missing", "blue"),
+        ("inputs/beauty/default", "red"),
+        ("inputs/a.b", {}),
+        ("outputs/image/view", 1),
+        ("controls/glow", {}),
+        ("controls/glow", {"target": "bloom"}),
+        ("nodes/bloom", {}),
+        ("nodes/bloom/type", 5),
+        ("nodes/bloom/muted", 1),
+        ("nodes/bloom/version", 2),
+        ("nodes/bloom/version", "1"),
+        ("nodes/bloom/values", 1),
+        ("nodes/bloom/values/intensity", "1"),
+        ("nodes/bloom/values/intensity", True),
+        ("nodes/bloom/values/intensity", None),
+        ("nodes/inputs", {"type": "a"}),
+        ("nodes/", {"type": "a"}),
+        ("nodes/in/path", "also.json"),
+        ("nodes/in/graph", None),
         ("nodes/in/graph/nodes", 1),
-        ("nodes/in/graph/nodes/dim/values/stops", "x"), ("links/bloom.image", 5), ("links/bloom.image", "bloom"),
-        ("links/bloom", "inputs.beauty"), ("links/a.b.c", "inputs.beauty"), ("animation/bloom.intensity", {}),
-        ("animation/bloom.intensity/expression", "1"), ("animation/bloom.intensity/keys", [{"frame": 1}]),
+        ("nodes/in/graph/nodes/dim/values/stops", "x"),
+        ("links/bloom.image", 5),
+        ("links/bloom.image", "bloom"),
+        ("links/bloom", "inputs.beauty"),
+        ("links/a.b.c", "inputs.beauty"),
+        ("animation/bloom.intensity", {}),
+        ("animation/bloom.intensity/expression", "1"),
+        ("animation/bloom.intensity/keys", [{"frame": 1}]),
         ("animation/bloom.intensity/keys", [{"frame": 1, "value": "x"}]),
         ("animation/bloom.intensity/keys", [{"frame": 1, "value": 1, "interpolation": "quick"}]),
-        ("nodes/w", {"type": "glsl"}), ("nodes/w", {"type": "glsl", "code": ["a"], "file": "a.glsl"}),
+        ("nodes/w", {"type": "glsl"}),
+        ("nodes/w", {"type": "glsl", "code": ["a"], "file": "a.glsl"}),
         ("nodes/w", {"type": "isf", "code": "void main() {}"}),
     ],
 )
@@ -131,9 +161,15 @@ def test_both_refuse(path, value) -> None:
 @pytest.mark.parametrize(
     ("path", "value"),
     [
-        ("$schema", "./graph.schema.json"), ("author", {"name": "me"}), ("nodes/x", {"type": "unheard of", "a": 1}),
-        ("nodes/bloom/values/new", [1, "a"]), ("nodes/bloom/note", "kept"), ("settings/size", None),
-        ("settings/allow", {"loop": "why"}), ("ui/anything", [1]), ("nodes/w", {"type": "glsl", "code": ["a", "b"]}),
+        ("$schema", "./graph.schema.json"),
+        ("author", {"name": "me"}),
+        ("nodes/x", {"type": "unheard of", "a": 1}),
+        ("nodes/bloom/values/new", [1, "a"]),
+        ("nodes/bloom/note", "kept"),
+        ("settings/size", None),
+        ("settings/allow", {"loop": "why"}),
+        ("ui/anything", [1]),
+        ("nodes/w", {"type": "glsl", "code": ["a", "b"]}),
         ("nodes/w", {"type": "isf", "file": "a.fs", "values": {"a": True}}),
     ],
 )
@@ -142,9 +178,7 @@ def test_both_take(path, value) -> None:
     assert not refused(tree) and VALIDATOR.is_valid(tree)
 
 
-@pytest.mark.parametrize(
-    ("name", "value"), [("intensity", -1e9), ("intensity", 1e9), ("no such quality", 0)]
-)
+@pytest.mark.parametrize(("name", "value"), [("intensity", -1e9), ("intensity", 1e9), ("no such quality", 0)])
 def test_limits_are_those_of_check(name, value) -> None:
     tree = changed(f"nodes/bloom/values/{name}", value)
     errors = [one for one in problems(document.loads(json.dumps(tree))) if one.rule.name == "bad-value"]

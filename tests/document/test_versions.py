@@ -38,7 +38,10 @@ def glow(version: int | None, values: dict[str, Any]) -> str:
 @pytest.mark.parametrize(
     ("version", "values", "radius"),
     [
-        (1, {"size": 50.0}, 0.5), (None, {"size": 50.0}, 0.5), (2, {"radius": 50.0}, 0.5), (3, {"radius": 0.5}, 0.5),
+        (1, {"size": 50.0}, 0.5),
+        (None, {"size": 50.0}, 0.5),
+        (2, {"radius": 50.0}, 0.5),
+        (3, {"radius": 0.5}, 0.5),
         (1, {}, 0.25),
     ],
 )
@@ -73,7 +76,9 @@ def exposure_was_called_stops(body: dict[str, Any]) -> dict[str, Any]:
 
 STEPS = {1: links_were_lists, 2: exposure_was_called_stops}
 OLD_BODY: dict[str, Any] = {
-    "inputs": {"i": {}}, "outputs": {"o": {}}, "nodes": {"a": {"type": "stops"}},
+    "inputs": {"i": {}},
+    "outputs": {"o": {}},
+    "nodes": {"a": {"type": "stops"}},
     "links": [["inputs.i", "a.image"], ["a.out", "outputs.o"]],
 }
 
@@ -86,7 +91,8 @@ def test_documents_step_up_inline_groups_included() -> None:
     for body in (graph, group.graph):
         assert body.nodes["a"] == Gain()
         assert {str(end): str(start) for end, start in body.links.items()} == {
-            "a.image": "inputs.i", "outputs.o": "a.out",
+            "a.image": "inputs.i",
+            "outputs.o": "a.out",
         }
     halfway = {**old, "halation": 2, "links": {"a.image": "inputs.i"}, "nodes": {"a": {"type": "stops"}}}
     assert loads(json.dumps(halfway), catalogue=TOYS, migrations=STEPS).nodes["a"] == Gain()

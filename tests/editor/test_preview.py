@@ -37,7 +37,11 @@ def test_a_picture_comes_pass_by_pass(preview, engine):
     assert not preview.busy and preview.progress == (total, total)
     shown = preview.shown("A")
     assert (shown.port, shown.size, shown.full_size, shown.kind, shown.channels) == (
-        OUT["A"], (37, 23), (37, 23), Kind.IMAGE, 4,
+        OUT["A"],
+        (37, 23),
+        (37, 23),
+        Kind.IMAGE,
+        4,
     )
     np.testing.assert_array_equal(pixels(preview, engine), rendered(engine, chain()))
 
@@ -231,9 +235,7 @@ def test_a_fault_is_said_where_it_is_and_hides_nothing_else(preview, engine):
     assert preview.faults == {"lonely": "node 'lonely': input 'image' is not linked: link a picture to it"}
     assert "not linked" in preview.fault("B") and preview.fault("A") is None and preview.shown("B") is None
     np.testing.assert_array_equal(pixels(preview, engine), rendered(engine, chain(stops=2.0)))
-    np.testing.assert_array_equal(
-        pixels(preview, engine, "C"), rendered(engine, chain(stops=2.0), Port("blur", "out"))
-    )
+    np.testing.assert_array_equal(pixels(preview, engine, "C"), rendered(engine, chain(stops=2.0), Port("blur", "out")))
     want(preview, broken, good)
     settle(preview)
     assert preview.faults == {}

@@ -17,8 +17,18 @@ from previews import IMAGE, PICTURE, chain, passes, pixels, rendered, settle, wa
 
 NODES = catalogue()
 FLOAT = {"Combined": "float"}
-TEN = ("exposure", "saturation", "grade", "gaussian_blur", "vignette", "exposure", "clip", "saturation", "bloom",
-       "exposure")
+TEN = (
+    "exposure",
+    "saturation",
+    "grade",
+    "gaussian_blur",
+    "vignette",
+    "exposure",
+    "clip",
+    "saturation",
+    "bloom",
+    "exposure",
+)
 
 
 def ten() -> Graph:

@@ -90,8 +90,11 @@ def test_what_cannot_be(graph, port, animation, said):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("nobody.x", "no node 'nobody'"), ("gloww", "did you mean 'glow'"), ("grade.gain.q", "no channel 'q'"),
-        ("light.stops", "needs itself"), ("blur.edge", "is no number|is a choice"),
+        ("nobody.x", "no node 'nobody'"),
+        ("gloww", "did you mean 'glow'"),
+        ("grade.gain.q", "no channel 'q'"),
+        ("light.stops", "needs itself"),
+        ("blur.edge", "is no number|is a choice"),
     ],
 )
 def test_names_that_mean_nothing_are_problems(graph, text, said):
@@ -116,7 +119,8 @@ def test_renaming_moves_keys_and_names(graph):
     graph = graph.animate(STOPS, RISING).animate(MOVE, Expression("[light.stops, glow]"))
     renamed = graph.rename("light", "lamp").rename_control("glow", "soft")
     assert renamed.animation == {
-        Port("lamp", "stops"): RISING, MOVE: Expression("[lamp.stops, soft]"),
+        Port("lamp", "stops"): RISING,
+        MOVE: Expression("[lamp.stops, soft]"),
     }
     assert not faults(replace(renamed, outputs={"x": Output()}, links={Port("outputs", "x"): Port("light", "out")}))[1:]
 
@@ -178,9 +182,11 @@ def test_documents_at_fault_are_named(entry, where):
 
 
 def test_animation_of_what_is_unknown_is_kept(graph):
-    text = document.dumps(document.loads(
-        '{"halation": 1, "nodes": {"odd": {"type": "from_the_future"}}, '
-        '"animation": {"odd.x": {"keys": [{"frame": 1, "value": 3}], "later": true}}}'
-    ))
+    text = document.dumps(
+        document.loads(
+            '{"halation": 1, "nodes": {"odd": {"type": "from_the_future"}}, '
+            '"animation": {"odd.x": {"keys": [{"frame": 1, "value": 3}], "later": true}}}'
+        )
+    )
     assert '"later": true' in text and '"value": 3' in text and document.loads(text).nodes["odd"] is not None
     assert not [p for p in problems(document.loads(text)) if p.severity == "error" and p.socket == "x"]

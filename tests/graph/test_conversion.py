@@ -13,8 +13,11 @@ from halation.nodes import Kind, Socket, catalogue
 from toy_nodes import Gain
 
 KINDS = {
-    "Image": make_socket(Kind.IMAGE), "Field": make_socket(Kind.FIELD), "Number": make_socket(Kind.NUMBER),
-    "Color": make_socket(Kind.COLOR), **{f"Vector{width}": make_socket(Kind.VECTOR, width) for width in (2, 3, 4)},
+    "Image": make_socket(Kind.IMAGE),
+    "Field": make_socket(Kind.FIELD),
+    "Number": make_socket(Kind.NUMBER),
+    "Color": make_socket(Kind.COLOR),
+    **{f"Vector{width}": make_socket(Kind.VECTOR, width) for width in (2, 3, 4)},
 }
 
 FITS = {
@@ -22,12 +25,19 @@ FITS = {
     "Field": "Image Field Vector2 Vector3 Vector4",
     "Number": "Image Field Number Color Vector2 Vector3 Vector4",
     "Color": "Image Color",
-    "Vector2": "Vector2", "Vector3": "Vector3", "Vector4": "Vector4",
+    "Vector2": "Vector2",
+    "Vector3": "Vector3",
+    "Vector4": "Vector4",
 }
 
 VALUES = {
-    "gain": "Number Field", "steps": "Number Field", "clamp": "Number Field", "mode": "", "note": "",
-    "tint": "Color Image Field Number", "center": "Vector2 Field Number",
+    "gain": "Number Field",
+    "steps": "Number Field",
+    "clamp": "Number Field",
+    "mode": "",
+    "note": "",
+    "tint": "Color Image Field Number",
+    "center": "Vector2 Field Number",
 }
 
 

@@ -84,7 +84,8 @@ class TestRemove:
     def test_heal_links_what_fed_it_to_what_it_fed(self) -> None:
         graph = small().remove("gain")
         assert dict(graph.links) == {
-            Port("soften", "image"): Port("inputs", "beauty"), Port("outputs", "image"): Port("soften", "out"),
+            Port("soften", "image"): Port("inputs", "beauty"),
+            Port("outputs", "image"): Port("soften", "out"),
         }
         assert not graph.controls
         assert set(graph.ui["nodes"]) == {"soften"}
@@ -301,7 +302,9 @@ class TestGroups:
         middle = Graph(
             {"inner": inner},
             {Port("inner", "beauty"): Port("inputs", "plate"), Port("outputs", "o"): Port("inner", "image")},
-            {"plate": Input()}, {"o": Output()}, {"more": Control(Port("inner", "glow"))},
+            {"plate": Input()},
+            {"o": Output()},
+            {"more": Control(Port("inner", "glow"))},
         )
         return Graph({"g": Group(middle)})
 
@@ -339,8 +342,10 @@ class TestGroups:
     @pytest.mark.parametrize(
         ("path", "says"),
         [
-            ("glwo", "no control 'glwo'; did you mean 'glow'"), ("gan.gain", "did you mean 'gain'"),
-            ("gain.gian", "did you mean 'gain'"), ("gain.gain.x", "'gain', which is no group"),
+            ("glwo", "no control 'glwo'; did you mean 'glow'"),
+            ("gan.gain", "did you mean 'gain'"),
+            ("gain.gian", "did you mean 'gain'"),
+            ("gain.gain.x", "'gain', which is no group"),
         ],
     )
     def test_override_that_points_nowhere(self, path: str, says: str) -> None:

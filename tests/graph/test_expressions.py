@@ -20,8 +20,17 @@ from halation.app.graph.expressions.parser import MAX_DEPTH, MAX_LENGTH
 from halation.app.graph.expressions.tokens import written
 
 VALUES = {
-    "glow": 2.0, "count": 3, "on": True, "bloom.intensity": 0.25, "move.offset": (1.0, 2.0, 3.0), "my node.x": 7.0,
-    "frame": 99.0, "move.offset.x": 1.0, "name": "text", "bad": math.inf, "huge": 10**400,
+    "glow": 2.0,
+    "count": 3,
+    "on": True,
+    "bloom.intensity": 0.25,
+    "move.offset": (1.0, 2.0, 3.0),
+    "my node.x": 7.0,
+    "frame": 99.0,
+    "move.offset.x": 1.0,
+    "name": "text",
+    "bad": math.inf,
+    "huge": 10**400,
 }
 
 
@@ -42,19 +51,54 @@ def fault(text: str) -> ExpressionError:
 
 
 REFERENCE = {
-    **{name: getattr(math, name) for name in (
-        "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "degrees", "radians", "sqrt", "exp", "log", "log2", "pow",
-    )},
-    "abs": abs, "floor": math.floor, "ceil": math.ceil, "min": min, "max": max, "mod": lambda x, y: x % y,
-    "sign": lambda x: float(np.sign(float(x))), "round": lambda x: math.copysign(math.floor(abs(x) + 0.5), x),
-    "fract": lambda x: x - math.floor(x), "mix": lambda a, b, t: a * (1 - t) + b * t,
-    "clamp": lambda x, low=0.0, high=1.0: min(max(x, low), high), "step": lambda edge, x: float(x >= edge),
+    **{
+        name: getattr(math, name)
+        for name in (
+            "sin",
+            "cos",
+            "tan",
+            "asin",
+            "acos",
+            "atan",
+            "atan2",
+            "degrees",
+            "radians",
+            "sqrt",
+            "exp",
+            "log",
+            "log2",
+            "pow",
+        )
+    },
+    "abs": abs,
+    "floor": math.floor,
+    "ceil": math.ceil,
+    "min": min,
+    "max": max,
+    "mod": lambda x, y: x % y,
+    "sign": lambda x: float(np.sign(float(x))),
+    "round": lambda x: math.copysign(math.floor(abs(x) + 0.5), x),
+    "fract": lambda x: x - math.floor(x),
+    "mix": lambda a, b, t: a * (1 - t) + b * t,
+    "clamp": lambda x, low=0.0, high=1.0: min(max(x, low), high),
+    "step": lambda edge, x: float(x >= edge),
     "fit": lambda x, low, high, a, b: float(np.interp(x, [low, high], [a, b])),
-    "glow": 2.0, "count": 3.0, "frame": 5.0, "time": 4.0 / 24.0, "rate": 24.0, "pi": math.pi, "tau": math.tau,
+    "glow": 2.0,
+    "count": 3.0,
+    "frame": 5.0,
+    "time": 4.0 / 24.0,
+    "rate": 24.0,
+    "pi": math.pi,
+    "tau": math.tau,
 }
 ARITY = {"atan2": 2, "pow": 2, "mod": 2, "step": 2, "mix": 3}
-LEVELS = ({"||": "or", "or": "or"}, {"&&": "and", "and": "and"}, {c: c for c in ("<", "<=", ">", ">=", "==", "!=")},
-          {"+": "+", "-": "-"}, {"*": "*", "/": "/", "%": "%"})
+LEVELS = (
+    {"||": "or", "or": "or"},
+    {"&&": "and", "and": "and"},
+    {c: c for c in ("<", "<=", ">", ">=", "==", "!=")},
+    {"+": "+", "-": "-"},
+    {"*": "*", "/": "/", "%": "%"},
+)
 
 
 def made(rng: Random, level: int, depth: int) -> tuple[str, str]:
@@ -136,47 +180,114 @@ def test_precedence_of_arithmetic_is_that_of_python() -> None:
             assert at(text) == pytest.approx(expected, rel=1e-12), text
 
 
-@pytest.mark.parametrize(("text", "expected"), [
-    ("1", 1.0), (".5", 0.5), ("1.", 1.0), ("1e-3", 1e-3), ("-2^2", -4.0), ("2^3^2", 512.0), ("2^-1", 0.5),
-    ("-7 % 3", 2.0), ("1 < 2", True), ("not 1 == 2", True), ("!1 == 2", False), ("true and not false", True),
-    ("on", True), ("-on", -1.0), ("0 ? 1 : 2 ? 3 : 4", 3.0), ("frame > 3 ? glow : 1/0", 2.0), ("0 && 1/0", False),
-    ("1 || 1/0", True), ("[1, 2, 3] * glow", (2.0, 4.0, 6.0)), ("move.offset - [1, 1, 1]", (0.0, 1.0, 2.0)),
-    ("-[1, 2]", (-1.0, -2.0)),
-    ("move.offset.x", 1.0), ("(move.offset).b", 3.0), ("[4, 5].g", 5.0), ("mix([0, 0], [2, 4], .5).y", 2.0),
-    ("max([1, 5], [4, 2], 3)", (4.0, 5.0)), ("[true, 2]", (1.0, 2.0)), ("`my node`.x", 7.0), ("`frame`", 99.0),
-    ("frame", 5.0), ("time * rate", 4.0), ("round(2.5) + round(-0.5)", 2.0), ("smoothstep(0, 2, 1)", 0.5),
-    ("smoothstep(1, 1, 1)", 1.0), ("fit(3, 2, 4, 10, 20)", 15.0), ("fit(9, 2, 4, 10, 20)", 20.0),
-    ("fit(2, 2, 2, 1, 5)", 5.0), ("pulse(5, 5, 6)", 1.0), ("pulse(6, 5, 6)", 0.0), ("clamp(7, 1, 3)", 3.0),
-    ("e", math.e), ("count\n+\t1", 4.0), ("1" + "+1" * 499, 500.0),
-])
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("1", 1.0),
+        (".5", 0.5),
+        ("1.", 1.0),
+        ("1e-3", 1e-3),
+        ("-2^2", -4.0),
+        ("2^3^2", 512.0),
+        ("2^-1", 0.5),
+        ("-7 % 3", 2.0),
+        ("1 < 2", True),
+        ("not 1 == 2", True),
+        ("!1 == 2", False),
+        ("true and not false", True),
+        ("on", True),
+        ("-on", -1.0),
+        ("0 ? 1 : 2 ? 3 : 4", 3.0),
+        ("frame > 3 ? glow : 1/0", 2.0),
+        ("0 && 1/0", False),
+        ("1 || 1/0", True),
+        ("[1, 2, 3] * glow", (2.0, 4.0, 6.0)),
+        ("move.offset - [1, 1, 1]", (0.0, 1.0, 2.0)),
+        ("-[1, 2]", (-1.0, -2.0)),
+        ("move.offset.x", 1.0),
+        ("(move.offset).b", 3.0),
+        ("[4, 5].g", 5.0),
+        ("mix([0, 0], [2, 4], .5).y", 2.0),
+        ("max([1, 5], [4, 2], 3)", (4.0, 5.0)),
+        ("[true, 2]", (1.0, 2.0)),
+        ("`my node`.x", 7.0),
+        ("`frame`", 99.0),
+        ("frame", 5.0),
+        ("time * rate", 4.0),
+        ("round(2.5) + round(-0.5)", 2.0),
+        ("smoothstep(0, 2, 1)", 0.5),
+        ("smoothstep(1, 1, 1)", 1.0),
+        ("fit(3, 2, 4, 10, 20)", 15.0),
+        ("fit(9, 2, 4, 10, 20)", 20.0),
+        ("fit(2, 2, 2, 1, 5)", 5.0),
+        ("pulse(5, 5, 6)", 1.0),
+        ("pulse(6, 5, 6)", 0.0),
+        ("clamp(7, 1, 3)", 3.0),
+        ("e", math.e),
+        ("count\n+\t1", 4.0),
+        ("1" + "+1" * 499, 500.0),
+    ],
+)
 def test_values(text: str, expected: object) -> None:
     found = at(text)
     assert found == pytest.approx(expected) and type(found) is type(expected)
 
 
-@pytest.mark.parametrize(("text", "position", "sentence"), [
-    ("", 0, "empty"), ("  ", 0, "empty"), ("1 +", 3, "ends too early"),
-    ("2pi", 1, "an operator is missing before 'pi'"), ("1 + sinn(3)", 4, "no function 'sinn'; did you mean 'sin'"),
-    ("clamp(1, 2)", 0, "clamp(x, low, high)"),
-    ("sin()", 0, "does not take 0"), ("(1 + 2", 0, "'(' is never closed"), ("1)", 1, "closes nothing"),
-    ("[1, 2", 0, "'[' is never closed"), ("(1]", 2, "closes nothing"), ("[]", 0, "at least one"), ("1 = 2", 2, "=="),
-    ("[1, [2]]", 0, "a list holds numbers"), ("'a'", 0, "no text"), ("1 if 2 else 3", 2, "? yes : no"),
-    ("1 ? 2", 5, "':' is missing"), ("1 < 2 < 3", 6, "only two numbers"), ("1e999", 0, "too large"),
-    ("1 , 2", 2, "','"), ("`a", 0, "no end"), ("2 ÷ 3", 2, "'÷'"), ("1\x00", 1, "U+0000"),
-    ("(glow).q", 7, "channel is missing"),
-    ("* 2", 0, "value is missing before '*'"), ("1 + )", 4, "value is missing before ')'"), ("x²", 0, "'x²'"),
-    ("glow.__class__", 0, "no control"), ("().x", 1, "value is missing"), ("lambda: 1", 6, "':' does not belong"),
-    ("1 / (frame - 5)", 2, "division by zero: 1 / 0"), ("7 % 0", 2, "division by zero: 7 % 0"),
-    ("2 + log(0-3)", 4, "log(-3)"),
-    ("sqrt(0-4)", 0, "sqrt(-4) has no value"), ("asin(2)", 0, "asin(2)"), ("(0-8)^0.5", 5, "-8 ^ 0.5 has no value"),
-    ("0^-1", 1, "0 ^ -1"), ("exp(1000)", 0, "exp(1000) is too large"),
-    ("1e300 * 1e300", 6, "1e+300 * 1e+300 is too large"),
-    ("9^9^9", 1, "too large"), ("[1, 0] + 1 / [1, 0]", 11, "1 / 0"), ("[1, 2] + [1, 2, 3]", 7, "do not go together"),
-    ("glow + nope", 7, "no control 'nope'"), ("name + 1", 0, "text"), ("bad", 0, "not finite"),
-    ("huge", 0, "not finite"),
-    ("move.offset ? 1 : 2", 12, "neither true nor false"), ("move.offset > 1", 12, "cannot be compared"),
-    ("(glow).x", 7, "a number has no channel"), ("[1, 2].z", 7, "a list of 2"),
-])
+@pytest.mark.parametrize(
+    ("text", "position", "sentence"),
+    [
+        ("", 0, "empty"),
+        ("  ", 0, "empty"),
+        ("1 +", 3, "ends too early"),
+        ("2pi", 1, "an operator is missing before 'pi'"),
+        ("1 + sinn(3)", 4, "no function 'sinn'; did you mean 'sin'"),
+        ("clamp(1, 2)", 0, "clamp(x, low, high)"),
+        ("sin()", 0, "does not take 0"),
+        ("(1 + 2", 0, "'(' is never closed"),
+        ("1)", 1, "closes nothing"),
+        ("[1, 2", 0, "'[' is never closed"),
+        ("(1]", 2, "closes nothing"),
+        ("[]", 0, "at least one"),
+        ("1 = 2", 2, "=="),
+        ("[1, [2]]", 0, "a list holds numbers"),
+        ("'a'", 0, "no text"),
+        ("1 if 2 else 3", 2, "? yes : no"),
+        ("1 ? 2", 5, "':' is missing"),
+        ("1 < 2 < 3", 6, "only two numbers"),
+        ("1e999", 0, "too large"),
+        ("1 , 2", 2, "','"),
+        ("`a", 0, "no end"),
+        ("2 ÷ 3", 2, "'÷'"),
+        ("1\x00", 1, "U+0000"),
+        ("(glow).q", 7, "channel is missing"),
+        ("* 2", 0, "value is missing before '*'"),
+        ("1 + )", 4, "value is missing before ')'"),
+        ("x²", 0, "'x²'"),
+        ("glow.__class__", 0, "no control"),
+        ("().x", 1, "value is missing"),
+        ("lambda: 1", 6, "':' does not belong"),
+        ("1 / (frame - 5)", 2, "division by zero: 1 / 0"),
+        ("7 % 0", 2, "division by zero: 7 % 0"),
+        ("2 + log(0-3)", 4, "log(-3)"),
+        ("sqrt(0-4)", 0, "sqrt(-4) has no value"),
+        ("asin(2)", 0, "asin(2)"),
+        ("(0-8)^0.5", 5, "-8 ^ 0.5 has no value"),
+        ("0^-1", 1, "0 ^ -1"),
+        ("exp(1000)", 0, "exp(1000) is too large"),
+        ("1e300 * 1e300", 6, "1e+300 * 1e+300 is too large"),
+        ("9^9^9", 1, "too large"),
+        ("[1, 0] + 1 / [1, 0]", 11, "1 / 0"),
+        ("[1, 2] + [1, 2, 3]", 7, "do not go together"),
+        ("glow + nope", 7, "no control 'nope'"),
+        ("name + 1", 0, "text"),
+        ("bad", 0, "not finite"),
+        ("huge", 0, "not finite"),
+        ("move.offset ? 1 : 2", 12, "neither true nor false"),
+        ("move.offset > 1", 12, "cannot be compared"),
+        ("(glow).x", 7, "a number has no channel"),
+        ("[1, 2].z", 7, "a list of 2"),
+    ],
+)
 def test_faults_point_at_the_character(text: str, position: int, sentence: str) -> None:
     error = fault(text)
     assert error.position == position and sentence in error.sentence, error
@@ -186,9 +297,7 @@ def test_faults_point_at_the_character(text: str, position: int, sentence: str) 
 
 
 def test_a_message_is_readable() -> None:
-    assert str(fault("1 + sinn(3)")) == (
-        "there is no function 'sinn'; did you mean 'sin'?\n    1 + sinn(3)\n        ^"
-    )
+    assert str(fault("1 + sinn(3)")) == ("there is no function 'sinn'; did you mean 'sin'?\n    1 + sinn(3)\n        ^")
     assert str(fault("glow +\n  nope * 2")).endswith("\n      nope * 2\n      ^")
     assert str(fault("`日本` + 1")).endswith("\n    `日本` + 1\n    ^")
     assert str(fault("glow + 1/0*`日本`")).splitlines()[-1].index("^") == 12
@@ -214,8 +323,15 @@ def test_lengths_and_depths_are_limited() -> None:
     assert "longer than" in fault("1" * (MAX_LENGTH + 1)).sentence
     assert "deep" in fault("(" * 400 + "1" + ")" * 400).sentence
     for text in (
-        "-" * 900 + "1", "2^" * 400 + "1", "1?" * 200 + "1" + ":1" * 200, "!" * 900, "[" * 900, "not " * 200 + "1",
-        "sin(" * 200 + "1" + ")" * 200, "1 or 1 and 1 < 1 + 1 * (" * 40, "(" * 1000,
+        "-" * 900 + "1",
+        "2^" * 400 + "1",
+        "1?" * 200 + "1" + ":1" * 200,
+        "!" * 900,
+        "[" * 900,
+        "not " * 200 + "1",
+        "sin(" * 200 + "1" + ")" * 200,
+        "1 or 1 and 1 < 1 + 1 * (" * 40,
+        "(" * 1000,
     ):
         assert Expression(text).fault is not None, text
     deep = "(" * (MAX_DEPTH - 2) + "glow" + ")" * (MAX_DEPTH - 2)
@@ -263,8 +379,14 @@ def test_tokens_cover_the_text() -> None:
     text = "not sin(frame) + 1.5e3 * [pi, glow.x] ? 1 : $ 2"
     kinds = [(token.kind, token.text) for token in Expression(text).tokens]
     assert kinds[:8] == [
-        ("word", "not"), ("function", "sin"), ("bracket", "("), ("variable", "frame"), ("bracket", ")"),
-        ("operator", "+"), ("number", "1.5e3"), ("operator", "*"),
+        ("word", "not"),
+        ("function", "sin"),
+        ("bracket", "("),
+        ("variable", "frame"),
+        ("bracket", ")"),
+        ("operator", "+"),
+        ("number", "1.5e3"),
+        ("operator", "*"),
     ]
     assert ("constant", "pi") in kinds and ("name", "glow.x") in kinds and ("unknown", "$") in kinds
     rng = Random(8)
@@ -302,7 +424,9 @@ def test_the_hash_is_splitmix64() -> None:
     """The first numbers of the generator of Steele, Lea and Flood (2014) from the seed 1234567, as published."""
     step = 0x9E3779B97F4A7C15
     assert [mixed(1234567 + count * step) for count in (1, 2, 3)] == [
-        6457827717110365317, 3203168211198807973, 9817491932198370423,
+        6457827717110365317,
+        3203168211198807973,
+        9817491932198370423,
     ]
 
 
@@ -311,16 +435,51 @@ def test_functions_are_documented() -> None:
 
 
 PIECES = (
-    *"0123456789.eE+-*/%^<>=!?:()[],`'\"\\ \n\t_&|#@;{}~$", "**", "&&", "||", "==", "1e308", "1e-308", "frame", "glow",
-    "and ", " or ", "not ", "if ", "else ", "move.offset", ".x", "sin(", "pow(", "noise(", "random(", "log(",
-    "floor(", "__import__", "lambda ", "\x00", "\ud800", "\u202e", "²", "٣", "日", "e\u0301", "😀", "9" * 30, "clamp(",
-    "mix(", "min(", "exp(",
+    *"0123456789.eE+-*/%^<>=!?:()[],`'\"\\ \n\t_&|#@;{}~$",
+    "**",
+    "&&",
+    "||",
+    "==",
+    "1e308",
+    "1e-308",
+    "frame",
+    "glow",
+    "and ",
+    " or ",
+    "not ",
+    "if ",
+    "else ",
+    "move.offset",
+    ".x",
+    "sin(",
+    "pow(",
+    "noise(",
+    "random(",
+    "log(",
+    "floor(",
+    "__import__",
+    "lambda ",
+    "\x00",
+    "\ud800",
+    "\u202e",
+    "²",
+    "٣",
+    "日",
+    "e\u0301",
+    "😀",
+    "9" * 30,
+    "clamp(",
+    "mix(",
+    "min(",
+    "exp(",
 )
 
 
 SEEDS = (
-    "clamp(sin(time * tau) * glow, 0, 1) ? move.offset : [1, 2, 3]", "mix(1, 2, fract(noise(frame) ^ 2)) % 3",
-    "frame < 10 and not on ? 1 / count : -bloom.intensity ** 2", "2 + 3 * 4",
+    "clamp(sin(time * tau) * glow, 0, 1) ? move.offset : [1, 2, 3]",
+    "mix(1, 2, fract(noise(frame) ^ 2)) % 3",
+    "frame < 10 and not on ? 1 / count : -bloom.intensity ** 2",
+    "2 + 3 * 4",
 )
 
 

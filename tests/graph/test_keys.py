@@ -154,8 +154,11 @@ def test_faults() -> None:
         Keys().at(1.0)
     keys = keyed([1.0, 2.0], [0.0, 1.0])
     for edit in (
-        lambda: keys.scale(None, 0.0, 1.0), lambda: keys.with_handles(3.0), lambda: keys.move(None, 1.0, (1.0, 2.0)),
-        lambda: keys.with_handles(1.0, left=(1.0, 2.0, 3.0)), lambda: keys.with_handles(1.0, left=(1.0, math.nan)),
+        lambda: keys.scale(None, 0.0, 1.0),
+        lambda: keys.with_handles(3.0),
+        lambda: keys.move(None, 1.0, (1.0, 2.0)),
+        lambda: keys.with_handles(1.0, left=(1.0, 2.0, 3.0)),
+        lambda: keys.with_handles(1.0, left=(1.0, math.nan)),
     ):
         with pytest.raises(GraphError):
             edit()
@@ -181,8 +184,13 @@ def test_a_key_put_on_the_curve(way: Interpolation) -> None:
     keys = keyed([0.0, 8.0, 20.0], [(0.0, 1.0), (4.0, -1.0), (1.0, 0.0)], way)
     keys = keys.with_handles(8.0, left=(-3.0, 4.0, -9.0)).insert(5.0)
     assert keys.frames == (0.0, 5.0, 8.0, 20.0) and keys.insert(5.0) == keys
-    before = keys.remove(5.0) if way != "bezier" else keyed(
-        [0.0, 8.0, 20.0], [(0.0, 1.0), (4.0, -1.0), (1.0, 0.0)], way).with_handles(8.0, left=(-3.0, 4.0, -9.0))
+    before = (
+        keys.remove(5.0)
+        if way != "bezier"
+        else keyed([0.0, 8.0, 20.0], [(0.0, 1.0), (4.0, -1.0), (1.0, 0.0)], way).with_handles(
+            8.0, left=(-3.0, 4.0, -9.0)
+        )
+    )
     assert keys.at(5.0) == pytest.approx(before.at(5.0))
     if way != "smooth":
         for frame in np.linspace(0, 8, 81).tolist():
@@ -212,15 +220,17 @@ def test_scaling_keys() -> None:
 
 def some_edit(rng: Random, keys: Keys) -> Keys:
     some = rng.sample(keys.frames, rng.randint(1, len(keys.frames)))
-    return rng.choice((
-        lambda: keys.set(rng.randrange(40), rng.uniform(-1, 1), rng.choice((*WAYS, None))),
-        lambda: keys.insert(rng.uniform(0, 40)),
-        lambda: keys.move(some, rng.randint(-5, 5), rng.uniform(-1, 1)),
-        lambda: keys.scale(some, rng.uniform(0.5, 1.5), 10.0, rng.random() < 0.5),
-        lambda: keys.with_interpolation(some, rng.choice(WAYS)),
-        lambda: keys.with_handles(some[0], *((rng.uniform(-9, 9), rng.uniform(-2, 2)) for _ in "lr")),
-        lambda: keys.remove(some[0]) if len(keys.keys) > 1 else keys,
-    ))()
+    return rng.choice(
+        (
+            lambda: keys.set(rng.randrange(40), rng.uniform(-1, 1), rng.choice((*WAYS, None))),
+            lambda: keys.insert(rng.uniform(0, 40)),
+            lambda: keys.move(some, rng.randint(-5, 5), rng.uniform(-1, 1)),
+            lambda: keys.scale(some, rng.uniform(0.5, 1.5), 10.0, rng.random() < 0.5),
+            lambda: keys.with_interpolation(some, rng.choice(WAYS)),
+            lambda: keys.with_handles(some[0], *((rng.uniform(-9, 9), rng.uniform(-2, 2)) for _ in "lr")),
+            lambda: keys.remove(some[0]) if len(keys.keys) > 1 else keys,
+        )
+    )()
 
 
 @settings(max_examples=200, deadline=None)

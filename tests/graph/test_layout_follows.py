@@ -59,9 +59,11 @@ def test_a_replaced_node_keeps_the_routes_of_links_that_stay(graph):
     assert graph.replace("gain", Soften()).ui == graph.ui
 
 
-@pytest.mark.parametrize("ui", [
-    {"nodes": [1, 2], "routes": 3, "viewers": None}, {"nodes": {"gain": [1, 2]}, "viewers": {"1": 7}}, {}
-], ids=["other shapes", "odd entries", "empty"])
+@pytest.mark.parametrize(
+    "ui",
+    [{"nodes": [1, 2], "routes": 3, "viewers": None}, {"nodes": {"gain": [1, 2]}, "viewers": {"1": 7}}, {}],
+    ids=["other shapes", "odd entries", "empty"],
+)
 def test_what_has_another_shape_is_left_alone(ui):
     graph = replace(small(), ui=ui)
     assert graph.rename("gain", "lift").rename("lift", "gain") == graph

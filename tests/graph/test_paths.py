@@ -11,11 +11,16 @@ from halation.app.compiler.lowering.named import path_texts
 from halation.app.graph.paths import inlined, rebased, repointed
 
 INNER = {
-    "halation": 1, "outputs": {"image": {"type": "Image"}}, "controls": {"file": {"target": "read.path"}},
-    "nodes": {"read": {"type": "read_image", "values": {"path": "dust.exr"}}}, "links": {"outputs.image": "read.out"},
+    "halation": 1,
+    "outputs": {"image": {"type": "Image"}},
+    "controls": {"file": {"target": "read.path"}},
+    "nodes": {"read": {"type": "read_image", "values": {"path": "dust.exr"}}},
+    "links": {"outputs.image": "read.out"},
 }
 OUTER = {
-    "halation": 1, "outputs": {"image": {"type": "Image"}}, "controls": {"file": {"target": "in.file"}},
+    "halation": 1,
+    "outputs": {"image": {"type": "Image"}},
+    "controls": {"file": {"target": "in.file"}},
     "nodes": {"in": {"type": "group", "path": "deep/inner.json", "values": {"file": "snow.exr"}}},
     "links": {"outputs.image": "in.image"},
 }
@@ -23,7 +28,8 @@ OUTER = {
 
 def top(**values: str) -> dict[str, object]:
     return {
-        "halation": 1, "outputs": {"image": {"type": "Image"}},
+        "halation": 1,
+        "outputs": {"image": {"type": "Image"}},
         "inputs": {"plate": {"type": "Image", "file": "plate.exr"}},
         "nodes": {"out": {"type": "group", "path": "library/outer.json", **({"values": values} if values else {})}},
         "links": {"outputs.image": "out.image"},
@@ -72,9 +78,14 @@ def test_every_path_can_be_another(folder: Path) -> None:
 
 def test_code_comes_inside(tmp_path: Path) -> None:
     (tmp_path / "twice.glsl").write_text("vec4 twice(vec4 image) { return image * 2.0; }\n")
-    (tmp_path / "graph.json").write_text(json.dumps({
-        "halation": 1, "nodes": {"code": {"type": "glsl", "file": "twice.glsl"}},
-    }))
+    (tmp_path / "graph.json").write_text(
+        json.dumps(
+            {
+                "halation": 1,
+                "nodes": {"code": {"type": "glsl", "file": "twice.glsl"}},
+            }
+        )
+    )
     whole = inlined(document.load(tmp_path / "graph.json"))
     (tmp_path / "twice.glsl").unlink()
     assert "image * 2.0" in document.dumps(whole) and document.loads(document.dumps(whole)) == whole

@@ -77,10 +77,12 @@ def test_links_to_nowhere(target: str, says: str) -> None:
 def test_loops_are_named_and_order_refuses_them() -> None:
     graph = linked(linked(chain(9), "n1.image", "n3.out"), "n5.image", "n6.out")
     sentences = [problem.sentence for problem in problems(graph, TOYS)]
-    assert sorted(sentences) == sorted({
-        "the nodes n1 -> n2 -> n3 -> n1 form a loop; remove one of these links",
-        "the nodes n5 -> n6 -> n5 form a loop; remove one of these links",
-    })
+    assert sorted(sentences) == sorted(
+        {
+            "the nodes n1 -> n2 -> n3 -> n1 form a loop; remove one of these links",
+            "the nodes n5 -> n6 -> n5 form a loop; remove one of these links",
+        }
+    )
     with pytest.raises(GraphError, match="form a loop"):
         graph.order()
     assert found(linked(small(), "gain.image", "gain.out")) == [("error", "gain", "")]
@@ -145,8 +147,11 @@ def test_leftover_keys_are_mentioned() -> None:
     graph = changed(small(), extra={"nodes.gain.values": {"gian": 2}, "": {"author": "me"}})
     assert [(problem.severity, problem.node, problem.sentence) for problem in problems(graph)] == [
         ("warning", "", "author means nothing to this version and is only kept"),
-        ("warning", "gain",
-         "nodes.gain.values.gian means nothing to this version and is only kept; did you mean 'gain'?"),
+        (
+            "warning",
+            "gain",
+            "nodes.gain.values.gian means nothing to this version and is only kept; did you mean 'gain'?",
+        ),
     ]
 
 
@@ -154,7 +159,9 @@ def test_groups_say_where() -> None:
     body = linked(small(), "soften.image", "nobody.out").set(Port("gain", "gain"), 3)
     graph = small().add("g", Group(Graph({"h": Group(body)}), values={"x": 1.0}))
     assert found(graph) == [
-        ("error", "g", "x"), ("error", "g/h/soften", "image"), ("warning", "g", ""),
+        ("error", "g", "x"),
+        ("error", "g/h/soften", "image"),
+        ("warning", "g", ""),
     ]
     assert "in group 'g': in group 'h': 'nobody.out' cannot feed" in problems(graph, TOYS)[1].sentence
 
@@ -177,7 +184,10 @@ def test_names_that_a_file_could_not_hold() -> None:
     control = Control(Port("a.b", "path"))
     graph = Graph({"a.b": Photo()}, {}, {"": Input()}, {"x/y": Output()}, {"c.d": control})
     assert {(node, socket) for _, node, socket in found(graph)} >= {
-        ("a.b", ""), ("inputs", ""), ("outputs", "x/y"), ("controls", "c.d"),
+        ("a.b", ""),
+        ("inputs", ""),
+        ("outputs", "x/y"),
+        ("controls", "c.d"),
     }
 
 

@@ -172,8 +172,10 @@ def test_three_hundred_nodes_are_opened_selected_moved_deleted_and_brought_back(
         before = dict(session.positions)
         x, y = ui.at("title n150")
         ui.drag((x, y), (x + 60, y + 40))
-        by = {(round(session.positions[key][0] - at[0]), round(session.positions[key][1] - at[1]))
-              for key, at in before.items()}
+        by = {
+            (round(session.positions[key][0] - at[0]), round(session.positions[key][1] - at[1]))
+            for key, at in before.items()
+        }
         assert len(by) == 1 and by != {(0, 0)}
         ui.keys("Delete")
         ui.until(lambda: not session.elements)

@@ -127,8 +127,11 @@ def page(ui):
 
 def test_labels_and_colors_of_code_are_shown(gui, path) -> None:
     def body(ui) -> None:
-        begin(ui, "vec4 f(vec4 image, vec3 shade // = (1, 0.5, 0.2), color, \"The Shade\"\n) "
-                  "{ return vec4(image.rgb * shade, 1.0); }")
+        begin(
+            ui,
+            'vec4 f(vec4 image, vec3 shade // = (1, 0.5, 0.2), color, "The Shade"\n) '
+            "{ return vec4(image.rgb * shade, 1.0); }",
+        )
         ui.ctx.window_focus("//Graph")
         ui.session.select("code")
         ui.wait(3)

@@ -24,8 +24,10 @@ def file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     made.write_image(np.linspace(0.2, 0.7, 64 * 36 * 3, dtype=np.float32).reshape(36, 64, 3))
     made.close()
     tree = {
-        "halation": 1, "inputs": {"beauty": {"type": "Image", "file": "plates_a.exr"}},
-        "outputs": {"image": {"type": "Image"}}, "nodes": {"e": {"type": "exposure"}},
+        "halation": 1,
+        "inputs": {"beauty": {"type": "Image", "file": "plates_a.exr"}},
+        "outputs": {"image": {"type": "Image"}},
+        "nodes": {"e": {"type": "exposure"}},
         "links": {"e.image": "inputs.beauty", "outputs.image": "e.out"},
     }
     path = tmp_path / "graph.json"

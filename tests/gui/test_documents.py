@@ -160,7 +160,9 @@ def test_work_is_offered_again_after_the_process_was_killed(gui, look: Path, tmp
         "drive(body, Path(sys.argv[2]), Path(sys.argv[3]))\n"
     )
     with subprocess.Popen(
-        [sys.executable, "-c", script, str(HERE), str(tmp_path), str(look)], stdout=subprocess.PIPE, text=True,
+        [sys.executable, "-c", script, str(HERE), str(tmp_path), str(look)],
+        stdout=subprocess.PIPE,
+        text=True,
         env={**os.environ, "HALATION_STATE": str(tmp_path / "state")},
     ) as process:
         assert process.stdout and any(line.strip().endswith("ready") for line in process.stdout)

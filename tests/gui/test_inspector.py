@@ -22,7 +22,9 @@ def made() -> Graph:
         graph = graph.add(id, node[id]())
     graph = graph.add_output("image", Output(Kind.IMAGE, 4))
     for source, target in (
-        ("noise.out", "grade.image"), ("grade.out", "tone_map.image"), ("tone_map.out", "outputs.image"),
+        ("noise.out", "grade.image"),
+        ("grade.out", "tone_map.image"),
+        ("tone_map.out", "outputs.image"),
         ("noise.value", "tone_map.average"),
     ):
         graph = graph.connect(Port.parse(source), Port.parse(target))
@@ -229,8 +231,11 @@ def test_names_ends_and_groups(gui, file) -> None:
 
 def test_files(gui, tmp_path: Path) -> None:
     picture = tmp_path / "picture.exr"
-    write(picture, {"beauty": np.full((8, 16, 4), 0.5, np.float32), "depth": np.ones((8, 16, 1), np.float32)},
-          kinds={"beauty": Kind.IMAGE, "depth": Kind.FIELD})
+    write(
+        picture,
+        {"beauty": np.full((8, 16, 4), 0.5, np.float32), "depth": np.ones((8, 16, 1), np.float32)},
+        kinds={"beauty": Kind.IMAGE, "depth": Kind.FIELD},
+    )
     path = tmp_path / "graph.json"
     document.save(Graph().add("read", catalogue()["read_image"]()), path)
 

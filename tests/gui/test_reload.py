@@ -50,13 +50,22 @@ def script(tmp_path: Path) -> Callable[[str], None]:
         (tmp_path / "halation" / top).symlink_to(ROOT / top)
 
     def run(code: str) -> None:
-        path = os.pathsep.join([
-            str(tmp_path), str(ROOT / "tests"), sysconfig.get_path("purelib"), sysconfig.get_path("platlib"),
-        ])
+        path = os.pathsep.join(
+            [
+                str(tmp_path),
+                str(ROOT / "tests"),
+                sysconfig.get_path("purelib"),
+                sysconfig.get_path("platlib"),
+            ]
+        )
         words = [sys.executable, "-S", "-P", "-c", f"{BEGIN}{code}\ndrive(body, here, path)\n", str(tmp_path)]
         result = subprocess.run(
-            words, env={**os.environ, "PYTHONPATH": path, "PYTHONDONTWRITEBYTECODE": "1"}, cwd=tmp_path,
-            capture_output=True, text=True, timeout=100,
+            words,
+            env={**os.environ, "PYTHONPATH": path, "PYTHONDONTWRITEBYTECODE": "1"},
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            timeout=100,
         )
         assert result.returncode == 0, result.stdout + result.stderr
 

@@ -119,8 +119,10 @@ def test_a_layer_that_is_not_there_is_a_sentence(gui) -> None:
 def test_what_is_ambiguous_is_listed_and_can_be_used(gui, tmp_path) -> None:
     rng = np.random.default_rng(3)
     layers = {
-        "beauty": rng.random((6, 8, 4), np.float32), "depth": rng.random((6, 8, 1), np.float32) + 1.0,
-        "foo": rng.random((6, 8, 3), np.float32), "worldNormals": rng.random((6, 8, 3), np.float32),
+        "beauty": rng.random((6, 8, 4), np.float32),
+        "depth": rng.random((6, 8, 1), np.float32) + 1.0,
+        "foo": rng.random((6, 8, 3), np.float32),
+        "worldNormals": rng.random((6, 8, 3), np.float32),
         "normalsCS": rng.random((6, 8, 3), np.float32),
     }
     path = write_exr(tmp_path / "open.exr", layers, dict.fromkeys(layers, "float"))
@@ -202,7 +204,8 @@ def test_a_click_picks_what_is_there(gui) -> None:
         ui.click(f"search {pick}")
         ui.type("ring", enter=False)
         assert [place for place in ui.editor.places if place.startswith(f"name {pick} ")] == [
-            f"name {pick} ring_blue", f"name {pick} ring_pink",
+            f"name {pick} ring_blue",
+            f"name {pick} ring_pink",
         ]
         press(ui, f"button None {pick}")
         assert ui.session.value(pick) == ""

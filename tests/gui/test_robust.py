@@ -37,11 +37,17 @@ BEGUN: dict[str, Callable[[], object]] = {
     "clip": lambda: imgui.push_clip_rect(imgui.ImVec2(0, 0), imgui.ImVec2(4, 4), True),
     "width": lambda: imgui.push_item_width(10),
     "picker in a popup": lambda: (
-        imgui.open_popup("pick"), imgui.begin_popup("pick"), imgui.color_picker4("picker", [1.0, 0.0, 0.0, 1.0]),
+        imgui.open_popup("pick"),
+        imgui.begin_popup("pick"),
+        imgui.color_picker4("picker", [1.0, 0.0, 0.0, 1.0]),
     ),
     "one in another": lambda: (
-        imgui.begin_child("outer"), imgui.begin_table("inner", 2), imgui.table_next_column(), imgui.push_id(3),
-        imgui.begin_child("innermost"), imgui.push_font(None, 9.0),
+        imgui.begin_child("outer"),
+        imgui.begin_table("inner", 2),
+        imgui.table_next_column(),
+        imgui.push_id(3),
+        imgui.begin_child("innermost"),
+        imgui.push_font(None, 9.0),
     ),
 }
 

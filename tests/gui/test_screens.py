@@ -1,7 +1,7 @@
 """How the editor looks: every panel and dialog in both themes, at two sizes of the interface and in a small window.
 
-    HALATION_SHOTS=folder python -m pytest tests/gui/test_screens.py    every screen in every look, kept as pictures
-    HALATION_RENEW=1 python -m pytest tests/gui/test_screens.py         makes docs/images/editor*.png anew
+HALATION_SHOTS=folder python -m pytest tests/gui/test_screens.py    every screen in every look, kept as pictures
+HALATION_RENEW=1 python -m pytest tests/gui/test_screens.py         makes docs/images/editor*.png anew
 """
 
 from __future__ import annotations
@@ -17,16 +17,22 @@ from halation.app.editor.theme.palette import PALETTES, RGB, Palette
 from halation.app.graph import Port
 from imgui_bundle import imgui
 
-LOOKS = (("dark", 1.0, (1600, 1000)), ("light", 2.0, (1900, 1060)), ("light", 1.0, (1024, 700)),
-         ("dark", 2.0, (1900, 1060)))
+LOOKS = (
+    ("dark", 1.0, (1600, 1000)),
+    ("light", 2.0, (1900, 1060)),
+    ("light", 1.0, (1024, 700)),
+    ("dark", 2.0, (1900, 1060)),
+)
 SMALLER = (1280, 800)
 """The largest window where no pictures are kept: drawing takes the most time."""
 SHOTS = bool(os.environ.get("HALATION_SHOTS"))
 RENEW = bool(os.environ.get("HALATION_RENEW"))
 IMAGES = Path(__file__).parents[2] / "docs" / "images"
-CASES = [(look, (screen,)) for screen in SCREENS for look in LOOKS] if SHOTS else [
-    (look, SCREENS[index :: len(LOOKS)]) for index, look in enumerate(LOOKS)
-]
+CASES = (
+    [(look, (screen,)) for screen in SCREENS for look in LOOKS]
+    if SHOTS
+    else [(look, SCREENS[index :: len(LOOKS)]) for index, look in enumerate(LOOKS)]
+)
 
 
 def title(case) -> str:

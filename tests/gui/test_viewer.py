@@ -250,8 +250,10 @@ def test_scopes_follow_the_picture(gui) -> None:
         ui.settled()
         ui.editor.viewer.scopes = {"histogram", "waveform", "parade", "vectorscope"}
         ui.wait(30)
-        places = [tuple(int(part) for part in ui.editor.places[f"scope {name}"])
-                  for name in ("histogram", "waveform", "parade", "vectorscope")]
+        places = [
+            tuple(int(part) for part in ui.editor.places[f"scope {name}"])
+            for name in ("histogram", "waveform", "parade", "vectorscope")
+        ]
 
         def scopes() -> list[np.ndarray]:
             window = ui.pixels()

@@ -35,7 +35,11 @@ def dev(checkout: Path, *words: str, commands: dict[str, str]) -> subprocess.Com
         (tools / name).write_text(f"#!/bin/sh\n{code}\n")
         (tools / name).chmod(0o755)
     return subprocess.run(
-        [checkout / "dev", *words], env={**os.environ, "PATH": str(tools)}, cwd="/", capture_output=True, text=True,
+        [checkout / "dev", *words],
+        env={**os.environ, "PATH": str(tools)},
+        cwd="/",
+        capture_output=True,
+        text=True,
         stdin=subprocess.DEVNULL,
     )
 
@@ -69,7 +73,7 @@ def test_python_is_missing_or_too_old(checkout: Path, commands: dict[str, str], 
 
 
 def test_venv_is_missing(checkout: Path) -> None:
-    result = dev(checkout, "test", commands={"python3": 'case $2 in *ensurepip*) exit 1 ;; esac'})
+    result = dev(checkout, "test", commands={"python3": "case $2 in *ensurepip*) exit 1 ;; esac"})
     assert result.returncode == 1
     assert result.stderr.rstrip().endswith("apt-get install python3-venv")
 

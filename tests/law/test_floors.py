@@ -17,8 +17,20 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 FLOORS = (
-    "errors", "version", "glsl", "written", "graph", "document", "compiler", "media", "lint", "renderer", "__init__",
-    "suite", "editor", "cli",
+    "errors",
+    "version",
+    "glsl",
+    "written",
+    "graph",
+    "document",
+    "compiler",
+    "media",
+    "lint",
+    "renderer",
+    "__init__",
+    "suite",
+    "editor",
+    "cli",
 )
 """Parts of app from the ground up. `__init__` is the public face of the engine, so it stands on the renderer."""
 
@@ -29,10 +41,13 @@ ROOMS = {
 """Folders of a floor, first to last. What lies beside them is what all of them speak of, or puts them together."""
 
 HOMES = {
-    "moderngl": "renderer", "glcontext": "renderer",
-    "OpenImageIO": "media", "PyOpenColorIO": "media",
+    "moderngl": "renderer",
+    "glcontext": "renderer",
+    "OpenImageIO": "media",
+    "PyOpenColorIO": "media",
     "av": "media",
-    "glfw": "editor", "imgui_bundle": "editor",
+    "glfw": "editor",
+    "imgui_bundle": "editor",
     "typer": "cli",
     "pytest": "suite.plugin",
 }
@@ -82,7 +97,10 @@ def links() -> tuple[tuple[str, str], ...]:
 def test_the_reading_of_imports() -> None:
     code = "import numpy.linalg\nfrom ..errors import A\ndef f():\n from .. import media\n from ...nodes import B"
     assert set(targets(ast.parse(code), "app.compiler")) == {
-        "numpy.linalg", "app.errors", "app.media.__init__", "nodes.__init__",
+        "numpy.linalg",
+        "app.errors",
+        "app.media.__init__",
+        "nodes.__init__",
     }
     assert len(links()) > 50
 
@@ -118,7 +136,8 @@ def test_nodes_import_the_standard_library_and_themselves() -> None:
     wrong = [
         f"{name} imports {target}"
         for name, target in links()
-        if name.startswith("nodes.") and target.split(".")[0] not in {"nodes", *sys.stdlib_module_names}
+        if name.startswith("nodes.")
+        and target.split(".")[0] not in {"nodes", *sys.stdlib_module_names}
         and not (name.startswith("nodes._declare.") and target.split(".")[0] == "msgspec")
     ]
     assert not wrong
@@ -126,7 +145,8 @@ def test_nodes_import_the_standard_library_and_themselves() -> None:
 
 def test_shaders_and_presets_know_nothing_of_the_rest() -> None:
     assert {name for name in MODULES if not name.startswith(("app.", "nodes."))} == {
-        "shaders.__init__", "presets.__init__",
+        "shaders.__init__",
+        "presets.__init__",
     }
     found = imports("shaders.__init__") | imports("presets.__init__")
     assert {name.split(".")[0] for name in found} <= sys.stdlib_module_names
@@ -139,7 +159,8 @@ def test_imports_inside_the_project_are_relative() -> None:
     tops = {"halation", "app", "nodes", "shaders", "presets"}
     assert not [
         f"{name} says from {item.module}"
-        for name in MODULES for item in statements(name)
+        for name in MODULES
+        for item in statements(name)
         if isinstance(item, ast.ImportFrom) and not item.level and (item.module or "").split(".")[0] in tops
     ]
     assert not {f"{name} says import {target}" for name, target in links() if target.split(".")[0] == "halation"}
@@ -153,12 +174,23 @@ def test_a_library_has_one_home(library: str) -> None:
 
 def test_the_editor_works_without_a_window_below_its_panels() -> None:
     drawn = (
-        "theme", "toolkit", "window", "canvas", "code", "curves", "inspector", "viewer", "panels", "timeline", "keys",
+        "theme",
+        "toolkit",
+        "window",
+        "canvas",
+        "code",
+        "curves",
+        "inspector",
+        "viewer",
+        "panels",
+        "timeline",
+        "keys",
     )
     assert not [
         f"{name} imports {target}"
         for name, target in links()
-        if name.startswith("app.editor.") and name.split(".")[2] not in drawn
+        if name.startswith("app.editor.")
+        and name.split(".")[2] not in drawn
         and (target.split(".")[0] in {"glfw", "imgui_bundle"} or target.startswith("app.editor.window."))
         and name != "app.editor.__init__"
     ]

@@ -14,8 +14,19 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 ENTRIES = {
-    ".ci", ".git", ".gitignore", "LICENSE", "README.md", "app", "dev", "docs", "nodes", "presets", "pyproject.toml",
-    "shaders", "tests",
+    ".ci",
+    ".git",
+    ".gitignore",
+    "LICENSE",
+    "README.md",
+    "app",
+    "dev",
+    "docs",
+    "nodes",
+    "presets",
+    "pyproject.toml",
+    "shaders",
+    "tests",
 }
 TEXT = {"", ".py", ".glsl", ".md", ".toml", ".json", ".yml", ".txt"}
 
@@ -140,6 +151,9 @@ def test_no_module_keeps_mutable_state() -> None:
     ]
     assert not found
     assert not [
-        label(path) for path in python_files() if path.relative_to(ROOT).parts[0] in ("app", "nodes")
-        for item in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(item, ast.Global)
+        label(path)
+        for path in python_files()
+        if path.relative_to(ROOT).parts[0] in ("app", "nodes")
+        for item in ast.walk(ast.parse(path.read_text("utf-8")))
+        if isinstance(item, ast.Global)
     ]

@@ -38,8 +38,11 @@ class Built:
         # -S skips site-packages' .pth files, through which an editable installation would leak in.
         path = os.pathsep.join([str(self.target), sysconfig.get_path("purelib"), sysconfig.get_path("platlib")])
         result = subprocess.run(
-            [sys.executable, "-S", "-P", "-c", code], cwd=cwd, env={**os.environ, "PYTHONPATH": path},
-            capture_output=True, text=True,
+            [sys.executable, "-S", "-P", "-c", code],
+            cwd=cwd,
+            env={**os.environ, "PYTHONPATH": path},
+            capture_output=True,
+            text=True,
         )
         assert result.returncode == 0, result.stderr
         return result.stdout

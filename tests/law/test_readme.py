@@ -60,7 +60,8 @@ def test_its_commands_and_exit_codes_exist() -> None:
     for command in sorted(set(re.findall(r"^halation ([\w-]+)", README, re.M))):
         result = subprocess.run(
             [sys.executable, "-c", "from halation.app.cli import main; main()", command, "--help"],
-            capture_output=True, text=True,
+            capture_output=True,
+            text=True,
         )
         assert result.returncode == 0 and result.stdout, (command, result.stderr)
     rows = re.findall(r"^\| (\d+) \|", README, re.M)

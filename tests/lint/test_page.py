@@ -1,6 +1,6 @@
 """docs/checking.md says what is true.
 
-    HALATION_RENEW=1 python -m pytest tests/lint/test_page.py         makes its table of rules anew
+HALATION_RENEW=1 python -m pytest tests/lint/test_page.py         makes its table of rules anew
 """
 
 from __future__ import annotations

@@ -18,8 +18,29 @@ PRESETS = sorted((Path(__file__).parents[2] / "presets").glob("*.json"))
 TEXTS = [path.read_text("utf-8") for path in PRESETS]
 CHECKER = Checker()
 ODD = [
-    None, True, -1, 0, 1e308, 2**70, "", "x", "a.b", "inputs.beauty", "bloom", "group", "/x\\y", "####", "\u0000",
-    "none", "é" * 300, [], [1.0], [0.0] * 9, {}, {"type": "bloom"}, {"type": "group", "graph": {}},
+    None,
+    True,
+    -1,
+    0,
+    1e308,
+    2**70,
+    "",
+    "x",
+    "a.b",
+    "inputs.beauty",
+    "bloom",
+    "group",
+    "/x\\y",
+    "####",
+    "\u0000",
+    "none",
+    "é" * 300,
+    [],
+    [1.0],
+    [0.0] * 9,
+    {},
+    {"type": "bloom"},
+    {"type": "group", "graph": {}},
     {"expression": "1/0"},
 ]
 
@@ -70,7 +91,10 @@ def test_nodes_of_older_versions_are_named() -> None:
     checker = Checker(frozenset({"unbound-input"}))
     checker.types = {**catalogue(), "grade": newer}
     text = dumps(chain(DIM, DIM)).replace('"version": 1', '"version": 2', 1)
-    found = [(one.problem.node, one.line) for one in checker.text(text, "", "").findings
-             if one.problem.rule.name == "old-version"]
+    found = [
+        (one.problem.node, one.line)
+        for one in checker.text(text, "", "").findings
+        if one.problem.rule.name == "old-version"
+    ]
     first = next(number for number, line in enumerate(text.splitlines(), 1) if '"a": {' in line)
     assert [node for node, _ in found] == ["a", "b"] and found[0][1] == first

@@ -31,8 +31,13 @@ def found(graph: Graph) -> list[tuple[str, str]]:
 @pytest.mark.parametrize(
     ("steps", "at"),
     [
-        ((TURN, DIM, MOVE), "c"), ((TURN, DIM, ("saturation", {"saturation": 0.5}), MOVE), "d"), ((HALF, HALF), "b"),
-        ((DOUBLE, DOUBLE), "b"), ((TURN, HALF), "b"), ((HALF, TURN), "b"), ((SOFT, SOFT), "b"),
+        ((TURN, DIM, MOVE), "c"),
+        ((TURN, DIM, ("saturation", {"saturation": 0.5}), MOVE), "d"),
+        ((HALF, HALF), "b"),
+        ((DOUBLE, DOUBLE), "b"),
+        ((TURN, HALF), "b"),
+        ((HALF, TURN), "b"),
+        ((SOFT, SOFT), "b"),
         ((TURN, STILL, DIM, MOVE), "d"),
     ],
 )
@@ -43,8 +48,17 @@ def test_filtered_twice(steps, at) -> None:
 @pytest.mark.parametrize(
     "steps",
     [
-        (TURN, MOVE), (TURN, STILL, MOVE), (TURN, DIM, WRAPPED), (TURN, DIM, NEAREST), (HALF, DOUBLE), (DOUBLE, HALF),
-        (TURN, DOUBLE), (TURN, ("vignette", {"amount": 0.5}), MOVE), (SOFT, DIM, SOFT), (TURN, SOFT, MOVE), (DIM, MOVE),
+        (TURN, MOVE),
+        (TURN, STILL, MOVE),
+        (TURN, DIM, WRAPPED),
+        (TURN, DIM, NEAREST),
+        (HALF, DOUBLE),
+        (DOUBLE, HALF),
+        (TURN, DOUBLE),
+        (TURN, ("vignette", {"amount": 0.5}), MOVE),
+        (SOFT, DIM, SOFT),
+        (TURN, SOFT, MOVE),
+        (DIM, MOVE),
     ],
 )
 def test_filtered_once_or_meant(steps) -> None:
@@ -78,7 +92,10 @@ def test_the_compiler_says_the_same_of_transforms() -> None:
 @pytest.mark.parametrize(
     ("steps", "expected"),
     [
-        ((TONE, BLOOM), "b"), ((TONE, DIM, SOFT, BLOOM), "d"), ((TONE, TONE), "b"), ((TONE, BLOOM, BLOOM), "b"),
+        ((TONE, BLOOM), "b"),
+        ((TONE, DIM, SOFT, BLOOM), "d"),
+        ((TONE, TONE), "b"),
+        ((TONE, BLOOM, BLOOM), "b"),
         ((("local_tone_map", {}), ("depth_of_field", {})), "b"),
     ],
 )
@@ -92,7 +109,9 @@ def test_light_behind_a_tone_map(steps, expected) -> None:
 @pytest.mark.parametrize(
     "steps",
     [
-        (BLOOM, TONE), (TONE, DIM, ("saturation", {"saturation": 0.5})), (TONE, ("film_grain", {})),
+        (BLOOM, TONE),
+        (TONE, DIM, ("saturation", {"saturation": 0.5})),
+        (TONE, ("film_grain", {})),
         (DIM, BLOOM),
     ],
 )
@@ -118,9 +137,20 @@ def test_light_of_a_file_of_bytes() -> None:
 @pytest.mark.parametrize(
     ("layer", "is_data"),
     [
-        ("Depth", True), ("ViewLayer.Normal", True), ("Depth.Z", True), ("CryptoObject00", True), ("object_id", True),
-        ("N", True), ("P", True), ("Combined", False), ("", False), ("Diffuse", False), ("Emission", False),
-        ("Normal light", False), ("AmbientOcclusion", False), ("Position light.rgb", False),
+        ("Depth", True),
+        ("ViewLayer.Normal", True),
+        ("Depth.Z", True),
+        ("CryptoObject00", True),
+        ("object_id", True),
+        ("N", True),
+        ("P", True),
+        ("Combined", False),
+        ("", False),
+        ("Diffuse", False),
+        ("Emission", False),
+        ("Normal light", False),
+        ("AmbientOcclusion", False),
+        ("Position light.rgb", False),
     ],
 )
 def test_data_where_color_is_wanted(layer, is_data) -> None:
@@ -155,9 +185,15 @@ def test_unused() -> None:
 @pytest.mark.parametrize(
     ("path", "rule"),
     [
-        ("/shots/a.exr", "absolute-path"), ("C:/shots/a.exr", "absolute-path"), (r"C:\shots\a.exr", "absolute-path"),
-        (r"\\server\shots\a.exr", "absolute-path"), (r"shots\a.exr", "backslash-path"), ("shots/a.exr", ""),
-        ("../a.####.exr", ""), ("", ""), ("c.exr", ""),
+        ("/shots/a.exr", "absolute-path"),
+        ("C:/shots/a.exr", "absolute-path"),
+        (r"C:\shots\a.exr", "absolute-path"),
+        (r"\\server\shots\a.exr", "absolute-path"),
+        (r"shots\a.exr", "backslash-path"),
+        ("shots/a.exr", ""),
+        ("../a.####.exr", ""),
+        ("", ""),
+        ("c.exr", ""),
     ],
 )
 def test_paths(path, rule) -> None:
@@ -184,7 +220,8 @@ def test_every_fault_of_reading_has_a_rule() -> None:
     named = [
         keyword.value.value
         for path in (ROOT / "app" / "document").rglob("*.py")
-        for call in ast.walk(ast.parse(path.read_text("utf-8"))) if isinstance(call, ast.Call)
+        for call in ast.walk(ast.parse(path.read_text("utf-8")))
+        if isinstance(call, ast.Call)
         for keyword in call.keywords
         if keyword.arg == "rule" and isinstance(keyword.value, ast.Constant)
     ]

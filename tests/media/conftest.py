@@ -15,8 +15,14 @@ Make = Callable[..., Path]
 
 
 def made(
-    path: Path, array: Array, *, format: str = "float", names: tuple[str, ...] = (), at: tuple[int, int] = (0, 0),
-    display: tuple[int, int, int, int] | None = None, attributes: Mapping[str, Any] | None = None,
+    path: Path,
+    array: Array,
+    *,
+    format: str = "float",
+    names: tuple[str, ...] = (),
+    at: tuple[int, int] = (0, 0),
+    display: tuple[int, int, int, int] | None = None,
+    attributes: Mapping[str, Any] | None = None,
 ) -> Path:
     """Write [h, w, c]; `at` is where the data starts, `display` the display window as x, y, width, height."""
     height, width, channels = array.shape

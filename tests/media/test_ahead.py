@@ -55,7 +55,9 @@ def test_an_input_asks_for_a_layer_that_the_file_may_lack(picture: str) -> None:
 
 def test_files_of_the_graph_are_beside_it(picture: str) -> None:
     made = Graph(
-        inputs={"a": Input(file="picture.exr")}, outputs={"a": Output()}, folder=str(Path(picture).parent),
+        inputs={"a": Input(file="picture.exr")},
+        outputs={"a": Output()},
+        folder=str(Path(picture).parent),
         links={Port("outputs", "a"): Port("inputs", "a")},
     )
     assert Ahead(made, {}).take((picture, "", *WANTED)) is not None

@@ -172,7 +172,8 @@ def test_a_projection_in_the_header_is_the_camera(name: str, unit: bool) -> None
 @pytest.mark.parametrize("ahead", [1.0, -1.0], ids=["left-handed", "right-handed"])
 def test_a_place_and_a_width_in_the_header_are_the_camera(ahead: float) -> None:
     attributes = {
-        "worldToCamera": row_vectors(to_camera(CAMERA, ahead)), "screenWindowWidth": 1.0 / FOCAL[0],
+        "worldToCamera": row_vectors(to_camera(CAMERA, ahead)),
+        "screenWindowWidth": 1.0 / FOCAL[0],
         "PixelAspectRatio": 1.0,
     }
     found = header_camera(attributes, (WIDTH, HEIGHT))
@@ -182,8 +183,12 @@ def test_a_place_and_a_width_in_the_header_are_the_camera(ahead: float) -> None:
 @pytest.mark.parametrize(
     "attributes",
     [
-        {}, {"worldToNDC": "no"}, {"worldToNDC": (0.0,) * 16}, {"worldToNDC": (math.nan,) * 16},
-        {"worldToNDC": row_vectors(np.eye(4))}, {"worldToCamera": row_vectors(to_camera(CAMERA, 1.0))},
+        {},
+        {"worldToNDC": "no"},
+        {"worldToNDC": (0.0,) * 16},
+        {"worldToNDC": (math.nan,) * 16},
+        {"worldToNDC": row_vectors(np.eye(4))},
+        {"worldToCamera": row_vectors(to_camera(CAMERA, 1.0))},
         {"worldToCamera": (0.0,) * 16, "screenWindowWidth": 2.0},
     ],
     ids=["none", "text", "zero", "nan", "orthographic", "no field of view", "zero place"],

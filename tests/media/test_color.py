@@ -109,9 +109,13 @@ def test_wide_gamut_becomes_rec709(make: Make, rng: Random, attributes: dict[str
     colors = rng.random((8, 8, 3), np.float32)
     array = read(make("a.exr", colors, attributes=attributes), "", Kind.IMAGE).array[..., :3]
     # AP1 to Rec.709 with the Bradford adaptation of D60 to D65 (ACES, TB-2018-001)
-    matrix = np.array([
-        [1.70505, -0.62179, -0.08326], [-0.13026, 1.14080, -0.01055], [-0.02400, -0.12897, 1.15297],
-    ])
+    matrix = np.array(
+        [
+            [1.70505, -0.62179, -0.08326],
+            [-0.13026, 1.14080, -0.01055],
+            [-0.02400, -0.12897, 1.15297],
+        ]
+    )
     np.testing.assert_allclose(array, colors @ matrix.T, atol=2e-5)
 
 

@@ -74,6 +74,7 @@ def test_the_peak_of_psnr_is_that_of_opencv_where_pictures_end_at_one(rng: np.ra
 
 def wang(x: Array, y: Array, span: float) -> float:
     """SSIM of one channel by scipy's filter, as scikit-image documents it for the numbers of Wang et al."""
+
     def blur(item: Array) -> Array:
         return gaussian_filter(item.astype(np.float64), 1.5, truncate=3.5)
 
@@ -96,8 +97,10 @@ def test_ssim_is_that_of_the_paper(rng: np.random.Generator, top: float) -> None
 
 def test_ssim_of_linear_light_is_that_of_its_encoding(rng: np.random.Generator) -> None:
     expected, actual = scene(rng), scene(rng)
-    processor = [oiio.ImageBufAlgo.colorconvert(buffer(item), "lin_rec709_scene", "srgb_rec709_scene")
-                 for item in (actual, expected)]
+    processor = [
+        oiio.ImageBufAlgo.colorconvert(buffer(item), "lin_rec709_scene", "srgb_rec709_scene")
+        for item in (actual, expected)
+    ]
     encoded = [item.get_pixels(oiio.FLOAT) for item in processor]
     assert ssim(actual, expected) == pytest.approx(ssim(*encoded, linear=False), abs=1e-5)
 
@@ -115,10 +118,16 @@ def test_flip_is_openimageios(rng: np.random.Generator) -> None:
     expected = scene(rng, top=3.0)
     actual = nudged(rng, expected)
     for linear, hdr in ((True, 1), (False, 0)):
-        pair = (expected, actual) if linear else [
-            oiio.ImageBufAlgo.colorconvert(buffer(np.clip(item, 0, 1)), "srgb_rec709_scene", "lin_rec709_scene")
-            .get_pixels(oiio.FLOAT) for item in (expected, actual)
-        ]
+        pair = (
+            (expected, actual)
+            if linear
+            else [
+                oiio.ImageBufAlgo.colorconvert(
+                    buffer(np.clip(item, 0, 1)), "srgb_rec709_scene", "lin_rec709_scene"
+                ).get_pixels(oiio.FLOAT)
+                for item in (expected, actual)
+            ]
+        )
         reference = oiio.ImageBufAlgo.FLIP_diff(*map(buffer, pair), hdr=hdr)
         mean = reference.spec().getattribute("FLIP:meanerror")
         assert flip(actual, expected, linear=linear) == pytest.approx(mean, abs=2e-5)
@@ -210,9 +219,7 @@ def test_measures_stay_within_their_bounds(pair: tuple[Array, Array]) -> None:
     """Nothing warns (the tests make that an error), whatever the numbers; both ways round are the same."""
     found, back = compare(*pair), compare(*pair[::-1])
     assert 0.0 <= found.failing <= 1.0 and 0.0 <= found.flip <= 1.0 + 1e-6 and -1.0 - 1e-6 <= found.ssim <= 1.0 + 1e-6
-    assert (found.max_abs, found.rms, found.psnr, found.failing) == (
-        back.max_abs, back.rms, back.psnr, back.failing
-    )
+    assert (found.max_abs, found.rms, found.psnr, found.failing) == (back.max_abs, back.rms, back.psnr, back.failing)
     assert found.rms <= found.max_abs
     light = amplified(*pair)
     assert light.shape == (*pair[0].shape[:2], 3) and light.min() >= 0.0 and light.max() <= 1.0

@@ -102,10 +102,14 @@ def subsampled(path: Path) -> Path:
         struct.pack("<ii", 20000630, 2)
         + attribute("channels", "chlist", channel("BY", 2) + channel("RY", 2) + channel("Y", 1) + b"\0")
         + attribute("compression", "compression", b"\0")
-        + attribute("dataWindow", "box2i", box) + attribute("displayWindow", "box2i", box)
-        + attribute("lineOrder", "lineOrder", b"\0") + attribute("pixelAspectRatio", "float", struct.pack("<f", 1))
+        + attribute("dataWindow", "box2i", box)
+        + attribute("displayWindow", "box2i", box)
+        + attribute("lineOrder", "lineOrder", b"\0")
+        + attribute("pixelAspectRatio", "float", struct.pack("<f", 1))
         + attribute("screenWindowCenter", "v2f", struct.pack("<ff", 0, 0))
-        + attribute("screenWindowWidth", "float", struct.pack("<f", 1)) + b"\0" + bytes(400)
+        + attribute("screenWindowWidth", "float", struct.pack("<f", 1))
+        + b"\0"
+        + bytes(400)
     )
     return path
 

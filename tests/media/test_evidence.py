@@ -28,8 +28,10 @@ def depth_of(view: Seen, kind: str) -> np.ndarray:
     """What a renderer of that habit writes, sky included, in single precision."""
     with np.errstate(divide="ignore"):
         made = {
-            "planar": np.where(view.hit, view.depth, 1e10), "radial": np.where(view.hit, view.distance, np.inf),
-            "inverse": np.where(view.hit, 1.0 / view.depth, 0.0), "negative": np.where(view.hit, -view.depth, -np.inf),
+            "planar": np.where(view.hit, view.depth, 1e10),
+            "radial": np.where(view.hit, view.distance, np.inf),
+            "inverse": np.where(view.hit, 1.0 / view.depth, 0.0),
+            "negative": np.where(view.hit, -view.depth, -np.inf),
             "normalized": np.where(view.hit, (view.depth - NEAR) / (FAR - NEAR), 1.0),
             "inverted": np.where(view.hit, np.clip((12.0 - view.depth) / 8.0, 0.0, 1.0), 0.0),
         }[kind]
@@ -51,7 +53,8 @@ def test_positions_tell_the_kind_of_depth(kind: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "scale", "offset"), [("normalized", FAR - NEAR, NEAR), ("inverted", -8.0, 12.0)],
+    ("kind", "scale", "offset"),
+    [("normalized", FAR - NEAR, NEAR), ("inverted", -8.0, 12.0)],
 )
 def test_positions_tell_what_0_and_1_stand_for(kind: str, scale: float, offset: float) -> None:
     found = evidence.depth_by_position(depth_of(SEEN, kind), SEEN.position, CAMERA)
@@ -76,8 +79,13 @@ def test_planes_tell_the_kind_of_depth_without_positions(kind: str) -> None:
 @pytest.mark.parametrize(
     "depth",
     [
-        np.zeros((40, 60)), np.full((40, 60), 3.0), np.full((40, 60), np.nan), np.ones((1, 1)), np.ones((2, 50)),
-        np.random.default_rng(6).random((40, 60)), depth_of(WIDE, "normalized"),
+        np.zeros((40, 60)),
+        np.full((40, 60), 3.0),
+        np.full((40, 60), np.nan),
+        np.ones((1, 1)),
+        np.ones((2, 50)),
+        np.random.default_rng(6).random((40, 60)),
+        depth_of(WIDE, "normalized"),
     ],
     ids=["zero", "constant", "nan", "one pixel", "two rows", "noise", "normalized"],
 )
@@ -147,8 +155,13 @@ def motion() -> np.ndarray:
 
 @pytest.mark.parametrize("sign", [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)])
 @pytest.mark.parametrize(
-    ("unit", "words"), [((1.0, 1.0), "in pixels,"), ((WIDTH, HEIGHT), "in pictures"),
-                        ((WIDTH / 2, HEIGHT / 2), "half pictures"), ((2.0, 2.0), "in pixels times 0.5")],
+    ("unit", "words"),
+    [
+        ((1.0, 1.0), "in pixels,"),
+        ((WIDTH, HEIGHT), "in pictures"),
+        ((WIDTH / 2, HEIGHT / 2), "half pictures"),
+        ((2.0, 2.0), "in pixels times 0.5"),
+    ],
 )
 def test_two_cameras_tell_motion(sign: tuple[float, float], unit: tuple[float, float], words: str) -> None:
     stored = (motion() * sign / unit).astype(np.float32)
@@ -208,8 +221,10 @@ def test_whatever_numbers_there_are_nothing_breaks(seed: int) -> None:
 
     depth, position, velocity = numbers(1)[..., 0], numbers(3), numbers(4)
     found = [
-        evidence.depth_by_position(depth, position, CAMERA), evidence.depth_alone(depth),
-        evidence.normal_by_position(numbers(3), position, CAMERA), evidence.position_space(CAMERA, position),
+        evidence.depth_by_position(depth, position, CAMERA),
+        evidence.depth_alone(depth),
+        evidence.normal_by_position(numbers(3), position, CAMERA),
+        evidence.position_space(CAMERA, position),
         evidence.velocity_by_cameras(velocity, position, CAMERA, BEFORE),
         evidence.velocity_by_pictures(velocity, numbers(3), numbers(3)),
     ]
@@ -225,16 +240,23 @@ def test_whatever_numbers_there_are_nothing_breaks(seed: int) -> None:
 @pytest.mark.parametrize(
     ("role", "name", "renderer", "kind"),
     [
-        (Role.DEPTH, "ViewLayer.Depth", Renderer.BLENDER, "planar"), (Role.DEPTH, "hitdist", Renderer.KARMA, "radial"),
-        (Role.DEPTH, "Pz", Renderer.KARMA, "negative"), (Role.DEPTH, "depth", Renderer.NUKE, "inverse"),
-        (Role.DEPTH, "VRayZDepth", Renderer.VRAY, ""), (Role.DEPTH, "dd", Renderer.MITSUBA, "radial"),
-        (Role.DEPTH, "Z", None, "planar"), (Role.DEPTH, "hitdist", None, "radial"),
-        (Role.VELOCITY, "forward", None, "to_next"), (Role.POSITION, "P", None, "world"),
+        (Role.DEPTH, "ViewLayer.Depth", Renderer.BLENDER, "planar"),
+        (Role.DEPTH, "hitdist", Renderer.KARMA, "radial"),
+        (Role.DEPTH, "Pz", Renderer.KARMA, "negative"),
+        (Role.DEPTH, "depth", Renderer.NUKE, "inverse"),
+        (Role.DEPTH, "VRayZDepth", Renderer.VRAY, ""),
+        (Role.DEPTH, "dd", Renderer.MITSUBA, "radial"),
+        (Role.DEPTH, "Z", None, "planar"),
+        (Role.DEPTH, "hitdist", None, "radial"),
+        (Role.VELOCITY, "forward", None, "to_next"),
+        (Role.POSITION, "P", None, "world"),
         (Role.NORMAL, "N", Renderer.ARNOLD, "world"),
-        (Role.NORMAL, "Ng_camera", Renderer.KARMA, "camera"), (Role.NORMAL, "Nn", Renderer.RENDERMAN, "camera_ahead"),
-        (Role.POSITION, "__Pworld", Renderer.RENDERMAN, "world"), (Role.VELOCITY, "Vector", Renderer.BLENDER,
-                                                                   "from_previous"),
-        (Role.VELOCITY, "forward", Renderer.NUKE, "to_next"), (Role.VELOCITY, "motionvector", Renderer.ARNOLD, ""),
+        (Role.NORMAL, "Ng_camera", Renderer.KARMA, "camera"),
+        (Role.NORMAL, "Nn", Renderer.RENDERMAN, "camera_ahead"),
+        (Role.POSITION, "__Pworld", Renderer.RENDERMAN, "world"),
+        (Role.VELOCITY, "Vector", Renderer.BLENDER, "from_previous"),
+        (Role.VELOCITY, "forward", Renderer.NUKE, "to_next"),
+        (Role.VELOCITY, "motionvector", Renderer.ARNOLD, ""),
     ],
 )
 def test_habits_of_renderers(role: Role, name: str, renderer: Renderer | None, kind: str) -> None:

@@ -23,11 +23,20 @@ Make = Callable[..., Path]
 FUZZER = Path(__file__).with_name("fuzzed.py")
 COPIES = 25
 FORMATS = {
-    "zip.exr": ("half", {"compression": "zip"}), "piz.exr": ("half", {"compression": "piz"}),
-    "b44.exr": ("half", {"compression": "b44"}), "dwaa.exr": ("half", {"compression": "dwaa"}),
-    "a.tif": ("uint8", {"compression": "lzw"}), "f.tif": ("float", {"compression": "zip"}), "a.png": ("uint8", {}),
-    "a16.png": ("uint16", {}), "a.jpg": ("uint8", {}), "a.hdr": ("float", {}), "a.dpx": ("uint16", {}),
-    "a.webp": ("uint8", {}), "a.tga": ("uint8", {}), "a.bmp": ("uint8", {}),
+    "zip.exr": ("half", {"compression": "zip"}),
+    "piz.exr": ("half", {"compression": "piz"}),
+    "b44.exr": ("half", {"compression": "b44"}),
+    "dwaa.exr": ("half", {"compression": "dwaa"}),
+    "a.tif": ("uint8", {"compression": "lzw"}),
+    "f.tif": ("float", {"compression": "zip"}),
+    "a.png": ("uint8", {}),
+    "a16.png": ("uint16", {}),
+    "a.jpg": ("uint8", {}),
+    "a.hdr": ("float", {}),
+    "a.dpx": ("uint16", {}),
+    "a.webp": ("uint8", {}),
+    "a.tga": ("uint8", {}),
+    "a.bmp": ("uint8", {}),
 }
 
 
@@ -43,6 +52,7 @@ def test_damaged_pictures_are_read_or_refused(make: Make, tmp_path: Path) -> Non
 
 def png(path: Path, width: int, height: int) -> Path:
     """A black picture that is as small as its size allows."""
+
     def chunk(name: bytes, data: bytes) -> bytes:
         return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
 
@@ -82,10 +92,26 @@ def test_more_than_the_machine_holds(tmp_path: Path, monkeypatch: pytest.MonkeyP
         media.read(path, "", Kind.IMAGE)
 
 
-@pytest.mark.parametrize("name", [
-    "two words.png", "it's \"quoted\".png", "new\nline.png", "tab\t.png", "🎬 фильм 電影.png", "-rf.png", "%s%n.png",
-    "$HOME.png", "a:b.png", "#.png", "x" * 200 + ".png", "\u202egnp.png", "é.png", "e\u0301.png", ".png.png",
-])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "two words.png",
+        'it\'s "quoted".png',
+        "new\nline.png",
+        "tab\t.png",
+        "🎬 фильм 電影.png",
+        "-rf.png",
+        "%s%n.png",
+        "$HOME.png",
+        "a:b.png",
+        "#.png",
+        "x" * 200 + ".png",
+        "\u202egnp.png",
+        "é.png",
+        "e\u0301.png",
+        ".png.png",
+    ],
+)
 def test_odd_names(tmp_path: Path, name: str) -> None:
     picture = np.full((4, 6, 4), 0.5, np.float32)
     path = tmp_path / name

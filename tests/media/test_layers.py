@@ -47,8 +47,18 @@ def test_one_part_of_blender_4() -> None:
     found = info(SINGLE)
     layers = {layer.name: layer for layer in found.layers}
     assert [*layers] == [
-        "Combined", "CryptoObject00", "CryptoObject01", "CryptoObject02", "Depth", "DiffCol", "Emit", "IndexOB",
-        "Noisy Image", "Normal", "Position", "Vector",
+        "Combined",
+        "CryptoObject00",
+        "CryptoObject01",
+        "CryptoObject02",
+        "Depth",
+        "DiffCol",
+        "Emit",
+        "IndexOB",
+        "Noisy Image",
+        "Normal",
+        "Position",
+        "Vector",
     ]
     assert {layer.part for layer in found.layers} == {0}
     assert [layer.first for layer in found.layers] == [0, 4, 8, 12, 16, 17, 20, 23, 24, 28, 31, 34]
@@ -59,9 +69,18 @@ def test_one_part_of_blender_4() -> None:
 @pytest.mark.parametrize(
     ("name", "layer"),
     [
-        ("", "Combined"), ("Combined", "Combined"), ("combined", "Combined"), ("ViewLayer.Combined", "Combined"),
-        ("Depth", "Depth"), ("Depth.Z", "Depth.Z"), ("Z", "Depth"), ("z", "Depth"), ("viewlayer.depth.z", "Depth.Z"),
-        ("noisy_image", "Noisy Image"), ("Position.Z", "Position.Z"), ("crypto-object-01", "CryptoObject01"),
+        ("", "Combined"),
+        ("Combined", "Combined"),
+        ("combined", "Combined"),
+        ("ViewLayer.Combined", "Combined"),
+        ("Depth", "Depth"),
+        ("Depth.Z", "Depth.Z"),
+        ("Z", "Depth"),
+        ("z", "Depth"),
+        ("viewlayer.depth.z", "Depth.Z"),
+        ("noisy_image", "Noisy Image"),
+        ("Position.Z", "Position.Z"),
+        ("crypto-object-01", "CryptoObject01"),
     ],
 )
 def test_names_that_people_type(path: Path, name: str, layer: str) -> None:
@@ -110,8 +129,12 @@ def test_channels_in_natural_order(channels: tuple[str, ...], expected: dict[str
 def test_the_depth_of_a_view_is_a_layer_of_its_own() -> None:
     stereo = header(one(*"ABGRZ", *(f"left.{letter}" for letter in "ABGRZ"), "forward.u", "forward.v", "st.u", "st.w"))
     assert {layer.name: (layer.indices, layer.data) for layer in stereo.layers} == {
-        "RGBA": ((3, 2, 1, 0), False), "Z": ((4,), True), "left": ((8, 7, 6, 5), False), "left.Z": ((9,), True),
-        "forward": ((10, 11), True), "st": ((12, 13), True),
+        "RGBA": ((3, 2, 1, 0), False),
+        "Z": ((4,), True),
+        "left": ((8, 7, 6, 5), False),
+        "left.Z": ((9,), True),
+        "forward": ((10, 11), True),
+        "st": ((12, 13), True),
     }
     assert find_layer(stereo, "left.z").indices == (9,)
 
@@ -119,7 +142,10 @@ def test_the_depth_of_a_view_is_a_layer_of_its_own() -> None:
 def test_parts_name_channels_that_have_no_prefix() -> None:
     parts = [one(*"RGB", name="left", index=0), one(*"RGBZ", name="right", index=1), one("Z", index=2)]
     assert [(layer.name, layer.part) for layer in layers_of(parts)] == [
-        ("left", 0), ("right", 1), ("right.Z", 1), ("Z", 2),
+        ("left", 0),
+        ("right", 1),
+        ("right.Z", 1),
+        ("Z", 2),
     ]
     same = [one("R", "G", "B", index=0), one("R", "G", "B", index=1)]
     assert [layer.name for layer in layers_of(same)] == ["part0.RGB", "part1.RGB"]

@@ -19,7 +19,10 @@ LETTERS = {"rgb": "RGB", "rgba": "RGBA", "xyz": "XYZ", "z": "Z", "x": "X", "uv":
 
 
 def written(
-    path: Path, parts: Mapping[str, tuple[str, ...]], attributes: Mapping[str, Any], type: str = "float",
+    path: Path,
+    parts: Mapping[str, tuple[str, ...]],
+    attributes: Mapping[str, Any],
+    type: str = "float",
     views: Sequence[str | None] = (),
 ) -> Survey:
     """A file of black parts with these channels, straight from OpenImageIO."""
@@ -117,21 +120,48 @@ def test_every_scheme(tmp_path: Path, renderer: Renderer, marks: dict[str, Any],
 
 
 LONG = {
-    "Combined": "rgba", "Noisy Image": "rgba", "Depth": "z", "Normal": "xyz", "Vector": "xyzw", "Object Index": "x",
-    "Material Index": "x", "Diffuse Color": "rgb", "Diffuse Direct": "rgb", "Glossy Indirect": "rgb",
-    "Transmission Color": "rgb", "Ambient Occlusion": "rgb", "Environment": "rgb", "Denoising Depth": "z",
-    "Denoising Normal": "xyz", "Denoising Albedo": "rgb",
+    "Combined": "rgba",
+    "Noisy Image": "rgba",
+    "Depth": "z",
+    "Normal": "xyz",
+    "Vector": "xyzw",
+    "Object Index": "x",
+    "Material Index": "x",
+    "Diffuse Color": "rgb",
+    "Diffuse Direct": "rgb",
+    "Glossy Indirect": "rgb",
+    "Transmission Color": "rgb",
+    "Ambient Occlusion": "rgb",
+    "Environment": "rgb",
+    "Denoising Depth": "z",
+    "Denoising Normal": "xyz",
+    "Denoising Albedo": "rgb",
 }
 
 
 def test_blender_5_in_parts(tmp_path: Path) -> None:
-    parts = {f"ViewLayer.{name}": tuple(f"ViewLayer.{name}.{letter}" for letter in LETTERS[kind])
-             for name, kind in LONG.items()}
+    parts = {
+        f"ViewLayer.{name}": tuple(f"ViewLayer.{name}.{letter}" for letter in LETTERS[kind])
+        for name, kind in LONG.items()
+    }
     found = written(tmp_path / "x.exr", parts, {"Software": "Blender 5.0.1"})
     assert list(roles(found).values()) == [
-        "beauty", "noisy_beauty", "depth", "normal", "velocity", "object_id", "material_id", "albedo",
-        "diffuse_direct", "specular_indirect", "transmission_color", "occlusion", "environment", "denoise_depth",
-        "denoise_normal", "denoise_albedo",
+        "beauty",
+        "noisy_beauty",
+        "depth",
+        "normal",
+        "velocity",
+        "object_id",
+        "material_id",
+        "albedo",
+        "diffuse_direct",
+        "specular_indirect",
+        "transmission_color",
+        "occlusion",
+        "environment",
+        "denoise_depth",
+        "denoise_normal",
+        "denoise_albedo",
     ]
     assert found.layer(Role.DEPTH).part == 2 and found.rivals == {}
 
@@ -148,7 +178,15 @@ def test_real_renders(name: str) -> None:
     found = survey(ROOT / name)
     assert found.maker.renderer is Renderer.BLENDER
     assert {role.value for role in found.roles} == {
-        "beauty", "noisy_beauty", "depth", "position", "normal", "velocity", "object_id", "albedo", "emission",
+        "beauty",
+        "noisy_beauty",
+        "depth",
+        "position",
+        "normal",
+        "velocity",
+        "object_id",
+        "albedo",
+        "emission",
         "cryptomatte_object",
     }
     assert all(item.role for item in found.passes) and found.rivals == {}
@@ -174,12 +212,23 @@ def test_a_name_that_renderers_use_differently_is_left_open(tmp_path: Path) -> N
 @pytest.mark.parametrize(
     ("layer", "role"),
     [
-        ("worldNormals:xyz", "normal"), ("Pos_World:xyz", "position"), ("motion_vec:xy", "velocity"),
-        ("linear_depth:y", "depth"), ("z-depth:r", "depth"), ("baseColor:rgb", "albedo"), ("whitebarmask:r", "matte"),
-        ("mask1:r", "matte"), ("foo:z", "depth"), ("subsurface_scattering:rgb", "subsurface"),
-        ("indirect_specular:rgb", "specular_indirect"), ("incandescence:rgb", "emission"), ("N_denoised:xyz",
-                                                                                             "denoise_normal"),
-        ("my_crypto_thing:rgb", ""), ("velocity3d:xyz", "motion"), ("Camera.Depth:z", "depth"), ("qwerty:rgb", ""),
+        ("worldNormals:xyz", "normal"),
+        ("Pos_World:xyz", "position"),
+        ("motion_vec:xy", "velocity"),
+        ("linear_depth:y", "depth"),
+        ("z-depth:r", "depth"),
+        ("baseColor:rgb", "albedo"),
+        ("whitebarmask:r", "matte"),
+        ("mask1:r", "matte"),
+        ("foo:z", "depth"),
+        ("subsurface_scattering:rgb", "subsurface"),
+        ("indirect_specular:rgb", "specular_indirect"),
+        ("incandescence:rgb", "emission"),
+        ("N_denoised:xyz", "denoise_normal"),
+        ("my_crypto_thing:rgb", ""),
+        ("velocity3d:xyz", "motion"),
+        ("Camera.Depth:z", "depth"),
+        ("qwerty:rgb", ""),
     ],
 )
 def test_names_are_read_like_a_person_would(tmp_path: Path, layer: str, role: str) -> None:
@@ -190,8 +239,11 @@ def test_names_are_read_like_a_person_would(tmp_path: Path, layer: str, role: st
 @pytest.mark.parametrize(
     ("layer", "candidates"),
     [
-        ("foo:xyz", {Role.NORMAL, Role.POSITION, Role.VELOCITY}), ("foo:uv", {Role.UV, Role.VELOCITY}),
-        ("light_position:xyz", {Role.POSITION}), ("depth_of_field_depth:r", {Role.DEPTH}), ("foo:rgb", set()),
+        ("foo:xyz", {Role.NORMAL, Role.POSITION, Role.VELOCITY}),
+        ("foo:uv", {Role.UV, Role.VELOCITY}),
+        ("light_position:xyz", {Role.POSITION}),
+        ("depth_of_field_depth:r", {Role.DEPTH}),
+        ("foo:rgb", set()),
     ],
 )
 def test_what_only_looks_like_something_is_listed(tmp_path: Path, layer: str, candidates: set[Role]) -> None:
@@ -214,8 +266,11 @@ def test_the_better_name_wins(tmp_path: Path) -> None:
 
 
 def test_of_view_layers_that_of_the_picture_counts(tmp_path: Path) -> None:
-    found = single(tmp_path / "x.exr", "Main.Combined:rgba Main.Depth:z Other.Combined:rgba Other.Depth:z",
-                   {"Software": "Blender 4.2"})
+    found = single(
+        tmp_path / "x.exr",
+        "Main.Combined:rgba Main.Depth:z Other.Combined:rgba Other.Depth:z",
+        {"Software": "Blender 4.2"},
+    )
     assert found.layer(Role.BEAUTY).full == "Main.Combined" and found.layer(Role.DEPTH).full == "Main.Depth"
 
 
@@ -236,8 +291,15 @@ def test_views_of_one_part(tmp_path: Path, named: bool) -> None:
     attributes = {"multiView": ("string[2]", ("right", "left"))} if named else {}
     found = single(tmp_path / "x.exr", STEREO.replace("mask", "K"), attributes)
     assert roles(found) == {
-        "RGBA": "beauty", "Z": "depth", "disparityL": "", "forward.left": "velocity", "forward.right": "velocity",
-        "left": "beauty", "left.Z": "depth", "bars.left": "", "bars.right": "",
+        "RGBA": "beauty",
+        "Z": "depth",
+        "disparityL": "",
+        "forward.left": "velocity",
+        "forward.right": "velocity",
+        "left": "beauty",
+        "left.Z": "depth",
+        "bars.left": "",
+        "bars.right": "",
     }
     assert found.layer(Role.BEAUTY).name == "RGBA" and found.layer(Role.DEPTH).name == "Z"
     motion = found.layer(Role.VELOCITY)
@@ -247,8 +309,12 @@ def test_views_of_one_part(tmp_path: Path, named: bool) -> None:
 def test_views_of_parts(tmp_path: Path) -> None:
     """The same image in parts, each of which names its view; only disparity has none."""
     parts = {
-        "rgba_right": tuple("RGBA"), "depth_left": ("Z",), "forward_left": ("forward.u", "forward.v"),
-        "rgba_left": tuple("RGBA"), "depth_right": ("Z",), "forward_right": ("forward.u", "forward.v"),
+        "rgba_right": tuple("RGBA"),
+        "depth_left": ("Z",),
+        "forward_left": ("forward.u", "forward.v"),
+        "rgba_left": tuple("RGBA"),
+        "depth_right": ("Z",),
+        "forward_right": ("forward.u", "forward.v"),
         "disparityL": ("disparityL.x", "disparityL.y"),
     }
     views = ["right", "left", "left", "left", "right", "right", None]
@@ -286,11 +352,28 @@ def test_a_name_has_one_role_in_a_table(renderer: Renderer) -> None:
 
 def test_marks_do_not_fit_other_headers() -> None:
     lines = (
-        "Software=Blender 5.0.1", "arnold/version=7", "vrayInfo/x=1", "husk:x=1", "PRManVersion=26", "rs/x=1",
-        "generatedBy=Mitsuba 3", "nuke/version=15", "Software=OpenImageIO 3.2", "Software=Adobe Photoshop",
+        "Software=Blender 5.0.1",
+        "arnold/version=7",
+        "vrayInfo/x=1",
+        "husk:x=1",
+        "PRManVersion=26",
+        "rs/x=1",
+        "generatedBy=Mitsuba 3",
+        "nuke/version=15",
+        "Software=OpenImageIO 3.2",
+        "Software=Adobe Photoshop",
     )
     fits = [[name for name, scheme in SCHEMES.items() if scheme.marks.fullmatch(line)] for line in lines]
-    assert fits == [[renderer] for renderer in (
-        Renderer.BLENDER, Renderer.ARNOLD, Renderer.VRAY, Renderer.KARMA, Renderer.RENDERMAN, Renderer.REDSHIFT,
-        Renderer.MITSUBA, Renderer.NUKE,
-    )] + [[], []]
+    assert fits == [
+        [renderer]
+        for renderer in (
+            Renderer.BLENDER,
+            Renderer.ARNOLD,
+            Renderer.VRAY,
+            Renderer.KARMA,
+            Renderer.RENDERMAN,
+            Renderer.REDSHIFT,
+            Renderer.MITSUBA,
+            Renderer.NUKE,
+        )
+    ] + [[], []]

@@ -32,9 +32,12 @@ def test_half_color_stays_half() -> None:
 @pytest.mark.parametrize(
     ("layer", "kind", "width", "part", "channels"),
     [
-        ("Depth", Kind.FIELD, 1, 1, (0, 1)), ("Position", Kind.VECTOR, 3, 2, (0, 3)),
-        ("Normal", Kind.VECTOR, 2, 3, (0, 2)), ("Vector", Kind.VECTOR, 4, 4, (0, 4)),
-        ("Position.Y", Kind.FIELD, 1, 2, (1, 2)), ("Object Index", Kind.FIELD, 1, 5, (0, 1)),
+        ("Depth", Kind.FIELD, 1, 1, (0, 1)),
+        ("Position", Kind.VECTOR, 3, 2, (0, 3)),
+        ("Normal", Kind.VECTOR, 2, 3, (0, 2)),
+        ("Vector", Kind.VECTOR, 4, 4, (0, 4)),
+        ("Position.Y", Kind.FIELD, 1, 2, (1, 2)),
+        ("Object Index", Kind.FIELD, 1, 5, (0, 1)),
         ("CryptoObject00", Kind.VECTOR, 4, 8, (0, 4)),
     ],
 )

@@ -75,7 +75,10 @@ def test_negative_frames_by_printf_and_by_blender(fill):
     folder = fill("a.-005.exr", "a.-0004.exr", "a.-0003.exr", "a.-003.exr", "a.0000.exr", "a.-000.exr")
     found = find_sequence(f"{folder}/a.####.exr")
     assert found is not None and list(found.names.items()) == [
-        (-5, "a.-005.exr"), (-4, "a.-0004.exr"), (-3, "a.-003.exr"), (0, "a.0000.exr"),
+        (-5, "a.-005.exr"),
+        (-4, "a.-0004.exr"),
+        (-3, "a.-003.exr"),
+        (0, "a.0000.exr"),
     ]
     assert frame_file(f"{folder}/a.####.exr", -4).path == f"{folder}/a.-0004.exr"
 
@@ -119,9 +122,18 @@ def test_a_folder_without_numbers(fill, names):
 @pytest.mark.parametrize(
     ("missing", "frame", "there", "black"),
     [
-        ("hold", 13, 12, False), ("hold", 0, 1, False), ("hold", 99, 24, False), ("hold", 14, 14, False),
-        ("nearest", 13, 12, False), ("nearest", 0, 1, False), ("nearest", 99, 24, False), ("nearest", 14, 14, False),
-        ("black", 13, 12, True), ("black", -7, 1, True), ("black", 99, 24, True), ("black", 14, 14, False),
+        ("hold", 13, 12, False),
+        ("hold", 0, 1, False),
+        ("hold", 99, 24, False),
+        ("hold", 14, 14, False),
+        ("nearest", 13, 12, False),
+        ("nearest", 0, 1, False),
+        ("nearest", 99, 24, False),
+        ("nearest", 14, 14, False),
+        ("black", 13, 12, True),
+        ("black", -7, 1, True),
+        ("black", 99, 24, True),
+        ("black", 14, 14, False),
         ("error", 14, 14, False),
     ],
 )
@@ -219,17 +231,40 @@ def test_only_the_one_folder_is_listed(fill, listings, tmp_path):
 @pytest.mark.parametrize(
     ("name", "pattern"),
     [
-        ("shot.0012.exr", "shot.####.exr"), ("v2/beauty.exr", None), ("alone.0001.exr", None), ("gone.0001.exr", None),
-        ("plain.exr", None), ("a1.0002.exr", "a1.####.exr"), ("left_v1.exr", "left_v#.exr"), ("notes.01.txt", None),
-        ("s.008.exr", "s.###.exr"), ("s.1000.exr", "s.###.exr"), ("s.01.exr", "s.##.exr"), ("#1.0001.exr", None),
+        ("shot.0012.exr", "shot.####.exr"),
+        ("v2/beauty.exr", None),
+        ("alone.0001.exr", None),
+        ("gone.0001.exr", None),
+        ("plain.exr", None),
+        ("a1.0002.exr", "a1.####.exr"),
+        ("left_v1.exr", "left_v#.exr"),
+        ("notes.01.txt", None),
+        ("s.008.exr", "s.###.exr"),
+        ("s.1000.exr", "s.###.exr"),
+        ("s.01.exr", "s.##.exr"),
+        ("#1.0001.exr", None),
     ],
 )
 def test_the_pattern_of_one_picture(fill, tmp_path, name, pattern):
     (tmp_path / "v2").mkdir()
     folder = fill(
-        *SHOT, "v2/beauty.exr", "alone.0001.exr", "plain.exr", "a1.0001.exr", "a1.0002.exr", "a2.0001.exr",
-        "left_v1.exr", "left_v2.exr", "notes.01.txt", "notes.02.txt", "s.008.exr", "s.009.exr", "s.1000.exr",
-        "s.01.exr", "#1.0001.exr", "#1.0002.exr",
+        *SHOT,
+        "v2/beauty.exr",
+        "alone.0001.exr",
+        "plain.exr",
+        "a1.0001.exr",
+        "a1.0002.exr",
+        "a2.0001.exr",
+        "left_v1.exr",
+        "left_v2.exr",
+        "notes.01.txt",
+        "notes.02.txt",
+        "s.008.exr",
+        "s.009.exr",
+        "s.1000.exr",
+        "s.01.exr",
+        "#1.0001.exr",
+        "#1.0002.exr",
     )
     assert suggest_pattern(f"{folder}/{name}") == (pattern and f"{folder}/{pattern}")
 

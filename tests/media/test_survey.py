@@ -29,7 +29,9 @@ SEEN = seen(CAMERA, WIDTH, HEIGHT)
 
 
 def written(
-    path: Path, layers: Mapping[str, np.ndarray], attributes: Mapping[str, Any] | None = None,
+    path: Path,
+    layers: Mapping[str, np.ndarray],
+    attributes: Mapping[str, Any] | None = None,
     display: tuple[int, int, int, int] | None = None,
 ) -> Path:
     """`{"P.XYZ": array}` as one part of 32-bit floats."""
@@ -70,7 +72,9 @@ def test_blender(path: Path) -> None:
     found = survey(path)
     assert found.maker.renderer is Renderer.BLENDER
     assert said(found) == {
-        "depth": ("planar", True), "normal": ("world", True), "position": ("world", True),
+        "depth": ("planar", True),
+        "normal": ("world", True),
+        "position": ("world", True),
         "velocity": ("from_previous", False),
     }
     assert found.conventions[Role.VELOCITY].scale == (-1.0, 1.0, -1.0, 1.0)
@@ -110,8 +114,12 @@ def test_motion_of_any_sign_and_unit_is_found_in_flipped_copies_of_the_sample(tm
 
 
 def test_arnold_with_a_camera_in_its_header(tmp_path: Path) -> None:
-    layers = {"beauty.RGB": SEEN.normal * 0.5 + 0.5, "P.XYZ": SEEN.position, "N.XYZ": SEEN.normal,
-              "Z.Z": np.where(SEEN.hit, SEEN.depth, 1e30)}
+    layers = {
+        "beauty.RGB": SEEN.normal * 0.5 + 0.5,
+        "P.XYZ": SEEN.position,
+        "N.XYZ": SEEN.normal,
+        "Z.Z": np.where(SEEN.hit, SEEN.depth, 1e30),
+    }
     path = written(tmp_path / "a.exr", layers, {"arnold/version": "7.3", "worldToNDC": ndc(CAMERA)})
     found = survey(path)
     assert said(found) == {"depth": ("planar", True), "normal": ("world", True), "position": ("world", True)}
@@ -131,8 +139,11 @@ def test_renderman_shades_in_the_axes_of_its_camera(tmp_path: Path) -> None:
     position = (SEEN.position - np.array(CAMERA.eye)) @ axes.T * SEEN.hit[..., None]
     layers = {"P.XYZ": position, "Nn.XYZ": SEEN.normal @ axes.T, "z.Z": SEEN.depth}
     found = survey(written(tmp_path / "a.exr", layers, {"PRManVersion": "26.3", "worldToNDC": ndc(CAMERA)}))
-    assert said(found) == {"depth": ("planar", True), "normal": ("camera_ahead", True), "position": ("camera_ahead",
-                                                                                                     True)}
+    assert said(found) == {
+        "depth": ("planar", True),
+        "normal": ("camera_ahead", True),
+        "position": ("camera_ahead", True),
+    }
     assert found.camera.camera.forward == pytest.approx((0.0, 0.0, 1.0), abs=1e-6)
     assert found.camera.reason.endswith("the header tells where it stands in the world")
 

@@ -146,10 +146,15 @@ def test_a_picture_that_was_filmed_upright_is_upright(tmp_path: Path, turn: int)
     assert np.abs(found - expected[..., ::-1] / 255.0).max() < 0.05
 
 
-@pytest.mark.parametrize(("name", "codec", "pixels"), [
-    ("a.mov", "prores_ks", "yuva444p10le"), ("a.mov", "qtrle", "argb"), ("a.mkv", "ffv1", "bgra"),
-    ("a.webm", "libvpx-vp9", "yuva420p"),
-])
+@pytest.mark.parametrize(
+    ("name", "codec", "pixels"),
+    [
+        ("a.mov", "prores_ks", "yuva444p10le"),
+        ("a.mov", "qtrle", "argb"),
+        ("a.mkv", "ffv1", "bgra"),
+        ("a.webm", "libvpx-vp9", "yuva420p"),
+    ],
+)
 def test_transparency_is_kept(tmp_path: Path, name: str, codec: str, pixels: str) -> None:
     straight = np.full((32, 64, 4), 200, np.uint8)
     straight[..., 3] = np.linspace(0, 255, 64).astype(np.uint8)

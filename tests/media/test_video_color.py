@@ -42,9 +42,13 @@ def by_the_standard(planes: list[np.ndarray], matrix: int, limited: bool, bits: 
     """R'G'B' in double precision: the matrix of the definition of Y', Cb and Cr, turned around."""
     red, blue = WEIGHTS[matrix]
     luma = np.array([red, 1.0 - red - blue, blue])
-    definition = np.stack([
-        luma, (np.array([0, 0, 1]) - luma) / (2.0 * (1.0 - blue)), (np.array([1, 0, 0]) - luma) / (2.0 * (1.0 - red)),
-    ])
+    definition = np.stack(
+        [
+            luma,
+            (np.array([0, 0, 1]) - luma) / (2.0 * (1.0 - blue)),
+            (np.array([1, 0, 0]) - luma) / (2.0 * (1.0 - red)),
+        ]
+    )
     step = 2.0 ** (bits - 8)
     numbers = [(planes[0] - 16 * step) / (219 * step) if limited else planes[0] / (2.0**bits - 1)]
     across, down = SUBSAMPLED[form]
@@ -131,10 +135,18 @@ def test_a_lossless_video_is_the_same_as_png_files_to_the_bit(tmp_path: Path, pr
         assert np.array_equal(media.read(tmp_path / "a.mkv", "", Kind.IMAGE, frame=number).array, still)
 
 
-@pytest.mark.parametrize(("name", "codec", "tolerance"), [
-    ("a.mp4", "h264", 0.03), ("a.mp4", "h265", 0.03), ("a.mov", "prores", 0.01), ("a.mov", "prores4444", 0.01),
-    ("a.mov", "qtrle", 0.0045), ("a.webm", "vp9", 0.03), ("a.mkv", "ffv1", 0.0045),
-])
+@pytest.mark.parametrize(
+    ("name", "codec", "tolerance"),
+    [
+        ("a.mp4", "h264", 0.03),
+        ("a.mp4", "h265", 0.03),
+        ("a.mov", "prores", 0.01),
+        ("a.mov", "prores4444", 0.01),
+        ("a.mov", "qtrle", 0.0045),
+        ("a.webm", "vp9", 0.03),
+        ("a.mkv", "ffv1", 0.0045),
+    ],
+)
 def test_colors_survive_every_codec(tmp_path: Path, name: str, codec: str, tolerance: float) -> None:
     """Flat fields of color, so that nothing but matrix, range and curve is left to go wrong."""
     colors = np.array([[0.9, 0.1, 0.1], [0.1, 0.8, 0.2], [0.1, 0.2, 0.9], [0.5, 0.5, 0.5], [1.0, 1.0, 1.0], [0, 0, 0]])
@@ -166,5 +178,11 @@ def test_tags_say_what_is_in_the_file(tmp_path: Path, name: str) -> None:
 
 def test_rates_are_those_of_the_trade() -> None:
     assert [str(exact_rate(rate)) for rate in (24.0, 25, 23.976, 29.97, 59.94, 30000 / 1001, 12.5)] == [
-        "24", "25", "24000/1001", "30000/1001", "60000/1001", "30000/1001", "25/2",
+        "24",
+        "25",
+        "24000/1001",
+        "30000/1001",
+        "60000/1001",
+        "30000/1001",
+        "25/2",
     ]

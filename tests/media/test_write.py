@@ -60,7 +60,9 @@ def test_halves_end_at_their_largest_number(tmp_path: Path) -> None:
 def test_exr_compression(tmp_path: Path, rng: Random, compression: str) -> None:
     colors, depth = hdr(rng, size=(40, 40)), rng.uniform(1, 1e4, (40, 40, 1)).astype(np.float32)
     write(
-        tmp_path / "a.exr", {"": colors, "depth": depth}, kinds={"": Kind.IMAGE, "depth": Kind.FIELD},
+        tmp_path / "a.exr",
+        {"": colors, "depth": depth},
+        kinds={"": Kind.IMAGE, "depth": Kind.FIELD},
         compression=compression,
     )
     (color, _), (data, stored) = parts(tmp_path / "a.exr")
@@ -71,16 +73,26 @@ def test_exr_compression(tmp_path: Path, rng: Random, compression: str) -> None:
 
 def test_exr_of_many_layers(tmp_path: Path, rng: Random) -> None:
     layers = {
-        "image": hdr(rng), "zDepth": rng.random((9, 13, 1), np.float32), "mask": rng.random((9, 13, 1), np.float32),
-        "normal": rng.random((9, 13, 3), np.float32), "motion": rng.random((9, 13, 2), np.float32),
+        "image": hdr(rng),
+        "zDepth": rng.random((9, 13, 1), np.float32),
+        "mask": rng.random((9, 13, 1), np.float32),
+        "normal": rng.random((9, 13, 3), np.float32),
+        "motion": rng.random((9, 13, 2), np.float32),
     }
     kinds = {
-        "image": Kind.IMAGE, "zDepth": Kind.FIELD, "mask": Kind.FIELD, "normal": Kind.VECTOR, "motion": Kind.VECTOR,
+        "image": Kind.IMAGE,
+        "zDepth": Kind.FIELD,
+        "mask": Kind.FIELD,
+        "normal": Kind.VECTOR,
+        "motion": Kind.VECTOR,
     }
     write(tmp_path / "a.exr", layers, kinds=kinds, metadata={"only": "once"})
     found = parts(tmp_path / "a.exr")
     assert [spec.channelnames for spec, _ in found] == [
-        ("image.R", "image.G", "image.B", "image.A"), ("zDepth.Z",), ("mask.Y",), ("normal.X", "normal.Y", "normal.Z"),
+        ("image.R", "image.G", "image.B", "image.A"),
+        ("zDepth.Z",),
+        ("mask.Y",),
+        ("normal.X", "normal.Y", "normal.Z"),
         ("motion.X", "motion.Y"),
     ]
     assert [str(spec.format) for spec, _ in found] == ["half", "float", "float", "float", "float"]
@@ -92,14 +104,20 @@ def test_exr_of_many_layers(tmp_path: Path, rng: Random) -> None:
         width = layers[name].shape[2]
         np.testing.assert_array_equal(read(tmp_path / "a.exr", name, kinds[name], width).array, exact)
     assert [(layer.name, layer.data) for layer in info(tmp_path / "a.exr").layers] == [
-        ("image", False), ("zDepth", True), ("mask", True), ("normal", True), ("motion", True),
+        ("image", False),
+        ("zDepth", True),
+        ("mask", True),
+        ("normal", True),
+        ("motion", True),
     ]
 
 
 @pytest.mark.parametrize(
     ("name", "kind", "width", "expected"),
     [
-        ("depth", Kind.FIELD, 1, "Z"), ("mask", Kind.FIELD, 1, "Y"), ("uv", Kind.VECTOR, 2, "XY"),
+        ("depth", Kind.FIELD, 1, "Z"),
+        ("mask", Kind.FIELD, 1, "Y"),
+        ("uv", Kind.VECTOR, 2, "XY"),
         ("c", Kind.IMAGE, 3, "RGB"),
     ],
 )
@@ -186,15 +204,30 @@ def test_the_first_picture_is_shown(tmp_path: Path, rng: Random) -> None:
 
 def test_metadata_passes_through(tmp_path: Path, make: Make, rng: Random) -> None:
     matrix, timecode = tuple(float(number) for number in range(16)), (19088743, 0)
-    source = make("a.exr", rng.random((4, 4, 3), np.float32), format="half", attributes={
-        "Scene": "Straße 9", "shutter": 0.5, "take": 3, "worldToCamera": ("matrix", matrix),
-        "smpte:TimeCode": ("timecode", timecode), "PixelAspectRatio": 2.0, "compression": "piz",
-        "chromaticities": ("float[8]", (0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329)), "Orientation": 1,
-    })
+    source = make(
+        "a.exr",
+        rng.random((4, 4, 3), np.float32),
+        format="half",
+        attributes={
+            "Scene": "Straße 9",
+            "shutter": 0.5,
+            "take": 3,
+            "worldToCamera": ("matrix", matrix),
+            "smpte:TimeCode": ("timecode", timecode),
+            "PixelAspectRatio": 2.0,
+            "compression": "piz",
+            "chromaticities": ("float[8]", (0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329)),
+            "Orientation": 1,
+        },
+    )
     kept = read_metadata(source)
     assert kept == {
-        "Scene": "Straße 9", "shutter": 0.5, "take": 3, "worldToCamera": Attribute("matrix", matrix),
-        "smpte:TimeCode": Attribute("timecode", timecode), "PixelAspectRatio": 2.0,
+        "Scene": "Straße 9",
+        "shutter": 0.5,
+        "take": 3,
+        "worldToCamera": Attribute("matrix", matrix),
+        "smpte:TimeCode": Attribute("timecode", timecode),
+        "PixelAspectRatio": 2.0,
     }
     write(tmp_path / "b.exr", {"image": hdr(rng)}, kinds=IMAGE, metadata=kept)
     assert read_metadata(tmp_path / "b.exr") == kept
@@ -237,8 +270,13 @@ def test_one_place_holds_all_that_is_ours(tmp_path: Path, rng: Random, name: str
 @pytest.mark.parametrize("name", ["a.jpg", "a.tif", "a.webp", "a.hdr"])
 def test_a_graph_does_no_harm_elsewhere(tmp_path: Path, rng: Random, name: str) -> None:
     metadata = {
-        "halation:graph": GRAPH, "ImageDescription": GRAPH, "Copyright": GRAPH, "Artist": "me",
-        "worldToCamera": Attribute("matrix", tuple(float(number) for number in range(16))), "take": 3, "gain": 0.5,
+        "halation:graph": GRAPH,
+        "ImageDescription": GRAPH,
+        "Copyright": GRAPH,
+        "Artist": "me",
+        "worldToCamera": Attribute("matrix", tuple(float(number) for number in range(16))),
+        "take": 3,
+        "gain": 0.5,
     }
     write(tmp_path / name, {"image": hdr(rng)}, kinds=IMAGE, metadata=metadata)
     assert parts(tmp_path / name)[0][1].shape[:2] == (9, 13)

@@ -89,10 +89,16 @@ def test_the_corner_has_a_closed_form(run, quality, mean, scatter):
     assert abs(error.mean()) < mean and rms(error) < scatter
 
 
-@pytest.mark.parametrize(("mode", "share", "scatter"), [
-    ("gtao", cosine_share, 0.012), ("bitmask", cosine_share, 0.012), ("hbao", even_share, 0.012),
-    ("hemisphere", radial_share, 0.016), ("crytek", ball_share, 0.012),
-])
+@pytest.mark.parametrize(
+    ("mode", "share", "scatter"),
+    [
+        ("gtao", cosine_share, 0.012),
+        ("bitmask", cosine_share, 0.012),
+        ("hbao", even_share, 0.012),
+        ("hemisphere", radial_share, 0.016),
+        ("crytek", ball_share, 0.012),
+    ],
+)
 @pytest.mark.parametrize("resolution", ["full", "half"])
 def test_modes_in_the_corner(run, mode, share, scatter, resolution):
     """At the quality that one works with, denoised, from depth alone."""
@@ -316,10 +322,17 @@ def test_thin_things_let_light_through(run):
     assert abs(solid - thick) < 0.01 < thin - thick
 
 
-@pytest.mark.parametrize(("mode", "mean", "scatter"), [
-    ("gtao", 0.002, 0.009), ("bitmask", 0.002, 0.009), ("hbao", 0.008, 0.016), ("hemisphere", 0.015, 0.034),
-    ("crytek", 0.015, 0.048), ("alchemy", 0.012, 0.03),
-])
+@pytest.mark.parametrize(
+    ("mode", "mean", "scatter"),
+    [
+        ("gtao", 0.002, 0.009),
+        ("bitmask", 0.002, 0.009),
+        ("hbao", 0.008, 0.016),
+        ("hemisphere", 0.015, 0.034),
+        ("crytek", 0.015, 0.048),
+        ("alchemy", 0.012, 0.03),
+    ],
+)
 def test_cycles_where_the_picture_shows_all_that_matters(run, mode, mean, scatter):
     """A box and a ball before a wall. `known`: the share of directions of which rays through the scene and through the
     picture say the same. Modes that do not go by the cosine are another measure, but not far from it."""

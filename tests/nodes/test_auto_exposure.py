@@ -119,8 +119,12 @@ def test_the_exposure_is_limited_and_compensated(run):
     picture = np.full((3, 5, 4), 0.18 / 2**5, np.float32)
     picture[..., 3] = 1.0
     for values, expected in (
-        ({}, 5.0), ({"maximum": 3.0}, 3.0), ({"maximum": 3.0, "compensation": 1.5}, 4.5), ({"minimum": 6.0}, 6.0),
-        ({"compensation": -2.0}, 3.0), ({"minimum": 4.0, "maximum": 2.0}, 2.0),
+        ({}, 5.0),
+        ({"maximum": 3.0}, 3.0),
+        ({"maximum": 3.0, "compensation": 1.5}, 4.5),
+        ({"minimum": 6.0}, 6.0),
+        ({"compensation": -2.0}, 3.0),
+        ({"minimum": 4.0, "maximum": 2.0}, 2.0),
     ):
         node = AutoExposure(metering="average", **values)
         assert found(run, node, {"image": picture})[1] == pytest.approx(expected, abs=1e-5)

@@ -13,7 +13,8 @@ from scipy.signal import fftconvolve
 
 # Five overlapping boxes of four bilinear samples each, in pixels from the center of a block (Jimenez 2014).
 DOWN = (
-    [(0, 0, 0.125)] + [(x, y, 0.125) for x in (-1, 1) for y in (-1, 1)]
+    [(0, 0, 0.125)]
+    + [(x, y, 0.125) for x in (-1, 1) for y in (-1, 1)]
     + [(x, y, 0.0625) for x, y in ((-2, 0), (2, 0), (0, -2), (0, 2))]
     + [(x, y, 0.03125) for x in (-2, 2) for y in (-2, 2)]
 )
@@ -28,13 +29,16 @@ def sampled(image: np.ndarray, size: tuple[int, int], taps: Taps, scale: float) 
     """Weighted bilinear samples around the centers of a picture of another size; the edge pixels go on outside."""
     y, x = np.mgrid[: size[1], : size[0]]
     y, x = (y + 0.5) * scale - 0.5, (x + 0.5) * scale - 0.5
-    return np.stack([
-        sum(
-            weight * map_coordinates(channel, [y + down, x + across], order=1, mode="nearest")
-            for across, down, weight in taps
-        )
-        for channel in np.moveaxis(image, -1, 0)
-    ], axis=-1)
+    return np.stack(
+        [
+            sum(
+                weight * map_coordinates(channel, [y + down, x + across], order=1, mode="nearest")
+                for across, down, weight in taps
+            )
+            for channel in np.moveaxis(image, -1, 0)
+        ],
+        axis=-1,
+    )
 
 
 def half(image: np.ndarray) -> tuple[int, int]:

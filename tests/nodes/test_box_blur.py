@@ -39,9 +39,13 @@ def test_a_box_equals_numpy(run, hdr, edge, radius, size):
     close(found, spread(picture, radius, "box", edge.scipy))
 
 
-@pytest.mark.parametrize(("kind", "radius"), [
-    *(("tent", radius) for radius in (6.0, 7.3, 80.0, 219.5)), *(("iterated", radius) for radius in (6.0, 7.3, 68.0)),
-])
+@pytest.mark.parametrize(
+    ("kind", "radius"),
+    [
+        *(("tent", radius) for radius in (6.0, 7.3, 80.0, 219.5)),
+        *(("iterated", radius) for radius in (6.0, 7.3, 68.0)),
+    ],
+)
 def test_repeated_boxes_equal_numpy(run, hdr, edge, radius, kind):
     picture = hdr(33, 21)
     found = run(BoxBlur(kind=kind, radius=radius, edge=edge.name), {"image": picture})

@@ -17,24 +17,136 @@ from halation.nodes import Filter, Kind, Node, Pointwise, Source, catalogue, loo
 ROOT = Path(__file__).parents[2]
 NODES = list(catalogue().values())
 RENDERED = [
-    node for node in NODES
+    node
+    for node in NODES
     if not issubclass(node, Source) and any(output.socket.kind is not Kind.CAMERA for output in node.outputs.values())
 ]
 
-GLSL_WORDS = frozenset((
-    "abs", "acos", "acosh", "active", "all", "any", "asin", "asinh", "atan", "atanh", "atomicAdd", "attribute",
-    "barrier", "bitCount", "bitfieldExtract", "bitfieldInsert", "bitfieldReverse", "buffer", "case", "ceil",
-    "centroid", "clamp", "common", "cos", "cosh", "cross", "dFdx", "dFdy", "default", "degrees", "determinant",
-    "discard", "distance", "dot", "equal", "exp", "exp2", "faceforward", "filter", "findLSB", "findMSB", "fixed",
-    "flat", "floatBitsToInt", "floatBitsToUint", "floor", "fma", "fract", "frexp", "fwidth", "greaterThan",
-    "greaterThanEqual", "half", "imageLoad", "imageSize", "imageStore", "input", "intBitsToFloat", "invariant",
-    "inverse", "inversesqrt", "isinf", "isnan", "ldexp", "length", "lessThan", "lessThanEqual", "log", "log2", "main",
-    "matrixCompMult", "max", "min", "mix", "mod", "modf", "noise1", "noise2", "noise3", "noise4", "normalize", "not",
-    "notEqual", "outerProduct", "output", "partition", "patch", "pow", "precise", "radians", "reflect", "refract",
-    "resource", "round", "roundEven", "sample", "shared", "sign", "sin", "sinh", "smooth", "smoothstep", "sqrt",
-    "step", "struct", "switch", "tan", "tanh", "template", "texelFetch", "texture", "textureGather", "textureGrad",
-    "textureLod", "textureSize", "this", "transpose", "trunc", "uintBitsToFloat", "uniform", "varying",
-))
+GLSL_WORDS = frozenset(
+    (
+        "abs",
+        "acos",
+        "acosh",
+        "active",
+        "all",
+        "any",
+        "asin",
+        "asinh",
+        "atan",
+        "atanh",
+        "atomicAdd",
+        "attribute",
+        "barrier",
+        "bitCount",
+        "bitfieldExtract",
+        "bitfieldInsert",
+        "bitfieldReverse",
+        "buffer",
+        "case",
+        "ceil",
+        "centroid",
+        "clamp",
+        "common",
+        "cos",
+        "cosh",
+        "cross",
+        "dFdx",
+        "dFdy",
+        "default",
+        "degrees",
+        "determinant",
+        "discard",
+        "distance",
+        "dot",
+        "equal",
+        "exp",
+        "exp2",
+        "faceforward",
+        "filter",
+        "findLSB",
+        "findMSB",
+        "fixed",
+        "flat",
+        "floatBitsToInt",
+        "floatBitsToUint",
+        "floor",
+        "fma",
+        "fract",
+        "frexp",
+        "fwidth",
+        "greaterThan",
+        "greaterThanEqual",
+        "half",
+        "imageLoad",
+        "imageSize",
+        "imageStore",
+        "input",
+        "intBitsToFloat",
+        "invariant",
+        "inverse",
+        "inversesqrt",
+        "isinf",
+        "isnan",
+        "ldexp",
+        "length",
+        "lessThan",
+        "lessThanEqual",
+        "log",
+        "log2",
+        "main",
+        "matrixCompMult",
+        "max",
+        "min",
+        "mix",
+        "mod",
+        "modf",
+        "noise1",
+        "noise2",
+        "noise3",
+        "noise4",
+        "normalize",
+        "not",
+        "notEqual",
+        "outerProduct",
+        "output",
+        "partition",
+        "patch",
+        "pow",
+        "precise",
+        "radians",
+        "reflect",
+        "refract",
+        "resource",
+        "round",
+        "roundEven",
+        "sample",
+        "shared",
+        "sign",
+        "sin",
+        "sinh",
+        "smooth",
+        "smoothstep",
+        "sqrt",
+        "step",
+        "struct",
+        "switch",
+        "tan",
+        "tanh",
+        "template",
+        "texelFetch",
+        "texture",
+        "textureGather",
+        "textureGrad",
+        "textureLod",
+        "textureSize",
+        "this",
+        "transpose",
+        "trunc",
+        "uintBitsToFloat",
+        "uniform",
+        "varying",
+    )
+)
 
 by_id = pytest.mark.parametrize("node", NODES, ids=lambda node: node.id)
 rendered = pytest.mark.parametrize("node", RENDERED, ids=lambda node: node.id)
@@ -77,7 +189,8 @@ def test_the_glsl_signature_is_the_declaration(node):
     function = installed().function(f"{node.category}/{node.id}", node.id, node.id)
     declared = tuple(
         (node.inputs[name].glsl if name in node.inputs else node.values[name].glsl, name)
-        for name in node.order if name in node.inputs or node.values[name].glsl
+        for name in node.order
+        if name in node.inputs or node.values[name].glsl
     )
     assert tuple((glsl, name) for glsl, name in function.parameters) == declared
     outputs = [output.socket.glsl for output in node.outputs.values()]
@@ -144,7 +257,8 @@ def test_it_renders_finite_at_defaults(renderer, node, size):
     rng = np.random.default_rng(5)
     arrays = {
         name: picture(node, name, size, rng) if not socket.single else np.full((1, 1), 0.4, np.float32)
-        for name, socket in node.inputs.items() if socket.kind is not Kind.CAMERA
+        for name, socket in node.inputs.items()
+        if socket.kind is not Kind.CAMERA
     }
     found = outputs_of(renderer, node, arrays, **({} if arrays else {"size": size}))
     for name, output in node.outputs.items():
@@ -219,5 +333,8 @@ def test_its_choices_all_compile(renderer, node):
 def test_the_vocabulary_is_used():
     assert {issubclass(node, Pointwise) or issubclass(node, Filter) for node in NODES} == {True}
     assert {output.socket.kind for node in NODES for output in node.outputs.values()} >= {
-        Kind.IMAGE, Kind.FIELD, Kind.VECTOR, Kind.NUMBER
+        Kind.IMAGE,
+        Kind.FIELD,
+        Kind.VECTOR,
+        Kind.NUMBER,
     }

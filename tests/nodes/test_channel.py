@@ -21,7 +21,9 @@ from halation.nodes.channel.unpremultiply import Unpremultiply
 
 ALGO = oiio.ImageBufAlgo
 VECTORS = [
-    (2, SeparateVector2, CombineVector2), (3, SeparateVector, CombineVector), (4, SeparateVector4, CombineVector4),
+    (2, SeparateVector2, CombineVector2),
+    (3, SeparateVector, CombineVector),
+    (4, SeparateVector4, CombineVector4),
 ]
 
 
@@ -57,8 +59,12 @@ def test_every_choice_fills_every_channel(run):
     image, other = pixels(3), pixels(4)
     luminance = [source[..., :3].astype(np.float64) @ [0.2126, 0.7152, 0.0722] for source in (image, other)]
     expected = [
-        *np.moveaxis(image, -1, 0), luminance[0], 0 * image[..., 0], 0 * image[..., 0] + 1,
-        *np.moveaxis(other, -1, 0), luminance[1],
+        *np.moveaxis(image, -1, 0),
+        luminance[0],
+        0 * image[..., 0],
+        0 * image[..., 0] + 1,
+        *np.moveaxis(other, -1, 0),
+        luminance[1],
     ]
     choices = ChannelShuffle.values["red"].choices
     for (number, channel), (choice, wanted) in product(

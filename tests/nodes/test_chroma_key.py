@@ -92,10 +92,17 @@ def by_distance(picture: np.ndarray, node: ChromaKey) -> tuple[np.ndarray, np.nd
 
 
 @pytest.mark.parametrize("name", SCREENS)
-@pytest.mark.parametrize("values", [
-    {}, {"tolerance": 0.2, "limit": "average"}, {"tolerance": 1.3, "spill": 0.4},
-    {"tolerance": 0.8, "black": 0.15, "white": 0.6}, {"tolerance": 0.5, "black": -0.3, "white": 1.5, "spill": 0.0},
-], ids=str)
+@pytest.mark.parametrize(
+    "values",
+    [
+        {},
+        {"tolerance": 0.2, "limit": "average"},
+        {"tolerance": 1.3, "spill": 0.4},
+        {"tolerance": 0.8, "black": 0.15, "white": 0.6},
+        {"tolerance": 0.5, "black": -0.3, "white": 1.5, "spill": 0.0},
+    ],
+    ids=str,
+)
 def test_distance_is_its_formula(run, name, values):
     """Over all colors, also such as no light has, and around the screen's own, where the matte begins."""
     random = np.random.default_rng(21)

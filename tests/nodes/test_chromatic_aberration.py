@@ -25,9 +25,7 @@ def test_it_is_a_sum_over_the_spectrum(run, hdr, edge, size, shape, samples):
         weight * looked_up(picture, x + place * dx, y + place * dy, edge.scipy_map)
         for weight, place in zip(response, places, strict=True)
     )
-    node = ChromaticAberration(
-        shape=shape, amount=0.1, angle=30.0, samples=samples, center=(0.4, 0.6), edge=edge.name
-    )
+    node = ChromaticAberration(shape=shape, amount=0.1, angle=30.0, samples=samples, center=(0.4, 0.6), edge=edge.name)
     assert np.abs(run(node, {"image": picture}) - expected).max() < 1e-5 * picture.max()
 
 

@@ -51,7 +51,10 @@ def cdl(rgb: np.ndarray, slope, offset, power, saturation: float = 1.0) -> np.nd
 
 
 LIFT, GAMMA, GAIN, OFFSET = (
-    (0.02, 0.0, -0.01, 0.0), (1.2, 0.8, 2.2, 1.0), (1.5, 1.0, 0.7, 1.0), (0.0, 0.05, 0.01, 0.0),
+    (0.02, 0.0, -0.01, 0.0),
+    (1.2, 0.8, 2.2, 1.0),
+    (1.5, 1.0, 0.7, 1.0),
+    (0.0, 0.05, 0.01, 0.0),
 )
 
 
@@ -106,9 +109,7 @@ def test_luminance_is_a_weighted_sum(run):
     assert relative(out[..., 0], expected.reshape(out.shape[:2])) < 1e-6
 
 
-@pytest.mark.parametrize(
-    ("measure", "reduce"), [("average", np.mean), ("maximum", np.max), ("minimum", np.min)]
-)
+@pytest.mark.parametrize(("measure", "reduce"), [("average", np.mean), ("maximum", np.max), ("minimum", np.min)])
 def test_luminance_measures(run, measure, reduce):
     image = picture(5)
     out = run(Luminance(measure=measure), {"image": image})[..., 0]

@@ -12,7 +12,9 @@ from oiio_pictures import buffer
 MATRIX = (0.9, 0.2, -0.1, 0.05, 0.8, 0.3, -0.2, 0.1, 1.4)
 PRESETS = ColorMatrix.values["preset"].choices
 SPACES = {
-    "rec709 to rec2020": "Linear Rec.2020", "rec709 to p3": "Linear P3-D65", "rec709 to acescg": "ACEScg",
+    "rec709 to rec2020": "Linear Rec.2020",
+    "rec709 to p3": "Linear P3-D65",
+    "rec709 to acescg": "ACEScg",
 }
 
 

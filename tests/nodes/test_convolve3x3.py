@@ -22,9 +22,12 @@ REFERENCE = {
     "laplacian isotropic": np.array([[1, 4, 1], [4, -20, 4], [1, 4, 1]]) / 6,
     "emboss": [[2, 0, 0], [0, -1, 0], [0, 0, -1]],
     "relief": [[-1, -2, -1], [0, 1, 0], [1, 2, 1]],
-    "sobel x": np.outer([1, 2, 1], [-1, 0, 1]), "sobel y": np.outer([-1, 0, 1], [1, 2, 1]),
-    "prewitt x": np.outer([1, 1, 1], [-1, 0, 1]), "prewitt y": np.outer([-1, 0, 1], [1, 1, 1]),
-    "scharr x": np.outer([3, 10, 3], [-1, 0, 1]), "scharr y": np.outer([-1, 0, 1], [3, 10, 3]),
+    "sobel x": np.outer([1, 2, 1], [-1, 0, 1]),
+    "sobel y": np.outer([-1, 0, 1], [1, 2, 1]),
+    "prewitt x": np.outer([1, 1, 1], [-1, 0, 1]),
+    "prewitt y": np.outer([-1, 0, 1], [1, 1, 1]),
+    "scharr x": np.outer([3, 10, 3], [-1, 0, 1]),
+    "scharr y": np.outer([-1, 0, 1], [3, 10, 3]),
 }
 
 

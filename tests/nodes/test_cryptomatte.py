@@ -63,17 +63,20 @@ def test_every_name_of_the_sample_is_exact(run):
     assert ((soft > 0.0) & (soft < 1.0)).sum() > 100, "edges are soft"
 
 
-@pytest.mark.parametrize(("pick", "wanted"), [
-    ("ring_blue, ring_pink", ["ring_blue", "ring_pink"]),
-    ("ring_*", ["ring_*"]),
-    ("prop0[1-3]\nmonkey", ["prop0[1-3]", "monkey"]),
-    ("prop?0", ["prop?0"]),
-    ('"floor", "wall"', ["floor", "wall"]),
-    ("floor, floor", ["floor"]),
-    ("nobody, Floor", []),
-    ("", []),
-    (" , ,", []),
-])
+@pytest.mark.parametrize(
+    ("pick", "wanted"),
+    [
+        ("ring_blue, ring_pink", ["ring_blue", "ring_pink"]),
+        ("ring_*", ["ring_*"]),
+        ("prop0[1-3]\nmonkey", ["prop0[1-3]", "monkey"]),
+        ("prop?0", ["prop?0"]),
+        ('"floor", "wall"', ["floor", "wall"]),
+        ("floor, floor", ["floor"]),
+        ("nobody, Floor", []),
+        ("", []),
+        (" , ,", []),
+    ],
+)
 def test_names_and_wildcards(run, pick, wanted):
     names = [name for name in decoded()[2] if any(fnmatchcase(name, one) for one in wanted)]
     assert bool(names) == bool(wanted)
@@ -94,7 +97,11 @@ def test_more_names_than_one_draw_takes_and_some_left_out(run):
 def test_hashes_that_others_have_computed():
     """Of Appleby's MurmurHash3_x86_32 with seed 0, and all of those in the sample, by Blender."""
     known = {
-        "": 0x0, "test": 0xBA6BD213, "hello": 0x248BFA47, "hello, world": 0x149BBB7F, "Hello, world!": 0xC0363E43,
+        "": 0x0,
+        "test": 0xBA6BD213,
+        "hello": 0x248BFA47,
+        "hello, world": 0x149BBB7F,
+        "Hello, world!": 0xC0363E43,
         "The quick brown fox jumps over the lazy dog": 0x2E4FF723,
     }
     for text, number in known.items():
@@ -130,7 +137,10 @@ def bare(path, layer: str = "crypto_object", **attributes: str) -> str:
 def test_without_a_manifest_names_are_hashed(run, tmp_path):
     path = bare(tmp_path / "bare.exr")
     for pick, wanted in (
-        ("first", [0.75, 0.0, 0.0, 0.25]), ("second", [0.25, 0.75, 0.0, 0.0]), ("f*", [0.0] * 4), ("*", [1.0] * 4),
+        ("first", [0.75, 0.0, 0.0, 0.25]),
+        ("second", [0.25, 0.75, 0.0, 0.0]),
+        ("f*", [0.0] * 4),
+        ("*", [1.0] * 4),
     ):
         found = run(Cryptomatte(path=path, pick=pick), output="matte")[0, :, 0]
         assert found.tolist() == wanted, pick
@@ -142,7 +152,9 @@ def test_a_manifest_beside_the_picture(run, tmp_path, layer):
     (tmp_path / "names.json").write_text(json.dumps(manifest), "utf-8")
     path = bare(tmp_path / "named.exr", layer, name=layer, manif_file="names.json")
     for pick, wanted in (
-        ("least", [0.0, 0.25, 0.75, 0.0]), ("most", [0.0, 0.0, 0.25, 0.75]), ("*st", [0.0, 0.25, 1.0, 0.75]),
+        ("least", [0.0, 0.25, 0.75, 0.0]),
+        ("most", [0.0, 0.0, 0.25, 0.75]),
+        ("*st", [0.0, 0.25, 1.0, 0.75]),
     ):
         assert run(Cryptomatte(path=path, pick=pick), output="matte")[0, :, 0].tolist() == wanted, pick
 

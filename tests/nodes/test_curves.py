@@ -29,8 +29,11 @@ def coded(rgb: np.ndarray, space: str, direction: ocio.TransformDirection) -> np
     out = np.ascontiguousarray(rgb, np.float32).reshape(-1, 3)
     if space == "display":
         transform = ocio.ExponentWithLinearTransform(
-            gamma=(2.4, 2.4, 2.4, 1.0), offset=(0.055, 0.055, 0.055, 0.0), negativeStyle=ocio.NEGATIVE_MIRROR,
-            direction=ocio.TRANSFORM_DIR_INVERSE if direction == ocio.TRANSFORM_DIR_FORWARD
+            gamma=(2.4, 2.4, 2.4, 1.0),
+            offset=(0.055, 0.055, 0.055, 0.0),
+            negativeStyle=ocio.NEGATIVE_MIRROR,
+            direction=ocio.TRANSFORM_DIR_INVERSE
+            if direction == ocio.TRANSFORM_DIR_FORWARD
             else ocio.TRANSFORM_DIR_FORWARD,
         )
         processor = ocio.Config.CreateRaw().getProcessor(transform)

@@ -182,9 +182,16 @@ def strewn(count: int, seed: int) -> tuple[Light, ...]:
     kinds = random.choice([POINT, SPOT, SUN, SPHERE], count, p=[0.5, 0.3, 0.02, 0.18])
     return tuple(
         Light(
-            LightKind(kind), tuple(random.normal((0.4, 0.3, 1.1), 1.6)), tuple(random.normal(size=3)),
-            tuple(random.uniform(0, 1, 3)), random.normal(2.0, 2.0), random.choice(reaches, p=often),
-            random.uniform(0, 10), random.uniform(11, 120), random.uniform(0.05, 0.5), random.random() < 0.95,
+            LightKind(kind),
+            tuple(random.normal((0.4, 0.3, 1.1), 1.6)),
+            tuple(random.normal(size=3)),
+            tuple(random.uniform(0, 1, 3)),
+            random.normal(2.0, 2.0),
+            random.choice(reaches, p=often),
+            random.uniform(0, 10),
+            random.uniform(11, 120),
+            random.uniform(0.05, 0.5),
+            random.random() < 0.95,
         )
         for kind in kinds
     )
@@ -208,8 +215,13 @@ def test_tiles_leave_lights_out(renderer, monkeypatch):
     for light in lights:
         middle, radius = np.array(module._ball(light)[:3]), module._ball(light)[3]
         fallen, _ = reflected(
-            light, "ggx", place[there].astype(float), inputs["normal"][there].astype(float),
-            inputs["normal"][there].astype(float), np.array([0.04]), np.array([0.5]),
+            light,
+            "ggx",
+            place[there].astype(float),
+            inputs["normal"][there].astype(float),
+            inputs["normal"][there].astype(float),
+            np.array([0.04]),
+            np.array([0.5]),
         )
         within = np.linalg.norm(place[there] - middle, axis=1) <= radius
         assert within[np.abs(fallen).max(1) > 0.0].all()
@@ -254,12 +266,16 @@ def test_a_white_furnace_loses_what_single_scattering_loses(run, alpha, mu, shar
     density = facets * 0.5 / (mu + np.sqrt(alpha**2 + (1.0 - alpha**2) * mu * mu))
     suns = tuple(
         Light(SUN, direction=tuple(-way), intensity=1.0 / (count * often))
-        for way, often in zip(ways, density, strict=True) if way[2] > 0.0
+        for way, often in zip(ways, density, strict=True)
+        if way[2] > 0.0
     )
     up = np.array([[[0.0, 0.0, 1.0]]])
     inputs = {
-        "albedo": np.ones((1, 1, 4)), "normal": up, "position": 1e-3 * up,
-        "material": np.array([[[1.0, np.sqrt(alpha)]]]), "camera": look_at(tuple(1e4 * eye), (0, 0, 0), (1.0, 1.0)),
+        "albedo": np.ones((1, 1, 4)),
+        "normal": up,
+        "position": 1e-3 * up,
+        "material": np.array([[[1.0, np.sqrt(alpha)]]]),
+        "camera": look_at(tuple(1e4 * eye), (0, 0, 0), (1.0, 1.0)),
     }
     found = run(DeferredLighting(lights=numbers_of(suns), ambient_intensity=0.0), inputs)
     assert abs(found[0, 0, 0] - share) < 0.002
@@ -285,11 +301,14 @@ def test_a_ball_of_light_is_the_integral_over_its_points(run, roughness, size, t
     fresnel = 0.04 + 0.96 * (1.0 - vh) ** 5
     shine = (ggx(n, eye + 0 * ways, ways, np.array([roughness**2])) * fresnel * nl).mean() * radiance * span
     node = DeferredLighting(
-        lights=numbers_of((Light(SPHERE, tuple(middle), intensity=5.0, size=size),)), roughness=roughness,
+        lights=numbers_of((Light(SPHERE, tuple(middle), intensity=5.0, size=size),)),
+        roughness=roughness,
         ambient_intensity=0.0,
     )
     inputs = {
-        "albedo": np.ones((1, 1, 4)), "normal": n[None, None], "position": 1e-6 * n[None, None],
+        "albedo": np.ones((1, 1, 4)),
+        "normal": n[None, None],
+        "position": 1e-6 * n[None, None],
         "camera": look_at(tuple(1e4 * eye), (0, 0, 0), (1.0, 1.0)),
     }
     assert abs(run(node, inputs, output="diffuse")[0, 0, 0] / diffuse - 1.0) < 1e-3
@@ -325,8 +344,11 @@ def test_ambient_light_is_albedo_times_occlusion(render, run):
     for alpha, mu, share in FURNACE:
         eye = np.array([np.sqrt(1.0 - mu * mu), 0.0, mu])
         given = {
-            "albedo": np.ones((1, 1, 4)), "normal": [[[0, 0, 1]]], "position": [[[0, 0, 1e-3]]],
-            "material": [[[1.0, np.sqrt(alpha)]]], "camera": look_at(tuple(1e4 * eye), (0, 0, 0), (1.0, 1.0)),
+            "albedo": np.ones((1, 1, 4)),
+            "normal": [[[0, 0, 1]]],
+            "position": [[[0, 0, 1e-3]]],
+            "material": [[[1.0, np.sqrt(alpha)]]],
+            "camera": look_at(tuple(1e4 * eye), (0, 0, 0), (1.0, 1.0)),
         }
         white = DeferredLighting(lights=(), ambient=(1.0, 1.0, 1.0, 1.0), ambient_intensity=1.0)
         assert abs(run(white, given)[0, 0, 0] - share) < 0.02

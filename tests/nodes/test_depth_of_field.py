@@ -51,8 +51,15 @@ def test_the_circle_of_confusion(run, convention, focus):
     depth[0, :4] = np.inf, 1e10, np.nan, -1.0
     depth[5, 10] = 4.0
     node = DepthOfField(
-        convention=convention, focus=focus, focus_distance=4.0, focus_point=(10.0 / 15.0, 5.0 / 8.0), max_blur=0.5,
-        f_number=0.2, focal=60.0, sensor=24.0, meters=0.5,
+        convention=convention,
+        focus=focus,
+        focus_distance=4.0,
+        focus_point=(10.0 / 15.0, 5.0 / 8.0),
+        max_blur=0.5,
+        f_number=0.2,
+        focal=60.0,
+        sensor=24.0,
+        meters=0.5,
     )
     found = run(node, {"image": np.ones((9, 16, 4)), "depth": depth}, output="coc")[..., 0]
     near = np.where(np.isfinite(depth) & (depth > 0.0) & (depth < 1e9), 1.0 / (0.5 * depth.astype(float)), 0.0)
@@ -63,10 +70,19 @@ def test_the_circle_of_confusion(run, convention, focus):
     np.testing.assert_allclose(found, np.clip(expected, -4.5, 4.5), rtol=1e-5, atol=1e-5)
 
 
-@pytest.mark.parametrize(("coc", "quality", "depth"), [
-    (10.0, "normal", 10.0), (20.0, "normal", 10.0), (20.0, "normal", 10.0 / 3.0), (40.0, "normal", 10.0),
-    (50.0, "high", 10.0 / 3.0), (30.0, "exact", 10.0), (12.0, "draft", 10.0), (12.0, "draft", 10.0 / 3.0),
-])
+@pytest.mark.parametrize(
+    ("coc", "quality", "depth"),
+    [
+        (10.0, "normal", 10.0),
+        (20.0, "normal", 10.0),
+        (20.0, "normal", 10.0 / 3.0),
+        (40.0, "normal", 10.0),
+        (50.0, "high", 10.0 / 3.0),
+        (30.0, "exact", 10.0),
+        (12.0, "draft", 10.0),
+        (12.0, "draft", 10.0 / 3.0),
+    ],
+)
 def test_a_point_of_light_becomes_a_disc(run, coc, quality, depth):
     found = bokeh(run, lens(SIZE, coc, quality=quality), depth)
     y, x = np.mgrid[:SIZE, :SIZE] - SIZE // 2
@@ -76,9 +92,15 @@ def test_a_point_of_light_becomes_a_disc(run, coc, quality, depth):
     assert np.abs(found).min() == 0.0 and np.hypot((found * x).sum(), (found * y).sum()) < 0.06 * coc
 
 
-@pytest.mark.parametrize(("coc", "quality", "limit"), [
-    (9.0, "normal", 0.01), (17.0, "exact", 0.01), (20.0, "high", 0.01), (20.0, "normal", 0.01),
-])
+@pytest.mark.parametrize(
+    ("coc", "quality", "limit"),
+    [
+        (9.0, "normal", 0.01),
+        (17.0, "exact", 0.01),
+        (20.0, "high", 0.01),
+        (20.0, "normal", 0.01),
+    ],
+)
 def test_a_plane_is_convolved_with_the_disc(run, rendered_frame, coc, quality, limit):
     picture = rendered_frame[100:229, 200:329].copy()
     picture = np.minimum(picture, 4.0)
@@ -197,8 +219,14 @@ def test_it_is_linear_in_light(run, hdr):
 def test_cycles_with_a_lens(run, name, quality):
     data = blender()
     node = DepthOfField(
-        focus="distance", focus_distance=7.0, f_number=0.036 / 0.5, focal=36.0, sensor=36.0, convention="pinhole",
-        max_blur=0.5, quality=quality,
+        focus="distance",
+        focus_distance=7.0,
+        f_number=0.036 / 0.5,
+        focal=36.0,
+        sensor=36.0,
+        convention="pinhole",
+        max_blur=0.5,
+        quality=quality,
     )
     picture, expected = opaque(data[f"{name}_image"]), data[f"{name}_blurred"]
     found = run(node, {"image": picture, "depth": data[f"{name}_depth"]})
@@ -221,14 +249,23 @@ def test_cycles_with_lamps_far_out_of_focus(run, quality, least):
     energy, and is as wide as the circle of confusion says, to two percent."""
     data = blender("travel")
     node = DepthOfField(
-        focus="distance", focus_distance=5.2, f_number=0.036 / 0.4, focal=36.0, sensor=36.0, convention="pinhole",
-        max_blur=0.5, quality=quality,
+        focus="distance",
+        focus_distance=5.2,
+        f_number=0.036 / 0.4,
+        focal=36.0,
+        sensor=36.0,
+        convention="pinhole",
+        max_blur=0.5,
+        quality=quality,
     )
     picture, expected = opaque(data["lamps_image"]), data["lamps_blurred"]
     found = run(node, {"image": picture, "depth": data["lamps_depth"]})
     assert psnr(found, expected) > least > 20.0 > psnr(picture, expected)
     for x, y, deep, reach in (
-        (32.0, 22.3, 22.0, 9), (76.0, 14.3, 22.0, 9), (139.2, 28.7, 22.0, 9), (57.2, 18.7, 2.4, 10),
+        (32.0, 22.3, 22.0, 9),
+        (76.0, 14.3, 22.0, 9),
+        (139.2, 28.7, 22.0, 9),
+        (57.2, 18.7, 2.4, 10),
         (113.7, 20.2, 2.4, 11),
     ):
         coc = 0.4 * 176.0 * abs(1.0 / 5.2 - 1.0 / deep)
@@ -248,7 +285,6 @@ def test_a_slope_has_no_seams(run):
     assert np.abs(np.diff(found[:, 64, 0])).max() < 4.0 / SIZE
 
 
-
 def test_a_dark_ear_before_a_lamp_turns_no_darker(run):
     """Edge pixels of a lamp behind something hold less light than the lamp: nobody pays for that."""
     with resources.as_file(resources.files("halation.presets") / "samples" / "neon.exr") as path:
@@ -256,8 +292,15 @@ def test_a_dark_ear_before_a_lamp_turns_no_darker(run):
     layers = {part.spec().getattribute("oiio:subimagename"): part.get_pixels(oiio.FLOAT) for part in parts}
     image, depth = (next(item for name, item in layers.items() if name.endswith(end)) for end in ("Combined", "Depth"))
     node = DepthOfField(
-        focus_point=(0.46, 0.38), f_number=1.8, max_blur=0.08, meters=0.1, quality="high", aperture="blades",
-        roundness=0.35, rotation=12.0, cat_eye=0.55,
+        focus_point=(0.46, 0.38),
+        f_number=1.8,
+        max_blur=0.08,
+        meters=0.1,
+        quality="high",
+        aperture="blades",
+        roundness=0.35,
+        rotation=12.0,
+        cat_eye=0.55,
     )
     found = run(node, {"image": image, "depth": depth[..., 0]})[..., :3].max(2)
     ear = np.s_[108:126, 148:170]

@@ -138,7 +138,13 @@ def test_guided_by_the_flow_it_equals_the_formula(run, edge, sigma, ratio, smoot
     tone = wavy(19, 26)
     fine, coarse = Flow(tone, smoothing, edge).blurs(sigma, ratio, stroke)
     node = DifferenceOfGaussians(
-        kind="dog", guide="flow", sigma=sigma, ratio=ratio, smoothing=smoothing, stroke=stroke, strength=1.0,
+        kind="dog",
+        guide="flow",
+        sigma=sigma,
+        ratio=ratio,
+        smoothing=smoothing,
+        stroke=stroke,
+        strength=1.0,
         edge=edge.name,
     )
     found = run(node, {"image": tone_picture(tone)}, output="value")[..., 0]
@@ -190,8 +196,12 @@ def test_strokes_calm_a_noisy_line(run):
     tone = np.where(np.abs(np.mgrid[:48, :48][1] - 23.5) < 2.0, 0.2, 0.8)
     noisy = tone_picture(tone + 0.1 * np.random.default_rng(3).standard_normal(tone.shape))
     spread = [
-        run(DifferenceOfGaussians(kind="dog", guide="flow", strength=1.0, stroke=stroke), {"image": noisy})
-        [8:40, 22:26, 0].std(0).max() for stroke in (0.0, 2.0, 6.0)
+        run(DifferenceOfGaussians(kind="dog", guide="flow", strength=1.0, stroke=stroke), {"image": noisy})[
+            8:40, 22:26, 0
+        ]
+        .std(0)
+        .max()
+        for stroke in (0.0, 2.0, 6.0)
     ]
     assert spread[0] > 1.5 * spread[1] > 1.5 * 1.2 * spread[2]
 

@@ -16,10 +16,13 @@ def along(picture: np.ndarray, angle: float, length: float, shift: float, mode: 
     sum_ = np.zeros(picture.shape)
     for t in (np.arange(count) + 0.5) / count - 0.5 + shift:
         dx, dy = length * t * math.cos(math.radians(angle)), -length * t * math.sin(math.radians(angle))
-        sum_ += np.stack([
-            map_coordinates(channel, [y - dy, x - dx], order=1, mode=mode)
-            for channel in np.moveaxis(picture.astype(np.float64), -1, 0)
-        ], axis=-1)
+        sum_ += np.stack(
+            [
+                map_coordinates(channel, [y - dy, x - dx], order=1, mode=mode)
+                for channel in np.moveaxis(picture.astype(np.float64), -1, 0)
+            ],
+            axis=-1,
+        )
     return sum_ / count
 
 

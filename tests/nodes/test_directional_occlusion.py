@@ -100,6 +100,7 @@ def test_a_wall_hides_only_its_side_of_the_sky(run, resolution):
 @pytest.mark.parametrize("turn", [0.0, 40.0])
 def test_colored_light_comes_from_where_it_is(run, up, turn):
     """Smooth light from all sides on open floor and wall, summed over the sphere in numpy."""
+
     def glow(way):
         return np.stack([1 + way[..., 0], (1 + way[..., 1]) ** 2, np.exp(way[..., 2])], -1)
 

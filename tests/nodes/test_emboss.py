@@ -24,16 +24,14 @@ def shading(picture, direction, elevation, height, softness, mode) -> np.ndarray
 
 
 @pytest.mark.parametrize("size", [(33, 21), (4, 3)])
-@pytest.mark.parametrize(("direction", "elevation", "height", "softness"), [
-    (135.0, 45.0, 6.0, 0.0), (-20.0, 70.0, -3.0, 1.5)
-])
+@pytest.mark.parametrize(
+    ("direction", "elevation", "height", "softness"), [(135.0, 45.0, 6.0, 0.0), (-20.0, 70.0, -3.0, 1.5)]
+)
 @pytest.mark.parametrize("kind", ["relief", "bump"])
 def test_it_equals_the_formula(run, hdr, edge, size, kind, direction, elevation, height, softness):
     picture = hdr(*size)
     picture[..., 3] = picture[..., 3] * 0.9 + 0.1
-    node = Emboss(
-        kind=kind, direction=direction, elevation=elevation, height=height, softness=softness, edge=edge.name
-    )
+    node = Emboss(kind=kind, direction=direction, elevation=elevation, height=height, softness=softness, edge=edge.name)
     found = run(node, {"image": picture})
     shade = shading(picture, direction, elevation, height, softness, edge.scipy)[..., None]
     expected = picture[..., :3] * shade if kind == "bump" else 0.18 * shade * picture[..., 3:]
@@ -51,7 +49,5 @@ def test_a_flat_picture_is_gray_or_stays(run):
 def test_slopes_toward_the_light_are_bright(run):
     ramp = np.ones((9, 30, 4), np.float32)
     ramp[..., :3] = np.linspace(0.01, 0.9, 30, dtype=np.float32)[None, :, None]
-    from_left, from_right = (
-        run(Emboss(direction=angle), {"image": ramp})[4, 15, 0] for angle in (180.0, 0.0)
-    )
+    from_left, from_right = (run(Emboss(direction=angle), {"image": ramp})[4, 15, 0] for angle in (180.0, 0.0))
     assert from_right < 0.18 < from_left

@@ -11,8 +11,11 @@ from scipy.integrate import quad
 from scipy.signal import fftconvolve
 
 # Shares of f0 (not scattered), f1, f2 and f3.
-SHARES = {"photopic": (0.384, 0.478, 0.138, 0.0), "mesopic": (0.368, 0.478, 0.138, 0.016),
-          "scotopic": (0.282, 0.478, 0.207, 0.033)}
+SHARES = {
+    "photopic": (0.384, 0.478, 0.138, 0.0),
+    "mesopic": (0.368, 0.478, 0.138, 0.016),
+    "scotopic": (0.282, 0.478, 0.207, 0.033),
+}
 
 
 def f1(t):
@@ -90,6 +93,7 @@ def scattered(picture: np.ndarray, kernel: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("term", [f1, f2, lambda t: f3(t, 568.0), lambda t: f3(t, 450.0)])
 def test_the_terms_of_the_reference_are_of_the_whole_light(term):
     """The paper's own check: each is 1 over the half of all directions."""
+
     def ring(t):
         return term(t) * math.sin(math.radians(t)) * 2.0 * math.pi * math.radians(1.0)
 
@@ -155,9 +159,15 @@ def test_the_halo_lies_where_its_wavelength_says(run, channel, name):
     assert ring.sum() * view / size == pytest.approx(amount * math.radians(view / size) ** 2, rel=5e-3)
 
 
-@pytest.mark.parametrize("values", [
-    {"field_of_view": 3.0}, {"field_of_view": 40.0}, {"field_of_view": 4.0, "rays": 1.0}, {"vision": "photopic"},
-])
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"field_of_view": 3.0},
+        {"field_of_view": 40.0},
+        {"field_of_view": 4.0, "rays": 1.0},
+        {"vision": "photopic"},
+    ],
+)
 @pytest.mark.parametrize("size", [(130, 121), (17, 9), (1, 1)])
 def test_an_even_picture_stays_even(run, values, size):
     flat = np.full((size[1], size[0], 4), 2.5, np.float32)

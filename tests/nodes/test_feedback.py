@@ -42,10 +42,16 @@ def sampled(picture: np.ndarray, x: float, y: float) -> np.ndarray:
     return np.clip(value, around.min(0), around.max(0))
 
 
-@pytest.mark.parametrize("values", [
-    {"position": (1.3, -0.6)}, {"rotation": 7.0}, {"scale": 1.15}, {"pivot": (0.2, 0.7), "rotation": -4.0},
-    {"position": (0.4, 0.9), "rotation": 3.0, "scale": 1.05, "pivot": (0.4, 0.4)},
-])
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"position": (1.3, -0.6)},
+        {"rotation": 7.0},
+        {"scale": 1.15},
+        {"pivot": (0.2, 0.7), "rotation": -4.0},
+        {"position": (0.4, 0.9), "rotation": 3.0, "scale": 1.05, "pivot": (0.4, 0.4)},
+    ],
+)
 def test_the_past_is_moved_as_the_values_say(renderer, values):
     picture = np.random.default_rng(1).uniform(0.0, 1.0, (11, 14, 4)).astype(np.float32)
     node = Feedback(**{**STILL, "decay": 1.0, "mode": "add", **values})
@@ -65,9 +71,14 @@ def test_the_past_is_moved_as_the_values_say(renderer, values):
     assert np.abs(found[..., 3] - np.minimum(expected[..., 3], 1)).max() < 2e-5
 
 
-@pytest.mark.parametrize(("mode", "level"), [
-    ("brightest", lambda d, n: 1.0), ("add", lambda d, n: (1 - d ** (n + 1)) / (1 - d)), ("mix", lambda d, n: 1.0),
-])
+@pytest.mark.parametrize(
+    ("mode", "level"),
+    [
+        ("brightest", lambda d, n: 1.0),
+        ("add", lambda d, n: (1 - d ** (n + 1)) / (1 - d)),
+        ("mix", lambda d, n: 1.0),
+    ],
+)
 def test_still_light_adds_up_to_the_closed_form(renderer, mode, level):
     shot = {"image": flat(lambda _: 1.0)}
     node = Feedback(**STILL, decay=0.8, mode=mode)

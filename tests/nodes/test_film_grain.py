@@ -49,10 +49,15 @@ def spread(node: FilmGrain, light: np.ndarray) -> np.ndarray:
     return np.log(2) * node.amount * node.size / np.hypot(node.size, 0.55) * 2 * np.sqrt(u * (1 - u)) * tone
 
 
-@pytest.mark.parametrize("values", [
-    {}, {"size": 3.7, "color": 1.0, "seed": 9}, {"size": 0.4, "color": 0.0, "animate": False},
-    {"amount": 1.0, "shadows": 0.3, "midtones": 2.0, "highlights": 1.4},
-])
+@pytest.mark.parametrize(
+    "values",
+    [
+        {},
+        {"size": 3.7, "color": 1.0, "seed": 9},
+        {"size": 0.4, "color": 0.0, "animate": False},
+        {"amount": 1.0, "shadows": 0.3, "midtones": 2.0, "highlights": 1.4},
+    ],
+)
 def test_it_is_the_formula(run, hdr, values):
     node, picture = FilmGrain(**values), hdr(41, 27)
     straight = picture[..., :3].astype(np.float64) / picture[..., 3:]

@@ -34,6 +34,7 @@ def back_within(radius: float) -> float:
 
     Lambert's law: what enters within an angle is its sin^2, and lands at a distance of its tangent.
     """
+
     def entered(angle: float) -> float:
         return reflected(angle) * 2.0 * math.sin(angle) * math.cos(angle)
 

@@ -28,8 +28,9 @@ def test_the_three_kinds_of_opengl(run, mode, seen):
     way = depth * np.linalg.norm(rays(CAMERA, 13, 9), axis=2) if seen else depth.astype(float)
     thick = density * np.maximum(way - start, 0.0)
     expected = {
-        "linear": np.clip((way - start) / (end - start), 0.0, 1.0), "exponential": 1.0 - np.exp(-thick),
-        "exponential squared": 1.0 - np.exp(-thick**2),
+        "linear": np.clip((way - start) / (end - start), 0.0, 1.0),
+        "exponential": 1.0 - np.exp(-thick),
+        "exponential squared": 1.0 - np.exp(-(thick**2)),
     }[mode]
     node = Fog(mode=mode, density=density, start=start, end=end, color=(1.0, 1.0, 1.0, 0.8))
     found = amount(run, node, depth, **({"camera": CAMERA} if seen else {}))
@@ -62,10 +63,12 @@ def test_a_layer_on_the_ground_is_the_integral_along_the_way(run, look, axis):
     length = np.linalg.norm(ray, axis=2)
     up = {"z": 2, "y": 1}[axis]
     density, start, base, thickness = 0.05, 2.0, 0.7, 1.9
-    expected = np.array([
-        integral(camera.eye[up], depth[p] * length[p], ray[p][up] / length[p], start, density, base, thickness)
-        for p in np.ndindex(depth.shape)
-    ]).reshape(depth.shape)
+    expected = np.array(
+        [
+            integral(camera.eye[up], depth[p] * length[p], ray[p][up] / length[p], start, density, base, thickness)
+            for p in np.ndindex(depth.shape)
+        ]
+    ).reshape(depth.shape)
     node = Fog(mode="height", density=density, start=start, base=base, thickness=thickness, up=axis)
     np.testing.assert_allclose(amount(run, node, depth, camera=camera), 1.0 - np.exp(-expected), atol=3e-6)
 
@@ -89,9 +92,9 @@ def test_positions_do_for_the_height(run):
     depth, height = depths(), np.random.default_rng(9).uniform(-2.0, 6.0, (9, 13))
     position = np.dstack([np.ones_like(height), np.ones_like(height), height])
     node = Fog(mode="height", density=0.06, start=1.5, base=0.3, thickness=2.0, eye=1.1)
-    expected = np.array([
-        integral(1.1, depth[p], (height[p] - 1.1) / depth[p], 1.5, 0.06, 0.3, 2.0) for p in np.ndindex(depth.shape)
-    ]).reshape(depth.shape)
+    expected = np.array(
+        [integral(1.1, depth[p], (height[p] - 1.1) / depth[p], 1.5, 0.06, 0.3, 2.0) for p in np.ndindex(depth.shape)]
+    ).reshape(depth.shape)
     np.testing.assert_allclose(amount(run, node, depth, position=position), 1.0 - np.exp(-expected), atol=3e-6)
 
 
@@ -127,7 +130,11 @@ def test_the_fog_glows_towards_the_sun(run):
     picture[..., 3] = 1.0
     sun = np.array([0.1, 0.8, -0.1])
     node = Fog(
-        density=1.0, color=(0.2, 0.3, 0.4, 1.0), sun=0.9, sun_color=(2.0, 1.5, 1.0, 1.0), sun_direction=tuple(sun),
+        density=1.0,
+        color=(0.2, 0.3, 0.4, 1.0),
+        sun=0.9,
+        sun_color=(2.0, 1.5, 1.0, 1.0),
+        sun_direction=tuple(sun),
         sun_focus=6.0,
     )
     ray = rays(CAMERA, 13, 9)

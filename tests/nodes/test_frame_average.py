@@ -10,12 +10,15 @@ from sequences import node_at, noise_at, noise_graph
 
 
 @pytest.mark.parametrize("frames", [1, 2, 3, 8, 9])
-@pytest.mark.parametrize(("weights", "window"), [
-    ("box", lambda n: windows.boxcar(n)),
-    ("tent", lambda n: windows.triang(n)),
-    ("gaussian", lambda n: windows.gaussian(n, (n + 1) / 6)),
-    ("exponential", lambda n: windows.exponential(n, tau=(n + 1) / 6)),
-])
+@pytest.mark.parametrize(
+    ("weights", "window"),
+    [
+        ("box", lambda n: windows.boxcar(n)),
+        ("tent", lambda n: windows.triang(n)),
+        ("gaussian", lambda n: windows.gaussian(n, (n + 1) / 6)),
+        ("exponential", lambda n: windows.exponential(n, tau=(n + 1) / 6)),
+    ],
+)
 def test_the_windows_are_scipy_s(weights, window, frames):
     share = FrameAverage(frames=frames, weights=weights).share()
     assert abs(sum(share.values()) - 1) < 1e-12 and all(share[at] == share[-at] for at in share)

@@ -24,12 +24,15 @@ def closed_form(keep: float, frame: int, first: int = 1) -> np.ndarray:
     return found + sum((1 - keep) * keep**back * picture(frame - back).astype(float) for back in range(frame - first))
 
 
-@pytest.mark.parametrize(("node", "keep"), [
-    (FrameBlend(mode="persistence", persistence=0.7), 0.7),
-    (FrameBlend(mode="persistence", persistence=0.0), 0.0),
-    (FrameBlend(time=0.2), math.exp(-1 / (24 * 0.2))),
-    (FrameBlend(time=0.0), 0.0),
-])
+@pytest.mark.parametrize(
+    ("node", "keep"),
+    [
+        (FrameBlend(mode="persistence", persistence=0.7), 0.7),
+        (FrameBlend(mode="persistence", persistence=0.0), 0.0),
+        (FrameBlend(time=0.2), math.exp(-1 / (24 * 0.2))),
+        (FrameBlend(time=0.0), 0.0),
+    ],
+)
 def test_it_is_the_closed_form(renderer, node, keep):
     shot = {"image": picture}
     found = played(renderer, shot_graph(node, shot), shot, WHOLE)

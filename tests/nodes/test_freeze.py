@@ -9,14 +9,17 @@ from halation.nodes.time.freeze import Freeze
 from sequences import node_at, noise_at, noise_graph
 
 
-@pytest.mark.parametrize(("values", "seen"), [
-    ({}, [1, 1, 1, 1, 1, 1]),
-    ({"frame": 4}, [4, 4, 4, 4, 4, 4]),
-    ({"every": 1}, [1, 2, 3, 4, 5, 6]),
-    ({"every": 2}, [1, 1, 3, 3, 5, 5]),
-    ({"every": 2, "frame": 2}, [0, 2, 2, 4, 4, 6]),
-    ({"every": 3, "frame": 5}, [-1, 2, 2, 2, 5, 5]),
-])
+@pytest.mark.parametrize(
+    ("values", "seen"),
+    [
+        ({}, [1, 1, 1, 1, 1, 1]),
+        ({"frame": 4}, [4, 4, 4, 4, 4, 4]),
+        ({"every": 1}, [1, 2, 3, 4, 5, 6]),
+        ({"every": 2}, [1, 1, 3, 3, 5, 5]),
+        ({"every": 2, "frame": 2}, [0, 2, 2, 4, 4, 6]),
+        ({"every": 3, "frame": 5}, [-1, 2, 2, 2, 5, 5]),
+    ],
+)
 def test_which_frame_is_held(renderer, values, seen):
     graph = noise_graph(Freeze(**values))
     for frame, source in enumerate(seen, 1):

@@ -8,7 +8,8 @@ from halation.nodes.aa.fxaa import Fxaa
 from scipy.ndimage import map_coordinates
 
 STRIDES = {
-    "low": [1, 1.5, 2, 4, 12], "medium": [1, 1.5, 2, 2, 2, 2, 2, 2, 2, 2, 4, 8],
+    "low": [1, 1.5, 2, 4, 12],
+    "medium": [1, 1.5, 2, 2, 2, 2, 2, 2, 2, 2, 4, 8],
     "high": [1, 1, 1, 1, 1, 1.5, 2, 2, 2, 2, 4, 8],
 }
 
@@ -24,8 +25,10 @@ def fxaa(picture, quality, subpix, threshold, dark, tie) -> np.ndarray:
 
     def at(y, x):
         (top, dy), (left, dx) = divmod(y, 1), divmod(x, 1)
-        rows, columns = ([min(max(int(i), 0), n - 1) for i in (first, first + 1)]
-                         for first, n in zip((top, left), luma.shape, strict=True))
+        rows, columns = (
+            [min(max(int(i), 0), n - 1) for i in (first, first + 1)]
+            for first, n in zip((top, left), luma.shape, strict=True)
+        )
         above, below = (luma[row, columns[0]] * (1 - dx) + luma[row, columns[1]] * dx for row in rows)
         return above * (1 - dy) + below * dy
 
@@ -72,9 +75,9 @@ def half_plane(angle: float, samples: int, offset: float = 0.0) -> np.ndarray:
     y, x = np.mgrid[:56, :56]
     normal = np.sin(np.radians(angle)), np.cos(np.radians(angle))
     finer = (np.arange(samples) + 0.5) / samples - 0.5
-    white = np.mean([
-        (x + dx - 27.8) * normal[0] + (y + dy - 27.7) * normal[1] > offset for dx in finer for dy in finer
-    ], axis=0)
+    white = np.mean(
+        [(x + dx - 27.8) * normal[0] + (y + dy - 27.7) * normal[1] > offset for dx in finer for dy in finer], axis=0
+    )
     picture = np.ones((56, 56, 4), np.float32)
     picture[..., :3] = white[..., None]
     return picture

@@ -75,9 +75,16 @@ def test_edges_are_right_however_far_it_reaches(run, hdr, edge, sigma, size):
         assert np.abs(border).max() <= 5e-4 * expected.max()
 
 
-@pytest.mark.parametrize(("sigma", "scale"), [
-    (4.0, (1.0, 0.25)), (4.0, (0.0, 1.0)), (40.0, (1.0, 0.05)), (40.0, (0.4, 1.0)), (40.0, (1.0, 0.0)),
-])
+@pytest.mark.parametrize(
+    ("sigma", "scale"),
+    [
+        (4.0, (1.0, 0.25)),
+        (4.0, (0.0, 1.0)),
+        (40.0, (1.0, 0.05)),
+        (40.0, (0.4, 1.0)),
+        (40.0, (1.0, 0.0)),
+    ],
+)
 def test_each_direction_has_its_own_sigma(run, hdr, edge, sigma, scale):
     picture = hdr(71, 48)
     sigmas = (sigma * scale[0], sigma * scale[1])

@@ -76,10 +76,16 @@ def reference(picture: np.ndarray, node: Ghosts) -> np.ndarray:
     return np.stack(parts, axis=-1)
 
 
-@pytest.mark.parametrize("values", [
-    {"ghosts": 0.1, "count": 12}, {"ghosts": 0.1, "count": 5, "spread": 1.7, "chromatic": 0.1, "center": (0.3, 0.61)},
-    {"halo": 0.2, "chromatic": 0.05}, {"veil": 0.3}, {"ghosts": 0.1, "halo": 0.1, "veil": 0.1, "softness": 0.15},
-])
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"ghosts": 0.1, "count": 12},
+        {"ghosts": 0.1, "count": 5, "spread": 1.7, "chromatic": 0.1, "center": (0.3, 0.61)},
+        {"halo": 0.2, "chromatic": 0.05},
+        {"veil": 0.3},
+        {"ghosts": 0.1, "halo": 0.1, "veil": 0.1, "softness": 0.15},
+    ],
+)
 def test_the_whole_flare(run, hdr, values):
     picture = hdr(64, 42)
     node = Ghosts(**BARE | ALL_LIGHT | values)

@@ -51,9 +51,7 @@ def test_seventeen_stops_and_two(run):
         places = np.linspace(0, 1, count)
         stops = tuple(float(x) for row in np.column_stack([places, rng.random((count, 4))]) for x in row)
         light = np.linspace(0, 1, 55)
-        out = run(
-            GradientMap(palette="ramp", ramp=stops, scale="linear", low=0.0, high=1.0), {"image": gray(light)}
-        )[0]
+        out = run(GradientMap(palette="ramp", ramp=stops, scale="linear", low=0.0, high=1.0), {"image": gray(light)})[0]
         columns = np.array(stops).reshape(-1, 5)
         expected = np.stack([np.interp(light, columns[:, 0], columns[:, k]) for k in range(1, 5)], -1)
         expected[:, :3] *= expected[:, 3:]

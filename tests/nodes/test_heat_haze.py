@@ -18,9 +18,7 @@ def ramp(width: int, height: int) -> np.ndarray:
     return np.stack([x, y, 0 * x, 0 * x + 1], -1).astype(np.float32)
 
 
-def at_frame(
-    renderer, node: HeatHaze, picture: np.ndarray, frame: int, heat: np.ndarray | None = None
-) -> np.ndarray:
+def at_frame(renderer, node: HeatHaze, picture: np.ndarray, frame: int, heat: np.ndarray | None = None) -> np.ndarray:
     arrays = {"image": picture} if heat is None else {"image": picture, "heat": heat}
     wanted = Wanted(arrays, {"out": Port("outputs", "out")}, precision="float", frame=frame)
     return renderer.render(graph_of(node, arrays), wanted)["out"]
@@ -36,9 +34,13 @@ def haze(node: HeatHaze, width: int, height: int, frame: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("size", [(33, 26), (3, 2), (1, 1)])
-@pytest.mark.parametrize(("frame", "values"), [
-    (1, {}), (17, {"amount": 0.05, "size": 0.2, "stretch": 0.6, "rise": -1.0, "rate": 30.0, "seed": 8}),
-])
+@pytest.mark.parametrize(
+    ("frame", "values"),
+    [
+        (1, {}),
+        (17, {"amount": 0.05, "size": 0.2, "stretch": 0.6, "rise": -1.0, "rate": 30.0, "seed": 8}),
+    ],
+)
 def test_it_is_scipys_at_these_positions(renderer, hdr, edge, size, frame, values):
     node, picture = HeatHaze(edge=edge.name, **values), hdr(*size)
     heat = np.random.default_rng(1).uniform(-1, 1, size[::-1]).astype(np.float32)

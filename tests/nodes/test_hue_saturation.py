@@ -31,7 +31,7 @@ def test_hsv_is_pythons(run, hdr, degrees, saturation):
 
 
 def haeberli(degrees: float) -> np.ndarray:
-    """"Matrix Operations for Image Processing" (1993): gray to the z axis, sheared so that luminance is z."""
+    """ "Matrix Operations for Image Processing" (1993): gray to the z axis, sheared so that luminance is z."""
     z = np.ones(3) / np.sqrt(3)
     x = np.array([1, -1, 0]) / np.sqrt(2)
     upright = np.stack([x, np.cross(z, x), z])
@@ -52,12 +52,23 @@ def test_luminance_is_haeberlis_matrix(run, hdr, degrees):
 
 
 # From the sRGB primaries of IEC 61966-2-1 to XYZ, and Ottosson's two matrices for XYZ.
-XYZ = np.array([[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750],
-                [0.0193339, 0.1191920, 0.9503041]])
-CONES = np.array([[0.8189330101, 0.3618667424, -0.1288597137], [0.0329845436, 0.9293118715, 0.0361456387],
-                  [0.0482003018, 0.2643662691, 0.6338517070]])
-LAB = np.array([[0.2104542553, 0.7936177850, -0.0040720468], [1.9779984951, -2.4285922050, 0.4505937099],
-                [0.0259040371, 0.7827717662, -0.8086757660]])
+XYZ = np.array(
+    [[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750], [0.0193339, 0.1191920, 0.9503041]]
+)
+CONES = np.array(
+    [
+        [0.8189330101, 0.3618667424, -0.1288597137],
+        [0.0329845436, 0.9293118715, 0.0361456387],
+        [0.0482003018, 0.2643662691, 0.6338517070],
+    ]
+)
+LAB = np.array(
+    [
+        [0.2104542553, 0.7936177850, -0.0040720468],
+        [1.9779984951, -2.4285922050, 0.4505937099],
+        [0.0259040371, 0.7827717662, -0.8086757660],
+    ]
+)
 
 
 def oklab(rgb: np.ndarray) -> np.ndarray:

@@ -8,15 +8,18 @@ from geometry import sample_layer
 from halation.nodes.geometry.id_mask import IdMask
 
 
-@pytest.mark.parametrize(("pick", "spans"), [
-    ("3", [(3, 3)]),
-    ("1, 4, 7-9", [(1, 1), (4, 4), (7, 9)]),
-    ("2;5 11 - 13", [(2, 2), (5, 5), (11, 13)]),
-    ("-3--1, 0", [(-3, -1), (0, 0)]),
-    ("2.5", [(2.5, 2.5)]),
-    ("floor12, x3, 4th, 1.2.3", []),
-    ("", []),
-])
+@pytest.mark.parametrize(
+    ("pick", "spans"),
+    [
+        ("3", [(3, 3)]),
+        ("1, 4, 7-9", [(1, 1), (4, 4), (7, 9)]),
+        ("2;5 11 - 13", [(2, 2), (5, 5), (11, 13)]),
+        ("-3--1, 0", [(-3, -1), (0, 0)]),
+        ("2.5", [(2.5, 2.5)]),
+        ("floor12, x3, 4th, 1.2.3", []),
+        ("", []),
+    ],
+)
 @pytest.mark.parametrize("invert", [False, True])
 def test_it_is_exact(run, pick, spans, invert):
     ids = np.random.default_rng(1).integers(-5, 16, (17, 23)) * 0.5

@@ -130,10 +130,16 @@ def furnace(alpha, facing):
     return np.where((seen > 0) & (lit > 0), passed * seen / (facing * facet[..., 2]), 0.0).mean()
 
 
-@pytest.mark.parametrize(("alpha", "shares"), [
-    (0.02, {}), (0.1, {1.0: 0.9881, 0.3: 0.9369}), (0.25, {1.0: 0.9159, 0.3: 0.8389}),
-    (0.5, {1.0: 0.6880, 0.3: 0.7464}), (1.0, {1.0: 0.3069, 0.3: 0.5614}),
-])
+@pytest.mark.parametrize(
+    ("alpha", "shares"),
+    [
+        (0.02, {}),
+        (0.1, {1.0: 0.9881, 0.3: 0.9369}),
+        (0.25, {1.0: 0.9159, 0.3: 0.8389}),
+        (0.5, {1.0: 0.6880, 0.3: 0.7464}),
+        (1.0, {1.0: 0.3069, 0.3: 0.5614}),
+    ],
+)
 def test_the_white_furnace(run, alpha, shares):
     """At any angle to the eye; `shares` are by Monte Carlo, to 0.001."""
     ray = rays(np.zeros((1, 1, 3)))[0, 0]

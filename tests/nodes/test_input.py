@@ -83,9 +83,7 @@ def test_ramp_without_length_is_finite(run, shape):
 @pytest.mark.parametrize("offset", [(0.0, 0.0), (3.0, -5.0)])
 def test_checker_is_the_checker_of_openimageio(run, offset):
     reference = oiio_canvas(45, 31)
-    oiio.ImageBufAlgo.checker(
-        reference, 8, 8, 1, RED, BLUE, xoffset=int(offset[0]), yoffset=int(offset[1]), zoffset=0
-    )
+    oiio.ImageBufAlgo.checker(reference, 8, 8, 1, RED, BLUE, xoffset=int(offset[0]), yoffset=int(offset[1]), zoffset=0)
     out = run(Checker(size=8.0, first=RED, second=BLUE, offset=offset), size=(45, 31))
     assert np.array_equal(out, reference.get_pixels("float"))
 

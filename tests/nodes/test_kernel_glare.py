@@ -70,9 +70,9 @@ def color_of(nm: float) -> np.ndarray:
     x = 1.056 * lobe(nm, 599.8, 37.9, 31.0) + 0.362 * lobe(nm, 442.0, 16.0, 26.7) - 0.065 * lobe(nm, 501.1, 20.4, 26.2)
     y = 0.821 * lobe(nm, 568.8, 46.9, 40.5) + 0.286 * lobe(nm, 530.9, 16.3, 31.1)
     z = 1.217 * lobe(nm, 437.0, 11.8, 36.0) + 0.681 * lobe(nm, 459.0, 26.0, 13.8)
-    to_rgb = np.array([
-        [3.2404542, -1.5371385, -0.4985314], [-0.9692660, 1.8760108, 0.0415560], [0.0556434, -0.2040259, 1.0572252]
-    ])
+    to_rgb = np.array(
+        [[3.2404542, -1.5371385, -0.4985314], [-0.9692660, 1.8760108, 0.0415560], [0.0556434, -0.2040259, 1.0572252]]
+    )
     return np.maximum(to_rgb @ np.array([x, y, z]), 0.0)
 
 
@@ -114,14 +114,17 @@ def test_an_odd_number_of_blades_makes_twice_as_many_rays(run, blades, arms):
     node = KernelGlare(size=1.0, blades=blades, falloff=0.5, **WHOLE)
     found = run(node, {"image": point(size)}, output="glow")[..., 1]
     turn = np.arange(720) * math.tau / 720.0
-    rings = [map_coordinates(found, [size // 2 + r * np.sin(turn), size // 2 + r * np.cos(turn)], order=1)
-             for r in np.arange(20.0, 45.0)]
+    rings = [
+        map_coordinates(found, [size // 2 + r * np.sin(turn), size // 2 + r * np.cos(turn)], order=1)
+        for r in np.arange(20.0, 45.0)
+    ]
     waves = np.abs(np.fft.rfft(sum(rings)))
     assert 1 + int(waves[1:30].argmax()) == arms
 
 
 def test_the_iris_turns_counterclockwise(run):
     size = 101
+
     def side(rotation: float) -> np.ndarray:
         node = KernelGlare(size=1.0, blades=4, rotation=rotation, falloff=0.5, **WHOLE)
         return run(node, {"image": point(size)}, output="glow")[..., 1]

@@ -24,7 +24,9 @@ def test_straight_levels_are_openimageios_contrast_remap(run, hdr):
 
 def srgb(picture: np.ndarray, direction: ocio.TransformDirection) -> np.ndarray:
     curve = ocio.ExponentWithLinearTransform(
-        gamma=(2.4, 2.4, 2.4, 1.0), offset=(0.055, 0.055, 0.055, 0.0), negativeStyle=ocio.NEGATIVE_MIRROR,
+        gamma=(2.4, 2.4, 2.4, 1.0),
+        offset=(0.055, 0.055, 0.055, 0.0),
+        negativeStyle=ocio.NEGATIVE_MIRROR,
         direction=direction,
     )
     out = np.ascontiguousarray(picture[..., :3], np.float32).reshape(-1, 3)

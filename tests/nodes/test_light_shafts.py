@@ -90,9 +90,12 @@ def test_a_free_lamp(run, forward):
     inner = np.s_[2:-2, 2:-2]
     np.testing.assert_allclose(found[inner], blurred(expected)[inner], rtol=0.03)
     # Without losses, in endless air: (pi / 2 + atan(closest / side)) / side times the density (Sun et al. 2005).
-    thin = haze(run, np.full(SIZE[::-1], 1e10), quality="reference", **(values | {
-        "density": 1e-5, "forward": 0.0, "distance": 1e6
-    }))[..., 0]
+    thin = haze(
+        run,
+        np.full(SIZE[::-1], 1e10),
+        quality="reference",
+        **(values | {"density": 1e-5, "forward": 0.0, "distance": 1e6}),
+    )[..., 0]
     view, _ = views()
     closest = view @ (lamp - np.array(CAMERA.eye))
     side = np.sqrt(np.sum((lamp - np.array(CAMERA.eye)) ** 2) - closest**2)

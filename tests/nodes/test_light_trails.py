@@ -34,8 +34,9 @@ def test_trails_fade_by_the_closed_form(renderer, time):
     shot = {"image": lamp}
     found = played(renderer, shot_graph(LightTrails(time=time, threshold=0.0), shot, (1, 10)), shot, WHOLE, "trail")
     for frame, made in zip(WHOLE, found, strict=True):
-        kept = [lamp(past)[..., :3].astype(float) * math.exp(-(frame - past) / 24 / time)
-                for past in range(1, frame + 1)]
+        kept = [
+            lamp(past)[..., :3].astype(float) * math.exp(-(frame - past) / 24 / time) for past in range(1, frame + 1)
+        ]
         np.testing.assert_allclose(made[..., :3], np.max(kept, axis=0), rtol=2e-6)
 
 

@@ -27,12 +27,15 @@ def test_lights_are_numbers_and_back():
     assert (value.type, value.length, value.glsl, value.wireable) == ("lights", 16, None, False)
 
 
-@pytest.mark.parametrize(("given", "fault"), [
-    ((0.0,) * 15, "it takes a list of 16 numbers for every light"),
-    ((7.0, *(0.0,) * 15), "light 1 is of kind 7: 0 is a point, 1 a spot, 2 a sun, 3 a sphere"),
-    ((*(0.0,) * 15, float("inf")), "inf is not a finite number"),
-    ((0.0,) * 16 * 1025, "1025 lights are too many: it takes at most 1024"),
-])
+@pytest.mark.parametrize(
+    ("given", "fault"),
+    [
+        ((0.0,) * 15, "it takes a list of 16 numbers for every light"),
+        ((7.0, *(0.0,) * 15), "light 1 is of kind 7: 0 is a point, 1 a spot, 2 a sun, 3 a sphere"),
+        ((*(0.0,) * 15, float("inf")), "inf is not a finite number"),
+        ((0.0,) * 16 * 1025, "1025 lights are too many: it takes at most 1024"),
+    ],
+)
 def test_what_is_no_list_of_lights_is_said(given, fault):
     assert fault in (value_fault(Lamps.values["lights"], given) or "")
 

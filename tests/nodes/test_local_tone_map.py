@@ -52,9 +52,18 @@ def scene(width=53, height=39, seed=1):
     return np.concatenate([rgb, np.ones((height, width, 1))], -1).astype(np.float32)
 
 
-@pytest.mark.parametrize("values", [
-    {}, {"sharpness": 12.0}, {"sharpness": 1.0, "threshold": 0.2}, {"key": 0.5}, {"size": 0.6}, {"threshold": 0.01},
-], ids=str)
+@pytest.mark.parametrize(
+    "values",
+    [
+        {},
+        {"sharpness": 12.0},
+        {"sharpness": 1.0, "threshold": 0.2},
+        {"key": 0.5},
+        {"size": 0.6},
+        {"threshold": 0.01},
+    ],
+    ids=str,
+)
 def test_it_is_the_papers_operator(run, values):
     """Where a scale is chosen by a hair, either choice is right."""
     image = scene()
@@ -86,7 +95,9 @@ def test_statistics_are_measured_or_linked(run):
     image = scene(seed=2)
     luma = image[..., :3].astype(np.float64) @ WEIGHTS
     linked = {
-        "image": image, "average": np.array([[np.exp(np.log(1e-5 + luma).mean())]]), "maximum": np.array([[luma.max()]])
+        "image": image,
+        "average": np.array([[np.exp(np.log(1e-5 + luma).mean())]]),
+        "maximum": np.array([[luma.max()]]),
     }
     assert np.abs(run(LocalToneMap(), linked) - run(LocalToneMap(), {"image": image})).max() < 2e-5
     darker = run(LocalToneMap(), linked | {"average": linked["average"] * 4})

@@ -25,7 +25,8 @@ def expected(light: np.ndarray, delta: float = 1e-5, weight: np.ndarray | None =
     return {
         "average": np.average(light, weights=weight),
         "log_average": np.exp(np.average(np.log(delta + np.maximum(light, 0.0)), weights=weight)),
-        "maximum": light[weight > 0.0].max(), "minimum": light[weight > 0.0].min(),
+        "maximum": light[weight > 0.0].max(),
+        "minimum": light[weight > 0.0].min(),
     }
 
 
@@ -98,8 +99,10 @@ def test_a_measurement_drives_a_value(run, hdr):
     graph = Graph().add_input("image", Input(Kind.IMAGE)).add_output("out", Output(Kind.IMAGE))
     graph = graph.add("measure", LuminanceStatistics()).add("exposure", Exposure())
     for source, target in (
-        ("inputs.image", "measure.image"), ("inputs.image", "exposure.image"),
-        ("measure.log_average", "exposure.stops"), ("exposure.out", "outputs.out"),
+        ("inputs.image", "measure.image"),
+        ("inputs.image", "exposure.image"),
+        ("measure.log_average", "exposure.stops"),
+        ("exposure.out", "outputs.out"),
     ):
         graph = graph.connect(Port.parse(source), Port.parse(target))
     factor = 2.0 ** expected(luminance(picture))["log_average"]

@@ -25,8 +25,12 @@ def picture(seed: int, high: float = 1.0, opaque: bool = False) -> np.ndarray:
 # --- the W3C's Compositing and Blending Level 1, written as its text: straight colors, B(Cb, Cs) -------------------
 
 FACTORS = {
-    "over": lambda s, b: (1, 1 - s), "under": lambda s, b: (1 - b, 1), "in": lambda s, b: (b, 0),
-    "out": lambda s, b: (1 - b, 0), "atop": lambda s, b: (b, 1 - s), "xor": lambda s, b: (1 - b, 1 - s),
+    "over": lambda s, b: (1, 1 - s),
+    "under": lambda s, b: (1 - b, 1),
+    "in": lambda s, b: (b, 0),
+    "out": lambda s, b: (1 - b, 0),
+    "atop": lambda s, b: (b, 1 - s),
+    "xor": lambda s, b: (1 - b, 1 - s),
     "clear": lambda s, b: (0, 0),
 }
 """Section 9.1: Fa and Fb of every Porter-Duff operator (`under` is destination-over)."""
@@ -82,17 +86,26 @@ def set_sat(c, spread):
 
 
 BLENDS = {
-    "multiply": multiply, "screen": screen, "overlay": lambda b, s: hard_light(s, b), "soft light": soft_light,
-    "hard light": hard_light, "color dodge": color_dodge, "color burn": color_burn,
-    "darken": np.minimum, "lighten": np.maximum,
-    "difference": lambda b, s: abs(b - s), "exclusion": lambda b, s: b + s - 2 * b * s,
+    "multiply": multiply,
+    "screen": screen,
+    "overlay": lambda b, s: hard_light(s, b),
+    "soft light": soft_light,
+    "hard light": hard_light,
+    "color dodge": color_dodge,
+    "color burn": color_burn,
+    "darken": np.minimum,
+    "lighten": np.maximum,
+    "difference": lambda b, s: abs(b - s),
+    "exclusion": lambda b, s: b + s - 2 * b * s,
     "hue": lambda b, s: set_lum(set_sat(s, sat(b)), lum(b)),
     "saturation": lambda b, s: set_lum(set_sat(b, sat(s)), lum(b)),
     "color": lambda b, s: set_lum(s, lum(b)),
     "luminosity": lambda b, s: set_lum(b, lum(s)),
 }
 OURS = {
-    "subtract": lambda b, s: b - s, "divide": lambda b, s: b / s, "hypot": np.hypot,
+    "subtract": lambda b, s: b - s,
+    "divide": lambda b, s: b / s,
+    "hypot": np.hypot,
     "average": lambda b, s: (b + s) / 2,
 }
 
@@ -138,8 +151,13 @@ def test_over_is_that_of_openimageio(run):
 @pytest.mark.parametrize(
     ("mode", "reference"),
     [
-        ("multiply", ALGO.mul), ("darken", ALGO.min), ("lighten", ALGO.max), ("difference", ALGO.absdiff),
-        ("subtract", ALGO.sub), ("divide", ALGO.div), ("plus", ALGO.add),
+        ("multiply", ALGO.mul),
+        ("darken", ALGO.min),
+        ("lighten", ALGO.max),
+        ("difference", ALGO.absdiff),
+        ("subtract", ALGO.sub),
+        ("divide", ALGO.div),
+        ("plus", ALGO.add),
     ],
 )
 def test_opaque_arithmetic_is_that_of_openimageio(run, mode, reference):
@@ -155,18 +173,35 @@ def test_values_by_hand(run):
     """One pixel of every kind, worked out on paper from the W3C's formulas: backdrop 0.2, source 0.6."""
     a, b = (np.array([[[value] * 3 + [1.0]]], np.float32) for value in (0.6, 0.2))
     by_hand = {
-        "multiply": 0.12, "screen": 0.68, "overlay": 0.24, "hard light": 0.36, "color dodge": 0.5, "color burn": 0.0,
-        "soft light": 0.2 + 0.2 * (((16 * 0.2 - 12) * 0.2 + 4) * 0.2 - 0.2), "exclusion": 0.56, "hypot": 0.4**0.5,
+        "multiply": 0.12,
+        "screen": 0.68,
+        "overlay": 0.24,
+        "hard light": 0.36,
+        "color dodge": 0.5,
+        "color burn": 0.0,
+        "soft light": 0.2 + 0.2 * (((16 * 0.2 - 12) * 0.2 + 4) * 0.2 - 0.2),
+        "exclusion": 0.56,
+        "hypot": 0.4**0.5,
     }
     for mode, expected in by_hand.items():
         assert run(Merge(mode=mode), {"a": a, "b": b})[0, 0, 0] == pytest.approx(expected, abs=1e-6), mode
 
 
-@pytest.mark.parametrize(("mode", "backdrop", "source", "expected"), [
-    ("screen", 1.1, 0.5, 1.1), ("screen", 0.5, 1.1, 1.1), ("overlay", 2.0, 0.5, 3.0), ("hard light", 0.5, 2.0, 3.0),
-    ("soft light", 2.0, 0.2, 2.0), ("soft light", 0.25, 3.0, 0.5), ("color dodge", 2.0, 0.25, 2.0),
-    ("color dodge", 0.5, 3.0, 1.0), ("color burn", 2.0, 0.5, 2.0), ("color burn", 0.5, 2.0, 0.75),
-])
+@pytest.mark.parametrize(
+    ("mode", "backdrop", "source", "expected"),
+    [
+        ("screen", 1.1, 0.5, 1.1),
+        ("screen", 0.5, 1.1, 1.1),
+        ("overlay", 2.0, 0.5, 3.0),
+        ("hard light", 0.5, 2.0, 3.0),
+        ("soft light", 2.0, 0.2, 2.0),
+        ("soft light", 0.25, 3.0, 0.5),
+        ("color dodge", 2.0, 0.25, 2.0),
+        ("color dodge", 0.5, 3.0, 1.0),
+        ("color burn", 2.0, 0.5, 2.0),
+        ("color burn", 0.5, 2.0, 0.75),
+    ],
+)
 def test_light_beyond_the_w3cs_range(run, mode, backdrop, source, expected):
     a, b = (np.array([[[value] * 3 + [1.0]]], np.float32) for value in (source, backdrop))
     assert run(Merge(mode=mode), {"a": a, "b": b})[0, 0, 0] == pytest.approx(expected, abs=1e-6)

@@ -91,9 +91,9 @@ def test_what_stands_before_a_pan_stays_sharp(run):
 def test_the_phase_is_when_the_shutter_opens(run, phase, middle):
     picture = np.zeros((21, 81, 4), np.float32)
     picture[:, 40] = 1.0
-    found = run(
-        MotionBlur(phase=phase, max_length=1.0), {"image": picture, "velocity": motion(81, 21, 24.0, 0.0)}
-    )[10, :, 0].astype(float)
+    found = run(MotionBlur(phase=phase, max_length=1.0), {"image": picture, "velocity": motion(81, 21, 24.0, 0.0)})[
+        10, :, 0
+    ].astype(float)
     x = np.arange(81) - 40
     assert found.sum() == pytest.approx(1.0, abs=1e-5) and (found * x).sum() == pytest.approx(middle, abs=1e-4)
     assert (found * (x - middle) ** 2).sum() == pytest.approx(12.0**2 / 12.0, rel=0.02)
@@ -137,10 +137,18 @@ def naive(picture: np.ndarray, velocity: np.ndarray) -> np.ndarray:
     """Every pixel blurred along its own velocity, whatever passes by."""
     y, x = np.mgrid[: picture.shape[0], : picture.shape[1]]
     times = ((np.arange(32) + 0.5) / 32 - 0.5) * 0.5
-    return np.mean([
-        [map_coordinates(picture[..., c], [y - t * velocity[..., 1], x - t * velocity[..., 0]], order=1, mode="nearest")
-         for c in range(3)] for t in times
-    ], 0).transpose(1, 2, 0)
+    return np.mean(
+        [
+            [
+                map_coordinates(
+                    picture[..., c], [y - t * velocity[..., 1], x - t * velocity[..., 0]], order=1, mode="nearest"
+                )
+                for c in range(3)
+            ]
+            for t in times
+        ],
+        0,
+    ).transpose(1, 2, 0)
 
 
 @pytest.mark.parametrize("samples", [64, 8])

@@ -70,7 +70,15 @@ def test_white_noise_is_uniform(run):
 @pytest.mark.parametrize("kind", SMOOTH)
 def test_it_is_the_papers_formula(run, kind, fractal):
     node = Noise(
-        kind=kind, fractal=fractal, size=13.0, octaves=3, lacunarity=2.5, gain=0.6, contrast=1.4, seed=9, evolution=1.3,
+        kind=kind,
+        fractal=fractal,
+        size=13.0,
+        octaves=3,
+        lacunarity=2.5,
+        gain=0.6,
+        contrast=1.4,
+        seed=9,
+        evolution=1.3,
         warp=0.7,
     )
     assert np.abs(three(run, node, (64, 48)) - model(places(64, 48, 13.0, 1.3), node)).max() < 2e-5
@@ -120,6 +128,7 @@ def test_noise_keeps_its_range_and_mean(run, kind):
 
 def test_variances_of_layers_add(run):
     """Independent layers: var(fBm) = sum gain^2i var / (sum gain^i)^2."""
+
     def spread(octaves: int) -> float:
         node = Noise(kind="white", size=1.0, octaves=octaves, gain=0.5, contrast=1.0)
         return float(run(node, size=(256, 256), output="value").var())
@@ -169,6 +178,7 @@ def test_ridges_and_creases_lie_where_the_noise_is_zero(run):
 
 def test_layers_are_as_strong_whatever_they_are(run):
     """var(fBm) = sum gain^2i var / (sum gain^i)^2, for a smooth noise: far layers are independent."""
+
     def spread(octaves: int) -> float:
         node = Noise(kind="simplex", size=3.0, lacunarity=2.3, octaves=octaves, contrast=1.0)
         return float(run(node, size=(256, 256), output="value").var())
@@ -185,6 +195,7 @@ def test_unwarped_is_fbm(run):
 @pytest.mark.parametrize("kind", SMOOTH)
 def test_evolution_is_smooth(run, kind, fractal):
     """Ten times smaller a step, ten times smaller a change."""
+
     def change(step: float) -> float:
         node = Noise(kind=kind, fractal=fractal, size=16.0, octaves=2, contrast=1.0, warp=0.5)
         first, then = (run(node.changed(evolution=z), size=(48, 48), output="value") for z in (0.7, 0.7 + step))

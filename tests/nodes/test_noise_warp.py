@@ -64,6 +64,7 @@ def test_it_is_scipys_at_these_positions(run, hdr, edge, kind, size, amount, wav
 
 def test_flow_keeps_areas_and_push_does_not(run):
     """The determinant of the warp, read off a picture of positions: 1 for small steps of a flow."""
+
     def stretch(kind: str) -> np.ndarray:
         y, x = np.mgrid[:96, :96] + 0.5
         picture = np.stack([x, y, 0 * x, 0 * x + 1], -1).astype(np.float32)

@@ -21,10 +21,20 @@ def gray(*values):
     return np.array([[(value, value, value, 1.0) for value in values]], np.float32)
 
 
-@pytest.mark.parametrize("values", [
-    {}, {"stops": 0.0}, {"stops": 5.0}, {"white": 1.0}, {"shoulder": 0.0}, {"shoulder": 1.0}, {"bleach": 0.0},
-    {"white": 1.0, "shoulder": 0.3, "bleach": 3.0},
-], ids=str)
+@pytest.mark.parametrize(
+    "values",
+    [
+        {},
+        {"stops": 0.0},
+        {"stops": 5.0},
+        {"white": 1.0},
+        {"shoulder": 0.0},
+        {"shoulder": 1.0},
+        {"bleach": 0.0},
+        {"white": 1.0, "shoulder": 0.3, "bleach": 3.0},
+    ],
+    ids=str,
+)
 def test_it_is_the_formula(run, hdr, values):
     picture = hdr(41, 29, opaque=True)
     found = run(OverExposure(**values), {"image": picture})

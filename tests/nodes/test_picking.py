@@ -17,21 +17,24 @@ def test_every_name_can_be_listed(name):
     assert picked_names(listed(["*", f"-{name}"]), MANIFEST) == set(NAMES) - {name}
 
 
-@pytest.mark.parametrize(("pick", "name", "wanted"), [
-    ("*", "monkey", "monkey"),
-    ("", "monkey", "monkey"),
-    ("monkey", "ring_blue", "monkey, ring_blue"),
-    ("monkey, ring_blue", "monkey", "ring_blue"),
-    ("monkey", "monkey", ""),
-    ("ring_*", "ring_blue", "ring_*, -ring_blue"),
-    ("ring_*, -ring_blue", "ring_blue", "ring_*"),
-    ("*, -monkey", "monkey", "*"),
-    ("monkey", "a, b", 'monkey, "a, b"'),
-    ('"a, b", monkey', "a, b", "monkey"),
-    ("monkey\nring_blue", "ring_pink", "monkey, ring_blue, ring_pink"),
-    (" monkey ,, ring_blue ", "monkey", "ring_blue"),
-    ("elsewhere", "monkey", "elsewhere, monkey"),
-])
+@pytest.mark.parametrize(
+    ("pick", "name", "wanted"),
+    [
+        ("*", "monkey", "monkey"),
+        ("", "monkey", "monkey"),
+        ("monkey", "ring_blue", "monkey, ring_blue"),
+        ("monkey, ring_blue", "monkey", "ring_blue"),
+        ("monkey", "monkey", ""),
+        ("ring_*", "ring_blue", "ring_*, -ring_blue"),
+        ("ring_*, -ring_blue", "ring_blue", "ring_*"),
+        ("*, -monkey", "monkey", "*"),
+        ("monkey", "a, b", 'monkey, "a, b"'),
+        ('"a, b", monkey', "a, b", "monkey"),
+        ("monkey\nring_blue", "ring_pink", "monkey, ring_blue, ring_pink"),
+        (" monkey ,, ring_blue ", "monkey", "ring_blue"),
+        ("elsewhere", "monkey", "elsewhere, monkey"),
+    ],
+)
 def test_a_click_changes_one_name(pick, name, wanted):
     assert toggled(pick, name, MANIFEST) == wanted
 

@@ -11,7 +11,9 @@ from halation.nodes import Kind, Node, Pointwise, Value, catalogue
 NODES = [node for node in catalogue().values() if issubclass(node, Pointwise)]
 CASES = [
     pytest.param(node, value, id=f"{node.id}.{value.name}")
-    for node in NODES for value in node.values.values() if value.wireable
+    for node in NODES
+    for value in node.values.values()
+    if value.wireable
 ]
 HEIGHT, WIDTH = 9, 14
 
@@ -52,7 +54,9 @@ def test_linked_value_is_the_set_value(run, node, value):
             fixed = node(**choices, **{value.name: setting})
             expected = run(fixed, inputs_of(node), size=(WIDTH, HEIGHT), output=output)
             out = run(
-                node(**choices), inputs_of(node) | {value.name: linked(value, setting)}, size=(WIDTH, HEIGHT),
+                node(**choices),
+                inputs_of(node) | {value.name: linked(value, setting)},
+                size=(WIDTH, HEIGHT),
                 output=output,
             )
             assert np.abs(out - expected).max() <= 1e-5 * max(1.0, np.abs(expected).max()), choices

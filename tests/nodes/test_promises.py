@@ -34,48 +34,78 @@ LIMIT = 0.03
 AFAR = 0.02
 """Mean difference of light, 0..1, between averages over a sixteenth of the width."""
 
-ALIKE_FROM_AFAR = MappingProxyType({
-    "it weighs the next pixels, which are farther away in a proxy": (
-        "convolve3x3.out", "curvature.cavity", "curvature.mean", "curvature.ridge", "facing.facing",
-        "normal_from_depth.curvature", "normal_from_depth.normal", "rim_light.out", "rim_light.rim",
-    ),
-    "what hides what is read from depth, which has fewer steps in a proxy and is never mixed": (
-        "ambient_occlusion.bent_normal", "ambient_occlusion.occlusion", "contact_shadows.shadow",
-        "directional_occlusion.light", "screen_reflections.confidence", "screen_reflections.reflection",
-    ),
-    "its pattern is as fine as pixels of the proxy": (
-        "crosshatch.out", "film_grain.out", "halftone.out", "worley.cell",
-    ),
-    "it measures the logarithm of light, which of averages is more": ("eye_adaptation.out",),
-    "its lines have hard edges, around specks too that a proxy averages away": (
-        "difference_of_gaussians.out", "difference_of_gaussians.value", "distance_field.distance", "outline.line",
-        "outline.out",
-    ),
-    "it is steep: what it makes of an average is not the average of what it makes": (
-        "emboss.out", "local_tone_map.out",
-    ),
-    "it measures the darkest and the brightest pixel, which a proxy averages away": ("photoreceptor_tone_map.out",),
-    "it is what passes a threshold, and an average passes it less": (
-        "kernel_glare.glow", "star.glow", "streaks.glow",
-    ),
-    "it is read between pixels many times over, which softens it by pixels of the proxy": (
-        "ghosts.glow", "sun_beams.glow",
-    ),
-    "a box is a whole number of pixels wide, and one more than twice the radius": ("box_blur.out",),
-    "the tone that is most frequent is one of fewer": ("oil.out",),
-    "strong colors meet at hard edges, which are those of single pixels in a proxy": ("id_mask.colors",),
-})
+ALIKE_FROM_AFAR = MappingProxyType(
+    {
+        "it weighs the next pixels, which are farther away in a proxy": (
+            "convolve3x3.out",
+            "curvature.cavity",
+            "curvature.mean",
+            "curvature.ridge",
+            "facing.facing",
+            "normal_from_depth.curvature",
+            "normal_from_depth.normal",
+            "rim_light.out",
+            "rim_light.rim",
+        ),
+        "what hides what is read from depth, which has fewer steps in a proxy and is never mixed": (
+            "ambient_occlusion.bent_normal",
+            "ambient_occlusion.occlusion",
+            "contact_shadows.shadow",
+            "directional_occlusion.light",
+            "screen_reflections.confidence",
+            "screen_reflections.reflection",
+        ),
+        "its pattern is as fine as pixels of the proxy": (
+            "crosshatch.out",
+            "film_grain.out",
+            "halftone.out",
+            "worley.cell",
+        ),
+        "it measures the logarithm of light, which of averages is more": ("eye_adaptation.out",),
+        "its lines have hard edges, around specks too that a proxy averages away": (
+            "difference_of_gaussians.out",
+            "difference_of_gaussians.value",
+            "distance_field.distance",
+            "outline.line",
+            "outline.out",
+        ),
+        "it is steep: what it makes of an average is not the average of what it makes": (
+            "emboss.out",
+            "local_tone_map.out",
+        ),
+        "it measures the darkest and the brightest pixel, which a proxy averages away": ("photoreceptor_tone_map.out",),
+        "it is what passes a threshold, and an average passes it less": (
+            "kernel_glare.glow",
+            "star.glow",
+            "streaks.glow",
+        ),
+        "it is read between pixels many times over, which softens it by pixels of the proxy": (
+            "ghosts.glow",
+            "sun_beams.glow",
+        ),
+        "a box is a whole number of pixels wide, and one more than twice the radius": ("box_blur.out",),
+        "the tone that is most frequent is one of fewer": ("oil.out",),
+        "strong colors meet at hard edges, which are those of single pixels in a proxy": ("id_mask.colors",),
+    }
+)
 """Outputs that differ in fine detail at half size, by the reason why."""
 
-UNLIKE = MappingProxyType({
-    "its lines are one or two pixels wide at any size": (
-        "canny.lines", "canny.out", "edge_detect.magnitude", "edge_detect.out", "geometry_edges.border",
-        "geometry_edges.crease", "geometry_edges.gap",
-    ),
-    "its lines are narrower than two pixels of the proxy, and fainter for that": ("geometry_edges.edges",),
-    "what scatters within a pixel counts as sharp, and pixels of a proxy are larger": ("eye_glare.glow",),
-    "every pixel is another number": ("blue_noise.out", "blue_noise.value", "blue_noise.vector"),
-})
+UNLIKE = MappingProxyType(
+    {
+        "its lines are one or two pixels wide at any size": (
+            "canny.lines",
+            "canny.out",
+            "edge_detect.magnitude",
+            "edge_detect.out",
+            "geometry_edges.border",
+            "geometry_edges.crease",
+            "geometry_edges.gap",
+        ),
+        "its lines are narrower than two pixels of the proxy, and fainter for that": ("geometry_edges.edges",),
+        "what scatters within a pixel counts as sharp, and pixels of a proxy are larger": ("eye_glare.glow",),
+        "every pixel is another number": ("blue_noise.out", "blue_noise.value", "blue_noise.vector"),
+    }
+)
 """Outputs that look otherwise at half size, by the reason why."""
 
 NODES = tuple(node for node in catalogue().values() if drawn(node))
@@ -95,6 +125,7 @@ def knows_places(node: type[Node]) -> bool:
 @pytest.fixture(scope="module")
 def picture(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The sample without its brightest light, as sharp as half as many pixels can be: a proxy loses nothing."""
+
     def layer(name: str, kind: Kind, width: int, size: tuple[int, int]) -> Array:
         pixels = media.read(sample(), name, kind, width).array.astype(np.float32)
         pixels = np.minimum(pixels, BRIGHTEST) if kind is Kind.IMAGE else pixels

@@ -20,19 +20,27 @@ def around(picture: np.ndarray, node: RadialBlur, mode: str) -> np.ndarray:
     for i in range(int(counts.max())):
         t = (i + 0.5) / counts - 0.5
         at = middle + away * (np.exp(1j * t * np.radians(node.angle)) if spin else 1.0 + t * node.zoom)
-        sample = np.stack([
-            map_coordinates(channel, [at.imag - 0.5, at.real - 0.5], order=1, mode=mode)
-            for channel in np.moveaxis(picture.astype(np.float64), -1, 0)
-        ], axis=-1)
+        sample = np.stack(
+            [
+                map_coordinates(channel, [at.imag - 0.5, at.real - 0.5], order=1, mode=mode)
+                for channel in np.moveaxis(picture.astype(np.float64), -1, 0)
+            ],
+            axis=-1,
+        )
         total += np.where(i < counts, 1.0, 0.0)[..., None] * sample
     return total / counts[..., None]
 
 
 @pytest.mark.parametrize("size", [(33, 22), (1, 7), (1, 1)])
-@pytest.mark.parametrize("values", [
-    {"kind": "zoom", "zoom": 0.37}, {"kind": "zoom", "zoom": 1.6, "center": (0.21, 0.87)},
-    {"kind": "spin", "angle": 27.0}, {"kind": "spin", "angle": 300.0, "center": (0.21, 0.87)},
-])
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"kind": "zoom", "zoom": 0.37},
+        {"kind": "zoom", "zoom": 1.6, "center": (0.21, 0.87)},
+        {"kind": "spin", "angle": 27.0},
+        {"kind": "spin", "angle": 300.0, "center": (0.21, 0.87)},
+    ],
+)
 def test_it_equals_scipy(run, hdr, edge, size, values):
     picture, node = hdr(*size), RadialBlur(**values, edge=edge.name)
     found = run(node, {"image": picture})

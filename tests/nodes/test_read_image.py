@@ -45,7 +45,9 @@ def passes(tmp_path: Path) -> tuple[str, dict[str, np.ndarray]]:
 @pytest.mark.parametrize(
     ("output", "layer", "expected"),
     [
-        ("out", "", "Combined"), ("out", "Combined", "Combined"), ("field", "Depth", "Depth"),
+        ("out", "", "Combined"),
+        ("out", "Combined", "Combined"),
+        ("field", "Depth", "Depth"),
         ("vector", "Normal", "Normal"),
     ],
 )

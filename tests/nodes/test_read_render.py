@@ -37,8 +37,11 @@ def scene() -> dict[str, np.ndarray]:
     normals = np.where(on_ball[..., None], (place - center) / radius, normal)
     frame = np.array([CAMERA.right, -np.array(CAMERA.down), -np.array(CAMERA.forward)])
     return {
-        "position": place, "depth": depth[..., None], "radial": np.linalg.norm(place - eye, axis=-1, keepdims=True),
-        "normal": normals, "camera_normal": normals @ frame.T,
+        "position": place,
+        "depth": depth[..., None],
+        "radial": np.linalg.norm(place - eye, axis=-1, keepdims=True),
+        "normal": normals,
+        "camera_normal": normals @ frame.T,
     }
 
 
@@ -76,7 +79,10 @@ COLOR = np.full((SIZE[1], SIZE[0], 3), 0.25)
 def test_depth_of_every_kind_comes_out_planar(renderer, tmp_path, kind, told):
     data = scene()
     stored = {
-        "planar": data["depth"], "radial": data["radial"], "inverse": 1 / data["depth"], "negative": -data["depth"],
+        "planar": data["depth"],
+        "radial": data["radial"],
+        "inverse": 1 / data["depth"],
+        "negative": -data["depth"],
     }[kind]
     path = write(tmp_path / "a.exr", {"RGB": COLOR, "depth.Z": stored, "P.XYZ": data["position"]})
     (depth,) = shown(renderer, ReadRender(path=path, depth_is=kind if told else "found"), "depth")

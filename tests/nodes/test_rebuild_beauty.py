@@ -16,8 +16,10 @@ LOBES = ("diffuse", "glossy", "transmission")
 def passes() -> dict[str, np.ndarray]:
     """Blender's, opaque as pictures without alpha are."""
     with np.load(Path(__file__).parents[1] / "data" / "blender_passes.npz") as file:
-        found = {name: np.pad(file[name], ((0, 0), (0, 0), (0, 4 - file[name].shape[2])), constant_values=1.0)
-                 for name in file.files}
+        found = {
+            name: np.pad(file[name], ((0, 0), (0, 0), (0, 4 - file[name].shape[2])), constant_values=1.0)
+            for name in file.files
+        }
     return {"beauty": found.pop("combined"), **found}
 
 

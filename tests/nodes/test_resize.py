@@ -9,8 +9,13 @@ import pytest
 from halation.nodes.distort.resize import Resize
 from oiio_pictures import buffer
 
-NAMES = {"box": "box", "triangle": "triangle", "catmull-rom": "catmull-rom", "mitchell": "mitchell",
-         "lanczos": "lanczos3"}
+NAMES = {
+    "box": "box",
+    "triangle": "triangle",
+    "catmull-rom": "catmull-rom",
+    "mitchell": "mitchell",
+    "lanczos": "lanczos3",
+}
 SCALES = [(2.0, 3.0), (0.5, 0.4), (1.37, 0.61), (0.21, 1.9)]
 
 
@@ -40,8 +45,10 @@ def matrix(before: int, after: int, kernel: str, mode: str) -> np.ndarray:
     else:
         weights = KERNELS[kernel]((pixels + 0.5 - center) / width)
     weights /= weights.sum(1, keepdims=True)
-    source = np.pad(np.arange(before), pad, mode=mode) if mode != "constant" else np.pad(
-        np.arange(before), pad, constant_values=-1
+    source = (
+        np.pad(np.arange(before), pad, mode=mode)
+        if mode != "constant"
+        else np.pad(np.arange(before), pad, constant_values=-1)
     )
     return np.stack([weights[:, source == pixel].sum(1) for pixel in range(before)], 1)
 
@@ -68,10 +75,13 @@ def test_every_edge_mode(run, hdr, edge):
     assert np.abs(out - expected).max() < 3e-6 * picture.max()
 
 
-@pytest.mark.parametrize(("kernel", "scale"), [
-    ("box", (3.0, 3.0)),  # between whole factors, OpenImageIO's box counts whole pixels
-    *((kernel, scale) for kernel in NAMES if kernel != "box" for scale in ((3.0, 3.0), (0.5, 0.4), (1.25, 0.6))),
-])
+@pytest.mark.parametrize(
+    ("kernel", "scale"),
+    [
+        ("box", (3.0, 3.0)),  # between whole factors, OpenImageIO's box counts whole pixels
+        *((kernel, scale) for kernel in NAMES if kernel != "box" for scale in ((3.0, 3.0), (0.5, 0.4), (1.25, 0.6))),
+    ],
+)
 def test_it_is_openimageios(run, hdr, kernel, scale):
     picture = hdr(40, 30)
     width, height = Resize(scale=scale).output_size({"image": (40, 30)}, (40, 30))

@@ -29,8 +29,15 @@ def test_it_is_scipys_at_these_positions(run, hdr, size, shape, motion, degrees)
 
     picture = hdr(*size)
     node = Ripple(
-        shape=shape, motion=motion, angle=degrees, amplitude=0.05, wavelength=0.3, phase=0.2, reach=0.7,
-        center=(0.4, 0.6), edge="mirror",
+        shape=shape,
+        motion=motion,
+        angle=degrees,
+        amplitude=0.05,
+        wavelength=0.3,
+        phase=0.2,
+        reach=0.7,
+        center=(0.4, 0.6),
+        edge="mirror",
     )
     expected, sure = warped(picture, source, "mirror")
     error = np.abs(run(node, {"image": picture}) - expected).max(-1)

@@ -38,9 +38,13 @@ def test_blocks_take_what_sound_pixels_lie_around(run, hdr):
     picture[5:8, 6:9] = np.nan
     picture[0, 3:12] = np.inf
     holes = np.where(np.isfinite(picture), picture, np.nan).astype(np.float64)
-    around = np.stack([
-        generic_filter(holes[..., channel], sound_average, size=3, mode="constant", cval=np.nan) for channel in range(4)
-    ], -1)
+    around = np.stack(
+        [
+            generic_filter(holes[..., channel], sound_average, size=3, mode="constant", cval=np.nan)
+            for channel in range(4)
+        ],
+        -1,
+    )
     expected = np.where(np.isnan(holes), around, holes)
     out = run(Sanitize(), {"image": picture})
     assert not out[6, 7].any()  # the middle of the block, with nothing sound in reach

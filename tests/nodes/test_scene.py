@@ -15,7 +15,16 @@ from scipy.stats import qmc
 
 SIZE = (96, 54)
 CHANNELS = (
-    "albedo", "normal", "position", "depth", "emission", "material", "velocity", "uv", "object_id", "material_id",
+    "albedo",
+    "normal",
+    "position",
+    "depth",
+    "emission",
+    "material",
+    "velocity",
+    "uv",
+    "object_id",
+    "material_id",
 )
 
 
@@ -121,7 +130,9 @@ def test_files(renderer, tmp_path, ending):
     box = trimesh.creation.box((1.0, 2.0, 3.0))
     if ending == "glb":
         material = trimesh.visual.material.PBRMaterial(
-            baseColorFactor=[0.8, 0.4, 0.2, 1.0], metallicFactor=0.25, roughnessFactor=0.75,
+            baseColorFactor=[0.8, 0.4, 0.2, 1.0],
+            metallicFactor=0.25,
+            roughnessFactor=0.75,
             emissiveFactor=[0.1, 0.2, 0.3],
         )
         box.visual = trimesh.visual.TextureVisuals(uv=np.zeros((len(box.vertices), 2)), material=material)

@@ -12,6 +12,7 @@ WEIGHTS = np.array([0.2126, 0.7152, 0.0722])
 
 def xyz_matrix():
     """Primaries and white of ITU-R BT.709."""
+
     def xyz(x, y):
         return np.array([x / y, 1.0, (1 - x - y) / y])
 
@@ -34,9 +35,18 @@ def night(rgb, nits=0.1, amount=1.0, blue_shift=1.0, brightness=1.0, adaptation=
     return rgb * (1 - share) + seen[..., None] * tint * share
 
 
-@pytest.mark.parametrize("values", [
-    {}, {"nits": 0.003}, {"nits": 8.0}, {"amount": 0.4}, {"blue_shift": 0.0}, {"blue_shift": 1.8, "brightness": 0.5},
-], ids=str)
+@pytest.mark.parametrize(
+    "values",
+    [
+        {},
+        {"nits": 0.003},
+        {"nits": 8.0},
+        {"amount": 0.4},
+        {"blue_shift": 0.0},
+        {"blue_shift": 1.8, "brightness": 0.5},
+    ],
+    ids=str,
+)
 def test_color_is_the_papers_formula(run, hdr, values):
     picture = hdr(37, 23, opaque=True)
     found = run(ScotopicVision(blur=0.0, **values), {"image": picture})

@@ -104,9 +104,13 @@ def test_balls_do_not_mirror_themselves(run, radius):
         assert np.all(mirrored(run, camera, seen["depth"], given, "confidence", sky=False) == 0.0)
 
 
-@pytest.mark.parametrize(("eye", "center", "radius"), [
-    ((0.0, -4.0, 1.5), (0.2, 0.5, 1.0), 0.9), ((1.5, -3.5, 0.8), (-0.3, 0.3, 0.7), 0.7),
-])
+@pytest.mark.parametrize(
+    ("eye", "center", "radius"),
+    [
+        ((0.0, -4.0, 1.5), (0.2, 0.5, 1.0), 0.9),
+        ((1.5, -3.5, 0.8), (-0.3, 0.3, 0.7), 0.7),
+    ],
+)
 def test_a_ball_mirrors_floor_and_wall(run, eye, center, radius):
     """Rays off a curved mirror, met by analysis wherever the picture shows what they meet."""
     camera = look_at(eye, (0.2, 3.0, 0.9), (1.2, 1.2 * 16 / 9))
@@ -174,8 +178,13 @@ def test_metal_tints_and_masks_hide(run):
     mask = np.ones(depth.shape)
     mask[:, :80] = 0.0
     inputs = {
-        "image": flat(1, 1, 1, 1), "depth": depth, "normal": normal, "camera": camera, "material": flat(1, 0),
-        "albedo": flat(0.9, 0.6, 0.2, 1), "mask": mask,
+        "image": flat(1, 1, 1, 1),
+        "depth": depth,
+        "normal": normal,
+        "camera": camera,
+        "material": flat(1, 0),
+        "albedo": flat(0.9, 0.6, 0.2, 1),
+        "mask": mask,
     }
     found = run(ScreenReflections(**MIRROR), inputs, output="reflection")
     sure = run(ScreenReflections(**MIRROR), inputs, output="confidence")[..., 0]

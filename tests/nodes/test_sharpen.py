@@ -12,10 +12,15 @@ WEIGHTS = np.array([0.2126, 0.7152, 0.0722])
 
 @pytest.mark.parametrize("size", [(33, 20), (1, 9), (1, 1)])
 @pytest.mark.parametrize(("sigma", "tolerance"), [(1.0, 1e-5), (3.3, 1e-5), (12.0, 1e-3)])
-@pytest.mark.parametrize(("amount", "threshold", "limit", "channels"), [
-    (1.7, 0.0, 1e6, "separate"), (0.6, 0.2, 0.5, "separate"), (1.7, 0.0, 0.3, "luminance"),
-    (-0.5, 0.3, 1e6, "luminance"),
-])
+@pytest.mark.parametrize(
+    ("amount", "threshold", "limit", "channels"),
+    [
+        (1.7, 0.0, 1e6, "separate"),
+        (0.6, 0.2, 0.5, "separate"),
+        (1.7, 0.0, 0.3, "luminance"),
+        (-0.5, 0.3, 1e6, "luminance"),
+    ],
+)
 def test_it_equals_the_formula(run, hdr, edge, size, sigma, tolerance, amount, threshold, limit, channels):
     picture = hdr(*size)
     values = {"amount": amount, "sigma": sigma, "threshold": threshold, "limit": limit, "channels": channels}

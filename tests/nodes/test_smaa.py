@@ -187,8 +187,10 @@ def pictures() -> dict[str, np.ndarray]:
     colors = gray(np.zeros((34, 31)))
     colors[..., :3] = np.where(soft > 0.5, 0.9, soft)
     return {
-        "star": gray(0.02 + 0.7 * jagged[4:52, 4:52]), "details": gray(jagged[3:53, 50:]),
-        "dust": gray(random.random((27, 33)) > 0.6), "colors": colors,
+        "star": gray(0.02 + 0.7 * jagged[4:52, 4:52]),
+        "details": gray(jagged[3:53, 50:]),
+        "dust": gray(random.random((27, 33)) > 0.6),
+        "colors": colors,
     }
 
 
@@ -227,9 +229,11 @@ def half_plane(angle: float, offset: float, samples: int) -> np.ndarray:
     y, x = np.mgrid[:56, :56]
     normal = np.sin(np.radians(angle)), np.cos(np.radians(angle))
     finer = (np.arange(samples) + 0.5) / samples - 0.5
-    return gray(np.mean([
-        (x + dx - 27.8) * normal[0] + (y + dy - 27.7) * normal[1] > offset for dx in finer for dy in finer
-    ], axis=0))
+    return gray(
+        np.mean(
+            [(x + dx - 27.8) * normal[0] + (y + dy - 27.7) * normal[1] > offset for dx in finer for dy in finer], axis=0
+        )
+    )
 
 
 @pytest.mark.parametrize("angle", [2, 5, 9, 14, 20, 26, 31, 36, 40, 43, 44, 46, 47, 50, 54, 59, 64, 70, 76, 81, 85, 88])

@@ -43,7 +43,12 @@ def test_straight_arms_are_the_geometric_series(run, hdr, size, length, dispersi
     fade, terms = fades(length, dispersion), count(length, dispersion)
     for angle, axis in ((0.0, 1), (90.0, 0)):
         node = Streaks(
-            arms=2, angle=angle, length=length / size[1], dispersion=dispersion, quality="full", edge=edge,
+            arms=2,
+            angle=angle,
+            length=length / size[1],
+            dispersion=dispersion,
+            quality="full",
+            edge=edge,
             **ALL_LIGHT,
         )
         expected = sum(arm(picture, axis, sign, fade, terms, mode) for sign in (1, -1)) / 2.0

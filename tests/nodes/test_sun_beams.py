@@ -27,10 +27,14 @@ def series(node: SunBeams, width: int, height: int) -> tuple[int, float, float]:
 
 
 @pytest.mark.parametrize("quality", ["full", "half", "quarter"])
-@pytest.mark.parametrize("values", [
-    {"source": (0.5, 0.5), "length": 0.6, "decay": 0.9}, {"source": (0.3, 0.7), "length": 0.95, "decay": 0.0},
-    {"source": (0.71, 0.2), "length": 0.3, "decay": 1.0},
-])
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"source": (0.5, 0.5), "length": 0.6, "decay": 0.9},
+        {"source": (0.3, 0.7), "length": 0.95, "decay": 0.0},
+        {"source": (0.71, 0.2), "length": 0.3, "decay": 1.0},
+    ],
+)
 def test_a_slope_is_known_in_closed_form(run, quality, values):
     """Bilinear samples of a plane are exact: its slope shrinks by a geometric series in fade x shrink."""
     width, height = 128, 96

@@ -30,7 +30,8 @@ def shot_of(node: type[Node], spoiled: frozenset[int] = frozenset()) -> Shot:
     """Noise that is new in every frame for every picture it takes."""
     return {
         name: lambda frame, channels=socket.channels: pixels(frame, channels, frame in spoiled)
-        for name, socket in node.inputs.items() if not socket.single
+        for name, socket in node.inputs.items()
+        if not socket.single
     }
 
 

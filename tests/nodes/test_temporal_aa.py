@@ -60,9 +60,15 @@ def mean_of_64(fine: np.ndarray) -> np.ndarray:
     return fine.reshape(SIZE[1], FINE, SIZE[0], FINE, -1).mean((1, 3))
 
 
-@pytest.mark.parametrize(("motion", "most"), [
-    ({}, 0.3), ({"orbit": 0.1}, 0.5), ({"drift": (-0.06, 0.0, 0.0)}, 0.35),
-], ids=["still", "orbit", "ball"])
+@pytest.mark.parametrize(
+    ("motion", "most"),
+    [
+        ({}, 0.3),
+        ({"orbit": 0.1}, 0.5),
+        ({"drift": (-0.06, 0.0, 0.0)}, 0.35),
+    ],
+    ids=["still", "orbit", "ball"],
+)
 @pytest.mark.parametrize("weigh_light", [True, False])
 def test_it_is_nearer_to_64_samples(renderer, motion, most, weigh_light):
     scene = Scene(jitter=1.0, **motion)
@@ -120,6 +126,7 @@ def test_it_follows_the_velocity(renderer):
 @pytest.mark.parametrize("kernel", ["catmull-rom", "lanczos"])
 def test_it_reads_sharply_between_pixels(renderer, kernel):
     """Frames of half a pixel: of waves six pixels long bilinear reading leaves cos(pi / 6) each time."""
+
     def wave(frame: int) -> np.ndarray:
         row = 0.5 + 0.3 * np.sin(2 * np.pi * (np.arange(48) - 0.5 * frame) / 6)
         return np.broadcast_to(row[None, :, None], (3, 48, 4)).astype(np.float32).copy()
@@ -189,6 +196,7 @@ def test_one_frame_is_the_picture(renderer, hdr):
 
 def test_velocity_counts_pixels_of_the_full_size(renderer):
     """At half size what moves by two pixels is read one pixel away."""
+
     def doubled(frame: int) -> np.ndarray:
         return np.kron(moving(frame, 1.0), np.ones((2, 2, 1), np.float32))
 

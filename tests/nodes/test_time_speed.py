@@ -12,14 +12,17 @@ from halation.nodes.time.time_speed import TimeSpeed
 from sequences import node_at, noise_at, noise_graph
 
 
-@pytest.mark.parametrize(("values", "seen"), [
-    ({"speed": 2.0}, [1, 3, 5, 7, 9]),
-    ({"speed": -1.0, "pivot": 3}, [5, 4, 3, 2, 1]),
-    ({"speed": 0.5}, [1, 2, 2, 3, 3]),
-    ({"speed": 0.1, "pivot": -9}, [-8, -8, -8, -8, -8]),
-    ({"speed": 0.0, "pivot": 4}, [4, 4, 4, 4, 4]),
-    ({"mode": "source", "source": 6.4}, [6, 6, 6, 6, 6]),
-])
+@pytest.mark.parametrize(
+    ("values", "seen"),
+    [
+        ({"speed": 2.0}, [1, 3, 5, 7, 9]),
+        ({"speed": -1.0, "pivot": 3}, [5, 4, 3, 2, 1]),
+        ({"speed": 0.5}, [1, 2, 2, 3, 3]),
+        ({"speed": 0.1, "pivot": -9}, [-8, -8, -8, -8, -8]),
+        ({"speed": 0.0, "pivot": 4}, [4, 4, 4, 4, 4]),
+        ({"mode": "source", "source": 6.4}, [6, 6, 6, 6, 6]),
+    ],
+)
 def test_which_frame_is_seen(renderer, values, seen):
     graph = noise_graph(TimeSpeed(**values))
     for frame, source in enumerate(seen, 1):

@@ -13,7 +13,12 @@ from halation.nodes.tone.tone_map import ToneMap
 
 WEIGHTS = np.array([0.2126, 0.7152, 0.0722])
 LUMINANCE_OPERATORS = (
-    "reinhard", "reinhard extended", "reinhard unsquared", "exponential", "logarithmic", "drago",
+    "reinhard",
+    "reinhard extended",
+    "reinhard unsquared",
+    "exponential",
+    "logarithmic",
+    "drago",
 )
 OPERATORS = ToneMap.values["operator"].choices
 
@@ -69,9 +74,13 @@ def drago(light, average, maximum, key=0.18, bias=0.85):
     return 100 * 0.01 / np.log10(top + 1) * np.log(world + 1) / slope
 
 
-FORMULAS = dict(zip(
-    LUMINANCE_OPERATORS, (reinhard, reinhard_extended, reinhard_unsquared, exponential, logarithmic, drago), strict=True
-))
+FORMULAS = dict(
+    zip(
+        LUMINANCE_OPERATORS,
+        (reinhard, reinhard_extended, reinhard_unsquared, exponential, logarithmic, drago),
+        strict=True,
+    )
+)
 
 
 def hill(rgb):
@@ -102,12 +111,14 @@ def hable(rgb):
 
 
 PRIMARIES = {
-    709: [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]], 2020: [[0.708, 0.292], [0.170, 0.797], [0.131, 0.046]],
+    709: [[0.64, 0.33], [0.30, 0.60], [0.15, 0.06]],
+    2020: [[0.708, 0.292], [0.170, 0.797], [0.131, 0.046]],
 }
 
 
 def to_xyz(space: int) -> np.ndarray:
     """The matrix that a color space's chromaticities and white D65 imply."""
+
     def xyz(chromaticity):
         x, y = chromaticity
         return np.array([x / y, 1.0, (1 - x - y) / y])
@@ -118,16 +129,20 @@ def to_xyz(space: int) -> np.ndarray:
 
 def agx(rgb):
     """AgXBaseRec2020.py of Eary Chow's AgX_LUT_Gen: inset, log2, sigmoid, power 2.4, 40 % hue shift, outset."""
-    inset = np.array([
-        [0.856627153315983, 0.0951212405381588, 0.0482516061458583],
-        [0.137318972929847, 0.761241990602591, 0.101439036467562],
-        [0.11189821299995, 0.0767994186031903, 0.811302368396859],
-    ])
-    outset = np.linalg.inv([
-        [0.899796955911611, 0.0871996192028351, 0.013003424885555],
-        [0.11142098895748, 0.875575586156966, 0.0130034248855548],
-        [0.11142098895748, 0.0871996192028349, 0.801379391839686],
-    ])
+    inset = np.array(
+        [
+            [0.856627153315983, 0.0951212405381588, 0.0482516061458583],
+            [0.137318972929847, 0.761241990602591, 0.101439036467562],
+            [0.11189821299995, 0.0767994186031903, 0.811302368396859],
+        ]
+    )
+    outset = np.linalg.inv(
+        [
+            [0.899796955911611, 0.0871996192028351, 0.013003424885555],
+            [0.11142098895748, 0.875575586156966, 0.0130034248855548],
+            [0.11142098895748, 0.0871996192028349, 0.801379391839686],
+        ]
+    )
     rec2020 = np.linalg.solve(to_xyz(2020), to_xyz(709))
     scene_referred = rgb @ rec2020.T @ inset.T
     stops = np.clip(np.log2(np.maximum(scene_referred, 1e-10) / 0.18), -10, 6.5)
@@ -178,7 +193,11 @@ def lottes(x, a=1.6, hdr_max=16.0):
 
 
 PER_CHANNEL = {
-    "aces": hill, "aces narkowicz": narkowicz, "khronos neutral": neutral, "hable": hable, "uchimura": uchimura,
+    "aces": hill,
+    "aces narkowicz": narkowicz,
+    "khronos neutral": neutral,
+    "hable": hable,
+    "uchimura": uchimura,
     "lottes": lottes,
 }
 
@@ -244,7 +263,8 @@ def test_contrast_is_the_published_parameter(run, contrast):
     image = scene(11)
     rgb = image[..., :3].astype(np.float64)
     for operator, expected in (
-        ("uchimura", uchimura(rgb, contrast)), ("lottes", lottes(rgb, 1.6 * contrast, 8.0)),
+        ("uchimura", uchimura(rgb, contrast)),
+        ("lottes", lottes(rgb, 1.6 * contrast, 8.0)),
     ):
         node = ToneMap(operator=operator, contrast=contrast, maximum=8.0, clip=False)
         assert np.abs(run(node, {"image": image})[..., :3] - expected).max() < 2e-6
@@ -264,12 +284,18 @@ def test_agx_is_the_published_algorithm(run):
 
 
 BLENDER_AGX = [
-    ((0.18, 0.18, 0.18), (0.4613, 0.4613, 0.4613)), ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
-    ((1.0, 1.0, 1.0), (0.7710, 0.7710, 0.7710)), ((16.0, 16.0, 16.0), (0.9985, 0.9985, 0.9985)),
-    ((0.02, 0.02, 0.02), (0.1250, 0.1250, 0.1250)), ((0.8, 0.2, 0.1), (0.7778, 0.4924, 0.3888)),
-    ((0.1, 0.6, 0.2), (0.4604, 0.6893, 0.5047)), ((4.0, 1.0, 0.5), (0.9476, 0.7757, 0.7229)),
-    ((0.5, 2.0, 6.0), (0.7791, 0.8587, 0.9601)), ((12.0, 9.0, 2.0), (0.9880, 0.9622, 0.8943)),
-    ((0.01, 0.03, 0.02), (0.0731, 0.1593, 0.1253)), ((2.0, 0.3, 0.3), (0.8985, 0.6282, 0.6124)),
+    ((0.18, 0.18, 0.18), (0.4613, 0.4613, 0.4613)),
+    ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+    ((1.0, 1.0, 1.0), (0.7710, 0.7710, 0.7710)),
+    ((16.0, 16.0, 16.0), (0.9985, 0.9985, 0.9985)),
+    ((0.02, 0.02, 0.02), (0.1250, 0.1250, 0.1250)),
+    ((0.8, 0.2, 0.1), (0.7778, 0.4924, 0.3888)),
+    ((0.1, 0.6, 0.2), (0.4604, 0.6893, 0.5047)),
+    ((4.0, 1.0, 0.5), (0.9476, 0.7757, 0.7229)),
+    ((0.5, 2.0, 6.0), (0.7791, 0.8587, 0.9601)),
+    ((12.0, 9.0, 2.0), (0.9880, 0.9622, 0.8943)),
+    ((0.01, 0.03, 0.02), (0.0731, 0.1593, 0.1253)),
+    ((2.0, 0.3, 0.3), (0.8985, 0.6282, 0.6124)),
 ]
 """Linear Rec.709 and what Blender 5.0.1 shows for it: OpenImageIO's ociodisplay, display sRGB, view AgX."""
 
@@ -314,9 +340,16 @@ def test_aces_is_close_to_the_reference_transform(run, operator, mean, high):
     assert error.mean() < mean and np.percentile(error, 99) < high
 
 
-@pytest.mark.parametrize(("operator", "white"), [
-    ("reinhard extended", 16.0), ("logarithmic", 16.0), ("drago", 16.0), ("hable", 5.6), ("lottes", 16.0),
-])
+@pytest.mark.parametrize(
+    ("operator", "white"),
+    [
+        ("reinhard extended", 16.0),
+        ("logarithmic", 16.0),
+        ("drago", 16.0),
+        ("hable", 5.6),
+        ("lottes", 16.0),
+    ],
+)
 def test_white_becomes_white(run, operator, white):
     image = np.array([[[white, white, white, 1.0]]], np.float32)
     assert run(ToneMap(operator=operator, maximum=16.0, clip=False), {"image": image}) == pytest.approx(1.0, abs=2e-6)

@@ -16,7 +16,9 @@ from scipy.ndimage import map_coordinates
 
 KERNELS = Transform.values["kernel"].choices
 MOVES = [
-    {"position": (3.3, -1.7)}, {"rotation": 27.0}, {"scale": (1.7, 1.2), "pivot": (0.2, 0.9)},
+    {"position": (3.3, -1.7)},
+    {"rotation": 27.0},
+    {"scale": (1.7, 1.2), "pivot": (0.2, 0.9)},
     {"rotation": -133.0, "scale": (1.5, -1.1), "position": (2.0, 4.5), "pivot": (0.7, 0.4)},
 ]
 
@@ -47,9 +49,15 @@ def test_bilinear_is_scipys(run, hdr, edge, move, size):
     assert np.abs(run(node, {"image": picture}) - expected).max() < 1e-5 * picture.max()
 
 
-@pytest.mark.parametrize(("kernel", "name"), [
-    ("triangle", "triangle"), ("catmull-rom", "catmull-rom"), ("mitchell", "mitchell"), ("lanczos", "lanczos3"),
-])
+@pytest.mark.parametrize(
+    ("kernel", "name"),
+    [
+        ("triangle", "triangle"),
+        ("catmull-rom", "catmull-rom"),
+        ("mitchell", "mitchell"),
+        ("lanczos", "lanczos3"),
+    ],
+)
 def test_turned_it_is_openimageios(run, hdr, kernel, name):
     picture = hdr(48, 40)
     node = Transform(rotation=20.0, position=(2.25, -3.5), kernel=kernel)
@@ -135,8 +143,11 @@ def moves(seed: int, count: int, **more) -> list[Transform]:
     random = np.random.default_rng(seed)
     return [
         Transform(
-            position=tuple(random.uniform(-6, 6, 2)), rotation=random.uniform(-180, 180), pivot=tuple(random.random(2)),
-            scale=tuple(random.uniform(1.0, 1.2, 2) * random.choice([-1, 1], 2)), **more,
+            position=tuple(random.uniform(-6, 6, 2)),
+            rotation=random.uniform(-180, 180),
+            pivot=tuple(random.random(2)),
+            scale=tuple(random.uniform(1.0, 1.2, 2) * random.choice([-1, 1], 2)),
+            **more,
         )
         for _ in range(count)
     ]

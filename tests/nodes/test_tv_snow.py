@@ -52,10 +52,15 @@ def frames(renderer, node: TvSnow, picture: np.ndarray, *numbers: int) -> list[n
 
 
 @pytest.mark.parametrize("mode", ["mix", "multiply"])
-@pytest.mark.parametrize("values", [
-    {}, {"size": 1.0, "color": 0.7, "lines": 1.0, "seed": 5}, {"size": 3.3, "interlaced": True, "amount": 1.0},
-    {"size": 0.4, "lines": 0.0, "hold": 3, "contrast": 3.0},
-])
+@pytest.mark.parametrize(
+    "values",
+    [
+        {},
+        {"size": 1.0, "color": 0.7, "lines": 1.0, "seed": 5},
+        {"size": 3.3, "interlaced": True, "amount": 1.0},
+        {"size": 0.4, "lines": 0.0, "hold": 3, "contrast": 3.0},
+    ],
+)
 def test_it_is_the_definition(run, hdr, mode, values):
     node, picture = TvSnow(mode=mode, **values), hdr(37, 26)
     code, flakes = encode(picture[..., :3].astype(np.float64) / picture[..., 3:]), snow(node, 37, 26)

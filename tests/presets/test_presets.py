@@ -33,18 +33,37 @@ PRESETS = {path.stem: path for path in paths()}
 ASKED = {"soft_bloom", "cinematic_grade", "night_street", "emboss_and_edges", "dreamy_glow", "underwater"}
 GEOMETRY = {"geometry", "lens", "light"}
 TIME = {
-    "dolly_zoom", "feedback_tunnel", "heartbeat", "ink_boil", "light_painting", "long_exposure", "out_of_the_tunnel",
-    "rack_focus", "turntable",
+    "dolly_zoom",
+    "feedback_tunnel",
+    "heartbeat",
+    "ink_boil",
+    "light_painting",
+    "long_exposure",
+    "out_of_the_tunnel",
+    "rack_focus",
+    "turntable",
 }
 """Presets that move."""
 FINE = {
-    "canny", "convolve3x3", "crosshatch", "crt", "difference_of_gaussians", "edge_detect", "film_grain",
-    "geometry_edges", "halftone",
+    "canny",
+    "convolve3x3",
+    "crosshatch",
+    "crt",
+    "difference_of_gaussians",
+    "edge_detect",
+    "film_grain",
+    "geometry_edges",
+    "halftone",
 }
 """Their lines, dots and grains are a pixel or two wide, so a proxy shows them bolder or not at all."""
 LAYERS = {
-    "beauty": "Combined", "depth": "Depth", "normal": "Normal", "position": "Position", "albedo": "Diffuse Color",
-    "emission": "Emission", "ids": "Object Index",
+    "beauty": "Combined",
+    "depth": "Depth",
+    "normal": "Normal",
+    "position": "Position",
+    "albedo": "Diffuse Color",
+    "emission": "Emission",
+    "ids": "Object Index",
 }
 """What inputs are called, so that a render's layers find theirs in every preset."""
 

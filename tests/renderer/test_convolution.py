@@ -33,10 +33,22 @@ def noise(width: int, height: int, seed: int) -> np.ndarray:
     return np.random.default_rng(seed).gamma(0.3, 1.0, (height, width, 4)).astype(np.float32) - 0.1
 
 
-@pytest.mark.parametrize(("size", "kernel"), [
-    ((37, 23), (9, 7)), ((37, 23), (8, 6)), ((5, 1), (4, 3)), ((1, 1), (1, 1)), ((1, 1), (2, 5)), ((1, 6), (3, 11)),
-    ((40, 30), (79, 59)), ((31, 17), (64, 50)), ((150, 90), (13, 13)), ((97, 61), (2, 1)),
-], ids=str)
+@pytest.mark.parametrize(
+    ("size", "kernel"),
+    [
+        ((37, 23), (9, 7)),
+        ((37, 23), (8, 6)),
+        ((5, 1), (4, 3)),
+        ((1, 1), (1, 1)),
+        ((1, 1), (2, 5)),
+        ((1, 6), (3, 11)),
+        ((40, 30), (79, 59)),
+        ((31, 17), (64, 50)),
+        ((150, 90), (13, 13)),
+        ((97, 61), (2, 1)),
+    ],
+    ids=str,
+)
 def test_it_is_the_convolution(run, size, kernel):
     image, spread = noise(*size, 1), noise(*kernel, 2)
     wanted = expected(image, spread)

@@ -224,10 +224,16 @@ def test_the_pixel_under_a_point_is_the_one_that_is_named(result, shown):
 # --- what of it ------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("channels", "expected"), [
-    ("red", 0.1), ("green", 0.2), ("blue", 0.4), ("alpha", 0.5),
-    ("luminance", 0.2126 * 0.1 + 0.7152 * 0.2 + 0.0722 * 0.4),
-])
+@pytest.mark.parametrize(
+    ("channels", "expected"),
+    [
+        ("red", 0.1),
+        ("green", 0.2),
+        ("blue", 0.4),
+        ("alpha", 0.5),
+        ("luminance", 0.2126 * 0.1 + 0.7152 * 0.2 + 0.0722 * 0.4),
+    ],
+)
 def test_one_channel_is_gray(result, shown, channels, expected):
     got = shown(result(np.full((2, 2, 4), (0.1, 0.2, 0.4, 0.5))), channels=channels, **RAW)
     np.testing.assert_allclose(got, expected, rtol=1e-5)

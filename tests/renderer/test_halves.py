@@ -44,7 +44,10 @@ def all_that_matters() -> np.ndarray:
     between = ((exact[1:] + exact[:-1]) / 2.0).astype(np.float32)
     infinite = np.float32(np.inf)
     parts = [
-        exact.astype(np.float32), between, np.nextafter(between, infinite), np.nextafter(between, -infinite),
+        exact.astype(np.float32),
+        between,
+        np.nextafter(between, infinite),
+        np.nextafter(between, -infinite),
         np.array([0.0, -0.0, 65519.996, 65520.0, 65536.0, 1e30, -1e30, np.inf, -np.inf, np.nan, -np.nan], np.float32),
         np.array([1, 0x80000001, 0x007FFFFF, 0x33000000, 0x33000001], np.uint32).view(np.float32),
     ]
@@ -120,7 +123,8 @@ def test_in_between_all_stays_as_it_was(engine):
 
 def test_what_is_remembered_is_not_rounded(engine):
     graph = graph_with(
-        '"trail": {"type": "frame_blend"}', '"trail.image": "inputs.image", "outputs.image": "trail.out"',
+        '"trail": {"type": "frame_blend"}',
+        '"trail.image": "inputs.image", "outputs.image": "trail.out"',
         more=', "settings": {"frames": [1, 4]}',
     )
     given = Wanted({"image": np.ones((9, 11, 4), np.float32)}, halves=ONLY, precision="float")
@@ -137,11 +141,20 @@ def test_results_of_both_kinds_are_not_mixed_up(engine):
         assert engine.render(through(), Wanted(given, halves=ONLY))["image"][0, 0, 0] == np.float16(1.0 / 3.0)
 
 
-@pytest.mark.parametrize(("names", "more", "expected"), [
-    (["o.exr"], {}, True), (["o.exr"], {"precision": "float"}, False), (["o.exr"], {"space": "ACEScg"}, False),
-    (["o.png"], {}, False), (["o.exr", "o.png"], {}, False), (["o.exr", "p.exr"], {}, True), (["o.mov"], {}, False),
-    (["o.hdr"], {}, False), (["o.exr"], {"view": "none"}, True),
-])
+@pytest.mark.parametrize(
+    ("names", "more", "expected"),
+    [
+        (["o.exr"], {}, True),
+        (["o.exr"], {"precision": "float"}, False),
+        (["o.exr"], {"space": "ACEScg"}, False),
+        (["o.png"], {}, False),
+        (["o.exr", "o.png"], {}, False),
+        (["o.exr", "p.exr"], {}, True),
+        (["o.mov"], {}, False),
+        (["o.hdr"], {}, False),
+        (["o.exr"], {"view": "none"}, True),
+    ],
+)
 def test_only_what_no_file_wants_more_of(tmp_path, names, more, expected):
     graph, wanted = through(), Wanted()
     writing = Writing([("image", tmp_path / name) for name in names], **more)
@@ -150,8 +163,11 @@ def test_only_what_no_file_wants_more_of(tmp_path, names, more, expected):
 
 
 def test_data_is_never_rounded(tmp_path):
-    graph = graph_with("", '"outputs.depth": "inputs.depth", "outputs.image": "inputs.image"',
-                       '"depth": {"type": "Field"}, "image": {"type": "Image"}')
+    graph = graph_with(
+        "",
+        '"outputs.depth": "inputs.depth", "outputs.image": "inputs.image"',
+        '"depth": {"type": "Field"}, "image": {"type": "Image"}',
+    )
     writing = Writing((("", tmp_path / "o.exr"),))
     assert halves(destinations(graph, Wanted(), writing, (1,))[1], writing) == ONLY
     assert not list(tmp_path.iterdir())

@@ -330,8 +330,9 @@ def test_programs_that_were_not_used_for_long_go(renderer, engine, monkeypatch):
             assert np.isfinite(found).all()
     assert len(engine.runner.programs._known) == 2
     assert engine.runner.programs.compiled > 6
-    np.testing.assert_array_equal(engine.render(chain(), wanted())["image"],
-                                  renderer.render(chain(), wanted())["image"])
+    np.testing.assert_array_equal(
+        engine.render(chain(), wanted())["image"], renderer.render(chain(), wanted())["image"]
+    )
 
 
 def test_closing_gives_everything_back():

@@ -34,9 +34,11 @@ def texture(renderer):
         height, width, channels = pixels.shape
         depth = "f2" if pixels.dtype == np.float16 else "f4"
         with renderer.device.current():
-            made.append(renderer.device.context.texture(
-                (width, height), channels, np.ascontiguousarray(pixels), alignment=1, dtype=depth
-            ))
+            made.append(
+                renderer.device.context.texture(
+                    (width, height), channels, np.ascontiguousarray(pixels), alignment=1, dtype=depth
+                )
+            )
         return made[-1]
 
     yield uploaded

@@ -34,10 +34,22 @@ CAMERA = look_at((1.0, -5.0, 2.0), (0.0, 0.0, 0.5), (1.2, 1.9))
 REGIONS = (Region(0, 0, 20, 13), Region(120, 60, 21, 9), Region(240, 0, 11, 131))
 
 
-ANYWHERE = frozenset({
-    "auto_exposure", "directional_occlusion", "displace", "distance_field", "eye_glare", "kaleidoscope", "kernel_glare",
-    "luminance_statistics", "photoreceptor_tone_map", "polar", "st_map", "sun_beams",
-})
+ANYWHERE = frozenset(
+    {
+        "auto_exposure",
+        "directional_occlusion",
+        "displace",
+        "distance_field",
+        "eye_glare",
+        "kaleidoscope",
+        "kernel_glare",
+        "luminance_statistics",
+        "photoreceptor_tone_map",
+        "polar",
+        "st_map",
+        "sun_beams",
+    }
+)
 """Nodes that may read everything for a pixel, at their own values."""
 
 
@@ -84,7 +96,8 @@ def prove(renderer: Renderer, node: Node, some: bool, regions: tuple[Region, ...
         for region in regions:
             found = needed(program, passes, {ref: region})
             read = {
-                op.picture.path: part for one, part in found.items()
+                op.picture.path: part
+                for one, part in found.items()
                 if isinstance(op := program.ops[one.op], Read) and op.picture.path in arrays
             }
             bad = {

@@ -26,8 +26,12 @@ def chain(stops: float, sigma: float, saturation: float) -> Graph:
     graph = Graph(inputs={"image": Input(Kind.IMAGE)}, outputs={"image": Output()})
     graph = graph.add("light", Exposure(stops=stops)).add("blur", GaussianBlur(sigma=sigma))
     graph = graph.add("color", Saturation(saturation=saturation))
-    for source, target in (("inputs.image", "light.image"), ("light.out", "blur.image"), ("blur.out", "color.image"),
-                           ("color.out", "outputs.image")):
+    for source, target in (
+        ("inputs.image", "light.image"),
+        ("light.out", "blur.image"),
+        ("blur.out", "color.image"),
+        ("color.out", "outputs.image"),
+    ):
         graph = graph.connect(Port.parse(source), Port.parse(target))
     return graph
 

@@ -98,15 +98,23 @@ def test_a_number_bound_as_a_picture_is_no_canvas(renderer):
 
 
 ENDS = {
-    "Number": Output(Kind.NUMBER), "Field": Output(Kind.FIELD), "Color": Output(Kind.COLOR),
-    "Image": Output(Kind.IMAGE), "Vector": Output(Kind.VECTOR, 2),
+    "Number": Output(Kind.NUMBER),
+    "Field": Output(Kind.FIELD),
+    "Color": Output(Kind.COLOR),
+    "Image": Output(Kind.IMAGE),
+    "Vector": Output(Kind.VECTOR, 2),
 }
 
 
 @pytest.mark.parametrize("kind", ENDS)
 def test_a_constant_is_shown_as_the_output_says(renderer, kind):
-    graph = linked({}, {"outputs.o": "inputs.n"}, {"n": Input(Kind.NUMBER, default=2.0)}, {"o": ENDS[kind]},
-                   settings=Settings((8, 6)))
+    graph = linked(
+        {},
+        {"outputs.o": "inputs.n"},
+        {"n": Input(Kind.NUMBER, default=2.0)},
+        {"o": ENDS[kind]},
+        settings=Settings((8, 6)),
+    )
     found = renderer.render(graph)["o"]
     size = (1, 1) if ENDS[kind].socket().single else (6, 8)
     expected = np.full((*size, ENDS[kind].socket().channels), 2.0)
@@ -139,6 +147,7 @@ def test_data_that_changes_its_type_keeps_32_bits(renderer):
 @pytest.mark.parametrize("number", [2.6, 3, 2.5, -1e30, 1e30])
 def test_a_number_drives_whole_numbers_and_switches(renderer, number):
     """Rounded like a picture would be, within the hard range."""
+
     def noise(**values) -> Graph:
         return Graph(outputs={"o": Output(Kind.FIELD)}, settings=Settings((8, 6))).add("n", NODES["noise"](**values))
 
@@ -162,11 +171,20 @@ def test_a_number_is_bound_by_its_value(renderer, bound):
     np.testing.assert_allclose(found[..., :3], 2.0 * PICTURE[..., :3], rtol=1e-6)
 
 
-@pytest.mark.parametrize("change", [
-    lambda a: a.astype(np.float64), lambda a: np.asfortranarray(a), lambda a: np.repeat(a, 2, axis=1)[:, ::2],
-    lambda a: a[::-1][::-1], lambda a: np.frombuffer(a.tobytes(), np.float32).reshape(a.shape), lambda a: a.tolist(),
-], ids=["float64", "fortran", "strided", "backward", "read-only", "list"])
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda a: a.astype(np.float64),
+        lambda a: np.asfortranarray(a),
+        lambda a: np.repeat(a, 2, axis=1)[:, ::2],
+        lambda a: a[::-1][::-1],
+        lambda a: np.frombuffer(a.tobytes(), np.float32).reshape(a.shape),
+        lambda a: a.tolist(),
+    ],
+    ids=["float64", "fortran", "strided", "backward", "read-only", "list"],
+)
 def test_any_layout_of_an_array_will_do(run, renderer, change):
-    found = renderer.render(graph_of(Exposure(stops=1.0), {"image": PICTURE}),
-                            Wanted({"image": change(PICTURE)}, precision="float"))["out"]
+    found = renderer.render(
+        graph_of(Exposure(stops=1.0), {"image": PICTURE}), Wanted({"image": change(PICTURE)}, precision="float")
+    )["out"]
     np.testing.assert_array_equal(found, run(Exposure(stops=1.0), {"image": PICTURE}))

@@ -146,8 +146,12 @@ def test_what_looks_far_has_the_same_bits(fitting, in_pieces, monkeypatch, name)
     size, node = (120, 90), FAR_LOOKING[name]
     monkeypatch.setattr(tiling, "LEAST", 36)
     known = {
-        "image": noise(*size), "depth": deep(*size), "velocity": moving(*size), "surface": deep(*size) / 10.0,
-        "normal": noise(*size)[..., :3] - 0.5, "environment": noise(*size),
+        "image": noise(*size),
+        "depth": deep(*size),
+        "velocity": moving(*size),
+        "surface": deep(*size) / 10.0,
+        "normal": noise(*size)[..., :3] - 0.5,
+        "environment": noise(*size),
     }
     given = {socket: known[socket] for socket in type(node).inputs if socket in known}
     plan = fitting.compile(graph_of(node, given | cameras(node)), Wanted(given, precision="float"))
@@ -159,7 +163,8 @@ def test_what_looks_far_has_the_same_bits(fitting, in_pieces, monkeypatch, name)
 def test_what_looks_far_goes_beyond_the_device(name):
     node, outside = FAR_LOOKING[name], Pictures()
     given = {
-        socket: np.ones((32, 32, item.channels), np.float32) for socket, item in type(node).inputs.items()
+        socket: np.ones((32, 32, item.channels), np.float32)
+        for socket, item in type(node).inputs.items()
         if item.kind is not Kind.CAMERA
     }
     graph = graph_of(node, given | cameras(node))
@@ -170,7 +175,8 @@ def refused(node) -> str:
     """Why a node cannot be made of larger pictures than a device holds; "" if it can."""
     outside, sockets = Pictures(), type(node).inputs
     given = {
-        name: np.ones((32, 32, item.channels), np.float32) for name, item in sockets.items()
+        name: np.ones((32, 32, item.channels), np.float32)
+        for name, item in sockets.items()
         if item.kind is not Kind.CAMERA and not item.single
     }
     graph = graph_of(node, given | cameras(node))

@@ -99,8 +99,11 @@ def test_a_picture_of_another_size_covers_the_first(renderer, size, factor):
 
 
 def test_data_of_another_size_is_never_mixed(renderer):
-    graph = wired(Exposure(), {"node.image": "inputs.beauty", "node.stops": "inputs.mask"},
-                  {"beauty": Input(Kind.IMAGE), "mask": Input(Kind.FIELD)})
+    graph = wired(
+        Exposure(),
+        {"node.image": "inputs.beauty", "node.stops": "inputs.mask"},
+        {"beauty": Input(Kind.IMAGE), "mask": Input(Kind.FIELD)},
+    )
     mask = RNG.choice(np.array([-2.0, 0.0, 3.0], np.float32), (7, 11))
     result = image(renderer, graph, beauty=PICTURE, mask=mask)
     steps = np.log2(result[..., 0].astype(np.float64) / PICTURE[..., 0])

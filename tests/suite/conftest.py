@@ -35,16 +35,24 @@ def graph(tmp_path: Path) -> Callable[..., Path]:
 
     def made(name: str = "graph.json", stops: float = 1.0) -> Path:
         path = tmp_path / name
-        path.write_text(json.dumps({
-            "halation": 1,
-            "inputs": {
-                "beauty": {"type": "Image", "file": "shot.exr", "layer": "Combined"},
-                "depth": {"type": "Field", "file": "shot.exr", "layer": "Depth"},
-            },
-            "outputs": {"image": {"type": "Image"}, "depth": {"type": "Field"}},
-            "nodes": {"light": {"type": "exposure", "values": {"stops": stops}}},
-            "links": {"light.image": "inputs.beauty", "outputs.image": "light.out", "outputs.depth": "inputs.depth"},
-        }))
+        path.write_text(
+            json.dumps(
+                {
+                    "halation": 1,
+                    "inputs": {
+                        "beauty": {"type": "Image", "file": "shot.exr", "layer": "Combined"},
+                        "depth": {"type": "Field", "file": "shot.exr", "layer": "Depth"},
+                    },
+                    "outputs": {"image": {"type": "Image"}, "depth": {"type": "Field"}},
+                    "nodes": {"light": {"type": "exposure", "values": {"stops": stops}}},
+                    "links": {
+                        "light.image": "inputs.beauty",
+                        "outputs.image": "light.out",
+                        "outputs.depth": "inputs.depth",
+                    },
+                }
+            )
+        )
         return path
 
     made()

@@ -80,7 +80,9 @@ inputs = {beauty = "x.exr:Depth", amount = 2, tint = [1, 0.5, 0]}
     assert (one.metric, one.tolerance, one.size, one.values) == ("psnr", 30.0, (64, 32), {"a.x": 1, "a.y": 3})
     assert (two.metric, two.tolerance, two.frames) == ("ssim", 0.99, (3, 1))
     assert three.goldens == () and three.inputs == {
-        "beauty": str(tmp_path / "x.exr:Depth"), "amount": 2.0, "tint": (1.0, 0.5, 0.0),
+        "beauty": str(tmp_path / "x.exr:Depth"),
+        "amount": 2.0,
+        "tint": (1.0, 0.5, 0.0),
     }
     assert one.id == f"{file.as_posix()}::one"
 
@@ -101,9 +103,7 @@ def test_suites_are_found_below_folders(tmp_path: Path) -> None:
 
 TREES = st.recursive(
     st.sampled_from(["ab", "b", "c"]),
-    lambda inner: st.one_of(
-        st.tuples(st.just("not"), inner), st.tuples(st.sampled_from(["and", "or"]), inner, inner)
-    ),
+    lambda inner: st.one_of(st.tuples(st.just("not"), inner), st.tuples(st.sampled_from(["and", "or"]), inner, inner)),
     max_leaves=6,
 )
 
@@ -137,9 +137,15 @@ def test_selection_is_logic(tree: object) -> None:
         assert chooses("".join(letters)) == meant(tree, "".join(letters))
 
 
-@pytest.mark.parametrize(("text", "name", "expected"), [
-    ("not a and b", "b", True), ("a or b and c", "a", True), ("a or b and c", "b", False), ("A", "xax", True),
-])
+@pytest.mark.parametrize(
+    ("text", "name", "expected"),
+    [
+        ("not a and b", "b", True),
+        ("a or b and c", "a", True),
+        ("a or b and c", "b", False),
+        ("A", "xax", True),
+    ],
+)
 def test_and_binds_tighter_than_or(text: str, name: str, expected: bool) -> None:
     assert parse(text)(name) is expected
 

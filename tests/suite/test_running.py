@@ -68,8 +68,12 @@ def test_one_percent_fails_and_shows(cli, suite, graph, tmp_path) -> None:
     assert "max_rel 0.0" in failed.out and "where at most 0.004 is allowed; worst at " in failed.out
     folder = tmp_path / "out/looks/look"
     assert sorted(path.name for path in folder.iterdir()) == [
-        "look.actual.exr", "look.actual.view.png", "look.difference.exr", "look.difference.view.png",
-        "look.expected.exr", "look.expected.view.png",
+        "look.actual.exr",
+        "look.actual.view.png",
+        "look.difference.exr",
+        "look.difference.view.png",
+        "look.expected.exr",
+        "look.expected.view.png",
     ]
     expected, actual = pixels(folder / "look.expected.exr"), pixels(folder / "look.actual.exr")
     assert actual == pytest.approx(np.where(np.arange(4) < 3, expected * 1.01, expected), rel=2e-3)
@@ -98,9 +102,18 @@ def test_blessing_says_what_changes(cli, suite, graph, tmp_path) -> None:
 @pytest.mark.parametrize(
     ("metric", "by", "passes"),
     [
-        ("max_rel", 1.001, True), ("max_rel", 1.01, False), ("max_abs", 1.00001, True), ("max_abs", 1.01, False),
-        ("rms", 1.0001, True), ("rms", 1.05, False), ("psnr", 1.001, True), ("psnr", 2.0, False),
-        ("ssim", 1.01, True), ("ssim", 4.0, False), ("flip", 1.001, True), ("flip", 1.2, False),
+        ("max_rel", 1.001, True),
+        ("max_rel", 1.01, False),
+        ("max_abs", 1.00001, True),
+        ("max_abs", 1.01, False),
+        ("rms", 1.0001, True),
+        ("rms", 1.05, False),
+        ("psnr", 1.001, True),
+        ("psnr", 2.0, False),
+        ("ssim", 1.01, True),
+        ("ssim", 4.0, False),
+        ("flip", 1.001, True),
+        ("flip", 1.2, False),
     ],
 )
 def test_every_metric(cli, suite, graph, metric: str, by: float, passes: bool) -> None:
@@ -205,7 +218,10 @@ graph = "gone.json"
     found = {case["name"]: (case["status"], case["message"]) for case in result.json["cases"]}
     assert result.code == 1
     assert [name for name, (status, _) in found.items() if status == "failed"] == [
-        "otherwise", "works", "black", "missing",
+        "otherwise",
+        "works",
+        "black",
+        "missing",
     ]
     assert "not with 'something else'" in found["otherwise"][1] and "but it renders" in found["works"][1]
     assert "all black" in found["black"][1] and found["skipped"] == ("skipped", "not yet")
@@ -222,10 +238,15 @@ def test_broken_pictures_are_not_blessed(cli, suite, tmp_path) -> None:
     assert cli("--update").code == 0 and cli().code == 0
 
 
-@pytest.mark.parametrize(("value", "letters", "count"), [
-    (np.nan, ("R", "G", "B", "A"), 2), (np.inf, ("a.R", "a.G", "a.B", "a.A"), 2), (np.nan, ("Z",), 2),
-    (np.inf, ("Z",), 0),
-])
+@pytest.mark.parametrize(
+    ("value", "letters", "count"),
+    [
+        (np.nan, ("R", "G", "B", "A"), 2),
+        (np.inf, ("a.R", "a.G", "a.B", "a.A"), 2),
+        (np.nan, ("Z",), 2),
+        (np.inf, ("Z",), 0),
+    ],
+)
 def test_what_is_not_finite_is_counted(value: float, letters: tuple[str, ...], count: int) -> None:
     """Infinity is what depth is where nothing is."""
     array = np.ones((3, 3, len(letters)), np.float32)

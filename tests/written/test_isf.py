@@ -34,14 +34,20 @@ def test_positions_run_from_the_bottom_left(run: Run) -> None:
     assert close(made[..., :2], np.stack([ACROSS, UP], 2)) and close(made[..., 2], UP / H)
 
 
-@pytest.mark.parametrize("read", [
-    "IMG_THIS_PIXEL(inputImage)", "IMG_THIS_NORM_PIXEL(inputImage)", "IMG_NORM_THIS_PIXEL(inputImage)",
-    "IMG_NORM_PIXEL(inputImage, isf_FragNormCoord)", "IMG_PIXEL(inputImage, gl_FragCoord.xy)",
-    "IMG_PIXEL(inputImage, isf_FragNormCoord.xy * (IMG_SIZE(inputImage)))",
-    "texture2D(inputImage, vec2((isf_FragNormCoord.x), isf_FragNormCoord.y))",
-    "texelFetch(inputImage, ivec2(gl_FragCoord.xy), 0)",
-    "IMG_PIXEL(inputImage, gl_FragCoord.xy / RENDERSIZE * _inputImage_imgRect.zw)",
-])
+@pytest.mark.parametrize(
+    "read",
+    [
+        "IMG_THIS_PIXEL(inputImage)",
+        "IMG_THIS_NORM_PIXEL(inputImage)",
+        "IMG_NORM_THIS_PIXEL(inputImage)",
+        "IMG_NORM_PIXEL(inputImage, isf_FragNormCoord)",
+        "IMG_PIXEL(inputImage, gl_FragCoord.xy)",
+        "IMG_PIXEL(inputImage, isf_FragNormCoord.xy * (IMG_SIZE(inputImage)))",
+        "texture2D(inputImage, vec2((isf_FragNormCoord.x), isf_FragNormCoord.y))",
+        "texelFetch(inputImage, ivec2(gl_FragCoord.xy), 0)",
+        "IMG_PIXEL(inputImage, gl_FragCoord.xy / RENDERSIZE * _inputImage_imgRect.zw)",
+    ],
+)
 def test_every_way_to_read_its_own_pixel(run: Run, read: str) -> None:
     made = run(node(f"gl_FragColor = {read}; // IMG_PIXEL(( unbalanced in a comment", IMAGE), {"inputImage": PICTURE})
     assert close(made, PICTURE, 1e-5)
@@ -52,38 +58,46 @@ def test_neighbors_and_the_edge(run: Run) -> None:
     made = run(node(text, IMAGE), {"inputImage": PICTURE})
     rows, columns = np.clip(np.arange(H) - 2, 0, H - 1), np.clip(np.arange(W) + 1, 0, W - 1)
     assert close(made, PICTURE[rows][:, columns], 1e-5)
-    made = run(node("gl_FragColor = IMG_PIXEL(inputImage, gl_FragCoord.xy + vec2(0.5, 0.0));", IMAGE),
-               {"inputImage": PICTURE})
+    made = run(
+        node("gl_FragColor = IMG_PIXEL(inputImage, gl_FragCoord.xy + vec2(0.5, 0.0));", IMAGE), {"inputImage": PICTURE}
+    )
     assert close(made, 0.5 * (PICTURE + PICTURE[:, np.clip(np.arange(W) + 1, 0, W - 1)]), 2e-3)
 
 
 def test_derivatives_run_upward(run: Run) -> None:
-    made = run(node("gl_FragColor = vec4(dFdx(gl_FragCoord.x), dFdy(gl_FragCoord.y), dFdy(-gl_FragCoord.xy).y, 1.0);"),
-               size=(8, 8))
+    made = run(
+        node("gl_FragColor = vec4(dFdx(gl_FragCoord.x), dFdy(gl_FragCoord.y), dFdy(-gl_FragCoord.xy).y, 1.0);"),
+        size=(8, 8),
+    )
     assert close(made, np.broadcast_to([1.0, 1.0, -1.0, 1.0], (8, 8, 4)))
 
 
 def test_every_type_of_value(run: Run) -> None:
     inputs: list[dict[str, Any]] = [
         {"NAME": "level", "TYPE": "float", "DEFAULT": 0.25, "MIN": 0.0, "MAX": 2.0, "LABEL": "How Much"},
-        {"NAME": "flag", "TYPE": "bool", "DEFAULT": 1}, {"NAME": "hit", "TYPE": "event"},
+        {"NAME": "flag", "TYPE": "bool", "DEFAULT": 1},
+        {"NAME": "hit", "TYPE": "event"},
         {"NAME": "mode", "TYPE": "long", "VALUES": [3, 7, 9], "LABELS": ["Three", "Same", "Same"], "DEFAULT": 7},
         {"NAME": "count", "TYPE": "long", "DEFAULT": 4, "MIN": 1, "MAX": 8},
         {"NAME": "tint", "TYPE": "color", "DEFAULT": [0.5, 0.0, 1.0, 0.75]},
         {"NAME": "spot", "TYPE": "point2D", "DEFAULT": [0.25, 0.125], "MIN": [0, 0], "MAX": [1, 1]},
         {"NAME": "step", "TYPE": "point2D", "DEFAULT": [-3.0, 40.0]},
     ]
-    kind = shader(isf(
-        "gl_FragColor = vec4(level, float(mode) + (flag ? 0.5 : 0.0) + (hit ? 0.25 : 0.0), float(count), 1.0);"
-        "if (gl_FragCoord.x > 1.0) gl_FragColor = vec4(tint.rgb, 1.0);"
-        "if (gl_FragCoord.x > 2.0) gl_FragColor = vec4(tint.a, spot, 1.0);"
-        "if (gl_FragCoord.x > 3.0) gl_FragColor = vec4(step + vec2(10.0, 0.0), 0.0, 1.0);", *inputs,
-    ))
+    kind = shader(
+        isf(
+            "gl_FragColor = vec4(level, float(mode) + (flag ? 0.5 : 0.0) + (hit ? 0.25 : 0.0), float(count), 1.0);"
+            "if (gl_FragCoord.x > 1.0) gl_FragColor = vec4(tint.rgb, 1.0);"
+            "if (gl_FragCoord.x > 2.0) gl_FragColor = vec4(tint.a, spot, 1.0);"
+            "if (gl_FragCoord.x > 3.0) gl_FragColor = vec4(step + vec2(10.0, 0.0), 0.0, 1.0);",
+            *inputs,
+        )
+    )
     made = run(kind(light="linear"), size=(4, 1))[0]
     assert close(made[0], [0.25, 7.5, 4.0, 1.0]) and close(made[2, :3], [0.75, 0.25, 0.125])
     assert close(made[3, :3], [7.0, 40.0, 0.0]) and close(made[1, :3], decoded(np.array([0.5, 0.0, 1.0])), 1e-6)
-    made = run(kind(light="linear", level=1.5, mode="Same (2)", flag=False, hit=True, count=2, spot=(0.5, 1.0)),
-               size=(4, 1))[0]
+    made = run(
+        kind(light="linear", level=1.5, mode="Same (2)", flag=False, hit=True, count=2, spot=(0.5, 1.0)), size=(4, 1)
+    )[0]
     assert close(made[0], [1.5, 9.25, 2.0, 1.0]) and close(made[2, :3], [0.75, 0.5, 0.0])
     values = kind.values
     assert values["mode"].choices == ("Three", "Same", "Same (2)") and values["mode"].default == "Same"
@@ -120,8 +134,13 @@ def test_what_does_not_ask_the_time_is_the_same_at_every_frame(renderer: Rendere
 def test_display_values_and_straight_alpha(run: Run) -> None:
     """A shader that passes its picture on changes nothing; one that halves display values halves those."""
     soft = PICTURE * OTHER[..., :1]
-    kind = shader(isf("gl_FragColor = IMG_THIS_PIXEL(inputImage) * vec4(vec3(k), 1.0);", IMAGE,
-                      {"NAME": "k", "TYPE": "float", "DEFAULT": 1.0}))
+    kind = shader(
+        isf(
+            "gl_FragColor = IMG_THIS_PIXEL(inputImage) * vec4(vec3(k), 1.0);",
+            IMAGE,
+            {"NAME": "k", "TYPE": "float", "DEFAULT": 1.0},
+        )
+    )
     bright = soft * np.array([4.0, 4.0, 4.0, 1.0], np.float32)
     assert close(run(kind(), {"inputImage": bright}), bright, 2e-5)
     assert close(run(kind(light="linear"), {"inputImage": bright}), bright, 2e-5)
@@ -145,8 +164,9 @@ def test_transitions_have_two_pictures(run: Run) -> None:
 
 def test_other_pictures_keep_their_size_or_stay_unlinked(run: Run) -> None:
     body = "gl_FragColor = vec4(IMG_SIZE(inputImage), IMG_SIZE(mask)) / 100.0; gl_FragColor.a = 1.0 + IMG_SIZE(mask).y;"
-    item = node(body + "gl_FragColor.r = IMG_NORM_PIXEL(mask, vec2(0.999, 0.001)).r;", IMAGE,
-                {"NAME": "mask", "TYPE": "image"})
+    item = node(
+        body + "gl_FragColor.r = IMG_NORM_PIXEL(mask, vec2(0.999, 0.001)).r;", IMAGE, {"NAME": "mask", "TYPE": "image"}
+    )
     mask = opaque(3, 5)
     made = run(item, {"inputImage": PICTURE, "mask": mask})
     assert made.shape == (H, W, 4) and close(made[0, 0, 1:3], [0.13, 0.05])
@@ -156,8 +176,10 @@ def test_other_pictures_keep_their_size_or_stay_unlinked(run: Run) -> None:
 
 
 def test_sound_is_silent_or_a_picture(run: Run) -> None:
-    item = node("gl_FragColor = vec4(IMG_NORM_PIXEL(wave, isf_FragNormCoord).rgb, 1.0);",
-                {"NAME": "wave", "TYPE": "audio", "MAX": 16})
+    item = node(
+        "gl_FragColor = vec4(IMG_NORM_PIXEL(wave, isf_FragNormCoord).rgb, 1.0);",
+        {"NAME": "wave", "TYPE": "audio", "MAX": 16},
+    )
     assert item.inputs["wave"].kind is Kind.FIELD and item.inputs["wave"].optional
     assert close(run(item, size=(4, 4))[..., :3], 0.0)
     wave = PICTURE[:, :, 0]
@@ -212,8 +234,10 @@ def test_pictures_of_its_folder(renderer: Renderer, tmp_path: Path) -> None:
     cv2.imwrite(str(tmp_path / "art" / "below" / "six.png"), stored[..., ::-1])
     text = isf("gl_FragColor = IMG_PIXEL(six, gl_FragCoord.xy);", IMPORTED={"six": {"PATH": "below/six.png"}})
     (tmp_path / "art" / "own.fs").write_text(text)
-    raw = '{"halation": 1, "settings": {"size": [3, 2]}, "outputs": {"out": {"type": "Image"}}, "nodes": {"a": ' \
+    raw = (
+        '{"halation": 1, "settings": {"size": [3, 2]}, "outputs": {"out": {"type": "Image"}}, "nodes": {"a": '
         '{"type": "isf", "file": "art/own.fs", "values": {"light": "linear"}}}, "links": {"outputs.out": "a.out"}}'
+    )
     (tmp_path / "graph.json").write_text(raw)
     graph = document.load(tmp_path / "graph.json")
     for wanted in (Wanted(), Wanted(size=(6, 4))):
@@ -236,11 +260,18 @@ def test_a_document_keeps_it(tmp_path: Path) -> None:
     assert getattr(document.loads(saved, folder=str(tmp_path)).nodes["a"], "k") == 0.75  # noqa: B009
 
 
-@pytest.mark.parametrize(("fragment", "vertex", "file", "line"), [
-    ("void main() {\n  gl_FragColor = vec4(nothing);\n}", "", "bad.fs", 3),
-    ("varying float a;\nvoid main() { gl_FragColor = vec4(a); }",
-     "varying float a;\nvoid main() {\n  isf_vertShaderInit();\n  a = wrong(1.0);\n}", "bad.vs", 4),
-])
+@pytest.mark.parametrize(
+    ("fragment", "vertex", "file", "line"),
+    [
+        ("void main() {\n  gl_FragColor = vec4(nothing);\n}", "", "bad.fs", 3),
+        (
+            "varying float a;\nvoid main() { gl_FragColor = vec4(a); }",
+            "varying float a;\nvoid main() {\n  isf_vertShaderInit();\n  a = wrong(1.0);\n}",
+            "bad.vs",
+            4,
+        ),
+    ],
+)
 def test_a_fault_is_told_at_its_own_line(run: Run, fragment: str, vertex: str, file: str, line: int) -> None:
     with pytest.raises(ShaderError) as found:
         run(shader(isf(fragment), vertex, "bad.fs")(), size=(2, 2))

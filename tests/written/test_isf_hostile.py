@@ -21,28 +21,42 @@ def head(text: str) -> str:
     return f"/*{text}*/\nvoid main() {{ {BODY} }}"
 
 
-@pytest.mark.parametrize(("text", "line", "said"), [
-    ("", 1, "begins with"), ("void main() {}", 1, "begins with"), ("/* {", 1, "begins with"),
-    (head("not json"), 1, "no JSON"), (head('{\n\n"INPUTS": [,]}'), 3, "no JSON"), (head("[]"), 1, "object, in braces"),
-    (head('{"a": NaN}'), 1, "NaN is no number"), (head("[" * 100_000), 1, "nested too deep"),
-    (head('{"a": ' + "9" * 5000 + "}"), 1, "too long"), ("/*{}*/", 0, "no GLSL"),
-    ("/*{}*/ void other() {}", 0, "void main"), ("/*{}*/ // void main() {}", 0, "no GLSL"),
-    (isf(BODY, INPUTS={}), 1, "INPUTS is a list"), (isf(BODY, INPUTS=[3]), 1, "no object"),
-    (isf(BODY, {"NAME": "a b", "TYPE": "float"}), 1, "letters, digits"), (isf(BODY, {"TYPE": "float"}), 1, "an input"),
-    (isf(BODY, {"NAME": "TIME", "TYPE": "float"}), 1, "something else"), (isf(BODY, FLOAT, FLOAT), 1, "there twice"),
-    (isf(BODY, {"NAME": "k", "TYPE": "matrix"}), 1, "known are"),
-    (isf(BODY, {**FLOAT, "DEFAULT": "x"}), 1, "is a number"),
-    (isf(BODY, {**FLOAT, "MAX": 1e300}), 1, "is a number"), (isf(BODY, {**FLOAT, "MIN": [1, 2]}), 1, "is a number"),
-    (isf(BODY, {"NAME": "k", "TYPE": "color", "DEFAULT": [1]}), 1, "list of 4"),
-    (isf(BODY, {"NAME": "k", "TYPE": "long", "VALUES": [0.5]}), 1, "whole numbers"),
-    (isf(BODY, *[{"NAME": f"k{n}", "TYPE": "float"} for n in range(300)]), 1, "256 are the most"),
-    (isf(BODY, PASSES=[{}] * 10_000), 1, "64 are the most"),
-    (isf(BODY, PASSES=[{"TARGET": "gl_a"}]), 1, "something else"),
-    (isf(BODY, PASSES=[{"TARGET": "a", "WIDTH": "$nothing"}]), 1, "reads 'nothing'"),
-    (isf(BODY, PASSES=[{"TARGET": "a", "WIDTH": "1 +"}]), 1, "cannot be read"),
-    (isf(BODY, PASSES=[{"TARGET": "a", "WIDTH": [1]}]), 1, "is a formula"),
-    (isf(BODY, FLOAT, PASSES=[{"TARGET": "k"}]), 1, "there twice"),
-])
+@pytest.mark.parametrize(
+    ("text", "line", "said"),
+    [
+        ("", 1, "begins with"),
+        ("void main() {}", 1, "begins with"),
+        ("/* {", 1, "begins with"),
+        (head("not json"), 1, "no JSON"),
+        (head('{\n\n"INPUTS": [,]}'), 3, "no JSON"),
+        (head("[]"), 1, "object, in braces"),
+        (head('{"a": NaN}'), 1, "NaN is no number"),
+        (head("[" * 100_000), 1, "nested too deep"),
+        (head('{"a": ' + "9" * 5000 + "}"), 1, "too long"),
+        ("/*{}*/", 0, "no GLSL"),
+        ("/*{}*/ void other() {}", 0, "void main"),
+        ("/*{}*/ // void main() {}", 0, "no GLSL"),
+        (isf(BODY, INPUTS={}), 1, "INPUTS is a list"),
+        (isf(BODY, INPUTS=[3]), 1, "no object"),
+        (isf(BODY, {"NAME": "a b", "TYPE": "float"}), 1, "letters, digits"),
+        (isf(BODY, {"TYPE": "float"}), 1, "an input"),
+        (isf(BODY, {"NAME": "TIME", "TYPE": "float"}), 1, "something else"),
+        (isf(BODY, FLOAT, FLOAT), 1, "there twice"),
+        (isf(BODY, {"NAME": "k", "TYPE": "matrix"}), 1, "known are"),
+        (isf(BODY, {**FLOAT, "DEFAULT": "x"}), 1, "is a number"),
+        (isf(BODY, {**FLOAT, "MAX": 1e300}), 1, "is a number"),
+        (isf(BODY, {**FLOAT, "MIN": [1, 2]}), 1, "is a number"),
+        (isf(BODY, {"NAME": "k", "TYPE": "color", "DEFAULT": [1]}), 1, "list of 4"),
+        (isf(BODY, {"NAME": "k", "TYPE": "long", "VALUES": [0.5]}), 1, "whole numbers"),
+        (isf(BODY, *[{"NAME": f"k{n}", "TYPE": "float"} for n in range(300)]), 1, "256 are the most"),
+        (isf(BODY, PASSES=[{}] * 10_000), 1, "64 are the most"),
+        (isf(BODY, PASSES=[{"TARGET": "gl_a"}]), 1, "something else"),
+        (isf(BODY, PASSES=[{"TARGET": "a", "WIDTH": "$nothing"}]), 1, "reads 'nothing'"),
+        (isf(BODY, PASSES=[{"TARGET": "a", "WIDTH": "1 +"}]), 1, "cannot be read"),
+        (isf(BODY, PASSES=[{"TARGET": "a", "WIDTH": [1]}]), 1, "is a formula"),
+        (isf(BODY, FLOAT, PASSES=[{"TARGET": "k"}]), 1, "there twice"),
+    ],
+)
 def test_what_is_no_shader(text: str, line: int, said: str) -> None:
     with pytest.raises(CodeFault, match=said) as found:
         shader(text)
@@ -57,9 +71,20 @@ def test_a_fault_of_the_head_is_told_at_its_line() -> None:
     assert found.value.line == 4
 
 
-@pytest.mark.parametrize("path", [
-    "../a.png", "/etc/passwd", "a/../../b.png", "C:\\a.png", "..\\a.png", "", "\0", "file:///a.png", ".",
-])
+@pytest.mark.parametrize(
+    "path",
+    [
+        "../a.png",
+        "/etc/passwd",
+        "a/../../b.png",
+        "C:\\a.png",
+        "..\\a.png",
+        "",
+        "\0",
+        "file:///a.png",
+        ".",
+    ],
+)
 def test_pictures_from_elsewhere_are_refused(path: str) -> None:
     with pytest.raises(CodeFault, match="folder of the shader"):
         shader(isf(BODY, IMPORTED={"a": {"PATH": path}}))
@@ -78,7 +103,8 @@ JSON = some.recursive(
     lambda inner: some.one_of(
         some.lists(inner, max_size=3),
         some.dictionaries(some.sampled_from(INNER), inner),
-    ), max_leaves=8,
+    ),
+    max_leaves=8,
 )
 
 

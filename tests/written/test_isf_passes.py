@@ -84,8 +84,9 @@ def test_sizes_of_buffers(run: Run) -> None:
 
 
 def test_the_buffer_of_the_last_pass_is_the_picture(run: Run) -> None:
-    made = run(node("gl_FragColor = vec4(0.5);", PASSES=[{}, {"TARGET": "last", "WIDTH": "3", "HEIGHT": "2"}]),
-               size=(W, H))
+    made = run(
+        node("gl_FragColor = vec4(0.5);", PASSES=[{}, {"TARGET": "last", "WIDTH": "3", "HEIGHT": "2"}]), size=(W, H)
+    )
     assert made.shape == (2, 3, 4) and np.allclose(made, [0.25, 0.25, 0.25, 0.5])
 
 
@@ -106,10 +107,15 @@ def test_frames_follow_each_other_only_if_something_is_remembered() -> None:
     assert not issubclass(shader(isf("gl_FragColor = vec4(1.0);", PASSES=[{"TARGET": "a"}])), Temporal)
 
 
-@pytest.mark.parametrize(("width", "said"), [
-    ("1/($k-$k)", r"WIDTH of the buffer 'a', '1/\(\$k-\$k\)': it divides by 0"),
-    ("10^9", "1000000000x12 pixels"), ("exp(99999)", "has no value"), ("sqrt(-1)", "has no value"),
-])
+@pytest.mark.parametrize(
+    ("width", "said"),
+    [
+        ("1/($k-$k)", r"WIDTH of the buffer 'a', '1/\(\$k-\$k\)': it divides by 0"),
+        ("10^9", "1000000000x12 pixels"),
+        ("exp(99999)", "has no value"),
+        ("sqrt(-1)", "has no value"),
+    ],
+)
 def test_sizes_that_cannot_be(run: Run, width: str, said: str) -> None:
     k = {"NAME": "k", "TYPE": "float"}
     item = node("gl_FragColor = vec4(1.0);", k, PASSES=[{"TARGET": "a", "WIDTH": width}, {}])

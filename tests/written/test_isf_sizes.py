@@ -42,11 +42,15 @@ LEAVES = some.one_of(
     some.integers(0, 5000).map(lambda x: Tree(str(x), float(x))),
     some.sampled_from(sorted(VALUES)).map(lambda name: Tree(f"${name}", VALUES[name])),
 )
-TREES = some.recursive(LEAVES, lambda inner: some.one_of(
-    some.tuples(inner, some.sampled_from("+-*/"), inner).map(joined),
-    some.tuples(some.sampled_from(["min", "max", "floor", "ceil", "abs"]), inner, inner).map(called),
-    inner.map(lambda tree: Tree(f"-({tree.text})", -tree.value)),
-), max_leaves=12)
+TREES = some.recursive(
+    LEAVES,
+    lambda inner: some.one_of(
+        some.tuples(inner, some.sampled_from("+-*/"), inner).map(joined),
+        some.tuples(some.sampled_from(["min", "max", "floor", "ceil", "abs"]), inner, inner).map(called),
+        inner.map(lambda tree: Tree(f"-({tree.text})", -tree.value)),
+    ),
+    max_leaves=12,
+)
 
 
 @given(TREES)
@@ -58,25 +62,57 @@ def test_formulas_agree_with_python(tree: Tree) -> None:
     assert read_size(tree.text).pixels(VALUES) == max(1, math.floor(exact))
 
 
-@pytest.mark.parametrize(("text", "pixels"), [
-    ("1", 1), ("512", 512), ("$WIDTH", 1920), ("$HEIGHT/16.0", 67), ("floor($WIDTH/4.0)", 480),
-    (" $WIDTH / 100.0 ", 19), ("max(floor($WIDTH*0.02),1.0)", 38), ("floor($HEIGHT*min((0.3),1.0))", 324),
-    ("max(8.0,floor($WIDTH*$k))", 720),
-    ("2+3*4", 14), ("20-5-4", 11), ("64/4/2", 8), ("2^3^2", 512), ("-2^2 + 10", 6), ("- - 3", 3), ("7%4", 3), ("-5", 1),
-    ("clamp(2, $WIDTH, 8)", 8), ("mod(9, 5) + pow(2, 3) + round(2.5)", 15), ("$WIDTH*0.1", 192), ("1e2", 100),
-])
+@pytest.mark.parametrize(
+    ("text", "pixels"),
+    [
+        ("1", 1),
+        ("512", 512),
+        ("$WIDTH", 1920),
+        ("$HEIGHT/16.0", 67),
+        ("floor($WIDTH/4.0)", 480),
+        (" $WIDTH / 100.0 ", 19),
+        ("max(floor($WIDTH*0.02),1.0)", 38),
+        ("floor($HEIGHT*min((0.3),1.0))", 324),
+        ("max(8.0,floor($WIDTH*$k))", 720),
+        ("2+3*4", 14),
+        ("20-5-4", 11),
+        ("64/4/2", 8),
+        ("2^3^2", 512),
+        ("-2^2 + 10", 6),
+        ("- - 3", 3),
+        ("7%4", 3),
+        ("-5", 1),
+        ("clamp(2, $WIDTH, 8)", 8),
+        ("mod(9, 5) + pow(2, 3) + round(2.5)", 15),
+        ("$WIDTH*0.1", 192),
+        ("1e2", 100),
+    ],
+)
 def test_formulas(text: str, pixels: int) -> None:
     assert read_size(text).pixels(VALUES) == pixels
 
 
-@pytest.mark.parametrize(("text", "said"), [
-    ("", "ends too early"), ("1 +", "ends too early"), ("(1", "missing"), ("1)", "not expected"),
-    ("2 3", "not expected"), ("min(1,", "ends too early"), ("floor(1, 2)", "takes 1 numbers, not 2"),
-    ("__import__('os')", "no function"),
-    ("$WIDTH; 1", "not expected"), ("1 = 1", "not expected"), ("sqrt()", "not expected"), ("min()", "not expected"),
-    ("(" * (MAX_DEPTH + 1) + "1" + ")" * (MAX_DEPTH + 1), "nests deeper"), ("2" + "^2" * 200, "nests deeper"),
-    ("1+" * 600 + "1", "more than 1000"), ("9" * 400 + "^9", "has no value|not finite"),
-])
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "ends too early"),
+        ("1 +", "ends too early"),
+        ("(1", "missing"),
+        ("1)", "not expected"),
+        ("2 3", "not expected"),
+        ("min(1,", "ends too early"),
+        ("floor(1, 2)", "takes 1 numbers, not 2"),
+        ("__import__('os')", "no function"),
+        ("$WIDTH; 1", "not expected"),
+        ("1 = 1", "not expected"),
+        ("sqrt()", "not expected"),
+        ("min()", "not expected"),
+        ("(" * (MAX_DEPTH + 1) + "1" + ")" * (MAX_DEPTH + 1), "nests deeper"),
+        ("2" + "^2" * 200, "nests deeper"),
+        ("1+" * 600 + "1", "more than 1000"),
+        ("9" * 400 + "^9", "has no value|not finite"),
+    ],
+)
 def test_what_is_no_formula(text: str, said: str) -> None:
     with pytest.raises(SizeError, match=said):
         read_size(text).pixels(VALUES)

@@ -24,31 +24,58 @@ def checks(text: str) -> int:
     return len(CHECK.findall(guarded(text)))
 
 
-@pytest.mark.parametrize("loop", [
-    "for (int i = 0; i < 8; ++i) n++;", "for (int i = 8; i > 0; i -= 3) { n++; }", "for (int i = -3; i <= 3; i++) n++;",
-    "for (float t = 0.0; t < 1.0; t += 0.125) n++;", "for (int i = 0; i < N * 4; i++) n++;",
-    "for (int i = 0; i < M; i++) n++;", "for (int i = 0; i < 64 && n < m; i++) n++;",
-    "for (uint i = 0u; i < 9u; i++) n++;",
-    "for (int i = 0; i != 8; i += 2) n++;", "for (int y = 0; y < 99; y++) for (int x = 0; x < 99; x++) n += x * y;",
-    "for (int i = 0; i < 8; i++) { if (i == 3) continue; n = i; }", "// while (true) n++;\n", "/* for (;;) */ n++;",
-])
+@pytest.mark.parametrize(
+    "loop",
+    [
+        "for (int i = 0; i < 8; ++i) n++;",
+        "for (int i = 8; i > 0; i -= 3) { n++; }",
+        "for (int i = -3; i <= 3; i++) n++;",
+        "for (float t = 0.0; t < 1.0; t += 0.125) n++;",
+        "for (int i = 0; i < N * 4; i++) n++;",
+        "for (int i = 0; i < M; i++) n++;",
+        "for (int i = 0; i < 64 && n < m; i++) n++;",
+        "for (uint i = 0u; i < 9u; i++) n++;",
+        "for (int i = 0; i != 8; i += 2) n++;",
+        "for (int y = 0; y < 99; y++) for (int x = 0; x < 99; x++) n += x * y;",
+        "for (int i = 0; i < 8; i++) { if (i == 3) continue; n = i; }",
+        "// while (true) n++;\n",
+        "/* for (;;) */ n++;",
+    ],
+)
 def test_loops_that_say_how_often_they_run_are_left_alone(loop: str) -> None:
     text = f"#define N 8\nconst int M = 3 + 4;\nvoid f(int m) {{ int n = 0; {loop} }}"
     assert guarded(text) == blanked(text)
 
 
-@pytest.mark.parametrize("loop", [
-    "while (true) n++;", "while (n < m) { n++; }", "do n++; while (n < m);", "do { n++; } while (true);",
-    "for (;;) { n++; }", "for (int i = 0; i < m; i++) n++;", "for (int i = 0; i < 8; i++) { i--; }",
-    "for (int i = 0; i < 8; i++) { i = 0; }", "for (int i = 0; i < 8; i--) n++;", "for (int i = 0; i < 8; i += 0) n++;",
-    "for (int i = 0; i < 8; i += 1 / 2) n++;", "for (uint i = 8u; i >= 0u; i--) n++;",
-    "for (int i = 0; i != 7; i += 2) n++;",
-    "for (float t = 1e9; t < 1e9 + 9.0; t += 1.0) n++;", "for (int i = 0; i < 100000000; i++) n++;",
-    "for (int i = 0; i < 8 || n < m; i++) n++;", "for (int i = 0; n < 8; i++) m++;",
-    "for (int i = 0; i < 8; change(i)) n++;",
-    "for (int i = 0; i < 8; i++) change(i);", "for (int i = 0; i < K; i++) n++;", "int i = 0; for (; i < 8;) n++;",
-    "for (int i = 0, j = 3; i < 8; i++) n++;", "for (int i = 0; i < 8; i++, n++) m++;", "while (n < 8 && i-- > 0) ;",
-])
+@pytest.mark.parametrize(
+    "loop",
+    [
+        "while (true) n++;",
+        "while (n < m) { n++; }",
+        "do n++; while (n < m);",
+        "do { n++; } while (true);",
+        "for (;;) { n++; }",
+        "for (int i = 0; i < m; i++) n++;",
+        "for (int i = 0; i < 8; i++) { i--; }",
+        "for (int i = 0; i < 8; i++) { i = 0; }",
+        "for (int i = 0; i < 8; i--) n++;",
+        "for (int i = 0; i < 8; i += 0) n++;",
+        "for (int i = 0; i < 8; i += 1 / 2) n++;",
+        "for (uint i = 8u; i >= 0u; i--) n++;",
+        "for (int i = 0; i != 7; i += 2) n++;",
+        "for (float t = 1e9; t < 1e9 + 9.0; t += 1.0) n++;",
+        "for (int i = 0; i < 100000000; i++) n++;",
+        "for (int i = 0; i < 8 || n < m; i++) n++;",
+        "for (int i = 0; n < 8; i++) m++;",
+        "for (int i = 0; i < 8; change(i)) n++;",
+        "for (int i = 0; i < 8; i++) change(i);",
+        "for (int i = 0; i < K; i++) n++;",
+        "int i = 0; for (; i < 8;) n++;",
+        "for (int i = 0, j = 3; i < 8; i++) n++;",
+        "for (int i = 0; i < 8; i++, n++) m++;",
+        "while (n < 8 && i-- > 0) ;",
+    ],
+)
 def test_loops_that_might_not_end_are_counted(loop: str) -> None:
     head = "#define K 8\n#undef K\n#define K m\nvoid change(inout int i) { i = 0; }\n"
     text = f"{head}void f(int m) {{ int n = 0; {loop} }}"
@@ -133,10 +160,15 @@ def _in(text: str) -> str:
 
 
 STEPS = st.integers(1, 9).map(lambda k: (f"n = (n * 3 + {k}) % 4093;", f"n = (n * 3 + {k}) % 4093"))
-STATEMENTS = st.recursive(STEPS, lambda inner: st.one_of(
-    st.builds(_choice, inner, inner), st.builds(_counted, st.integers(0, 3), inner),
-    st.builds(_until, st.integers(1, 3), st.booleans(), inner),
-), max_leaves=4)
+STATEMENTS = st.recursive(
+    STEPS,
+    lambda inner: st.one_of(
+        st.builds(_choice, inner, inner),
+        st.builds(_counted, st.integers(0, 3), inner),
+        st.builds(_until, st.integers(1, 3), st.booleans(), inner),
+    ),
+    max_leaves=4,
+)
 
 
 @settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])

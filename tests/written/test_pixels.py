@@ -53,8 +53,9 @@ def test_pointwise_code(run: Run) -> None:
 
 
 def test_a_value_can_be_wired(run: Run) -> None:
-    made = run(node("vec4 f(vec4 image, float k /* = 1 */) { return image * k; }"),
-               {"image": PICTURE, "k": OTHER[..., 0]})
+    made = run(
+        node("vec4 f(vec4 image, float k /* = 1 */) { return image * k; }"), {"image": PICTURE, "k": OTHER[..., 0]}
+    )
     assert np.abs(made - PICTURE * OTHER[..., :1]).max() < 1e-6
 
 
@@ -88,8 +89,9 @@ def test_lengths_follow_a_proxy(run: Run) -> None:
 
 
 def test_the_library_can_be_included(run: Run) -> None:
-    made = run(node('#include "lib/color.glsl"\nfloat f(vec4 image) { return luminance(image.rgb); }'),
-               {"image": PICTURE})
+    made = run(
+        node('#include "lib/color.glsl"\nfloat f(vec4 image) { return luminance(image.rgb); }'), {"image": PICTURE}
+    )
     assert np.abs(made[..., 0] - PICTURE[..., :3] @ [0.2126, 0.7152, 0.0722]).max() < 1e-3
 
 
@@ -113,8 +115,10 @@ def test_equal_names_do_not_meet(run: Run, renderer: Renderer) -> None:
 
 
 def test_a_driver_names_the_node_and_the_users_own_line(renderer: Renderer) -> None:
-    graph = chain("vec4 a(vec4 image) { return image; }",
-                  "// one\nfloat twice(float x) { return x * 2.0; }\nvec4 b(vec4 image) {\n    return twice(image);\n}")
+    graph = chain(
+        "vec4 a(vec4 image) { return image; }",
+        "// one\nfloat twice(float x) { return x * 2.0; }\nvec4 b(vec4 image) {\n    return twice(image);\n}",
+    )
     with pytest.raises(ShaderError) as caught:
         renderer.render(graph, Wanted({"image": PICTURE}))
     fault = caught.value
@@ -125,8 +129,9 @@ def test_a_driver_names_the_node_and_the_users_own_line(renderer: Renderer) -> N
 def test_an_include_that_is_no_library_file_is_refused(renderer: Renderer) -> None:
     for name in ("/etc/passwd", "../../secret.glsl", "color/none"):
         with pytest.raises(ShaderError, match="names no shader file"):
-            renderer.render(chain(f'#include "{name}"\nvec4 f(vec4 image) {{ return image; }}'),
-                            Wanted({"image": PICTURE}))
+            renderer.render(
+                chain(f'#include "{name}"\nvec4 f(vec4 image) {{ return image; }}'), Wanted({"image": PICTURE})
+            )
 
 
 def test_code_with_a_fault_stands_in_the_graph_and_says_why(renderer: Renderer) -> None:
@@ -141,11 +146,10 @@ def test_code_with_a_fault_stands_in_the_graph_and_says_why(renderer: Renderer) 
     assert document.loads(document.dumps(graph)) == graph
 
 
-
 def test_the_examples_of_the_manual(run: Run) -> None:
     """What docs/shaders.md shows works as it stands."""
     text = (Path(__file__).parents[2] / "docs" / "shaders.md").read_text(encoding="utf-8")
-    tint = re.search(r'```json\n(.*?)\n```', text, re.DOTALL)
+    tint = re.search(r"```json\n(.*?)\n```", text, re.DOTALL)
     smear = re.search(r"```glsl\n(.*?)\n```", text, re.DOTALL)
     assert tint and smear
     code = json.loads(f"{{{tint[1]}}}")["nodes"]["tint"]["code"]

@@ -35,7 +35,15 @@ def test_everything_that_a_parameter_can_be() -> None:
     assert kind.inputs == {"image": Image(), "mask": Field(1.0, doc="where it works")}
     assert kind.values == {
         "amount": Value(
-            "amount", "float", 0.5, low=0.0, high=2.0, minimum=0.0, maximum=4.0, unit="ratio", label="How much",
+            "amount",
+            "float",
+            0.5,
+            low=0.0,
+            high=2.0,
+            minimum=0.0,
+            maximum=4.0,
+            unit="ratio",
+            label="How much",
             doc="of the tint, mostly.",
         ),
         "shade": Value("shade", "color", (0.0, 0.2, 1.0, 1.0), length=4),
@@ -60,7 +68,10 @@ def test_what_looks_around_is_a_filter() -> None:
 def test_outputs() -> None:
     kind = glsl("void split(vec4 image, out vec4 low, out float mask, out vec3 normal, out vec4 four /* vector */) {}")
     assert {name: output.socket for name, output in kind.outputs.items()} == {
-        "low": Image(), "mask": Field(), "normal": Vector(width=3), "four": Vector(width=4),
+        "low": Image(),
+        "mask": Field(),
+        "normal": Vector(width=3),
+        "four": Vector(width=4),
     }
     assert glsl("float luma(vec4 image) { return image.g; }").outputs["out"].socket == Field()
     assert glsl("vec2 flow(vec4 image) { return image.rg; }").outputs["out"].socket == Vector(width=2)
@@ -81,42 +92,47 @@ def test_a_comment_that_is_a_sentence_is_one() -> None:
     assert [socket.doc for socket in kind.inputs.values()] == ["the picture, as it comes", "px are no matter"]
 
 
-@pytest.mark.parametrize(("text", "line", "said"), [
-    ("", 1, "there is no function in it"),
-    ("float x;", 1, "there is no function in it"),
-    ("\nvec4 f(vec4 a,\nvec4 a) { return a; }", 3, "the name 'a' is there twice"),
-    ("vec4 f(vec4 pixel) { return pixel; }", 1, "'pixel' means something else here"),
-    *((f"vec4 f(vec4 {name}) {{ return {name}; }}", 1, f"'{name}' means something else here")
-      for name in ("values", "inputs", "lambda", "id", "passes", "version", "code", "changed")),
-    ("void f(vec4 a) {}", 1, "'f' makes nothing"),
-    ("vec4 f(vec4 a, out float b) { return a; }", 1, "returns a vec4 and has out parameters"),
-    ("void f(out vec4 a, vec4 b) {}", 1, "out parameters come last"),
-    ("vec4 f(sampler2D a) { return vec4(0); }", 1, "'a' has the type sampler2D"),
-    ("vec4 f(int a) { return vec4(0); }", 1, "'a' is a int, which no picture holds"),
-    ("mat3 f(vec4 a) { return mat3(0); }", 1, "the result has the type mat3"),
-    ("\nuniform float x;\nvec4 f(vec4 a) { return a; }", 2, "'uniform' has no place here"),
-    ("vec4 f(vec4 a) { return texture(a, vec2(0)); }", 1, "'texture' has no place here"),
-    ("#version 430\nvec4 f(vec4 a) { return a; }", 1, "'#version' has no place here"),
-    ("vec4 f(vec4 a) {\n return gl_FragCoord; }", 2, "'gl_FragCoord' has no place here"),
-    ("vec4 f(float b // = x\n) { return vec4(b); }", 1, "a float is a number"),
-    ("vec4 f(float b // = 2, <= 1\n) { return vec4(b); }", 1, "lies beyond its limits"),
-    ("vec4 f(float b // = 2, 3..1\n) { return vec4(b); }", 1, "the range of 'b' is empty"),
-    ("vec4 f(float b // = 2, meters\n) { return vec4(b); }", 1, "'meters' says nothing of a parameter"),
-    ("vec4 f(vec3 b // = (1, 2)\n) { return vec4(1); }", 1, "a vec3 is 3 numbers"),
-    ("vec4 f(int b // = 1.5\n) { return vec4(b); }", 1, "an int is a whole number"),
-    ("vec4 f(bool b // = 1.5\n) { return vec4(b); }", 1, "a bool is true or false"),
-    ("vec4 f(int b // = c, one of a | b\n) { return vec4(b); }", 1, "none of its choices"),
-    ("vec4 f(float b // = a, one of a | b\n) { return vec4(b); }", 1, "so it is an int"),
-    ("vec4 f(float b // = 1, color\n) { return vec4(b); }", 1, "so it is a vec4 or vec3"),
-    ("vec4 f(vec4 a /* wrap */, vec4 b /* black */) { return a_at(pixel); }", 1, "choose one edge"),
-])
+@pytest.mark.parametrize(
+    ("text", "line", "said"),
+    [
+        ("", 1, "there is no function in it"),
+        ("float x;", 1, "there is no function in it"),
+        ("\nvec4 f(vec4 a,\nvec4 a) { return a; }", 3, "the name 'a' is there twice"),
+        ("vec4 f(vec4 pixel) { return pixel; }", 1, "'pixel' means something else here"),
+        *(
+            (f"vec4 f(vec4 {name}) {{ return {name}; }}", 1, f"'{name}' means something else here")
+            for name in ("values", "inputs", "lambda", "id", "passes", "version", "code", "changed")
+        ),
+        ("void f(vec4 a) {}", 1, "'f' makes nothing"),
+        ("vec4 f(vec4 a, out float b) { return a; }", 1, "returns a vec4 and has out parameters"),
+        ("void f(out vec4 a, vec4 b) {}", 1, "out parameters come last"),
+        ("vec4 f(sampler2D a) { return vec4(0); }", 1, "'a' has the type sampler2D"),
+        ("vec4 f(int a) { return vec4(0); }", 1, "'a' is a int, which no picture holds"),
+        ("mat3 f(vec4 a) { return mat3(0); }", 1, "the result has the type mat3"),
+        ("\nuniform float x;\nvec4 f(vec4 a) { return a; }", 2, "'uniform' has no place here"),
+        ("vec4 f(vec4 a) { return texture(a, vec2(0)); }", 1, "'texture' has no place here"),
+        ("#version 430\nvec4 f(vec4 a) { return a; }", 1, "'#version' has no place here"),
+        ("vec4 f(vec4 a) {\n return gl_FragCoord; }", 2, "'gl_FragCoord' has no place here"),
+        ("vec4 f(float b // = x\n) { return vec4(b); }", 1, "a float is a number"),
+        ("vec4 f(float b // = 2, <= 1\n) { return vec4(b); }", 1, "lies beyond its limits"),
+        ("vec4 f(float b // = 2, 3..1\n) { return vec4(b); }", 1, "the range of 'b' is empty"),
+        ("vec4 f(float b // = 2, meters\n) { return vec4(b); }", 1, "'meters' says nothing of a parameter"),
+        ("vec4 f(vec3 b // = (1, 2)\n) { return vec4(1); }", 1, "a vec3 is 3 numbers"),
+        ("vec4 f(int b // = 1.5\n) { return vec4(b); }", 1, "an int is a whole number"),
+        ("vec4 f(bool b // = 1.5\n) { return vec4(b); }", 1, "a bool is true or false"),
+        ("vec4 f(int b // = c, one of a | b\n) { return vec4(b); }", 1, "none of its choices"),
+        ("vec4 f(float b // = a, one of a | b\n) { return vec4(b); }", 1, "so it is an int"),
+        ("vec4 f(float b // = 1, color\n) { return vec4(b); }", 1, "so it is a vec4 or vec3"),
+        ("vec4 f(vec4 a /* wrap */, vec4 b /* black */) { return a_at(pixel); }", 1, "choose one edge"),
+    ],
+)
 def test_faults_name_their_line(text: str, line: int, said: str) -> None:
     with pytest.raises(CodeFault, match=said.replace("(", "\\(").replace("[", "\\[")) as caught:
         glsl(text)
     assert caught.value.line == line
 
 
-@given(some.text(alphabet="vec4 float(){},/*=.0123\n\"abimgetx;#<>|:\\\u00e9\u2028", max_size=200))
+@given(some.text(alphabet='vec4 float(){},/*=.0123\n"abimgetx;#<>|:\\\u00e9\u2028', max_size=200))
 def test_any_text_is_a_class_or_a_fault(text: str) -> None:
     try:
         assert glsl(text).outputs

@@ -16,7 +16,8 @@ def fits(program: Program, one: Fused, target: Target) -> bool:
         return False
     most = target.max_images if target.form == "compute" else target.max_targets
     return (
-        reads + count_tables(program.ops, one.members) <= target.max_inputs and writes <= most
+        reads + count_tables(program.ops, one.members) <= target.max_inputs
+        and writes <= most
         and len(one.members) <= MAX_MEMBERS
         and sum(count_uniforms(program.ops[index]) for index in one.members) <= MAX_UNIFORMS
     )

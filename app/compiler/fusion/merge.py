@@ -44,7 +44,8 @@ def _behind(program: Program, fused: Fused, root: int) -> Fused:
             needed |= {ref.op for ref in found if ref not in fused.reads}
             reads |= found
     return Fused(
-        tuple(index for index in fused.members if index in needed), tuple(ref for ref in fused.reads if ref in reads),
+        tuple(index for index in fused.members if index in needed),
+        tuple(ref for ref in fused.reads if ref in reads),
         tuple(ref for ref in fused.writes if ref.op == root),
     )
 

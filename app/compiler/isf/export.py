@@ -105,7 +105,10 @@ class _Export:
             why = f"needs {count} pictures at once: shaders read {MAX_PICTURES} at most"
             return Exported("", (), (("", why),))
         head: Section = {
-            "ISFVSN": "2", "DESCRIPTION": doc or "Made by Halation.", "CATEGORIES": ["Halation"], "INPUTS": inputs,
+            "ISFVSN": "2",
+            "DESCRIPTION": doc or "Made by Halation.",
+            "CATEGORIES": ["Halation"],
+            "INPUTS": inputs,
             **({"PASSES": targets} if targets != [{}] else {}),
         }
         comment = json.dumps(head, indent=2).replace("*/", "*\\/")
@@ -144,7 +147,8 @@ class _Export:
     def _sources(self, program: Program) -> dict[Ref, str]:
         """The pictures of the graph's inputs, by the names that the shader gives them."""
         return {
-            Ref(at): self.pictures[op.picture.path] for at, op in enumerate(program.ops)
+            Ref(at): self.pictures[op.picture.path]
+            for at, op in enumerate(program.ops)
             if isinstance(op, Read) and op.picture.in_memory and op.picture.path in self.pictures
         }
 
@@ -152,7 +156,8 @@ class _Export:
         """Inputs that are files of data."""
         return [
             (op.owner, f"is a {self.graph.inputs[name].kind}: the format has pictures of display values only")
-            for op in program.ops if isinstance(op, Read)
+            for op in program.ops
+            if isinstance(op, Read)
             for node, _, name in [op.owner.partition(".")]
             if node == "inputs" and name in self.graph.inputs and name not in self.pictures
         ]

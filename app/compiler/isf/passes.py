@@ -104,8 +104,11 @@ def function(
     whole = convert(result, names.shape(fused.writes[output]).channels, "vec4")
     used = words(*lines, *parts.body, result)
     known = {"frame": ("int", f"@FRAMEINDEX + {names.first}"), "proxy": ("float", literal(program.scale))}
-    start = ["pixel = ivec2(int(gl_FragCoord.x), int(RENDERSIZE.y - gl_FragCoord.y));", "grid = ivec2(RENDERSIZE);",
-             "extent = grid;"]
+    start = [
+        "pixel = ivec2(int(gl_FragCoord.x), int(RENDERSIZE.y - gl_FragCoord.y));",
+        "grid = ivec2(RENDERSIZE);",
+        "extent = grid;",
+    ]
     declared = ["ivec2 pixel;", "ivec2 grid;", "ivec2 extent;"]
     for name, (glsl, text) in known.items():
         if name in used:
@@ -140,10 +143,16 @@ def _lines(
 def _portable(body: str) -> str:
     """The text without the bits of floats, and a word, that older GLSL does not know."""
     body = re.sub(r"\bprecise\s+", "", body)
-    body = _BITS.sub(lambda found: f"bool {found[1]}(float {found[2]}) {{ return "
-                     f"{'!' if found[1] == 'is_hole' else ''}(abs({found[2]}) <= 3.4e38); }}", body)
-    return _FINITE.sub("float finite(float x) { return abs(x) <= 3.4e38 ? x : x > 0.0 ? 65504.0 : x < 0.0 ? -65504.0 "
-                       ": 0.0; }", body)
+    body = _BITS.sub(
+        lambda found: (
+            f"bool {found[1]}(float {found[2]}) {{ return "
+            f"{'!' if found[1] == 'is_hole' else ''}(abs({found[2]}) <= 3.4e38); }}"
+        ),
+        body,
+    )
+    return _FINITE.sub(
+        "float finite(float x) { return abs(x) <= 3.4e38 ? x : x > 0.0 ? 65504.0 : x < 0.0 ? -65504.0 : 0.0; }", body
+    )
 
 
 def _renamed(text: str, prefix: str, names: PassNames, texts: tuple[Text, ...]) -> str:

@@ -56,8 +56,14 @@ class Writing:
     def _pass(self, fused: Fused, output: int, first: int) -> None:
         ref = fused.writes[output]
         names = PassNames(
-            self.found.program, {one: number for number, one in enumerate(fused.reads)}, "fragment", False, seams=False,
-            texts=self.found.texts, sized=self._sized, first=first,
+            self.found.program,
+            {one: number for number, one in enumerate(fused.reads)},
+            "fragment",
+            False,
+            seams=False,
+            texts=self.found.texts,
+            sized=self._sized,
+            first=first,
             readers={one: f"read_{self._name(one)}" for one in fused.reads},
         )
         lines, made = function(self.found.program, fused, output, f"p{len(self.calls)}_", names, self.library)

@@ -104,8 +104,16 @@ class Recorder:
     """Implements `Draw` for one node, which is `fed`."""
 
     def __init__(
-        self, fed: Fed, node: Filter, size: Size, builder: Builder, library: Library, files: Files,
-        memories: Mapping[str, Memory], rate: float, start: int,
+        self,
+        fed: Fed,
+        node: Filter,
+        size: Size,
+        builder: Builder,
+        library: Library,
+        files: Files,
+        memories: Mapping[str, Memory],
+        rate: float,
+        start: int,
     ) -> None:
         self.size, self.rate, self.start = size, rate, start
         self.timed = False
@@ -142,8 +150,15 @@ class Recorder:
         return self._made(Call((shape,), self._owner, "primitive/convert", f"as_{socket.glsl}", parameters))
 
     def __call__(
-        self, function: str, /, *inputs: Socket, size: Size | None = None, edge: Edge = "clamp",
-        result: Socket | None = None, overlap: Overlap | Mapping[str, Overlap] | None = None, **arguments: Argument,
+        self,
+        function: str,
+        /,
+        *inputs: Socket,
+        size: Size | None = None,
+        edge: Edge = "clamp",
+        result: Socket | None = None,
+        overlap: Overlap | Mapping[str, Overlap] | None = None,
+        **arguments: Argument,
     ) -> Drawn:
         light = self._library.light(self._shader, function, self._owner)
         shapes = (self._shape(result, size or self.size),)
@@ -151,8 +166,15 @@ class Recorder:
         return self._made(op)
 
     def several(
-        self, function: str, results: tuple[Socket, ...], /, *inputs: Socket, size: Size | None = None,
-        edge: Edge = "clamp", overlap: Overlap | Mapping[str, Overlap] | None = None, **arguments: Argument,
+        self,
+        function: str,
+        results: tuple[Socket, ...],
+        /,
+        *inputs: Socket,
+        size: Size | None = None,
+        edge: Edge = "clamp",
+        overlap: Overlap | Mapping[str, Overlap] | None = None,
+        **arguments: Argument,
     ) -> tuple[Drawn, ...]:
         shapes = tuple(self._shape(result, size or self.size) for result in results)
         given = [glsl for glsl, _ in self._library.function(self._shader, function, self._owner).outputs]
@@ -165,8 +187,13 @@ class Recorder:
         return tuple(Made(Ref(first.op, number), shape) for number, shape in enumerate(shapes))
 
     def _gather(
-        self, function: str, named: Mapping[str, Argument], shapes: tuple[Shape, ...], edge: Edge,
-        overlap: Overlap | Mapping[str, Overlap] | None, light: bool,
+        self,
+        function: str,
+        named: Mapping[str, Argument],
+        shapes: tuple[Shape, ...],
+        edge: Edge,
+        overlap: Overlap | Mapping[str, Overlap] | None,
+        light: bool,
     ) -> Gather:
         overlaps = overlap if isinstance(overlap, Mapping) else dict.fromkeys(named, overlap)
         accessors: list[Accessor] = []
@@ -181,7 +208,14 @@ class Recorder:
                 rest[name] = item
         parameters = self._parameters(self._library.function(self._shader, function, self._owner), rest)
         return Gather(
-            shapes, self._owner, self._shader, function, tuple(accessors), parameters, edge, choices(self._node),
+            shapes,
+            self._owner,
+            self._shader,
+            function,
+            tuple(accessors),
+            parameters,
+            edge,
+            choices(self._node),
             light=light,
         )
 
@@ -192,14 +226,23 @@ class Recorder:
         size = next((found for found in sizes if found != (1, 1)), (1, 1) if sizes else self.size)
         return self._made(
             Call(
-                (self._shape(result, size),), self._owner, self._shader, function,
-                self._parameters(signature, named), choices(self._node),
+                (self._shape(result, size),),
+                self._owner,
+                self._shader,
+                function,
+                self._parameters(signature, named),
+                choices(self._node),
             )
         )
 
     def program(
-        self, text: ShaderText, pictures: Mapping[str, Drawn], uniforms: Mapping[str, Uniform], *,
-        size: Size | None = None, result: Socket | None = None,
+        self,
+        text: ShaderText,
+        pictures: Mapping[str, Drawn],
+        uniforms: Mapping[str, Uniform],
+        *,
+        size: Size | None = None,
+        result: Socket | None = None,
     ) -> Drawn:
         samplers = tuple((name, self._pixels(item).ref) for name, item in pictures.items())
         values = tuple((name, Constant(value)) for name, value in uniforms.items())
@@ -326,7 +369,9 @@ class Recorder:
         names = tuple(name for _, name in signature.parameters)
         if names != tuple(arguments):
             raise ShaderError(
-                self._owner, self._library.file(self._shader), 1,
+                self._owner,
+                self._library.file(self._shader),
+                1,
                 f"'{signature.name}' takes ({', '.join(names)}) but is drawn with ({', '.join(arguments)})",
             )
         found: list[Parameter] = []
@@ -389,5 +434,3 @@ def choices(node: Node) -> tuple[tuple[str, tuple[str, ...]], ...]:
 def _plain(item: Plain) -> float | int | bool | tuple[float, ...]:
     assert not isinstance(item, str)
     return item
-
-

@@ -36,11 +36,15 @@ def convolution(builder: Builder, image: Ref, kernel: Ref, owner: str) -> Ref:
     """A picture convolved with another one around its middle, black outside."""
     picture, spread = builder.shape(image).size, builder.shape(kernel).size
     width, height = (padded_length(*lengths) for lengths in zip(picture, spread, strict=True))
-    spectra = [_transform(builder, _transform(builder, made, 0, width, owner), 1, height, owner)
-               for made in (image, kernel)]
+    spectra = [
+        _transform(builder, _transform(builder, made, 0, width, owner), 1, height, owner) for made in (image, kernel)
+    ]
     product = builder.add(
         Gather(
-            (Shape((width, height), 4, data=True),), owner, _SHADER, "fourier_product",
+            (Shape((width, height), 4, data=True),),
+            owner,
+            _SHADER,
+            "fourier_product",
             tuple(Accessor(name, "vec4", made) for name, made in zip(("image", "kernel"), spectra, strict=True)),
             (Parameter("float", Constant(1.0 / (width * height))),),
         )
@@ -60,9 +64,7 @@ def padded_length(picture: int, kernel: int) -> int:
 
 def stages(length: int, filled: int) -> tuple[Stage, ...]:
     """The passes that transform a length with no prime factors but 2, 3 and 5; pixels from `filled` on are black."""
-    terms = {
-        radix: math.ceil(filled * radix / length) for radix in range(1, length + 1) if length % radix == 0
-    }
+    terms = {radix: math.ceil(filled * radix / length) for radix in range(1, length + 1) if length % radix == 0}
     first = min(
         (radix for radix in terms if terms[radix] <= _MOST),
         key=lambda radix: _PASS + terms[radix] + _cost(_radices(length // radix)),
@@ -115,8 +117,13 @@ def _transform(
             parameters.append(Parameter("float", Constant(1.0 if wanted else -1.0)))
         made = builder.add(
             Gather(
-                (Shape(size, 4, data=True),), owner, _SHADER, "fourier_first" if begins else "fourier_stage",
-                (Accessor("image", "vec4", made),), tuple(parameters), "black" if begins else "clamp",
+                (Shape(size, 4, data=True),),
+                owner,
+                _SHADER,
+                "fourier_first" if begins else "fourier_stage",
+                (Accessor("image", "vec4", made),),
+                tuple(parameters),
+                "black" if begins else "clamp",
             )
         )
     return made

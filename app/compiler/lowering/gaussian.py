@@ -97,7 +97,7 @@ def spans(axis: Axis, length: int, edge: Edge) -> tuple[list[tuple[int, int]], E
             break
         length //= step
         found.append((0, length))
-    left = axis.steps[len(found):]
+    left = axis.steps[len(found) :]
     if not left:
         return found, edge
     apron, total = math.prod(left) * (len(axis.weights) // 2 + 2), 1

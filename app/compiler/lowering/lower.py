@@ -70,13 +70,24 @@ class Lowering:
         order = [(path, frame - self.now) for path, frame in self.moments.order(sources.values(), self.now)]
         steps: dict[Place, Step] = {place: self.step(place) for place in (*order, None)}
         program = Program(
-            tuple(self.builder.ops), MappingProxyType(self.outputs), MappingProxyType(self.memories),
-            MappingProxyType(self._materialized()), MappingProxyType(self.cameras), self.request.scale,
+            tuple(self.builder.ops),
+            MappingProxyType(self.outputs),
+            MappingProxyType(self.memories),
+            MappingProxyType(self._materialized()),
+            MappingProxyType(self.cameras),
+            self.request.scale,
             self.request.frame,
         )
         counts = Counter(chain.from_iterable(step.added for step in steps.values()))
         return Lowered(
-            program, self.library, self.moments, self.now, self.builder, steps, self.results, counts,
+            program,
+            self.library,
+            self.moments,
+            self.now,
+            self.builder,
+            steps,
+            self.results,
+            counts,
             self.pictures.canvas if self.pictures.measured else None,
         )
 
@@ -187,7 +198,8 @@ class Lowering:
         if operand is None:
             raise GraphError(
                 f"output '{name}' shows the graph input '{port.socket}', which is not bound to a picture: "
-                "give it a file, or bind it by name", node=f"{port}",
+                "give it a file, or bind it by name",
+                node=f"{port}",
             )
         shown = shown or Image()
         if shown.kind is Kind.CAMERA:
@@ -204,7 +216,8 @@ class Lowering:
         if frame == self.now:
             cameras = {name: fed.inputs[name] for name in fed.linked if node.inputs[name].kind is Kind.CAMERA}
             self.at.cameras = {
-                Port(path, name): Camera(rows) for name, given in cameras.items()
+                Port(path, name): Camera(rows)
+                for name, given in cameras.items()
                 if isinstance(given, Constant) and isinstance(rows := given.value, tuple) and any(rows)
             }
         size = self._size(fed)
@@ -285,7 +298,8 @@ class Lowering:
         inputs = {name: fed.inputs[name] for name in fed.node.inputs if name in fed.linked}
         found = {
             name: self.builder.shape(operand).size
-            for name, operand in (*inputs.items(), *fed.wires.items()) if isinstance(operand, Ref)
+            for name, operand in (*inputs.items(), *fed.wires.items())
+            if isinstance(operand, Ref)
         }
         pictures = {name: size for name, size in found.items() if size != (1, 1)}
         if found and not pictures and (found.keys() & inputs.keys() or not self._is_pattern(fed.path, fed.node)):
@@ -318,9 +332,13 @@ class Lowering:
         found = self.library.function(node.shader, node.function, path)
         outputs = [glsl for glsl, _ in found.outputs] or [found.result]
         if [glsl for glsl, _ in found.parameters] != taken or outputs != made:
-            said, wanted = (f"({', '.join(a)}) to ({', '.join(b)})" for a, b in (
-                ([glsl for glsl, _ in found.parameters], outputs), (taken, made),
-            ))
+            said, wanted = (
+                f"({', '.join(a)}) to ({', '.join(b)})"
+                for a, b in (
+                    ([glsl for glsl, _ in found.parameters], outputs),
+                    (taken, made),
+                )
+            )
             fault = f"'{node.function}' takes {said}, but the node declares {wanted}"
             raise ShaderError(path, self.library.file(node.shader), found.line, fault)
 
@@ -351,9 +369,15 @@ class Lowering:
         settings = self.graph.settings
         missing = fed.node.missing if isinstance(fed.node, Reader) else "error"
         recorder = Recorder(
-            fed, node, size, self.builder, self.library,
+            fed,
+            node,
+            size,
+            self.builder,
+            self.library,
             self.pictures.files(fed, self._missing(missing, fed.frame)),
-            self._remembered(path) if remembers else {}, settings.rate, (settings.frames or (1, 1))[0],
+            self._remembered(path) if remembers else {},
+            settings.rate,
+            (settings.frames or (1, 1))[0],
         )
         drawn = node.passes(recorder)
         self.at.memories = {Port(path, name): ref for name, ref in recorder.remembered.items()}

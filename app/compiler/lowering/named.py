@@ -67,9 +67,7 @@ def named_files(graph: Graph, bindings: Mapping[str, Picture]) -> list[tuple[str
         group, _, name = owner.rpartition(".")
         return flat.inputs[Port(group, name)].missing if node is None else "error"
 
-    return [
-        (picture.path, owner, missing(owner)) for picture, owner in Named(flat, bindings) if not picture.in_memory
-    ]
+    return [(picture.path, owner, missing(owner)) for picture, owner in Named(flat, bindings) if not picture.in_memory]
 
 
 def path_texts(graph: Graph) -> dict[str, tuple[str, str]]:
@@ -81,7 +79,8 @@ def path_texts(graph: Graph) -> dict[str, tuple[str, str]]:
     flat = expand(graph)
     found = {
         f"{port}": (end.file, str(PurePath(flat.folders[port.node.removesuffix(INPUTS)], end.file)))
-        for port, end in flat.inputs.items() if end.file
+        for port, end in flat.inputs.items()
+        if end.file
     }
     for path, node in flat.nodes.items():
         for value in node.values.values():

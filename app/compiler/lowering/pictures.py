@@ -125,7 +125,12 @@ class Pictures:
         function = "fit_nearest" if shape.data else "fit"
         # The middles of both lie on each other; a pixel more for what floats of 32 bits round.
         matrix = (
-            across, 0.0, (shape.size[0] - across * size[0]) / 2.0, 0.0, down, (shape.size[1] - down * size[1]) / 2.0
+            across,
+            0.0,
+            (shape.size[0] - across * size[0]) / 2.0,
+            0.0,
+            down,
+            (shape.size[1] - down * size[1]) / 2.0,
         )
         around = Around(matrix, (max(across, 1.0) + 1.0, max(down, 1.0) + 1.0))
         accessor, scale = Accessor("image", "vec4", ref, around), Parameter("vec2", Constant((across, down)))

@@ -91,9 +91,7 @@ class Again(Builder):
 class _Relowering:
     """The work in progress."""
 
-    def __init__(
-        self, known: Lowered, graph: Graph, request: Request, outside: Outside, moments: Moments
-    ) -> None:
+    def __init__(self, known: Lowered, graph: Graph, request: Request, outside: Outside, moments: Moments) -> None:
         self.known, self.moments, self.now = known, moments, request.frame
         self.builder = Again(known.builder)
         self.lowering = Lowering(graph, request, known.library, outside, moments, self.builder)
@@ -110,20 +108,30 @@ class _Relowering:
         changed = {away: self.moments.changed(self.now + away) for away in {place[1] for place in steps if place}}
         for place, step in known.steps.items():
             if (
-                step.asked or (step.timed and moved) or (place is not None and place[0] in changed[place[1]])
+                step.asked
+                or (step.timed and moved)
+                or (place is not None and place[0] in changed[place[1]])
                 or not self.builder.changed.isdisjoint(step.looked)
                 or (self.other and not self.other.isdisjoint(self._sources(place)))
             ):
                 steps[place] = self._again(place, step)
         builder = self.builder.settled(known.counts)
         program = replace(
-            known.program, ops=tuple(builder.ops), frame=self.now,
+            known.program,
+            ops=tuple(builder.ops),
+            frame=self.now,
             cameras=MappingProxyType({**known.program.cameras, **lowering.cameras}),
         )
         canvas = lowering.pictures.canvas if lowering.pictures.measured else None
         return replace(
-            known, program=program, moments=self.moments, now=self.now, builder=builder, steps=steps,
-            results=lowering.results, canvas=canvas,
+            known,
+            program=program,
+            moments=self.moments,
+            now=self.now,
+            builder=builder,
+            steps=steps,
+            results=lowering.results,
+            canvas=canvas,
         )
 
     def _check_times(self, path: str, away: int) -> None:

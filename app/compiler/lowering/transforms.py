@@ -58,14 +58,23 @@ def place(builder: Builder, image: Ref, owner: str, shape: Shape, matrix: Affine
     widths = (min(max(math.hypot(*row), 1.0), _WIDEST) for row in ((a, b), (c, d)))
     across, down = (_LOBES[kernel] * width + _ROUNDING for width in widths)
     parameters = (
-        Parameter("vec2", Constant((a, b))), Parameter("vec2", Constant((c, d))), Parameter("vec2", Constant((x, y))),
+        Parameter("vec2", Constant((a, b))),
+        Parameter("vec2", Constant((c, d))),
+        Parameter("vec2", Constant((x, y))),
         Parameter("int", Choice(kernels.index(kernel))),
     )
     return builder.add(
         Placed(
-            (shape,), owner, "primitive/place", "place",
-            (Accessor("image", "vec4", image, Around(matrix, (across, down))),), parameters, edge,
-            (("kernel", kernels),), matrix=matrix, chain=chain,
+            (shape,),
+            owner,
+            "primitive/place",
+            "place",
+            (Accessor("image", "vec4", image, Around(matrix, (across, down))),),
+            parameters,
+            edge,
+            (("kernel", kernels),),
+            matrix=matrix,
+            chain=chain,
         )
     )
 

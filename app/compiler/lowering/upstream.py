@@ -44,7 +44,8 @@ class Upstream:
         for path in self._reads:
             self._hash_node(path)
         self._ends = [
-            end for end in (*self._flat.inputs, *self._flat.links)
+            end
+            for end in (*self._flat.inputs, *self._flat.links)
             if end.node.rpartition("/")[2] == INPUTS or end.node.endswith(f"/{OUTPUTS}")
         ]
         self._hash_ends()

@@ -34,8 +34,10 @@ def needed(
         size = program.shape(made[0]).size
         whole = known or any(made_whole(program.ops[index]) for index in fused.members)
         region = Region.whole(size) if whole else _joined([found[ref] for ref in made])
-        found |= {ref: region if program.shape(ref).size == size else Region.whole(program.shape(ref).size)
-                  for ref in fused.writes}
+        found |= {
+            ref: region if program.shape(ref).size == size else Region.whole(program.shape(ref).size)
+            for ref in fused.writes
+        }
         for ref, part in _read(program, fused, region).items():
             part = Region.whole(program.shape(ref).size) if known else part
             found[ref] = found[ref].with_(part) if ref in found else part
@@ -124,4 +126,3 @@ def _joined(regions: list[Region]) -> Region:
     for region in regions[1:]:
         found = found.with_(region)
     return found
-

@@ -46,8 +46,14 @@ MOST_PIXELS = 2**32
 
 
 def tile(
-    program: Program, passes: tuple[Fused, ...], texels: Mapping[Ref, str], library: Library, target: Target,
-    precision: Precision, halves: frozenset[str], keys: Mapping[Ref, str] = MappingProxyType({}),
+    program: Program,
+    passes: tuple[Fused, ...],
+    texels: Mapping[Ref, str],
+    library: Library,
+    target: Target,
+    precision: Precision,
+    halves: frozenset[str],
+    keys: Mapping[Ref, str] = MappingProxyType({}),
     by_rows: frozenset[str] = frozenset(),
 ) -> Tiling | None:
     """How to run passes tile by tile, None where they fit as they are.
@@ -79,12 +85,14 @@ def tile_plan(tiling: Tiling, stage: Stage, number: int, made: Mapping[int, Held
     """How a tile of a stage is made; `made` is what the stages before made, by operation."""
     ops = tuple(made.get(index, op) for index, op in enumerate(tiling.program.ops))
     program = replace(
-        tiling.program, ops=ops, outputs=stage.outputs, memories=MappingProxyType({}), results=MappingProxyType({}),
+        tiling.program,
+        ops=ops,
+        outputs=stage.outputs,
+        memories=MappingProxyType({}),
+        results=MappingProxyType({}),
         windows=stage.windows[number],
     )
-    return schedule(
-        program, stage.passes, tiling.library, tiling.target, tiling.precision, tiling.halves
-    ).plan
+    return schedule(program, stage.passes, tiling.library, tiling.target, tiling.precision, tiling.halves).plan
 
 
 def _too_much(program: Program, passes: Sequence[Fused], texels: Mapping[Ref, str], target: Target) -> str:
@@ -134,12 +142,14 @@ def _check(program: Program, passes: Sequence[Fused], target: Target) -> None:
                     raise DeviceError(
                         f"node '{op.owner}': it may need all {_sized(size)} pixels of a picture for one of its own, "
                         f"so they cannot be made in parts, and {target.renderer} holds {target.max_size} on a side; "
-                        "render smaller with --scale or --size", node=op.owner,
+                        "render smaller with --scale or --size",
+                        node=op.owner,
                     )
     for port in program.memories:
         raise DeviceError(
             f"node '{port.node}': what it remembers of a frame must fit into memory as a whole; render smaller with "
-            "--scale or --size, or give more with --memory", node=port.node,
+            "--scale or --size, or give more with --memory",
+            node=port.node,
         )
 
 
@@ -151,7 +161,11 @@ class _Work:
     """Finds the stages of a program."""
 
     def __init__(
-        self, program: Program, passes: tuple[Fused, ...], texels: Mapping[Ref, str], target: Target,
+        self,
+        program: Program,
+        passes: tuple[Fused, ...],
+        texels: Mapping[Ref, str],
+        target: Target,
         by_rows: frozenset[str],
     ) -> None:
         self.program, self.passes, self.texels, self.target = program, passes, texels, target
@@ -164,9 +178,7 @@ class _Work:
 
     def before(self) -> tuple[Stage, ...]:
         """What is made whole before it is read."""
-        return tuple(
-            self._stage({f"{ref.op}.{ref.output}": ref for ref in fused.writes}, fused) for fused in self.cuts
-        )
+        return tuple(self._stage({f"{ref.op}.{ref.output}": ref for ref in fused.writes}, fused) for fused in self.cuts)
 
     def last(self) -> tuple[Stage, ...]:
         """The outputs that are not made by then, by size."""
@@ -186,7 +198,10 @@ class _Work:
             return True
         return any(
             reads_all(self.program, op, ref) and self.program.shape(ref).size != (1, 1)
-            for other in self.passes for op in self._ops(other) for ref in op.reads() if ref in fused.writes
+            for other in self.passes
+            for op in self._ops(other)
+            for ref in op.reads()
+            if ref in fused.writes
         )
 
     def _is_small(self, ref: Ref) -> bool:
@@ -228,7 +243,8 @@ class _Work:
             more = "give more with --memory, or render" if memory else "render"
             raise DeviceError(
                 f"node '{owner}': {within} {_sized(size)} pixels can only be made in tiles of {_sized(tile)}, which "
-                f"takes too long; {more} smaller with --scale or --size", node=owner,
+                f"takes too long; {more} smaller with --scale or --size",
+                node=owner,
             )
         tiles = _grid(size, tile)
         all_ = [self._windows(passes, outputs.values(), region) for region in tiles]
@@ -269,7 +285,8 @@ class _Work:
         """
         held = {ref for fused in passes for ref in fused.reads if ref not in self.makers or ref in self.held}
         rows = {
-            ref: max(windows[ref].height for windows in found if ref in windows) for ref in held
+            ref: max(windows[ref].height for windows in found if ref in windows)
+            for ref in held
             if self.target.memory and isinstance(op := self.program.ops[ref.op], Read) and op.picture.by_rows
         }
         rows |= {ref: 2 * tile[1] for name, ref in outputs.items() if name in self.by_rows}
@@ -302,7 +319,8 @@ class _Work:
             )
         raise DeviceError(
             f"node '{owner}': for a few pixels it needs more than the {self.target.max_size} that "
-            f"{self.target.renderer} can hold on a side; render smaller with --scale or --size", node=owner,
+            f"{self.target.renderer} can hold on a side; render smaller with --scale or --size",
+            node=owner,
         )
 
 
@@ -324,9 +342,7 @@ def _sample(size: Size, tile: Size) -> tuple[Region, ...]:
         sorted({0, (length - 1) // one // 2 * one, (length - 1) // one * one})
         for length, one in zip(size, tile, strict=True)
     )
-    return tuple(
-        Region(x, y, min(tile[0], size[0] - x), min(tile[1], size[1] - y)) for y, x in product(down, across)
-    )
+    return tuple(Region(x, y, min(tile[0], size[0] - x), min(tile[1], size[1] - y)) for y, x in product(down, across))
 
 
 def _smaller(tile: Size, too_wide: tuple[bool, bool]) -> Size:
@@ -338,7 +354,5 @@ def _smaller(tile: Size, too_wide: tuple[bool, bool]) -> Size:
 
 def _parts(program: Program, found: Sequence[Mapping[Ref, Region]]) -> tuple[Mapping[Ref, Region], ...]:
     """The regions of what is not whole for every tile."""
-    parts = {
-        ref for windows in found for ref, region in windows.items() if region.size != program.shape(ref).size
-    }
+    parts = {ref for windows in found for ref, region in windows.items() if region.size != program.shape(ref).size}
     return tuple(MappingProxyType({ref: windows[ref] for ref in windows if ref in parts}) for windows in found)

@@ -64,7 +64,10 @@ class Marks:
             for output in range(len(op.shapes)):
                 places[Ref(index, output)] = len(places)
         return _hash(
-            self._device, *found, *(places[ref] for ref in one.writes), *self._texels_of((*one.reads, *one.writes)),
+            self._device,
+            *found,
+            *(places[ref] for ref in one.writes),
+            *self._texels_of((*one.reads, *one.writes)),
         )
 
     def _texels_of(self, refs: Iterable[Ref]) -> list[object]:
@@ -118,7 +121,10 @@ def keys_of(program: Program, marks: Sequence[tuple[Mark, ...]], needed: Iterabl
 
 
 def update(
-    keys: dict[Ref, str], program: Program, sources: Iterable[Ref], marks: Sequence[tuple[Mark, ...]],
+    keys: dict[Ref, str],
+    program: Program,
+    sources: Iterable[Ref],
+    marks: Sequence[tuple[Mark, ...]],
     changed: Iterable[int],
 ) -> Set[Ref]:
     """Bring `keys` up to date where some `sources`, or the marks of the passes that `changed`, are others.

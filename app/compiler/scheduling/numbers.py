@@ -27,12 +27,17 @@ from ..lowering.transforms import Placed
 def differing(before: Program, after: Program) -> set[int] | None:
     """The operations that are others, where two programs differ in numbers alone; None where they differ in more."""
     same = (
-        len(before.ops) == len(after.ops) and before.outputs == after.outputs and before.memories == after.memories
-        and before.scale == after.scale and (before.results is after.results or before.results == after.results)
+        len(before.ops) == len(after.ops)
+        and before.outputs == after.outputs
+        and before.memories == after.memories
+        and before.scale == after.scale
+        and (before.results is after.results or before.results == after.results)
     )
-    found = {
-        at for at, (old, new) in enumerate(zip(before.ops, after.ops, strict=True)) if old is not new and old != new
-    } if same else set[int]()
+    found = (
+        {at for at, (old, new) in enumerate(zip(before.ops, after.ops, strict=True)) if old is not new and old != new}
+        if same
+        else set[int]()
+    )
     return found if same and all(alike(before.ops[at], after.ops[at]) for at in found) else None
 
 
@@ -93,8 +98,7 @@ def _accessors(op: Gather) -> tuple[Accessor, ...]:
 
 def _parameters(found: tuple[Parameter, ...]) -> tuple[Parameter, ...]:
     return tuple(
-        replace(item, operand=_blank(item.operand)) if isinstance(item.operand, Constant) else item
-        for item in found
+        replace(item, operand=_blank(item.operand)) if isinstance(item.operand, Constant) else item for item in found
     )
 
 

@@ -34,7 +34,11 @@ class Scheduled(Struct, frozen=True):
 
 
 def schedule(
-    program: Program, passes: tuple[Fused, ...], library: Library, target: Target, precision: Precision,
+    program: Program,
+    passes: tuple[Fused, ...],
+    library: Library,
+    target: Target,
+    precision: Precision,
     halves: frozenset[str] = frozenset(),
 ) -> Scheduled:
     """Write the program of every pass, and find a texture for everything it makes.
@@ -52,17 +56,28 @@ def schedule(
     numbers = {ref: number for number, ref in enumerate(needed)}
     surfaces = tuple(
         Surface(
-            keys[ref], program.ops[ref.op].owner, program.held(ref), _shape(program, ref).channels,
-            _depth(texels[ref]), slots[ref], first[ref], last[ref], program.windows.get(ref),
+            keys[ref],
+            program.ops[ref.op].owner,
+            program.held(ref),
+            _shape(program, ref).channels,
+            _depth(texels[ref]),
+            slots[ref],
+            first[ref],
+            last[ref],
+            program.windows.get(ref),
         )
         for ref in needed
     )
     plan = Plan(
-        target, surfaces, tuple(_uploads(program, numbers)),
+        target,
+        surfaces,
+        tuple(_uploads(program, numbers)),
         tuple(_pass(program, fused, item, numbers, library) for fused, item in zip(passes, emitted, strict=True)),
         MappingProxyType({name: numbers[ref] for name, ref in program.outputs.items()}),
         MappingProxyType({port: numbers[ref] for port, ref in program.results.items() if ref in numbers}),
-        program.cameras, _memories(program, keys, texels), sizes,
+        program.cameras,
+        _memories(program, keys, texels),
+        sizes,
     )
     return Scheduled(program, passes, texels, marks, keys, plan)
 
@@ -80,7 +95,8 @@ def reschedule(known: Scheduled, program: Program, library: Library) -> Schedule
     moved, deciding = program.frame != known.program.frame, Marks(program, library, target, known.texels)
     passes, marks, surfaces, keys = [*plan.passes], [*known.marks], [*plan.surfaces], dict(known.keys)
     others = [
-        number for number, fused in enumerate(known.passes)
+        number
+        for number, fused in enumerate(known.passes)
         if not changed.isdisjoint(fused.members)
         or (moved and any(name == "frame" for name, _ in passes[number].uniforms))
     ]
@@ -94,17 +110,23 @@ def reschedule(known: Scheduled, program: Program, library: Library) -> Schedule
         if ref in numbers:
             surfaces[numbers[ref]] = replace(surfaces[numbers[ref]], key=keys[ref])
     plan = replace(
-        plan, surfaces=tuple(surfaces), uploads=tuple(_uploads(program, numbers)), passes=tuple(passes),
-        cameras=program.cameras, memories=_memories(program, keys, known.texels),
+        plan,
+        surfaces=tuple(surfaces),
+        uploads=tuple(_uploads(program, numbers)),
+        passes=tuple(passes),
+        cameras=program.cameras,
+        memories=_memories(program, keys, known.texels),
     )
     return Scheduled(program, known.passes, known.texels, tuple(marks), keys, plan)
 
 
 def _memories(program: Program, keys: Mapping[Ref, str], texels: Mapping[Ref, str]) -> Mapping[Port, Memory]:
-    return MappingProxyType({
-        node: Memory(keys[ref], _shape(program, ref), texels[ref].endswith("16f"))
-        for node, ref in program.memories.items()
-    })
+    return MappingProxyType(
+        {
+            node: Memory(keys[ref], _shape(program, ref), texels[ref].endswith("16f"))
+            for node, ref in program.memories.items()
+        }
+    )
 
 
 def formats(
@@ -139,7 +161,8 @@ def _check_outputs(count: int, op: Op, target: Target) -> None:
     if count > most:
         raise DeviceError(
             f"node '{op.owner}': {target.renderer} writes {most} pictures at once, not {count}; "
-            "link fewer of its outputs", node=op.owner,
+            "link fewer of its outputs",
+            node=op.owner,
         )
 
 
@@ -152,9 +175,7 @@ def _texel(program: Program, ref: Ref, precision: Precision) -> str:
     return texel(shape.channels, half)
 
 
-def _rounded(
-    program: Program, passes: Sequence[Fused], target: Target, halves: frozenset[str]
-) -> frozenset[Ref]:
+def _rounded(program: Program, passes: Sequence[Fused], target: Target, halves: frozenset[str]) -> frozenset[Ref]:
     """Outputs that are stored as half floats because nobody wants more, neither a pass nor the next frame."""
     if not target.rounds_halves:
         return frozenset()
@@ -190,8 +211,11 @@ def _lives(program: Program, passes: Sequence[Fused]) -> tuple[dict[Ref, int], d
 
 
 def _slots(
-    program: Program, needed: Mapping[Ref, None], texels: Mapping[Ref, str],
-    first: Mapping[Ref, int], last: Mapping[Ref, int],
+    program: Program,
+    needed: Mapping[Ref, None],
+    texels: Mapping[Ref, str],
+    first: Mapping[Ref, int],
+    last: Mapping[Ref, int],
 ) -> tuple[dict[Ref, int], tuple[int, ...]]:
     """Give each surface a texture; one is free for another of its size and format after its last reader."""
     slots: dict[Ref, int] = {}
@@ -225,16 +249,20 @@ def _uploads(program: Program, numbers: Mapping[Ref, int]) -> list[Upload]:
     return found
 
 
-def _pass(
-    program: Program, fused: Fused, item: Emitted, numbers: Mapping[Ref, int], library: Library
-) -> Pass:
+def _pass(program: Program, fused: Fused, item: Emitted, numbers: Mapping[Ref, int], library: Library) -> Pass:
     ops = [program.ops[index] for index in fused.members]
     return Pass(
-        tuple(dict.fromkeys(owner for op in ops for owner in op.owners)), tuple(op.label for op in ops), item.shader,
-        tuple(numbers[ref] for ref in fused.reads), tuple(numbers[ref] for ref in fused.writes),
-        item.uniforms, item.weights, item.groups,
+        tuple(dict.fromkeys(owner for op in ops for owner in op.owners)),
+        tuple(op.label for op in ops),
+        item.shader,
+        tuple(numbers[ref] for ref in fused.reads),
+        tuple(numbers[ref] for ref in fused.writes),
+        item.uniforms,
+        item.weights,
+        item.groups,
         tuple(dict.fromkeys(table for op in ops if isinstance(op, Call) for table in op.tables)),
-        next((op.mesh for op in ops if isinstance(op, Raster)), None), _writers(ops, library),
+        next((op.mesh for op in ops if isinstance(op, Raster)), None),
+        _writers(ops, library),
     )
 
 

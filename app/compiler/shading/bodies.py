@@ -102,7 +102,8 @@ def _written_out(op: Convolve, count: int) -> list[str]:
     for tap in range((count - 1) * op.stride + taps):
         sums = [
             f"s{k} += weights[{number // 4}].{'xyzw'[number % 4]} * t;"
-            for k in range(count) if 0 <= (number := tap - k * op.stride) < taps
+            for k in range(count)
+            if 0 <= (number := tap - k * op.stride) < taps
         ]
         lines.append(f"t = image_at(p); p += along; {' '.join(sums)}")
     return lines
@@ -111,7 +112,8 @@ def _written_out(op: Convolve, count: int) -> list[str]:
 def _sliding(count: int) -> list[str]:
     """A loop. Tap j adds weight j - k to pixel k; the last weights stay in registers, used in turn."""
     lines = [
-        f"float {', '.join(f'w{k} = 0.0' for k in range(count))};", "vec4 four;",
+        f"float {', '.join(f'w{k} = 0.0' for k in range(count))};",
+        "vec4 four;",
         f"for (int j = 0; j < taps + {count - 1}; j += {count}) {{",
     ]
     for tap in range(count):
@@ -143,7 +145,10 @@ def source(names: Names, root: Reduce, body: list[str], value: str) -> list[str]
     names.uniform("ivec2", shape.size, "source_size")
     return [
         f"{glsl_type(shape.channels)} source_at(ivec2 p) {{",
-        "pixel = p; extent = source_size;", *body, f"return {value};", "}",
+        "pixel = p; extent = source_size;",
+        *body,
+        f"return {value};",
+        "}",
     ]
 
 

@@ -70,9 +70,14 @@ def emit(program: Program, fused: Fused, library: Library, target: Target, texel
     lines = [
         *_preamble(target),
         *(f"uniform {glsl} {name};" for name, glsl, _ in names.uniforms),
-        *_textures(names, fused, target, texels), *_targets(names, fused, target, texels),
-        "ivec2 pixel = ivec2(0), extent = ivec2(0);", *_half_rounding(target, halves),
-        *early, *parts.functions, *late, *main,
+        *_textures(names, fused, target, texels),
+        *_targets(names, fused, target, texels),
+        "ivec2 pixel = ivec2(0), extent = ivec2(0);",
+        *_half_rounding(target, halves),
+        *early,
+        *parts.functions,
+        *late,
+        *main,
     ]
     return Emitted(
         Shader("\n".join(lines) + "\n", target.form, files, by_image),
@@ -99,8 +104,12 @@ def _drawn(program: Program, root: Raster, fused: Fused, library: Library) -> Em
     lines = fragment_lines(text.body, wanted)
     shader = Shader("\n".join(lines) + "\n", "fragment", ("generated",), False, vertex_text(text.body))
     uniforms: tuple[tuple[str, Uniform], ...] = (
-        ("cameras", root.cameras), ("motions", root.motions), ("near", root.near),
-        ("eye", Camera(root.cameras[:12]).eye), ("grid", root.size), ("proxy", program.scale),
+        ("cameras", root.cameras),
+        ("motions", root.motions),
+        ("near", root.near),
+        ("eye", Camera(root.cameras[:12]).eye),
+        ("grid", root.size),
+        ("proxy", program.scale),
     )
     return Emitted(shader, uniforms, (), (0, 0, 0))
 
@@ -155,8 +164,7 @@ def parts_of(program: Program, fused: Fused, names: Names, library: Library) -> 
     if isinstance(root, Call):
         guests = tuple(_guests(program, fused, library))
         functions = [
-            line for guest in guests for item in guest.accessors
-            for line in bodies.accessor(names, item, guest.op.edge)
+            line for guest in guests for item in guest.accessors for line in bodies.accessor(names, item, guest.op.edge)
         ]
         body, values = _calls(program, fused, names, library)
         shaders = [*([EDGES] if guests else []), *shaders]
@@ -209,8 +217,16 @@ def _included_texts(program: Program, fused: Fused, parts: Parts, library: Libra
     if any(isinstance(op, Call) and op.program for op in ops):
         return _find_texts(program, fused, parts, library)
     key = (
-        *parts.shaders, None, *parts.functions, None, *parts.body, None, *parts.results, parts.accessors,
-        *((op.shader, op.function, op.choices) for op in ops), *(guest.prefix for guest in parts.guests),
+        *parts.shaders,
+        None,
+        *parts.functions,
+        None,
+        *parts.body,
+        None,
+        *parts.results,
+        parts.accessors,
+        *((op.shader, op.function, op.choices) for op in ops),
+        *(guest.prefix for guest in parts.guests),
     )
     return library.kept(key, lambda: _find_texts(program, fused, parts, library))
 
@@ -306,7 +322,9 @@ def _included(text: Text, files: list[str], program: Program, fused: Fused) -> l
     files.append(text.file)
     return [
         *(f"#define {name} {number}" for name, number in macros),
-        f"#line {LINES_PER_FILE * (len(files) - 1) + 1}", text.body.rstrip("\n"), "#line 1",
+        f"#line {LINES_PER_FILE * (len(files) - 1) + 1}",
+        text.body.rstrip("\n"),
+        "#line 1",
         *(f"#undef {name}" for name, _ in macros),
     ]
 

@@ -54,9 +54,7 @@ def groups(convolve: Convolve | None, count: int, size: Size) -> tuple[int, int,
     return (block, along, -(-across // block))
 
 
-def main(
-    names: Names, count: int, convolve: Convolve | None, body: Sequence[str], texels: Sequence[str]
-) -> list[str]:
+def main(names: Names, count: int, convolve: Convolve | None, body: Sequence[str], texels: Sequence[str]) -> list[str]:
     """The entry point of a compute pass.
 
     What is made beyond the edges is stored nowhere. To leave before it is made would have the software rasterizer mask
@@ -70,7 +68,8 @@ def main(
         "uint across = (gl_WorkGroupID.z * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x"
         " + gl_LocalInvocationID.x;",
         f"ivec2 first = {_place(f'int(gl_WorkGroupID.y + first_row) * {count}', 'int(across)', convolve)};",
-        *([f"first += {names.start};"] if names.start else []), "pixel = first; extent = grid;",
+        *([f"first += {names.start};"] if names.start else []),
+        "pixel = first; extent = grid;",
     ]
     at, start = (f"{name} - {names.start}" if names.start else name for name in ("pixel", "first"))
     there = f"if (all(lessThan({start}, {names.room}))) {{"
@@ -81,8 +80,10 @@ def main(
     step = "pixel += along;" if convolve else "++pixel.y;"
     of = [f"{glsl_type(names.shape(convolve.image).channels)} convolved"] if convolve else []
     made = [
-        f"void made({', '.join([*of, *(f'out vec4 {name}' for name in results)])}) {{", *body,
-        *(f"{name} = {texel};" for name, texel in zip(results, texels, strict=True)), "}",
+        f"void made({', '.join([*of, *(f'out vec4 {name}' for name in results)])}) {{",
+        *body,
+        *(f"{name} = {texel};" for name, texel in zip(results, texels, strict=True)),
+        "}",
     ]
     if convolve:
         lines += bodies.strip(names, convolve, count)

@@ -103,7 +103,9 @@ def convert(text: str, channels: int, glsl: str) -> str:
         return text
     if channels == 1:
         return {
-            "int": f"int(floor({text} + 0.5))", "bool": f"({text} > 0.5)", "vec4": f"vec4(vec3({text}), 1.0)",
+            "int": f"int(floor({text} + 0.5))",
+            "bool": f"({text} > 0.5)",
+            "vec4": f"vec4(vec3({text}), 1.0)",
         }.get(glsl, f"{glsl}({text})")
     wanted = glsl_channels(glsl)
     if channels > wanted:

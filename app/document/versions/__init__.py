@@ -10,6 +10,23 @@ from .parts import ABSENT, At, path_of, plain
 from .telling import Line, facts, told
 
 __all__ = [
-    "ABSENT", "SIDES", "At", "Change", "Conflict", "Difference", "Line", "Merged", "Renamed", "Side", "applied",
-    "conflicts_of", "difference", "facts", "merged", "path_of", "plain", "resolved", "told",
+    "ABSENT",
+    "SIDES",
+    "At",
+    "Change",
+    "Conflict",
+    "Difference",
+    "Line",
+    "Merged",
+    "Renamed",
+    "Side",
+    "applied",
+    "conflicts_of",
+    "difference",
+    "facts",
+    "merged",
+    "path_of",
+    "plain",
+    "resolved",
+    "told",
 ]

@@ -102,12 +102,14 @@ class _Look:
             {_ANY: graph.nodes[id]},
             controls={
                 name: replace(item, target=Port(_ANY, item.target.socket))
-                for name, item in graph.controls.items() if item.target.node == id
+                for name, item in graph.controls.items()
+                if item.target.node == id
             },
             animation={Port(_ANY, port.socket): item for port, item in graph.animation.items() if port.node == id},
             muted=frozenset({_ANY} if id in graph.muted else ()),
-            extra=moved_keys({path: keys for path, keys in graph.extra.items() if _inside(path, id)},
-                             f"nodes.{id}", f"nodes.{_ANY}"),
+            extra=moved_keys(
+                {path: keys for path, keys in graph.extra.items() if _inside(path, id)}, f"nodes.{id}", f"nodes.{_ANY}"
+            ),
         )
         self.text = dumps(alone)
 
@@ -117,6 +119,7 @@ class _Look:
 
     def key(self, ids: Ids, open: Container[str]) -> tuple[object, ...]:
         """What tells it from others; nodes in `open`, of which nothing is known yet, may be any."""
+
         def ports(links: set[tuple[str, Port]]) -> tuple[tuple[str, Port], ...]:
             return tuple(sorted((socket, _moved(port, ids, open)) for socket, port in links))
 

@@ -113,8 +113,10 @@ def local(at: At) -> At:
 def is_section(at: At) -> bool:
     """True for an object that is nothing by itself: to have none is the same as to have an empty one."""
     here = local(at)
-    return not here or (len(here) == 1 and here[0] in _SECTIONS) or (
-        len(here) == 3 and here[0] == "nodes" and here[2] == "values"
+    return (
+        not here
+        or (len(here) == 1 and here[0] in _SECTIONS)
+        or (len(here) == 3 and here[0] == "nodes" and here[2] == "values")
     )
 
 

@@ -28,12 +28,11 @@ class Line:
 
 def told(wanted: Difference, before: Graph, after: Graph) -> tuple[Line, ...]:
     """What a difference of two graphs says, renamed nodes first, then by section, node and value."""
-    found = [
-        Line("~", f"node {'/'.join((*one.group, one.old))} is now called {one.new}") for one in wanted.renamed
-    ]
+    found = [Line("~", f"node {'/'.join((*one.group, one.old))} is now called {one.new}") for one in wanted.renamed]
     gone = {change.at for change in wanted.changes if change.after is ABSENT}
-    for change in sorted(wanted.changes, key=lambda change: _ORDER.index(change.at[0])
-                         if change.at[0] in _ORDER else len(_ORDER)):
+    for change in sorted(
+        wanted.changes, key=lambda change: _ORDER.index(change.at[0]) if change.at[0] in _ORDER else len(_ORDER)
+    ):
         if change.at not in gone or not _goes_with(change.at, gone):
             found += _Telling(change.at, (after, before)).lines(change.before, change.after)
     return tuple(found)
@@ -157,10 +156,14 @@ class _Telling:
             return f"conflict: {path_of(tuple(part['at']))}"
         if here[0] == "nodes":
             set_values = part.get("values")
-            values = [
-                f"{name} {text(plain, self._down('values', name).value)}"
-                for name, plain in sorted(set_values.items())
-            ] if is_tree(set_values) else []
+            values = (
+                [
+                    f"{name} {text(plain, self._down('values', name).value)}"
+                    for name, plain in sorted(set_values.items())
+                ]
+                if is_tree(set_values)
+                else []
+            )
             return f"node {self.name}: {', '.join([item_text(part), *values])}"
         return f"{_WORD[str(here[0])]} {self._named()}: {end_text(part, self.exact)}" if here[0] in _WORD else ""
 

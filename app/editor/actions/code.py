@@ -81,20 +81,49 @@ def code_changed(editor: Editor, path: Path) -> None:
         editor.say("kept; saving will replace the other version")
 
     editor.dialogs.question = Question(
-        "Changed on disk", f"{path.name} was changed by another program, and here are changes that are not saved.",
+        "Changed on disk",
+        f"{path.name} was changed by another program, and here are changes that are not saved.",
         (("Load theirs", lambda: editor.attempt(load)), ("Keep mine", keep)),
     )
 
 
 CODE: tuple[Action, ...] = (
-    Action("code.edit", "Edit Code", show_code, "Graph/Code", "Enter", "graph", lambda e: _code(e) is not None,
-           contexts=frozenset({"code"}), doc="Show what the node is made of, and write it.", separated=True),
-    Action("code.save", "Save Code to Its File", lambda e: save_code(e, e.session.active), "Graph/Code",
-           enabled=_in_file, contexts=frozenset({"code"})),
-    Action("code.export", "Move Code to a File...", lambda e: export_code(e, e.session.active), "Graph/Code",
-           enabled=lambda e: _code(e) is not None, contexts=frozenset({"code"}),
-           doc="Write the code to a file of its own, for use in other graphs; from now on it comes from there."),
-    Action("code.inline", "Move Code into the Graph", lambda e: e.session.inline_code(e.session.active), "Graph/Code",
-           enabled=_in_file, contexts=frozenset({"code"}),
-           doc="Keep the code in this graph; the file stays as it is."),
+    Action(
+        "code.edit",
+        "Edit Code",
+        show_code,
+        "Graph/Code",
+        "Enter",
+        "graph",
+        lambda e: _code(e) is not None,
+        contexts=frozenset({"code"}),
+        doc="Show what the node is made of, and write it.",
+        separated=True,
+    ),
+    Action(
+        "code.save",
+        "Save Code to Its File",
+        lambda e: save_code(e, e.session.active),
+        "Graph/Code",
+        enabled=_in_file,
+        contexts=frozenset({"code"}),
+    ),
+    Action(
+        "code.export",
+        "Move Code to a File...",
+        lambda e: export_code(e, e.session.active),
+        "Graph/Code",
+        enabled=lambda e: _code(e) is not None,
+        contexts=frozenset({"code"}),
+        doc="Write the code to a file of its own, for use in other graphs; from now on it comes from there.",
+    ),
+    Action(
+        "code.inline",
+        "Move Code into the Graph",
+        lambda e: e.session.inline_code(e.session.active),
+        "Graph/Code",
+        enabled=_in_file,
+        contexts=frozenset({"code"}),
+        doc="Keep the code in this graph; the file stays as it is.",
+    ),
 )

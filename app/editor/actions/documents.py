@@ -25,7 +25,8 @@ def _unless_unsaved(editor: Editor, then: Callable[[], object], verb: str) -> No
         _save(editor, then)
 
     editor.dialogs.question = Question(
-        "Unsaved changes", f"'{editor.session.name}' has changes that are not saved.",
+        "Unsaved changes",
+        f"'{editor.session.name}' has changes that are not saved.",
         ((f"Save and {verb}", saved), (f"{verb.capitalize()} without saving", then), ("Cancel", _nothing)),
     )
 
@@ -114,7 +115,8 @@ def _save(editor: Editor, then: Callable[[], object] = _nothing) -> None:
         act()
         return
     editor.dialogs.question = Question(
-        "Changed on disk", f"{path.name} was changed by another program since it was read here.",
+        "Changed on disk",
+        f"{path.name} was changed by another program since it was read here.",
         (("Replace it", lambda: editor.attempt(act)), ("Cancel", _nothing)),
     )
 
@@ -138,7 +140,8 @@ def _save_as(editor: Editor, then: Callable[[], object] = _nothing) -> None:
 
 def _revert(editor: Editor) -> None:
     editor.dialogs.question = Question(
-        "Revert", "Go back to what was saved last? This can be undone.",
+        "Revert",
+        "Go back to what was saved last? This can be undone.",
         (("Revert", lambda: editor.attempt(editor.session.revert)), ("Cancel", _nothing)),
     )
 
@@ -158,7 +161,8 @@ def _unless_rendering(editor: Editor, then: Callable[[], object]) -> None:
         return
     what = "A render is" if count == 1 else f"{count} renders are"
     editor.dialogs.question = Question(
-        "Renders are not finished", f"{what} not finished. Frames that are done stay, and Resume can go on from there.",
+        "Renders are not finished",
+        f"{what} not finished. Frames that are done stay, and Resume can go on from there.",
         (("Stop rendering and quit", then), ("Cancel", _nothing)),
     )
 

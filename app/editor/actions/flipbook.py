@@ -61,10 +61,28 @@ def follow_flipbook(editor: Editor) -> None:
 
 
 FLIPBOOK: tuple[Action, ...] = (
-    Action("flipbook.open", "Play Pictures...", choose_flipbook, "Viewer", separated=True,
-           doc="A sequence on the disk, in place of the document."),
-    Action("flipbook.compare", "Compare Pictures with...", lambda e: choose_flipbook(e, e.viewer.flipbook.strips[0]),
-           "Viewer", enabled=lambda e: e.viewer.flipbook is not None, doc="Play another sequence beside this one."),
-    Action("flipbook.close", "Back to the Graph", close_flipbook, "Viewer",
-           enabled=lambda e: e.viewer.flipbook is not None, doc="End the flipbook."),
+    Action(
+        "flipbook.open",
+        "Play Pictures...",
+        choose_flipbook,
+        "Viewer",
+        separated=True,
+        doc="A sequence on the disk, in place of the document.",
+    ),
+    Action(
+        "flipbook.compare",
+        "Compare Pictures with...",
+        lambda e: choose_flipbook(e, e.viewer.flipbook.strips[0]),
+        "Viewer",
+        enabled=lambda e: e.viewer.flipbook is not None,
+        doc="Play another sequence beside this one.",
+    ),
+    Action(
+        "flipbook.close",
+        "Back to the Graph",
+        close_flipbook,
+        "Viewer",
+        enabled=lambda e: e.viewer.flipbook is not None,
+        doc="End the flipbook.",
+    ),
 )

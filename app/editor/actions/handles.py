@@ -28,23 +28,49 @@ def _picks(editor: Editor) -> bool:
 
 HANDLES: tuple[Action, ...] = (
     Action(
-        "viewer.orbit", "Orbit the Scene", _orbit, "Viewer/Handles", "O", "viewer", _has_scene,
-        lambda e: e.viewer.orbits, contexts=frozenset({"viewer"}),
+        "viewer.orbit",
+        "Orbit the Scene",
+        _orbit,
+        "Viewer/Handles",
+        "O",
+        "viewer",
+        _has_scene,
+        lambda e: e.viewer.orbits,
+        contexts=frozenset({"viewer"}),
         doc="Drag to go around the scene that is seen, Shift or the middle button to move it, the wheel to go nearer. "
         "Space and drag pans the picture as before. Alt does the same while it is held.",
     ),
     Action(
-        "viewer.frame_scene", "Frame the Scene", frame_scene, "Viewer/Handles", "Home", "viewer", _has_scene,
-        contexts=frozenset({"viewer"}), doc="Turn the camera's distance and target so that all of it is seen; a floor "
+        "viewer.frame_scene",
+        "Frame the Scene",
+        frame_scene,
+        "Viewer/Handles",
+        "Home",
+        "viewer",
+        _has_scene,
+        contexts=frozenset({"viewer"}),
+        doc="Turn the camera's distance and target so that all of it is seen; a floor "
         "or backdrop as wide as everything does not count.",
     ),
     Action(
-        "viewer.pick_focus", "Pick What Is Sharp", pick_focus, "Viewer/Handles", "E", "viewer",
-        lambda e: focused(e.session) is not None, _picks,
+        "viewer.pick_focus",
+        "Pick What Is Sharp",
+        pick_focus,
+        "Viewer/Handles",
+        "E",
+        "viewer",
+        lambda e: focused(e.session) is not None,
+        _picks,
         doc="Of the selected depth of field: click on the picture, and what is there is sharp.",
     ),
     Action(
-        "viewer.remove_light", "Remove the Light", remove, "Viewer/Handles", "Delete", "viewer", can_remove,
+        "viewer.remove_light",
+        "Remove the Light",
+        remove,
+        "Viewer/Handles",
+        "Delete",
+        "viewer",
+        can_remove,
         doc="The one that is selected of the selected node. A double click on the picture adds one.",
     ),
 )

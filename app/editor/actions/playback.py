@@ -86,8 +86,15 @@ def _has_part(editor: Editor) -> bool:
 
 
 def _loop(loop: Loop, label: str, doc: str) -> Action:
-    return Action(f"time.{loop.replace('-', '_')}", label, _set_loop(loop), "Time", doc=doc,
-                  checked=lambda e: e.timeline.loop == loop, contexts=frozenset({"timeline"}))
+    return Action(
+        f"time.{loop.replace('-', '_')}",
+        label,
+        _set_loop(loop),
+        "Time",
+        doc=doc,
+        checked=lambda e: e.timeline.loop == loop,
+        contexts=frozenset({"timeline"}),
+    )
 
 
 _KEYED = frozenset({"timeline"})
@@ -98,25 +105,77 @@ _LABELS = {
 }
 
 PLAYBACK: tuple[Action, ...] = (
-    Action("time.play", "Play or Stop", play, "Time", "Space", checked=lambda e: e.timeline.playback.playing,
-           doc="At the graph's rate; frames that are not ready in time are left out, and counted."),
+    Action(
+        "time.play",
+        "Play or Stop",
+        play,
+        "Time",
+        "Space",
+        checked=lambda e: e.timeline.playback.playing,
+        doc="At the graph's rate; frames that are not ready in time are left out, and counted.",
+    ),
     Action("time.next", "Next Frame", _step(1), "Time", "RightArrow", repeats=True, separated=True),
     Action("time.previous", "Previous Frame", _step(-1), "Time", "LeftArrow", repeats=True),
     Action("time.first", "First Frame", _end(0), "Time", "Shift+LeftArrow"),
     Action("time.last", "Last Frame", _end(1), "Time", "Shift+RightArrow"),
-    Action("time.next_key", "Next Key", _to_key(True), "Time", "UpArrow", repeats=True,
-           doc="Of the selected nodes, else of all."),
-    Action("time.previous_key", "Previous Key", _to_key(False), "Time", "DownArrow", repeats=True,
-           doc="Of the selected nodes, else of all."),
-    Action("time.in", "Play from Here", _in, "Time", "Alt+I", contexts=_KEYED, separated=True,
-           doc="What is played begins at this frame. The range of the graph stays."),
-    Action("time.out", "Play to Here", _out, "Time", "Alt+O", contexts=_KEYED,
-           doc="What is played ends at this frame. The range of the graph stays."),
-    Action("time.whole", "Play and See All Frames", _whole, "Time", "Alt+P", contexts=_KEYED,
-           enabled=lambda e: e.timeline.part is not None or e.timeline.view is not None),
-    Action("time.range", "Make This Part the Graph's Range", _range_from_part, "Time", enabled=_has_part,
-           contexts=_KEYED),
+    Action(
+        "time.next_key",
+        "Next Key",
+        _to_key(True),
+        "Time",
+        "UpArrow",
+        repeats=True,
+        doc="Of the selected nodes, else of all.",
+    ),
+    Action(
+        "time.previous_key",
+        "Previous Key",
+        _to_key(False),
+        "Time",
+        "DownArrow",
+        repeats=True,
+        doc="Of the selected nodes, else of all.",
+    ),
+    Action(
+        "time.in",
+        "Play from Here",
+        _in,
+        "Time",
+        "Alt+I",
+        contexts=_KEYED,
+        separated=True,
+        doc="What is played begins at this frame. The range of the graph stays.",
+    ),
+    Action(
+        "time.out",
+        "Play to Here",
+        _out,
+        "Time",
+        "Alt+O",
+        contexts=_KEYED,
+        doc="What is played ends at this frame. The range of the graph stays.",
+    ),
+    Action(
+        "time.whole",
+        "Play and See All Frames",
+        _whole,
+        "Time",
+        "Alt+P",
+        contexts=_KEYED,
+        enabled=lambda e: e.timeline.part is not None or e.timeline.view is not None,
+    ),
+    Action(
+        "time.range", "Make This Part the Graph's Range", _range_from_part, "Time", enabled=_has_part, contexts=_KEYED
+    ),
     *(_loop(loop, *_LABELS[loop]) for loop in LOOPS),
-    Action("time.every", "Every Frame", _every, "Time", checked=lambda e: e.timeline.every, contexts=_KEYED,
-           separated=True, doc="Leave none out, however slow that makes it."),
+    Action(
+        "time.every",
+        "Every Frame",
+        _every,
+        "Time",
+        checked=lambda e: e.timeline.every,
+        contexts=_KEYED,
+        separated=True,
+        doc="Leave none out, however slow that makes it.",
+    ),
 )

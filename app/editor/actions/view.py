@@ -35,11 +35,11 @@ def _scale(step: float) -> Act:
 
 VIEW: tuple[Action, ...] = (
     Action("view.thumbnails", "Thumbnails", _toggle("thumbnails"), "View", "T", "graph", checked=_shown("thumbnails")),
-    Action("view.timings", "Time and Memory", _toggle("timings"), "View", "Shift+T", "graph",
-           checked=_shown("timings")),
+    Action(
+        "view.timings", "Time and Memory", _toggle("timings"), "View", "Shift+T", "graph", checked=_shown("timings")
+    ),
     Action("view.minimap", "Overview", _toggle("minimap"), "View", checked=_shown("minimap")),
-    Action("view.theme", "Light Theme", _theme, "View", checked=lambda e: e.store.now.theme == "light",
-           separated=True),
+    Action("view.theme", "Light Theme", _theme, "View", checked=lambda e: e.store.now.theme == "light", separated=True),
     Action("view.larger", "Larger Interface", _scale(0.25), "View", "Ctrl+Equal"),
     Action("view.smaller", "Smaller Interface", _scale(-0.25), "View", "Ctrl+Minus"),
     Action("view.reset_layout", "Reset Panels", lambda e: e.requests.add("reset layout"), "View", separated=True),

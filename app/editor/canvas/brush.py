@@ -76,16 +76,33 @@ def ink(theme: str) -> Ink:
     kinds: dict[Kind | None, RGB] = {**p.kinds, None: p.dim}
     strength = 0.10 if dark else 0.055
     return Ink(
-        p, u32(p.node), u32(mix(p.node, p.canvas, 0.6)), u32(p.border if dark else mix(p.border, p.shadow, 0.25)),
-        u32(p.field), u32(p.fill), u32(p.raised), u32(p.accent), u32(p.on_accent), u32(p.text),
-        u32(p.dim), u32(p.dim, 0.6), u32(p.accent), u32(p.accent, 0.12), u32(p.error), u32(p.warning), u32(p.canvas),
-        u32(p.grid), u32(mix(p.grid, p.dim, 0.16)), u32(mix(p.node, p.shadow, 0.35 if dark else 0.12)),
+        p,
+        u32(p.node),
+        u32(mix(p.node, p.canvas, 0.6)),
+        u32(p.border if dark else mix(p.border, p.shadow, 0.25)),
+        u32(p.field),
+        u32(p.fill),
+        u32(p.raised),
+        u32(p.accent),
+        u32(p.on_accent),
+        u32(p.text),
+        u32(p.dim),
+        u32(p.dim, 0.6),
+        u32(p.accent),
+        u32(p.accent, 0.12),
+        u32(p.error),
+        u32(p.warning),
+        u32(p.canvas),
+        u32(p.grid),
+        u32(mix(p.grid, p.dim, 0.16)),
+        u32(mix(p.node, p.shadow, 0.35 if dark else 0.12)),
         tuple((grow, u32(p.shadow, strength)) for grow in (1.0, 3.0, 6.0)),
         {kind: u32(color) for kind, color in kinds.items()},
         {kind: u32(mix(color, p.canvas, 0.7)) for kind, color in kinds.items()},
         {name: u32(color) for name, color in p.categories.items()},
         {name: u32(mix(color, p.node, 0.6)) for name, color in p.categories.items()},
-        {name: u32(mix(color, p.text, 0.3)) for name, color in p.categories.items()}, u32(p.text, 0.6),
+        {name: u32(mix(color, p.text, 0.3)) for name, color in p.categories.items()},
+        u32(p.text, 0.6),
     )
 
 
@@ -188,9 +205,7 @@ class Brush:
         low, high = self.corners(rect, grow)
         self.draw.add_rect_filled(low, high, color, (rounding + grow) * self.to.scale, flags)
 
-    def frame(
-        self, rect: Rect, color: int, rounding: float = 0.0, thickness: float = 1.0, grow: float = 0.0
-    ) -> None:
+    def frame(self, rect: Rect, color: int, rounding: float = 0.0, thickness: float = 1.0, grow: float = 0.0) -> None:
         """The outline of a rectangle; `thickness` is in pixels at UI scale 1."""
         low, high = self.corners(rect, grow)
         self.draw.add_rect(low, high, color, (rounding + grow) * self.to.scale, thickness * self.line)

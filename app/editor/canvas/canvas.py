@@ -44,8 +44,10 @@ from .staging import Stage
 
 _HINTS = ("An empty graph", "Tab adds a node", "Drop an image or a graph file here")
 _ANY_TIME = int(imgui.HoveredFlags_.allow_when_blocked_by_active_item)
-_BUTTONS = int(imgui.ButtonFlags_.mouse_button_left) | int(imgui.ButtonFlags_.mouse_button_right) | int(
-    imgui.ButtonFlags_.mouse_button_middle
+_BUTTONS = (
+    int(imgui.ButtonFlags_.mouse_button_left)
+    | int(imgui.ButtonFlags_.mouse_button_right)
+    | int(imgui.ButtonFlags_.mouse_button_middle)
 )
 
 
@@ -98,7 +100,12 @@ class Canvas:
         to = transform(panel, view.center, view.zoom * scale)
         low_seen, high_seen = to.to_canvas(*panel[:2]), to.to_canvas(*panel[2:])
         brush = Brush(
-            imgui.get_window_draw_list(), to, view.zoom, ink(editor.palette.name), fonts, self._texts,
+            imgui.get_window_draw_list(),
+            to,
+            view.zoom,
+            ink(editor.palette.name),
+            fonts,
+            self._texts,
             (*low_seen, *high_seen),
         )
         brush.draw.push_clip_rect(panel[:2], panel[2:], False)
@@ -147,9 +154,7 @@ class Canvas:
         if self._scene is None or staged != self._staged:
             positions, others = session.positions, session.selection - {session.active}
             top = [key for key in session.elements if key in others] if others else []
-            self._scene = self._stage.build(
-                graph, positions.__getitem__, [*top, session.active], pictures, opened
-            )
+            self._scene = self._stage.build(graph, positions.__getitem__, [*top, session.active], pictures, opened)
             self._staged = staged
         return self._scene
 
@@ -183,10 +188,14 @@ class Canvas:
         mouse = imgui.get_mouse_pos()
         likes = editor.store.now
         return any(
-            holds(rect, mouse.x, mouse.y) for rect in (
-                self._minimap.rect(panel) if likes.minimap else None, self._legend.rect(panel), self._naming.rect,
+            holds(rect, mouse.x, mouse.y)
+            for rect in (
+                self._minimap.rect(panel) if likes.minimap else None,
+                self._legend.rect(panel),
+                self._naming.rect,
                 editor.places.get("crumbs"),
-            ) if rect
+            )
+            if rect
         )
 
     # --- painting ----------------------------------------------------------------------------------------------------
@@ -273,8 +282,10 @@ class Canvas:
                 if mouse.hit.part == "edge":
                     across = set(mouse.hit.name) <= set("lr")
                     both = len(mouse.hit.name) > 1
-                    cursor = imgui.MouseCursor_.resize_nwse if both else (
-                        imgui.MouseCursor_.resize_ew if across else imgui.MouseCursor_.resize_ns
+                    cursor = (
+                        imgui.MouseCursor_.resize_nwse
+                        if both
+                        else (imgui.MouseCursor_.resize_ew if across else imgui.MouseCursor_.resize_ns)
                     )
                     imgui.set_mouse_cursor(cursor)
         if editor.canvas.refusal:

@@ -68,7 +68,8 @@ def graph_entries() -> tuple[Entry, ...]:
         for kind in Kind
     ]
     return (
-        *ends, Entry("frame", "frame", GRAPH, "A titled area; what lies on it moves with it."),
+        *ends,
+        Entry("frame", "frame", GRAPH, "A titled area; what lies on it moves with it."),
         Entry("comment", "comment", GRAPH, "A note on the canvas."),
     )
 

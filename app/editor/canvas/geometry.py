@@ -166,9 +166,7 @@ def _push(at: float, low: float, high: float, border: float) -> float:
     return 0.0
 
 
-def _side(
-    start: NDArray[np.float64], end: NDArray[np.float64], point: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _side(start: NDArray[np.float64], end: NDArray[np.float64], point: NDArray[np.float64]) -> NDArray[np.float64]:
     """Positive on one side of a line, negative on the other."""
     along, to = end - start, point - start
     return along[..., 0] * to[..., 1] - along[..., 1] * to[..., 0]

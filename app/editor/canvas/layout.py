@@ -123,8 +123,14 @@ def end_layout(key: str, socket: Socket, picture: bool, doc: str = "") -> Layout
     pin = Pin(name, socket.kind, END_WIDTH if is_input else 0.0, HEADER / 2, socket.optional)
     height = HEADER + (PICTURE * END_WIDTH / WIDTH + PAD if picture else 0.0)
     return Layout(
-        "input" if is_input else "output", END_WIDTH, height, name, category=side[:-1], doc=doc,
-        ins={} if is_input else {name: pin}, outs={name: pin} if is_input else {},
+        "input" if is_input else "output",
+        END_WIDTH,
+        height,
+        name,
+        category=side[:-1],
+        doc=doc,
+        ins={} if is_input else {name: pin},
+        outs={name: pin} if is_input else {},
         picture=(PAD / 2, HEADER, END_WIDTH - PAD / 2, height - PAD / 2) if picture else None,
     )
 
@@ -156,10 +162,21 @@ def node_layout(id: str, item: Item, graph: Graph, facts: Facts) -> Layout:
     left += [Pin(name, None, 0.0, 0.0) for name in sorted(facts.linked_ins - {*face.inputs, *face.values})]
     right += [Pin(name, None, WIDTH, 0.0) for name in sorted(facts.linked_outs - {*face.outputs})]
     if facts.collapsed:
-        linked = [Pin(name, value_kind(face.values[name]), 0.0, 0.0, True, True)
-                  for name in face.values if name in facts.linked_ins]
+        linked = [
+            Pin(name, value_kind(face.values[name]), 0.0, 0.0, True, True)
+            for name in face.values
+            if name in facts.linked_ins
+        ]
         return Layout(
-            what, WIDTH, HEADER, id, subtitle, category, doc, ins=_spread([*left, *linked]), outs=_spread(right),
+            what,
+            WIDTH,
+            HEADER,
+            id,
+            subtitle,
+            category,
+            doc,
+            ins=_spread([*left, *linked]),
+            outs=_spread(right),
             collapsed=True,
         )
 
@@ -174,8 +191,9 @@ def node_layout(id: str, item: Item, graph: Graph, facts: Facts) -> Layout:
     values = _value_rows(id, item, graph, facts, face.values)
     shown = values if facts.expanded else _first(values)
     for row in shown:
-        rows.append(Row(y, row.left and _at(row.left, y), None, row.value, row.label, row.plain, row.linked,
-                        shown=row.shown))
+        rows.append(
+            Row(y, row.left and _at(row.left, y), None, row.value, row.label, row.plain, row.linked, shown=row.shown)
+        )
         y += ROW
     hidden = len(values) - len(shown)
     is_open = facts.expanded and len(_first(values)) < len(values)
@@ -185,9 +203,20 @@ def node_layout(id: str, item: Item, graph: Graph, facts: Facts) -> Layout:
         picture = PAD / 2, y, WIDTH - PAD / 2, y + PICTURE
         y += PICTURE + PAD / 2
     return Layout(
-        what, WIDTH, y, id, subtitle, category, doc, tuple(rows),
-        {row.left.name: row.left for row in rows if row.left}, {row.right.name: row.right for row in rows if row.right},
-        picture, foot, hidden, is_open,
+        what,
+        WIDTH,
+        y,
+        id,
+        subtitle,
+        category,
+        doc,
+        tuple(rows),
+        {row.left.name: row.left for row in rows if row.left},
+        {row.right.name: row.right for row in rows if row.right},
+        picture,
+        foot,
+        hidden,
+        is_open,
     )
 
 
@@ -214,7 +243,11 @@ def _value_rows(id: str, item: Item, graph: Graph, facts: Facts, values: Mapping
 def _first(rows: list[Row]) -> list[Row]:
     """The values worth showing: those that are linked, and the first few others that fit a line and say something."""
     fields = [
-        row for row in rows if not row.linked and row.value and row.value.type != "matrix"
+        row
+        for row in rows
+        if not row.linked
+        and row.value
+        and row.value.type != "matrix"
         and not (row.value.role and row.plain == row.value.default)
     ]
     if len(fields) == FIELDS + 1 and len(rows) == len(fields):

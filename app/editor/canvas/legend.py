@@ -17,16 +17,24 @@ _POPUP = "sockets"
 _SIDE, _GAP = 24.0, 12.0
 
 _MEANING = {
-    Kind.IMAGE: "a picture: red, green, blue, alpha", Kind.FIELD: "one channel: depth, mask, occlusion",
-    Kind.VECTOR: "data of 2 to 4 channels: normal, velocity", Kind.NUMBER: "one number for the whole picture",
-    Kind.COLOR: "one color for the whole picture", Kind.CAMERA: "the camera that a picture was taken with",
+    Kind.IMAGE: "a picture: red, green, blue, alpha",
+    Kind.FIELD: "one channel: depth, mask, occlusion",
+    Kind.VECTOR: "data of 2 to 4 channels: normal, velocity",
+    Kind.NUMBER: "one number for the whole picture",
+    Kind.COLOR: "one color for the whole picture",
+    Kind.CAMERA: "the camera that a picture was taken with",
 }
 
 _MOUSE = (
-    ("Wheel", "zoom"), ("Middle drag, Space + drag", "pan"), ("Drag from a socket", "link"),
-    ("Drop a link on nothing", "add what fits"), ("Drop a node on a link", "insert it"),
-    ("Ctrl + right drag", "cut links"), ("Shift + right drag", "put dots on links"),
-    ("Double click", "view a node, enter a group"), ("Ctrl while dragging", "snap to the grid"),
+    ("Wheel", "zoom"),
+    ("Middle drag, Space + drag", "pan"),
+    ("Drag from a socket", "link"),
+    ("Drop a link on nothing", "add what fits"),
+    ("Drop a node on a link", "insert it"),
+    ("Ctrl + right drag", "cut links"),
+    ("Shift + right drag", "put dots on links"),
+    ("Double click", "view a node, enter a group"),
+    ("Ctrl while dragging", "snap to the grid"),
 )
 
 

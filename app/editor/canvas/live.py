@@ -81,9 +81,7 @@ class Live:
         imgui.pop_style_var(3)
         imgui.pop_font()
 
-    def _draw(
-        self, fields: Fields, brush: Brush, rect: Rect, port: Port, row: Row, value: Value, plain: Plain
-    ) -> None:
+    def _draw(self, fields: Fields, brush: Brush, rect: Rect, port: Port, row: Row, value: Value, plain: Plain) -> None:
         low, high = brush.corners(rect)
         width, id = high[0] - low[0], f"canvas {port}"
         imgui.set_cursor_screen_pos(low)

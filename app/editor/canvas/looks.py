@@ -57,11 +57,21 @@ class Moment:
             size = found[0].size
         overlay, color = self._cost(key)
         return Look(
-            selected=key in self.selection, active=key == self.active, muted=key in self.muted,
-            fault=faults[0] if faults else "", warning=warnings[0] if warnings else "",
-            badges=self.badges.get(key, ""), viewed=self.shown.get(key, ""), hot=key == self.hot,
-            lit=None if self.lit is None else self.lit.get(key, frozenset()), picture=picture, picture_size=size,
-            fresh=fresh, live=live, overlay=overlay, overlay_color=color,
+            selected=key in self.selection,
+            active=key == self.active,
+            muted=key in self.muted,
+            fault=faults[0] if faults else "",
+            warning=warnings[0] if warnings else "",
+            badges=self.badges.get(key, ""),
+            viewed=self.shown.get(key, ""),
+            hot=key == self.hot,
+            lit=None if self.lit is None else self.lit.get(key, frozenset()),
+            picture=picture,
+            picture_size=size,
+            fresh=fresh,
+            live=live,
+            overlay=overlay,
+            overlay_color=color,
         )
 
     def _cost(self, key: str) -> tuple[str, int]:
@@ -92,8 +102,20 @@ def moment(editor: Editor, ink: Ink, gesture: Gesture, hot: str) -> Moment:
     costs, total = _costs(editor) if editor.preview.timed else ({}, 0.0)
     prefix = "".join(f"{id}/" for id in session.place)
     return Moment(
-        editor, ink, shown, badges, lit, costs, total, hot, prefix, session.selection, session.active,
-        session.graph.muted, session.problems, editor.preview.thumbnailing,
+        editor,
+        ink,
+        shown,
+        badges,
+        lit,
+        costs,
+        total,
+        hot,
+        prefix,
+        session.selection,
+        session.active,
+        session.graph.muted,
+        session.problems,
+        editor.preview.thumbnailing,
     )
 
 
@@ -118,4 +140,3 @@ def _costs(editor: Editor) -> tuple[dict[str, tuple[float, int]], float]:
 
 def _size(size: int) -> str:
     return f"{size / 2**20:.1f} MB" if size >= 2**20 else f"{size / 2**10:.0f} KB"
-

@@ -222,7 +222,8 @@ class Mouse:
                 return move
             members = [
                 session.frame_members(key.removeprefix("frames."), frame.scene.sizes)
-                for key in session.selection if key.startswith("frames.")
+                for key in session.selection
+                if key.startswith("frames.")
             ]
             move = replace(move, keys=with_members(session.selection, frame.scene, members))
             if extract and any(wire.leaves(move.keys) for wire in frame.scene.wires):

@@ -72,9 +72,7 @@ def paint_comment(brush: Brush, box: Box, text: str, selected: bool) -> None:
     s = brush.to.scale
     words, color = (text, ink.text) if text else ("double-click to write", ink.faint)
     brush.draw.push_clip_rect(low, high, True)
-    brush.draw.add_text(
-        brush.fonts.text, TEXT * s, (low[0] + 12 * s, low[1] + 8 * s), color, words, (box.w - 20.0) * s
-    )
+    brush.draw.add_text(brush.fonts.text, TEXT * s, (low[0] + 12 * s, low[1] + 8 * s), color, words, (box.w - 20.0) * s)
     brush.draw.pop_clip_rect()
 
 

@@ -48,9 +48,7 @@ def split(rect: Rect, count: int) -> tuple[float, list[Rect]]:
     """Where the fields of the numbers of a vector begin, and the fields: the label has what is left of them."""
     room = (rect[2] - rect[0]) * (0.64 if count < 3 else 0.74)
     left, each = rect[2] - room, (room - GAP * (count - 1)) / count
-    return left, [
-        (left + (each + GAP) * at, rect[1], left + (each + GAP) * at + each, rect[3]) for at in range(count)
-    ]
+    return left, [(left + (each + GAP) * at, rect[1], left + (each + GAP) * at + each, rect[3]) for at in range(count)]
 
 
 def paint_label(sketch: Sketch, rect: Rect, label: str, count: int) -> None:

@@ -40,6 +40,8 @@ def with_room(editor: Editor) -> Sizes:
         return sizes
     known, nodes = Pictures().of(editor), editor.session.graph.nodes
     return {
-        key: (width, height + PICTURE + PAD / 2) if key in nodes and key not in known and height > HEADER
-        else (width, height) for key, (width, height) in sizes.items()
+        key: (width, height + PICTURE + PAD / 2)
+        if key in nodes and key not in known and height > HEADER
+        else (width, height)
+        for key, (width, height) in sizes.items()
     }

@@ -90,7 +90,8 @@ class Scene:
         }
         wires = tuple(
             replace(wire, curves=tuple(routed(boxes, wire.source, wire.target, wire.stops)))
-            if any(stop in keys for stop in wire.stops) else wire
+            if any(stop in keys for stop in wire.stops)
+            else wire
             for wire in self.wires
         )
         return Scene(boxes, Net(wires))

@@ -159,7 +159,9 @@ class Search:
                 middle = corner.y + imgui.get_text_line_height() / 2
                 color = mix(palette.category(entry.kind or entry.category), palette.text, 0.2)
                 draw.add_rect_filled(
-                    (corner.x + 2 * scale, middle - 5 * scale), (corner.x + 12 * scale, middle + 5 * scale), u32(color),
+                    (corner.x + 2 * scale, middle - 5 * scale),
+                    (corner.x + 12 * scale, middle + 5 * scale),
+                    u32(color),
                     3 * scale,
                 )
                 if not section.title or section.title == "recent":

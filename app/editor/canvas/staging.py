@@ -38,8 +38,12 @@ class Stage:
     _last: tuple[Graph, Shown, dict[str, Box], Net] | None = None
 
     def build(
-        self, graph: Graph, position: Callable[[str], Point], top: Collection[str],
-        pictures: Collection[str] = frozenset(), open: str = "",
+        self,
+        graph: Graph,
+        position: Callable[[str], Point],
+        top: Collection[str],
+        pictures: Collection[str] = frozenset(),
+        open: str = "",
     ) -> Scene:
         """The scene of a graph.
 
@@ -113,8 +117,11 @@ class Stage:
     ) -> Layout:
         ins, outs = self._linked
         facts = Facts(
-            frozenset(ins.get(id, ())), frozenset(outs.get(id, ())), collapsed,
-            id in self.expanded or id == open, id in pictures,
+            frozenset(ins.get(id, ())),
+            frozenset(outs.get(id, ())),
+            collapsed,
+            id in self.expanded or id == open,
+            id in pictures,
         )
         known = self._layouts.get(id)
         if known and known[0] is item and known[1] == facts:
@@ -134,8 +141,13 @@ class Stage:
             layout = boxes[start].layout
             pin = layout.outs.get(source.socket) if layout else None
             yield Wire(
-                target, source, stops, pin.kind if pin else None, tuple(routed(boxes, source, target, stops)),
-                self._fault(graph, source, target), start in graph.muted or end in graph.muted,
+                target,
+                source,
+                stops,
+                pin.kind if pin else None,
+                tuple(routed(boxes, source, target, stops)),
+                self._fault(graph, source, target),
+                start in graph.muted or end in graph.muted,
             )
 
     def _fault(self, graph: Graph, source: Port, target: Port) -> str:

@@ -73,9 +73,12 @@ def includes() -> Iterator[tuple[str, str]]:
     """The files that code can include, and the signatures of their functions."""
     for name, text in sorted(installed().texts.items()):
         if name.startswith("lib/"):
-            yield name, "\n".join(
-                f"{one.result} {one.name}({', '.join(f'{glsl} {called}' for glsl, called in one.parameters)})"
-                for one in text.all_functions
+            yield (
+                name,
+                "\n".join(
+                    f"{one.result} {one.name}({', '.join(f'{glsl} {called}' for glsl, called in one.parameters)})"
+                    for one in text.all_functions
+                ),
             )
 
 

@@ -160,4 +160,3 @@ def _fault_of(code: Code) -> Fault | None:
     except CodeFault as fault:
         return Fault(fault.line, fault.sentence)
     return None
-

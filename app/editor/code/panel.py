@@ -45,8 +45,12 @@ class CodePanel:
         page = self._choose(editor)
         code = editor.session.code(page.id) if page else None
         if page is None or code is None:
-            nothing_here(editor, icons.ICON_FA_CODE, "No code", "Add a Code node to the graph, or select one: "
-                         "what you write here is what it does.")
+            nothing_here(
+                editor,
+                icons.ICON_FA_CODE,
+                "No code",
+                "Add a Code node to the graph, or select one: what you write here is what it does.",
+            )
             return
         focused = imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows.value)
         if editor.code.focus:

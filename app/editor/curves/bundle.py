@@ -35,7 +35,10 @@ def shape(lane: Lane, keys: Keys, inner: Pieces) -> Shape:
     """What a channel looks like, its pieces given."""
     port, channel = lane
     return Shape(
-        keys, inner, np.array(keys.frames), np.array([level(key, channel) for key in keys.keys]),
+        keys,
+        inner,
+        np.array(keys.frames),
+        np.array([level(key, channel) for key in keys.keys]),
         tuple(frozenset(((port, frame, channel),)) for frame in keys.frames),
         tuple(key.interpolation for key in keys.keys),
     )
@@ -158,10 +161,16 @@ class Bundles:
         order = np.arange(len(lanes))
         piece_of = np.repeat(order, [len(one.pieces) for one in shapes])
         return Bundle(
-            tuple(lanes), tuple(shapes), whole, is_straight(whole), piece_of,
-            np.concatenate([one.frames for one in shapes]), np.concatenate([one.values for one in shapes]),
+            tuple(lanes),
+            tuple(shapes),
+            whole,
+            is_straight(whole),
+            piece_of,
+            np.concatenate([one.frames for one in shapes]),
+            np.concatenate([one.values for one in shapes]),
             np.repeat(order, [len(one.frames) for one in shapes]),
-            tuple(spot for one in shapes for spot in one.spots), tuple(look for one in shapes for look in one.looks),
+            tuple(spot for one in shapes for spot in one.spots),
+            tuple(look for one in shapes for look in one.looks),
             np.array([_edges(one) for one in shapes]),
         )
 

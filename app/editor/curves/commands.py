@@ -144,7 +144,8 @@ def duplicate(editor: Editor) -> None:
     change = moved(graph.animation, state.spots, float(int(span[1] - span[0]) + 1))
     made = {
         port: Keys((*before.keys, *(key for key in keys.keys if _holds(change.spots, port, key.frame))), before.outside)
-        for port, keys in change.made.items() if isinstance(before := graph.animation[port], Keys)
+        for port, keys in change.made.items()
+        if isinstance(before := graph.animation[port], Keys)
     }
     put(editor, made, f"Duplicate {spoken(state.spots)}")
     state.spots = change.spots
@@ -194,7 +195,8 @@ def fitted(editor: Editor, samples: Samples) -> View:
     rows = [row for row in state.curves(state.rows(graph, session.selection)) if row.port]
     if spots:
         tops = [
-            found for port, frames in chosen(graph.animation, spots).items()
+            found
+            for port, frames in chosen(graph.animation, spots).items()
             for channel in {part for parts in frames.values() for part in parts}
             if isinstance(keys := graph.animation[port], Keys)
             and (found := heights(keys, channel, lambda key, frames=frames: key.frame in frames))
@@ -216,14 +218,15 @@ def animatable(editor: Editor) -> tuple[Port, ...]:
     """Values of the selected nodes that could be keyed and are not yet."""
     session = editor.session
     return tuple(
-        port for id in session.graph.nodes if id in session.selection for port in values_of(session.graph, id)
+        port
+        for id in session.graph.nodes
+        if id in session.selection
+        for port in values_of(session.graph, id)
         if port not in session.graph.animation and session.linked(port) is None
     )
 
 
-def _change(
-    editor: Editor, make: Callable[[Graph, frozenset[Spot]], Mapping[Port, Keys]], words: str
-) -> None:
+def _change(editor: Editor, make: Callable[[Graph, frozenset[Spot]], Mapping[Port, Keys]], words: str) -> None:
     state, graph = editor.curves, editor.session.graph
     if not state.spots:
         raise UsageError("no keys are selected: click some, or drag a box around them")
@@ -237,8 +240,8 @@ def _keys_of(editor: Editor) -> set[tuple[Port, float]]:
 def _seen(editor: Editor, row: Row) -> frozenset[Spot]:
     assert row.port and row.keys
     spots, state = spots_of(row.port, row.keys), editor.curves
-    return spots if state.mode == "sheet" else frozenset(
-        spot for spot in spots if (spot[0], spot[2]) not in state.hidden
+    return (
+        spots if state.mode == "sheet" else frozenset(spot for spot in spots if (spot[0], spot[2]) not in state.hidden)
     )
 
 
@@ -251,7 +254,11 @@ def _around(found: list[tuple[float, float]]) -> tuple[float, float] | None:
 
 
 def _heights(
-    graph: Graph, settings: Settings, row: Row, hidden: set[tuple[Port, int]], samples: Samples,
+    graph: Graph,
+    settings: Settings,
+    row: Row,
+    hidden: set[tuple[Port, int]],
+    samples: Samples,
     ends: tuple[float, float],
 ) -> list[tuple[float, float]]:
     port = row.port

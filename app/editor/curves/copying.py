@@ -30,7 +30,8 @@ def copied(animation: Mapping[Port, Animation], spots: Collection[Spot]) -> str:
     first = min(frame for frames in found.values() for frame in frames)
     values = {
         str(port): [_written(key, first) for key in keys.keys if key.frame in frames]
-        for port, frames in found.items() if isinstance(keys := animation[port], Keys)
+        for port, frames in found.items()
+        if isinstance(keys := animation[port], Keys)
     }
     return json.dumps({_NAME: values}, indent=1)
 
@@ -68,7 +69,9 @@ def pasted(graph: Graph, given: Copied, frame: float, rows: Collection[Port] = (
 
 def _written(key: Key, first: float) -> dict[str, Any]:
     found: dict[str, Any] = {
-        "frame": round(key.frame - first, 6), "value": key.value, "interpolation": key.interpolation,
+        "frame": round(key.frame - first, 6),
+        "value": key.value,
+        "interpolation": key.interpolation,
     }
     return found | {side: part for side, part in (("left", key.left), ("right", key.right)) if part}
 

@@ -63,16 +63,18 @@ def moved(
         keys = _keys(animation, port)
         if lift:
             low, high = limits(port)
-            keys = replace(keys, keys=tuple(
-                _lifted(key, frames[key.frame], lift, low, high) if key.frame in frames else key for key in keys.keys
-            ))
+            keys = replace(
+                keys,
+                keys=tuple(
+                    _lifted(key, frames[key.frame], lift, low, high) if key.frame in frames else key
+                    for key in keys.keys
+                ),
+            )
         made[port] = keys.move(frames, by)
     return Change(made, frozenset((port, round(frame + by, 6), channel) for port, frame, channel in spots))
 
 
-def scaled(
-    animation: Animations, spots: Collection[Spot], factor: float, about: float, whole: bool = True
-) -> Change:
+def scaled(animation: Animations, spots: Collection[Spot], factor: float, about: float, whole: bool = True) -> Change:
     """Chosen keys `factor` times as far from the frame `about`."""
     factor = max(factor, LEAST)
 
@@ -89,24 +91,21 @@ def scaled(
 
 def removed(animation: Animations, spots: Collection[Spot]) -> dict[Port, Keys]:
     """Without the chosen keys; where none is left, the animation has no keys."""
-    return {
-        port: _keys(animation, port).remove(*frames) for port, frames in chosen(animation, spots).items()
-    }
+    return {port: _keys(animation, port).remove(*frames) for port, frames in chosen(animation, spots).items()}
 
 
 def interpolated(animation: Animations, spots: Collection[Spot], how: Interpolation) -> dict[Port, Keys]:
     """Chosen keys going to the next in that way; switches stay held."""
     return {
-        port: keys.with_interpolation(frames, how) for port, frames in chosen(animation, spots).items()
+        port: keys.with_interpolation(frames, how)
+        for port, frames in chosen(animation, spots).items()
         if (keys := _keys(animation, port)).keys[0].parts
     }
 
 
 def going_on(animation: Animations, ports: Collection[Port], how: Outside) -> dict[Port, Keys]:
     """Values that are held, go on or repeat before the first and after the last key."""
-    return {
-        port: replace(keys, outside=how) for port in ports if isinstance(keys := animation.get(port), Keys)
-    }
+    return {port: replace(keys, outside=how) for port in ports if isinstance(keys := animation.get(port), Keys)}
 
 
 def eased(animation: Animations, spots: Collection[Spot], how: Ease) -> dict[Port, Keys]:
@@ -206,9 +205,7 @@ def straightened(animation: Animations, spots: Collection[Spot]) -> dict[Port, K
             left, right = keys.handles(frame)
             if not left or not right:
                 continue
-            slopes = [
-                0.5 * (_slope(left, place) + _slope(right, place)) for place in range(1, len(left))
-            ]
+            slopes = [0.5 * (_slope(left, place) + _slope(right, place)) for place in range(1, len(left))]
             keys = keys.with_handles(
                 frame, (left[0], *(slope * left[0] for slope in slopes)), (right[0], *(s * right[0] for s in slopes))
             )
@@ -230,10 +227,13 @@ def fixed(animation: Animations, spots: Collection[Spot]) -> dict[Port, Keys]:
 
 def with_number(keys: Keys, frame: float, channel: int, number: float) -> Keys:
     """With another number in a channel of a key."""
-    return replace(keys, keys=tuple(
-        replace(key, value=_changed(key, {channel}, lambda _: number)) if key.frame == frame else key
-        for key in keys.keys
-    ))
+    return replace(
+        keys,
+        keys=tuple(
+            replace(key, value=_changed(key, {channel}, lambda _: number)) if key.frame == frame else key
+            for key in keys.keys
+        ),
+    )
 
 
 def _lifted(key: Key, which: Collection[int], lift: float, low: float, high: float) -> Key:
@@ -268,7 +268,28 @@ def _keys(animation: Animations, port: Port) -> Keys:
 
 
 __all__ = [
-    "LEAST", "Animations", "Change", "Ease", "Limits", "Side", "aligned", "as_bezier", "automatic", "chosen", "eased",
-    "extent", "fixed", "going_on", "has_handle", "interpolated", "level", "moved", "pulled", "removed", "scaled",
-    "straightened", "unlimited", "with_number",
+    "LEAST",
+    "Animations",
+    "Change",
+    "Ease",
+    "Limits",
+    "Side",
+    "aligned",
+    "as_bezier",
+    "automatic",
+    "chosen",
+    "eased",
+    "extent",
+    "fixed",
+    "going_on",
+    "has_handle",
+    "interpolated",
+    "level",
+    "moved",
+    "pulled",
+    "removed",
+    "scaled",
+    "straightened",
+    "unlimited",
+    "with_number",
 ]

@@ -22,6 +22,7 @@ TOOLBAR, LIST, RULER, BAR, ROW = 36.0, 224.0, 34.0, 12.0, 22.0
 SMALL = 12.5
 """Letters of axes."""
 
+
 @dataclass
 class Frame:
     """Where the parts of the panel are, and what is in them."""
@@ -99,8 +100,9 @@ def color_of(editor: Editor, row: Row, channel: int, place: int) -> RGB:
     if row.channels:
         dark = palette.name == "dark"
         lanes: tuple[RGB, ...] = (
-            ((0.93, 0.42, 0.42), (0.45, 0.78, 0.44), (0.45, 0.64, 0.98)) if dark else
-            ((0.78, 0.16, 0.16), (0.13, 0.50, 0.16), (0.12, 0.33, 0.80))
+            ((0.93, 0.42, 0.42), (0.45, 0.78, 0.44), (0.45, 0.64, 0.98))
+            if dark
+            else ((0.78, 0.16, 0.16), (0.13, 0.50, 0.16), (0.12, 0.33, 0.80))
         )
         return lanes[channel] if channel < 3 else mix(palette.text, palette.panel, 0.3)
     kinds = list(palette.kinds.values())

@@ -75,10 +75,15 @@ def sheet_marks(
     start, across = plane.x(0.0), plane.across
     for place, row in enumerate(rows):
         y = top + (place + 0.5) * high
-        found.append([] if y < plane.rect[1] - high or y > plane.rect[3] + high else [
-            Mark(start + frame * across, y, spots, look)
-            for frame, spots, look in entries.of(row, animation) if first <= frame <= last
-        ])
+        found.append(
+            []
+            if y < plane.rect[1] - high or y > plane.rect[3] + high
+            else [
+                Mark(start + frame * across, y, spots, look)
+                for frame, spots, look in entries.of(row, animation)
+                if first <= frame <= last
+            ]
+        )
     return found
 
 
@@ -95,10 +100,17 @@ def tips(
         value = level(keys.keys[place], channel)
         for side, handle in zip(SIDES, keys.handles(frame), strict=True):
             if handle and has_handle(keys, place, side):
-                found.append(Tip(
-                    plane.x(frame + handle[0]), plane.y(value + handle[1 + channel]), port, frame, channel, side,
-                    (plane.x(frame), plane.y(value)),
-                ))
+                found.append(
+                    Tip(
+                        plane.x(frame + handle[0]),
+                        plane.y(value + handle[1 + channel]),
+                        port,
+                        frame,
+                        channel,
+                        side,
+                        (plane.x(frame), plane.y(value)),
+                    )
+                )
     return found
 
 

@@ -89,7 +89,13 @@ class KeyFields:
             rows.append(("value", "Value", key.value if isinstance(key.value, tuple) else (key.value,), kind))  # type: ignore
             if not frame.sheet and len(key.parts) == 1:
                 loose = structs.replace(
-                    kind, type="float", unit=None, low=-_INF, high=_INF, minimum=-_INF, maximum=_INF,
+                    kind,
+                    type="float",
+                    unit=None,
+                    low=-_INF,
+                    high=_INF,
+                    minimum=-_INF,
+                    maximum=_INF,
                 )
                 rows += [
                     (side, label, handle, loose)

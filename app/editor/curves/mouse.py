@@ -164,8 +164,15 @@ class Mouse:
         at, end = frame.where(), frame.where((tip.x, tip.y))
         both = (tip.port, tip.frame) not in frame.state.free and aligned(keys, tip.frame)
         self.gesture = Bend(
-            keys, tip.port, tip.frame, tip.channel, tip.side, level(key, tip.channel),
-            (at[0] - end[0], at[1] - end[1]), both, self._token(),
+            keys,
+            tip.port,
+            tip.frame,
+            tip.channel,
+            tip.side,
+            level(key, tip.channel),
+            (at[0] - end[0], at[1] - end[1]),
+            both,
+            self._token(),
         )
 
     def _insert(self, frame: Frame) -> None:
@@ -208,8 +215,11 @@ class Mouse:
                 snap = state.snap != (io.key_shift and frame.sheet)
                 curves = not frame.sheet and not holds(frame.bar, self._pressed)
                 change = gesture.change(
-                    at, snap, lambda port: limits(frame.graph, port),
-                    across=not (curves and io.key_ctrl), up=curves and not io.key_shift,
+                    at,
+                    snap,
+                    lambda port: limits(frame.graph, port),
+                    across=not (curves and io.key_ctrl),
+                    up=curves and not io.key_shift,
                 )
                 self._put(frame, change, f"Move {commands.spoken(gesture.spots)}", gesture.merge)
             case Scale():

@@ -141,7 +141,10 @@ class Names:
             x = start + (channel + 0.5) * _LETTER * scale
             small(frame, x, y, letter, color, align=0.5)
             frame.editor.places[f"keys channel {row.port} {letter}"] = (
-                x - _LETTER * 0.5 * scale, y - 8.0 * scale, x + _LETTER * 0.5 * scale, y + 8.0 * scale
+                x - _LETTER * 0.5 * scale,
+                y - 8.0 * scale,
+                x + _LETTER * 0.5 * scale,
+                y + 8.0 * scale,
             )
         return start
 
@@ -208,6 +211,8 @@ def value_menu(editor: Editor, port: Port) -> None:
     entry(icons.ICON_FA_CROSSHAIRS, "Select Node", lambda: session.select([port.node]))
     imgui.separator()
     entry(
-        icons.ICON_FA_XMARK, "Remove Animation", lambda: session.animate(port, None, f"Remove animation of {port}"),
+        icons.ICON_FA_XMARK,
+        "Remove Animation",
+        lambda: session.animate(port, None, f"Remove animation of {port}"),
         animation is not None,
     )

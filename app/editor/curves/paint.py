@@ -15,9 +15,7 @@ KEY = 5.0
 """Half the width of a key, at UI scale 1."""
 
 
-def paint_key(
-    draw: imgui.ImDrawList, x: float, y: float, size: float, look: Interpolation | None, color: int
-) -> None:
+def paint_key(draw: imgui.ImDrawList, x: float, y: float, size: float, look: Interpolation | None, color: int) -> None:
     """A key: a square holds, a diamond goes straight, a circle smoothly, an hourglass has handles."""
     if look == "linear" or look is None:
         draw.add_ngon_filled((x, y), size * 1.15, color, 4)

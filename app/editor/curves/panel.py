@@ -25,8 +25,10 @@ from .sheet import SheetPainter
 from .toolbar import draw_toolbar, keys_menu, offered
 
 _ANY_TIME = int(imgui.HoveredFlags_.allow_when_blocked_by_active_item)
-_BUTTONS = int(imgui.ButtonFlags_.mouse_button_left) | int(imgui.ButtonFlags_.mouse_button_right) | int(
-    imgui.ButtonFlags_.mouse_button_middle
+_BUTTONS = (
+    int(imgui.ButtonFlags_.mouse_button_left)
+    | int(imgui.ButtonFlags_.mouse_button_right)
+    | int(imgui.ButtonFlags_.mouse_button_middle)
 )
 
 
@@ -91,8 +93,14 @@ class Animation:
         state.scroll = min(max(state.scroll, 0.0), room)
         mouse = imgui.get_mouse_pos()
         return Frame(
-            editor, rows, Plane(state.view, (middle, bar, right, bottom)), (left, bar, middle, bottom),
-            (middle, top, right, ruler), (middle, ruler, right, bar), scale, (mouse.x, mouse.y),
+            editor,
+            rows,
+            Plane(state.view, (middle, bar, right, bottom)),
+            (left, bar, middle, bottom),
+            (middle, top, right, ruler),
+            (middle, ruler, right, bar),
+            scale,
+            (mouse.x, mouse.y),
         )
 
     def _grown(self, editor: Editor) -> bool:
@@ -198,12 +206,17 @@ class Animation:
             places[name] = (mark.x - size, mark.y - size, mark.x + size, mark.y + size)
         for tip in frame.tips:
             places[f"handle {tip.port} {tip.frame:g} {tip.channel} {tip.side}"] = (
-                tip.x - size, tip.y - size, tip.x + size, tip.y + size
+                tip.x - size,
+                tip.y - size,
+                tip.x + size,
+                tip.y + size,
             )
 
     def _nothing(self, editor: Editor) -> None:
         nothing_here(
-            editor, icons.ICON_FA_BEZIER_CURVE, "Nothing moves yet",
+            editor,
+            icons.ICON_FA_BEZIER_CURVE,
+            "Nothing moves yet",
             "A value that has keys changes over time. Click the diamond beside a value in the Inspector, go to another "
             "frame and change the value: the second key makes itself.",
         )

@@ -103,8 +103,12 @@ class Plot:
         looks = [bundle.looks[key] for key in seen.shown.tolist()]
         self._keys = seen.xs.tolist(), seen.ys.tolist(), looks, bundle.key_of[seen.shown].tolist()
         self._dashes = [
-            dash for row in rows if row.port and row.keys is None for channel in range(len(row.channels) or 1)
-            if (row.port, channel) not in frame.state.hidden for dash in self._dashed(frame, row.port, channel)
+            dash
+            for row in rows
+            if row.port and row.keys is None
+            for channel in range(len(row.channels) or 1)
+            if (row.port, channel) not in frame.state.hidden
+            for dash in self._dashed(frame, row.port, channel)
         ]
 
     def _dashed(self, frame: Frame, port: Port, channel: int) -> list[tuple[Lane, Drawn]]:

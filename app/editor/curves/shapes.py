@@ -36,8 +36,11 @@ def level(key: Key, channel: int) -> float:
 def runs(keys: Keys, place: int) -> bool:
     """True if the value goes from the key of that place to the next one, rather than being held."""
     key = keys.keys[place]
-    return (place + 1 < len(keys.keys) and key.interpolation != "constant"
-            and 0 < len(key.parts) == len(keys.keys[place + 1].parts))
+    return (
+        place + 1 < len(keys.keys)
+        and key.interpolation != "constant"
+        and 0 < len(key.parts) == len(keys.keys[place + 1].parts)
+    )
 
 
 def pieces(keys: Keys, channel: int) -> Pieces:
@@ -149,9 +152,7 @@ class Samples:
         self._graph = Graph()
         self._known: dict[tuple[Port, int], object] = {}
 
-    def line(
-        self, graph: Graph, settings: Settings, port: Port, channel: int, first: float, last: float
-    ) -> list[Line]:
+    def line(self, graph: Graph, settings: Settings, port: Port, channel: int, first: float, last: float) -> list[Line]:
         """Points (frame, value), one line for each run of frames that has a value; fewer where there are many."""
         of = graph.nodes, graph.animation, graph.controls, settings
         if len(of) != len(self._of) or any(a is not b for a, b in zip(of, self._of, strict=True)):

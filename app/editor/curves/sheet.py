@@ -61,9 +61,7 @@ class SheetPainter:
         if known is None or known[0] is not keys:
             known = self._held[row.port] = keys, _held(keys)
         draw, plane, palette = imgui.get_window_draw_list(), frame.plane, frame.editor.palette
-        draw.add_line(
-            (plane.x(keys.frames[0]), y), (plane.x(keys.frames[-1]), y), u32(palette.dim, 0.35), frame.scale
-        )
+        draw.add_line((plane.x(keys.frames[0]), y), (plane.x(keys.frames[-1]), y), u32(palette.dim, 0.35), frame.scale)
         thick, high = u32(palette.dim, 0.32), 2.5 * frame.scale
         for start, end in known[1]:
             draw.add_rect_filled((plane.x(start), y - high), (plane.x(end), y + high), thick)
@@ -83,6 +81,7 @@ class SheetPainter:
 
 def _held(keys: Keys) -> tuple[tuple[float, float], ...]:
     return tuple(
-        (start.frame, end.frame) for start, end in zip(keys.keys, keys.keys[1:], strict=False)
+        (start.frame, end.frame)
+        for start, end in zip(keys.keys, keys.keys[1:], strict=False)
         if start.interpolation == "constant" or start.value == end.value or not start.parts
     )

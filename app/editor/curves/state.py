@@ -70,7 +70,8 @@ class CurvesState:
         self._kept = (graph.animation,)
         animation = graph.animation
         self.spots = frozenset(
-            spot for spot in self.spots
+            spot
+            for spot in self.spots
             if isinstance(keys := animation.get(spot[0]), Keys) and keys.key(spot[1]) is not None
         )
         self.shown = frozenset(port for port in self.shown if port in animation)

@@ -22,13 +22,18 @@ from .state import Mode
 LOOKS: tuple[Interpolation, ...] = ("constant", "linear", "smooth", "bezier")
 _GAP, _APART = 2.0, 10.0
 _MEANING = {
-    "constant": "holds the value up to the next key", "linear": "goes straight to the next key",
-    "smooth": "goes smoothly, never beyond a key", "bezier": "goes as the handles say",
+    "constant": "holds the value up to the next key",
+    "linear": "goes straight to the next key",
+    "smooth": "goes smoothly, never beyond a key",
+    "bezier": "goes as the handles say",
 }
 _MOUSE = (
-    ("Drag keys", "move them; Shift between frames"), ("Alt + drag, ends of the bar", "draw keys out or together"),
-    ("Drag on nothing", "select with a box; Shift adds, Ctrl toggles"), ("Double click", "a key on the curve"),
-    ("Wheel", "zoom; in curves Ctrl time alone, Shift values alone"), ("Middle drag", "pan"),
+    ("Drag keys", "move them; Shift between frames"),
+    ("Alt + drag, ends of the bar", "draw keys out or together"),
+    ("Drag on nothing", "select with a box; Shift adds, Ctrl toggles"),
+    ("Double click", "a key on the curve"),
+    ("Wheel", "zoom; in curves Ctrl time alone, Shift values alone"),
+    ("Middle drag", "pan"),
     ("Curves: Ctrl, Shift + drag", "along values alone, along time alone"),
     ("Alt + drag a handle", "turn it alone; Shift keeps it level"),
 )
@@ -74,7 +79,8 @@ def _tools(editor: Editor) -> list[_Tool]:
 
     def menu(icon: str, name: str, doc: str, context: str, apart: bool = False) -> _Tool:
         return _Tool(
-            room_for(icon), lambda: dropdown(editor, icon, f"button keys {name}", doc, lambda: listed(editor, context)),
+            room_for(icon),
+            lambda: dropdown(editor, icon, f"button keys {name}", doc, lambda: listed(editor, context)),
             apart,
         )
 
@@ -83,32 +89,58 @@ def _tools(editor: Editor) -> list[_Tool]:
     found = [
         mode("sheet", icons.ICON_FA_BARS_STAGGERED, "Dope sheet"),
         mode("curves", icons.ICON_FA_BEZIER_CURVE, "Curves"),
-        _Tool(width, lambda: dropdown(
-            editor, f"{icons.ICON_FA_FILTER}  {rows}", "button keys filter", "Which values have a row",
-            lambda: _filters(editor), lit=state.only_selected, width=width,
-        ), True),
-        _Tool(square, lambda: dropdown(
-            editor, icons.ICON_FA_PLUS, "button keys add", "Key a value of the selected nodes", lambda: offered(editor)
-        )),
+        _Tool(
+            width,
+            lambda: dropdown(
+                editor,
+                f"{icons.ICON_FA_FILTER}  {rows}",
+                "button keys filter",
+                "Which values have a row",
+                lambda: _filters(editor),
+                lit=state.only_selected,
+                width=width,
+            ),
+            True,
+        ),
+        _Tool(
+            square,
+            lambda: dropdown(
+                editor,
+                icons.ICON_FA_PLUS,
+                "button keys add",
+                "Key a value of the selected nodes",
+                lambda: offered(editor),
+            ),
+        ),
     ]
-    found += [
-        _Tool(square, lambda look=look: _shape(editor, look, some), look == "constant") for look in LOOKS
-    ]
+    found += [_Tool(square, lambda look=look: _shape(editor, look, some), look == "constant") for look in LOOKS]
     found += [
         _Tool(square, lambda how=how: _ease(editor, how), how == "keys.ease_in")
         for how in ("keys.ease_in", "keys.ease", "keys.ease_out")
     ]
     found += [
-        menu(f"Handles  {icons.ICON_FA_CARET_DOWN}", "handles", "How handles of selected keys turn", "keys handles",
-             apart=True),
-        menu(f"Outside  {icons.ICON_FA_CARET_DOWN}", "outside", "Before the first and after the last key",
-             "keys outside"),
+        menu(
+            f"Handles  {icons.ICON_FA_CARET_DOWN}",
+            "handles",
+            "How handles of selected keys turn",
+            "keys handles",
+            apart=True,
+        ),
+        menu(
+            f"Outside  {icons.ICON_FA_CARET_DOWN}", "outside", "Before the first and after the last key", "keys outside"
+        ),
         _Tool(square, lambda: tool(editor, icons.ICON_FA_MAGNET, "keys.snap"), True),
         _Tool(square, lambda: tool(editor, icons.ICON_FA_EXPAND, "keys.fit_all")),
-        _Tool(square, lambda: dropdown(
-            editor, icons.ICON_FA_CIRCLE_QUESTION, "button keys legend", "What the shapes mean, what the mouse does",
-            lambda: legend(editor),
-        )),
+        _Tool(
+            square,
+            lambda: dropdown(
+                editor,
+                icons.ICON_FA_CIRCLE_QUESTION,
+                "button keys legend",
+                "What the shapes mean, what the mouse does",
+                lambda: legend(editor),
+            ),
+        ),
     ]
     return found
 
@@ -119,9 +151,7 @@ def _shape(editor: Editor, look: Interpolation, some: bool) -> None:
         editor.actions.run(action.id, editor)
     left, top, right, bottom = editor.places[f"button keys.{look}"]
     ink = u32(editor.palette.text, 1.0 if some else 0.4)
-    paint_key(
-        imgui.get_window_draw_list(), (left + right) / 2, (top + bottom) / 2, 5.5 * ui_scale(), look, ink
-    )
+    paint_key(imgui.get_window_draw_list(), (left + right) / 2, (top + bottom) / 2, 5.5 * ui_scale(), look, ink)
 
 
 def _ease(editor: Editor, id: str) -> None:
@@ -133,7 +163,8 @@ def _ease(editor: Editor, id: str) -> None:
     left, top, right, bottom = editor.places[f"button {id}"]
     pad = (right - left) * 0.26
     way = {
-        "keys.ease_in": lambda t: math.sin(t * math.pi / 2), "keys.ease_out": lambda t: 1 - math.cos(t * math.pi / 2),
+        "keys.ease_in": lambda t: math.sin(t * math.pi / 2),
+        "keys.ease_out": lambda t: 1 - math.cos(t * math.pi / 2),
         "keys.ease": lambda t: (1 - math.cos(t * math.pi)) / 2,
     }[id]
     line: list[imgui.ImVec2Like] = [
@@ -173,7 +204,9 @@ def offered(editor: Editor) -> None:
 def keys_menu(editor: Editor) -> None:
     """What can be done to chosen keys."""
     for label, context in (
-        ("Interpolation", "keys interpolation"), ("Ease", "keys ease"), ("Handles", "keys handles"),
+        ("Interpolation", "keys interpolation"),
+        ("Ease", "keys ease"),
+        ("Handles", "keys handles"),
         ("Outside of Keys", "keys outside"),
     ):
         if imgui.begin_menu(label):
@@ -192,7 +225,11 @@ def legend(editor: Editor) -> None:
     for look in LOOKS:
         corner = imgui.get_cursor_screen_pos()
         paint_key(
-            imgui.get_window_draw_list(), corner.x + 8 * scale, corner.y + line / 2, 5.0 * scale, look,
+            imgui.get_window_draw_list(),
+            corner.x + 8 * scale,
+            corner.y + line / 2,
+            5.0 * scale,
+            look,
             u32(editor.palette.text),
         )
         imgui.dummy((18 * scale, line))

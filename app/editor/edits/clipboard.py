@@ -32,12 +32,18 @@ def part(graph: Graph, chosen: Collection[str]) -> Graph:
     dots = {f"dots.{dot}" for route in passed.values() for dot in route}
     spots = positions(graph)
     found = Graph(
-        nodes={id: item for id, item in graph.nodes.items() if id in chosen}, links=links,
+        nodes={id: item for id, item in graph.nodes.items() if id in chosen},
+        links=links,
         inputs={name: end for name, end in graph.inputs.items() if f"{INPUTS}.{name}" in chosen},
         outputs={name: end for name, end in graph.outputs.items() if f"{OUTPUTS}.{name}" in chosen},
-        muted=graph.muted.intersection(chosen), animation=timing.of_nodes(graph, chosen), folder=graph.folder,
-        extra={path: kept for path, kept in graph.extra.items() if ".".join(path.split(".")[1:2]) in chosen
-               and path.startswith("nodes.")},
+        muted=graph.muted.intersection(chosen),
+        animation=timing.of_nodes(graph, chosen),
+        folder=graph.folder,
+        extra={
+            path: kept
+            for path, kept in graph.extra.items()
+            if ".".join(path.split(".")[1:2]) in chosen and path.startswith("nodes.")
+        },
     )
     laid = [key for key in known if not key.startswith("dots.")] + sorted(dots)
     found = with_entries(found, {key: entry(graph, key) for key in laid})
@@ -64,7 +70,11 @@ def read(text: str, folder: str, types: Types) -> Graph:
 
 
 def pasted(
-    graph: Graph, part: Graph, places: Mapping[str, Place], at: Place | None = None, keep_links: bool = False,
+    graph: Graph,
+    part: Graph,
+    places: Mapping[str, Place],
+    at: Place | None = None,
+    keep_links: bool = False,
     offset: Place = (0.0, 0.0),
 ) -> tuple[Graph, tuple[str, ...]]:
     """A graph with the nodes, ends and decor of `part` added, and their keys.

@@ -36,6 +36,7 @@ vec4 tint(
 }
 """
 
+
 @dataclass(frozen=True)
 class Broken(Unknown):
     """A node whose code says no node, with the `code` as it is here: that in the file may be another one."""
@@ -112,10 +113,14 @@ def texts(graph: Graph) -> dict[Path, str]:
 
 def refiled(graph: Graph, file: Path, text: str) -> Graph:
     """The graph with another text in a file of code; the very same one if no node has its code in it."""
-    return _changed(graph, lambda body, id, item, code: (
-        coded(body, id, structs.replace(code, text=text))
-        if _file(item, body.folder) == file and code.text != text else body
-    ))
+    return _changed(
+        graph,
+        lambda body, id, item, code: (
+            coded(body, id, structs.replace(code, text=text))
+            if _file(item, body.folder) == file and code.text != text
+            else body
+        ),
+    )
 
 
 def reread(graph: Graph, file: Path) -> Graph:
@@ -135,9 +140,12 @@ def reread(graph: Graph, file: Path) -> Graph:
 
 def kept(graph: Graph, drafts: Mapping[Path, str]) -> Graph:
     """The graph with code in it that differs from the file it belongs to, so that it is not lost with the graph."""
-    return _changed(graph, lambda body, id, item, code: (
-        coded(body, id, structs.replace(code, file="")) if _file(item, body.folder) in drafts else body
-    ))
+    return _changed(
+        graph,
+        lambda body, id, item, code: (
+            coded(body, id, structs.replace(code, file="")) if _file(item, body.folder) in drafts else body
+        ),
+    )
 
 
 # --- inside ----------------------------------------------------------------------------------------------------------

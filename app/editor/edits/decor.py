@@ -22,7 +22,11 @@ Color = tuple[float, float, float]
 
 
 def add_frame(
-    graph: Graph, around: Collection[str], places: Mapping[str, Place], title: str = "", at: Place = (0.0, 0.0),
+    graph: Graph,
+    around: Collection[str],
+    places: Mapping[str, Place],
+    title: str = "",
+    at: Place = (0.0, 0.0),
     sizes: Sizes | None = None,
 ) -> tuple[Graph, str]:
     """A frame around some elements, or at `at` around nothing; and its id."""

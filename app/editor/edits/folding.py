@@ -111,7 +111,8 @@ def _put(outer: Graph, id: str, body: Graph, moves: Moves) -> Graph:
     ends = {end: moved(end, INPUTS if end.socket in old.inputs else CONTROLS) for end in outer.links}
     links = {ends[end]: moved(start, OUTPUTS) for end, start in outer.links.items()}
     links = {
-        end: start for end, start in links.items()
+        end: start
+        for end, start in links.items()
         if not (end.node == id and end.socket in gone) and not (start.node == id and start.socket in lost)
     }
     controls = {name: replace(item, target=moved(item.target, CONTROLS)) for name, item in outer.controls.items()}
@@ -124,6 +125,6 @@ def _put(outer: Graph, id: str, body: Graph, moves: Moves) -> Graph:
     ui = outer.ui
     for before, after in moves.items():
         ui = moved_layout(ui, f"{id}.{before.socket}", f"{id}.{after.socket}")
-    return tidied(replace(
-        outer, nodes={**outer.nodes, id: item}, links=links, controls=controls, animation=animation, ui=ui
-    ))
+    return tidied(
+        replace(outer, nodes={**outer.nodes, id: item}, links=links, controls=controls, animation=animation, ui=ui)
+    )

@@ -52,8 +52,11 @@ def grouped(graph: Graph, chosen: Collection[str], name: str = "") -> tuple[Grap
         nodes={**rest, id: Group(body)},
         links={end: start for end, start in graph.links.items() if end.node not in ids and start.node not in ids}
         | {Port(id, socket): source for socket, source in crossing.sources.items()}
-        | {end: Port(id, crossing.leaving[start]) for end, start in graph.links.items()
-           if start.node in ids and end.node not in ids},
+        | {
+            end: Port(id, crossing.leaving[start])
+            for end, start in graph.links.items()
+            if start.node in ids and end.node not in ids
+        },
         controls={
             name: replace(item, target=Port(id, name)) if item.target.node in ids else item
             for name, item in graph.controls.items()
@@ -136,12 +139,18 @@ def _body(
     links |= {end: Port(INPUTS, name) for end, name in crossing.entering.items()}
     links |= {Port(OUTPUTS, name): start for start, name in crossing.leaving.items()}
     body = Graph(
-        nodes={id: graph.nodes[id] for id in ids}, links=links, inputs=crossing.inputs, outputs=crossing.outputs,
+        nodes={id: graph.nodes[id] for id in ids},
+        links=links,
+        inputs=crossing.inputs,
+        outputs=crossing.outputs,
         controls={
             name: Control(item.target, item.label, item.doc)
-            for name, item in graph.controls.items() if item.target.node in ids
+            for name, item in graph.controls.items()
+            if item.target.node in ids
         },
-        muted=graph.muted & set(ids), extra=_extra(graph, ids, inside=True), folder=graph.folder,
+        muted=graph.muted & set(ids),
+        extra=_extra(graph, ids, inside=True),
+        folder=graph.folder,
     )
     inner = {str(end) for end in graph.links if end.node in ids and graph.links[end].node in ids}
     passed = {target: dots for target, dots in routes(graph).items() if target in inner}

@@ -55,8 +55,12 @@ def layer_numbers(
 
 
 def drawn(
-    names: Sequence[str], links: Iterable[Link], sizes: Mapping[str, tuple[float, float]], first: Iterable[str] = (),
-    last: Iterable[str] = (), gap: tuple[float, float] = (80.0, 40.0),
+    names: Sequence[str],
+    links: Iterable[Link],
+    sizes: Mapping[str, tuple[float, float]],
+    first: Iterable[str] = (),
+    last: Iterable[str] = (),
+    gap: tuple[float, float] = (80.0, 40.0),
 ) -> dict[str, tuple[float, float]]:
     """Top left of every box of `sizes`, the whole drawing starting at 0,0. The same for equal arguments."""
     pairs = sorted({(start, end) for start, end in links if start != end})
@@ -184,8 +188,13 @@ def _lines(made: Layered) -> dict[str, str]:
     line = {name: name for layer in made.layers for name in layer}
     for upper, lower in pairwise(made.layers):
         place = {name: number for number, name in enumerate(upper)}
-        long = [(place[one], number) for number, name in enumerate(lower) if name in made.virtual
-                for one in made.before[name] if one in made.virtual]
+        long = [
+            (place[one], number)
+            for number, name in enumerate(lower)
+            if name in made.virtual
+            for one in made.before[name]
+            if one in made.virtual
+        ]
         reached = -1
         for number, name in enumerate(lower):
             sources = sorted(place[one] for one in made.before[name])

@@ -87,8 +87,10 @@ def bounds(
     if not boxes:
         return (0.0, 0.0, 0.0, 0.0)
     return (
-        min(x for x, _, _, _ in boxes), min(y for _, y, _, _ in boxes),
-        max(x + width for x, _, width, _ in boxes), max(y + height for _, y, _, height in boxes),
+        min(x for x, _, _, _ in boxes),
+        min(y for _, y, _, _ in boxes),
+        max(x + width for x, _, width, _ in boxes),
+        max(y + height for _, y, _, height in boxes),
     )
 
 
@@ -153,8 +155,11 @@ def _free(graph: Graph, key: str, spot: Place, found: Mapping[str, Place], sizes
     boxes = [(*at, *size(graph, one, sizes)) for one, at in found.items() if linked_elements(one, graph)]
     x, y = spot
     while True:
-        hit = [top + tall for left, top, wide, tall in boxes if left < x + width and x < left + wide
-               and top < y + height and y < top + tall]
+        hit = [
+            top + tall
+            for left, top, wide, tall in boxes
+            if left < x + width and x < left + wide and top < y + height and y < top + tall
+        ]
         if not hit:
             return x, y
         y = max(hit) + GAP[1] / 2.0

@@ -37,16 +37,23 @@ def merged(graph: Graph, part: Graph, places: Mapping[str, Place]) -> Merged:
         taken.add(names[id])
     links = {
         Port(names[end.node], end.socket): Port(names[start.node], start.socket)
-        for end, start in part.links.items() if end.node in names and start.node in names
+        for end, start in part.links.items()
+        if end.node in names and start.node in names
     }
     after = replace(
-        graph, nodes={**graph.nodes, **{names[id]: item for id, item in part.nodes.items()}},
-        links={**graph.links, **links}, muted=graph.muted | {names[id] for id in part.muted if id in names},
+        graph,
+        nodes={**graph.nodes, **{names[id]: item for id, item in part.nodes.items()}},
+        links={**graph.links, **links},
+        muted=graph.muted | {names[id] for id in part.muted if id in names},
         extra={**graph.extra, **_extra(part, names)},
-        animation={**graph.animation, **{
-            Port(names[port.node], port.socket): timing.renamed(item, names)
-            for port, item in part.animation.items() if port.node in names
-        }},
+        animation={
+            **graph.animation,
+            **{
+                Port(names[port.node], port.socket): timing.renamed(item, names)
+                for port, item in part.animation.items()
+                if port.node in names
+            },
+        },
     )
     for section in DECOR:
         for id in entries(part, section):
@@ -57,7 +64,8 @@ def merged(graph: Graph, part: Graph, places: Mapping[str, Place]) -> Merged:
     ends = {str(end): end for end in part.links if end.node in names and part.links[end].node in names}
     passed = {
         Port(names[ends[target].node], ends[target].socket): moved_dots(found, dots)
-        for target, dots in routes(part).items() if target in ends
+        for target, dots in routes(part).items()
+        if target in ends
     }
     return replace(found, graph=with_routes(found.graph, passed)) if passed else found
 

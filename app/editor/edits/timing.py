@@ -56,12 +56,14 @@ def joined(graph: Graph, body: Graph, group: str, nodes: Mapping[str, str]) -> d
     """The animation of a graph where the body of one of its groups stands in its place, its nodes called as `nodes`."""
     targets = {
         name: Port(nodes[item.target.node], item.target.socket)
-        for name, item in body.controls.items() if item.target.node in nodes
+        for name, item in body.controls.items()
+        if item.target.node in nodes
     }
     inside = dict(nodes) | {name: str(port) for name, port in targets.items() if name not in body.nodes}
     found = {
         Port(nodes[port.node], port.socket): renamed(item, inside)
-        for port, item in body.animation.items() if port.node in nodes
+        for port, item in body.animation.items()
+        if port.node in nodes
     }
     outside = {f"{group}.{name}": str(port) for name, port in targets.items()}
     for port, item in graph.animation.items():

@@ -38,9 +38,7 @@ def ungrouped(graph: Graph, id: str) -> tuple[Graph, tuple[str, ...]]:
         inputs={**graph.inputs, **{opened.hoisted[name]: body.inputs[name] for name in hoisted}},
         links={**links, **found.graph.links},
         controls=opened.controls(),
-        animation=timing.joined(
-            graph, body, id, {name: found.keys[name] for name in body.nodes if name in found.keys}
-        ),
+        animation=timing.joined(graph, body, id, {name: found.keys[name] for name in body.nodes if name in found.keys}),
     )
     after = opened.with_layout(after)
     return tidied(after), tuple(found.keys[key] for key in found.keys if found.keys[key] in set(keys(after)))
@@ -126,7 +124,8 @@ class _Opened:
 def _without(graph: Graph, id: str) -> Graph:
     """The graph without a group, and without the links to it."""
     return replace(
-        without_entries(graph, [id]), nodes={name: item for name, item in graph.nodes.items() if name != id},
+        without_entries(graph, [id]),
+        nodes={name: item for name, item in graph.nodes.items() if name != id},
         links={end: start for end, start in graph.links.items() if id not in (end.node, start.node)},
         extra=moved_keys(graph.extra, f"nodes.{id}"),
     )

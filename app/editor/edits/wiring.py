@@ -68,13 +68,17 @@ def fitting(graph: Graph, port: Port, output: bool, types: Types) -> tuple[str, 
     """Ids of node types that could be linked with `port`, a source if `output`, in the order of `types`."""
     if output:
         start = graph.source(port)
-        return tuple(id for id, kind in types.items() if any(
-            start is None or conversion(start, end) is None for end in _ends(kind)
-        ))
+        return tuple(
+            id
+            for id, kind in types.items()
+            if any(start is None or conversion(start, end) is None for end in _ends(kind))
+        )
     end = graph.target(port)
-    return tuple(id for id, kind in types.items() if any(
-        end is None or conversion(output.socket, end) is None for output in kind.outputs.values()
-    ))
+    return tuple(
+        id
+        for id, kind in types.items()
+        if any(end is None or conversion(output.socket, end) is None for output in kind.outputs.values())
+    )
 
 
 def fits(graph: Graph, port: Port, output: bool, item: Item) -> bool:
@@ -153,9 +157,9 @@ def extracted(graph: Graph, ids: Collection[str]) -> Graph:
     if inner.keys() | after.links.keys() == graph.links.keys() and {**after.links, **inner} == graph.links:
         raise GraphError("nothing to take out of a chain: the nodes have no links to others")
     routes = {end: dots_of(after, end) for end in after.links} | {end: dots_of(graph, end) for end in inner}
-    return with_routes(replace(graph, links={**after.links, **inner}), routes | {
-        end: () for end in graph.links if end not in routes
-    })
+    return with_routes(
+        replace(graph, links={**after.links, **inner}), routes | {end: () for end in graph.links if end not in routes}
+    )
 
 
 def cut(graph: Graph, ends: Iterable[Port]) -> Graph:
@@ -213,4 +217,3 @@ def _entrances(graph: Graph, id: str) -> list[str]:
 
 def _why(graph: Graph, source: Port, ports: list[Port]) -> str:
     return f": {refusal(graph, source, ports[0])}" if ports else ": it has none"
-

@@ -48,7 +48,8 @@ def common(graph: Graph, ids: tuple[str, ...]) -> tuple[Value, ...]:
     if len(faces) < len(ids) or not faces:
         return ()
     return tuple(
-        value for name, value in faces[0].values.items()
+        value
+        for name, value in faces[0].values.items()
         if all(name in face.values and _alike(face.values[name], value) for face in faces[1:])
     )
 

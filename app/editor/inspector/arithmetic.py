@@ -15,15 +15,35 @@ LONGEST = 200
 
 _TOKEN = re.compile(r"\s*(?:(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?)\s*([a-zA-Z°%]*)|(\*\*|[-+*/^()])|(\S))")
 _RELATIVE = re.compile(r"\s*(?:([-+*/])=|(\+|\*\*|\*|/))")
-_UNITS: Mapping[str, tuple[Unit, float]] = MappingProxyType({
-    "px": ("px", 1.0), "deg": ("deg", 1.0), "°": ("deg", 1.0), "rad": ("deg", 180.0 / math.pi), "turn": ("deg", 360.0),
-    "ev": ("EV", 1.0), "stops": ("EV", 1.0), "stop": ("EV", 1.0), "s": ("s", 1.0), "ms": ("s", 1e-3),
-    "h": ("height", 1.0), "height": ("height", 1.0), "x": ("ratio", 1.0),
-})
-_WORDS: Mapping[str, str] = MappingProxyType({
-    "px": "pixels (px)", "height": "parts of the height (h)", "deg": "degrees (deg)", "EV": "stops (EV)",
-    "ratio": "a plain factor", "count": "whole things", "s": "seconds (s)", "scene": "scene units",
-})
+_UNITS: Mapping[str, tuple[Unit, float]] = MappingProxyType(
+    {
+        "px": ("px", 1.0),
+        "deg": ("deg", 1.0),
+        "°": ("deg", 1.0),
+        "rad": ("deg", 180.0 / math.pi),
+        "turn": ("deg", 360.0),
+        "ev": ("EV", 1.0),
+        "stops": ("EV", 1.0),
+        "stop": ("EV", 1.0),
+        "s": ("s", 1.0),
+        "ms": ("s", 1e-3),
+        "h": ("height", 1.0),
+        "height": ("height", 1.0),
+        "x": ("ratio", 1.0),
+    }
+)
+_WORDS: Mapping[str, str] = MappingProxyType(
+    {
+        "px": "pixels (px)",
+        "height": "parts of the height (h)",
+        "deg": "degrees (deg)",
+        "EV": "stops (EV)",
+        "ratio": "a plain factor",
+        "count": "whole things",
+        "s": "seconds (s)",
+        "scene": "scene units",
+    }
+)
 _FAULTS = (ZeroDivisionError, OverflowError)
 
 

@@ -116,8 +116,12 @@ def toggle_field(
     long, middle = height * 1.8, (rect[1] + rect[3]) * 0.5
     lines = imgui.get_window_draw_list()
     left = rect[2] - long if label else rect[0]
-    track = mix(palette.accent, palette.text, 0.15) if on and hovered else palette.accent if on else (
-        palette.hover if hovered else palette.raised
+    track = (
+        mix(palette.accent, palette.text, 0.15)
+        if on and hovered
+        else palette.accent
+        if on
+        else (palette.hover if hovered else palette.raised)
     )
     lines.add_rect_filled((left, middle - height / 2), (left + long, middle + height / 2), u32(track), height / 2)
     knob = left + (0.5 if mixed else 1.0 - height / 2 / long if on else height / 2 / long) * long

@@ -30,8 +30,16 @@ WIDTH = 17.0
 
 
 def color_field(
-    fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False,
-    eyedropper: bool = True, alpha: bool = True,
+    fields: Fields,
+    id: str,
+    value: Plain,
+    declaration: Value,
+    width: float,
+    *,
+    label: str = "",
+    mixed: bool = False,
+    eyedropper: bool = True,
+    alpha: bool = True,
 ) -> Edit | None:
     """A swatch that opens the picker; the numbers beside it where there is room. All numbers are scene-linear.
 
@@ -65,9 +73,7 @@ def color_field(
     return found
 
 
-def color_picker(
-    fields: Fields, id: str, color: RGBA, eyedropper: bool = True, alpha: bool = True
-) -> Edit | None:
+def color_picker(fields: Fields, id: str, color: RGBA, eyedropper: bool = True, alpha: bool = True) -> Edit | None:
     """Wheel and triangle of display colors, intensity, linear numbers, hexadecimal digits, copy, paste, eyedropper."""
     width, side = imgui.get_font_size() * WIDTH, imgui.get_font_size() * 5.5
     owner, stops = id.removesuffix(" picker"), fields.stops
@@ -122,10 +128,19 @@ def draw_swatch(fields: Fields, rect: Rect, color: RGBA, hovered: bool = False) 
 
 def _wheel(fields: Fields, id: str, color: RGBA, width: float, alpha: bool) -> Edit | None:
     flag = imgui.ColorEditFlags_
-    flags = sum(int(part) for part in (
-        flag.picker_hue_wheel, flag.no_inputs, flag.no_side_preview, flag.no_label, flag.no_options, flag.float,
-        flag.no_tooltip, flag.alpha_bar if alpha else flag.no_alpha,
-    ))
+    flags = sum(
+        int(part)
+        for part in (
+            flag.picker_hue_wheel,
+            flag.no_inputs,
+            flag.no_side_preview,
+            flag.no_label,
+            flag.no_options,
+            flag.float,
+            flag.no_tooltip,
+            flag.alpha_bar if alpha else flag.no_alpha,
+        )
+    )
     shown = dimmed(color, fields.stops)
     imgui.set_next_item_width(width)
     changed, made = imgui.color_picker4(f"##{id} wheel", [*shown, min(max(color[3], 0.0), 1.0)], flags)

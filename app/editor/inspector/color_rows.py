@@ -39,7 +39,8 @@ def _linear(color: ColorSettings, mark: str) -> tuple[str, ...]:
     manager = managed(color)
     kind = ocio().REFERENCE_SPACE_SCENE
     return tuple(
-        name for name in ("scene_linear", *manager.names())
+        name
+        for name in ("scene_linear", *manager.names())
         if (found := manager.find(name)) and not found.data and manager.spaces.isColorSpaceLinear(found.name, kind)
     )
 
@@ -49,8 +50,13 @@ def color_rows(rows: Rows, fields: Fields) -> None:
     editor = rows.editor
     session = editor.session
     color = session.root.settings.color
-    rows.name("color config", "color config", doc="Where color spaces, displays, views and looks come from "
-              "(OpenColorIO): a file, or a config that comes with it", changed=bool(color.config))
+    rows.name(
+        "color config",
+        "color config",
+        doc="Where color spaces, displays, views and looks come from "
+        "(OpenColorIO): a file, or a config that comes with it",
+        changed=bool(color.config),
+    )
     choices = (_ENVIRONMENT, _FROM_FILE, *builtin_configs())
     if color.config and color.config not in choices:
         edit = text_field(fields, "color config", color.config, _PATH, rows.field() - imgui.get_frame_height())
@@ -64,17 +70,23 @@ def color_rows(rows: Rows, fields: Fields) -> None:
         index = choose(fields, "color config", color.config or _ENVIRONMENT, choices, rows.field())
         rows.record("color config")
         if index == 1:
-            editor.dialogs.browse = Browse("Choose a Color Config", "config", lambda path: editor.attempt(
-                lambda: session.set_color(config=session.relative(path))
-            ))
+            editor.dialogs.browse = Browse(
+                "Choose a Color Config",
+                "config",
+                lambda path: editor.attempt(lambda: session.set_color(config=session.relative(path))),
+            )
         elif index is not None:
             config = "" if index == 0 else choices[index]
             rows.act(lambda: session.set_color(config=config))
     usable = coloring(editor)
     if fault := editor.viewer.coloring.fault:
         rows.field_note(fault, rows.palette.error)
-    rows.name("working space", "works in", doc="The linear color space that pictures are in between nodes",
-              changed=bool(color.working))
+    rows.name(
+        "working space",
+        "works in",
+        doc="The linear color space that pictures are in between nodes",
+        changed=bool(color.working),
+    )
     known = (_REC709, *_linear(ColorSettings(usable.config), color_mark(usable)))
     index = choose(fields, "working space", color.working or _REC709, known, rows.field())
     rows.record("working space")

@@ -125,8 +125,10 @@ class EndView:
         color = end.kind in (Kind.IMAGE, Kind.COLOR)
         if isinstance(end.default, tuple):
             fields, room = self._fields, width - side
-            edit = color_field(fields, key, end.default, _NUMBER, room, eyedropper=False) if color else row_of_numbers(
-                fields, key, end.default, _NUMBER, room, _AXES[:channels]
+            edit = (
+                color_field(fields, key, end.default, _NUMBER, room, eyedropper=False)
+                if color
+                else row_of_numbers(fields, key, end.default, _NUMBER, room, _AXES[:channels])
             )
         else:
             edit = number_field(self._fields, key, float(end.default), _NUMBER, width - side)
@@ -146,8 +148,13 @@ class EndView:
             imgui.align_text_to_frame_padding()
             imgui.text_disabled("not linked")
         self._text(
-            rows, f"{key} layer", "layer", end.layer, lambda layer: session.set_output(name, layer=layer),
-            "What it is called in a file of several layers", hint=name,
+            rows,
+            f"{key} layer",
+            "layer",
+            end.layer,
+            lambda layer: session.set_output(name, layer=layer),
+            "What it is called in a file of several layers",
+            hint=name,
         )
         if end.kind is Kind.IMAGE:
             rows.name(f"{key} view", "view", doc="How to show it unless someone chooses")
@@ -164,7 +171,14 @@ class EndView:
 
 
 def draw_text(
-    rows: Rows, fields: Fields, key: str, label: str, text: str, then: Then, doc: str = "", hint: str = "",
+    rows: Rows,
+    fields: Fields,
+    key: str,
+    label: str,
+    text: str,
+    then: Then,
+    doc: str = "",
+    hint: str = "",
     lines: int = 0,
 ) -> None:
     """A row with a text."""

@@ -65,8 +65,15 @@ class FileField:
         side = imgui.get_frame_height()
         missing = bool(value) and bool(self._fault(rows, value, declaration))
         edit = text_field(
-            self.fields, key, value, _TEXT, width - side - rows.gap * 0.5, hint="no file", fault=missing,
-            elide_left=True, lines=1,
+            self.fields,
+            key,
+            value,
+            _TEXT,
+            width - side - rows.gap * 0.5,
+            hint="no file",
+            fault=missing,
+            elide_left=True,
+            lines=1,
         )
         first = item_rect()
         tip(str(self._full(rows, value)) if value else "")
@@ -93,8 +100,10 @@ class FileField:
 
     def space(self, rows: Rows, value: str, layer: str, wanted: str) -> None:
         """One line on the color space of a layer, which is `wanted` or found out; nothing for data."""
-        said, wrong = ("", False) if not value else self.known.space(
-            self._file(rows, value), layer, coloring(rows.editor), wanted
+        said, wrong = (
+            ("", False)
+            if not value
+            else self.known.space(self._file(rows, value), layer, coloring(rows.editor), wanted)
         )
         if said:
             shown = said.removeprefix(f"{self._file(rows, value)}: ")
@@ -103,8 +112,7 @@ class FileField:
     def layer(
         self, rows: Rows, key: str, file: str, value: str, width: float, first: str = FIRST, fault: bool = False
     ) -> Edit | None:
-        """The layer: a list of those in the file, or plain text while it cannot be read; `first` is what "" stands for.
-        """
+        """The layer: a list of those in the file, or plain text while it cannot be read; `first` is what "" stands for."""
         path = self._file(rows, file)
         header = self.known.header(path) if file else "no file"
         if not isinstance(header, ImageInfo):

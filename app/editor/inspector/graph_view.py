@@ -33,8 +33,13 @@ _PREROLL = Value("preroll", "int", 12, low=0.0, high=100.0, minimum=0.0)
 _TEXT = Value("name", "text", "")
 _COLOR = Value("color", "color", (0.0,) * 4, 4, low=0.0, high=1.0)
 _KINDS = (
-    ("Image", Kind.IMAGE, 4), ("Field", Kind.FIELD, 1), ("Vector2", Kind.VECTOR, 2), ("Vector3", Kind.VECTOR, 3),
-    ("Vector4", Kind.VECTOR, 4), ("Number", Kind.NUMBER, 1), ("Color", Kind.COLOR, 4),
+    ("Image", Kind.IMAGE, 4),
+    ("Field", Kind.FIELD, 1),
+    ("Vector2", Kind.VECTOR, 2),
+    ("Vector3", Kind.VECTOR, 3),
+    ("Vector4", Kind.VECTOR, 4),
+    ("Number", Kind.NUMBER, 1),
+    ("Color", Kind.COLOR, 4),
     ("Camera", Kind.CAMERA, 12),
 )
 FULL_HD = (1920, 1080)
@@ -66,7 +71,11 @@ class GraphView:
         facts = entry(session.graph, f"frames.{id}")
         heading(rows, "Frame", rows.palette.accent)
         draw_text(
-            rows, self._fields, f"frames.{id} title", "title", str(facts.get("title", "")),
+            rows,
+            self._fields,
+            f"frames.{id} title",
+            "title",
+            str(facts.get("title", "")),
             lambda title: session.set_frame(id, title=title),
         )
         given = facts.get("color")
@@ -105,7 +114,12 @@ class GraphView:
             return
         imgui.begin_group()
         edit = row_of_numbers(
-            self._fields, "size", size, _SIDE, width - side, ("w", "h") if width > 170 * ui_scale() else ("", ""),
+            self._fields,
+            "size",
+            size,
+            _SIDE,
+            width - side,
+            ("w", "h") if width > 170 * ui_scale() else ("", ""),
             keep_type=True,
         )
         imgui.end_group()
@@ -231,13 +245,32 @@ class GraphView:
             rows.editor.places[f"more {key}"] = item_rect()
             if opened:
                 inner = rows.inset()
-                draw_text(inner, self._fields, f"{key} name", "name", name,
-                          lambda new, name=name: session.rename_control(name, new))
-                draw_text(inner, self._fields, f"{key} label", "label", control.label,
-                          lambda label, name=name: session.set_control_doc(name, label=label), hint=name)
-                draw_text(inner, self._fields, f"{key} doc", "description", control.doc,
-                          lambda doc, name=name: session.set_control_doc(name, doc=doc),
-                          hint=declaration.doc if declaration else "")
+                draw_text(
+                    inner,
+                    self._fields,
+                    f"{key} name",
+                    "name",
+                    name,
+                    lambda new, name=name: session.rename_control(name, new),
+                )
+                draw_text(
+                    inner,
+                    self._fields,
+                    f"{key} label",
+                    "label",
+                    control.label,
+                    lambda label, name=name: session.set_control_doc(name, label=label),
+                    hint=name,
+                )
+                draw_text(
+                    inner,
+                    self._fields,
+                    f"{key} doc",
+                    "description",
+                    control.doc,
+                    lambda doc, name=name: session.set_control_doc(name, doc=doc),
+                    hint=declaration.doc if declaration else "",
+                )
                 if imgui.small_button(f"{icons.ICON_FA_ARROW_RIGHT}  Go to Node##{key}"):
                     rows.act(lambda target=target: go_to(rows.editor, target))
                 imgui.same_line()
@@ -256,9 +289,11 @@ class GraphView:
         taken = {control.target for control in session.graph.controls.values()}
         found = False
         for id, item in session.graph.nodes.items():
-            ports = [] if isinstance(item, Unknown) else [
-                port for name in signature(item).values if (port := Port(id, name)) not in taken
-            ]
+            ports = (
+                []
+                if isinstance(item, Unknown)
+                else [port for name in signature(item).values if (port := Port(id, name)) not in taken]
+            )
             if not ports or not imgui.begin_menu(id):
                 found |= bool(ports)
                 continue

@@ -32,8 +32,10 @@ WIDTH = 16.0
 """Of a diamond with the room around it, at UI scale 1."""
 
 _DOCS: dict[Look, str] = {
-    "still": "Click: a key at this frame", "keys": "It has keys; click: one at this frame too",
-    "key": "A key at this frame; click: remove it", "expression": "It follows an expression",
+    "still": "Click: a key at this frame",
+    "keys": "It has keys; click: one at this frame too",
+    "key": "A key at this frame; click: remove it",
+    "expression": "It follows an expression",
 }
 
 
@@ -201,16 +203,25 @@ class Keying:
         entry(icons.ICON_FA_DIAMOND, "Set Key", look in ("still", "keys"), lambda: toggle(session, ports))
         entry(icons.ICON_FA_MINUS, "Remove Key", look == "key", lambda: toggle(session, ports))
         entry(icons.ICON_FA_ERASER, "Remove All Keys", keyed, all_still)
-        entry(icons.ICON_FA_CHEVRON_LEFT, "Previous Key", keyed and session.previous_key(port) is not None,
-              lambda: jump(session.previous_key(port)))
-        entry(icons.ICON_FA_CHEVRON_RIGHT, "Next Key", keyed and session.next_key(port) is not None,
-              lambda: jump(session.next_key(port)))
+        entry(
+            icons.ICON_FA_CHEVRON_LEFT,
+            "Previous Key",
+            keyed and session.previous_key(port) is not None,
+            lambda: jump(session.previous_key(port)),
+        )
+        entry(
+            icons.ICON_FA_CHEVRON_RIGHT,
+            "Next Key",
+            keyed and session.next_key(port) is not None,
+            lambda: jump(session.next_key(port)),
+        )
         imgui.separator()
         entry(icons.ICON_FA_SUPERSCRIPT, "Expression...", one, lambda: self.begin(session, port, shown))
         entry(icons.ICON_FA_XMARK, "Remove Expression", look == "expression", all_still)
         entry(icons.ICON_FA_BARS_STAGGERED, "Bake to Keys", one and look != "still", lambda: session.bake(port))
-        entry(icons.ICON_FA_COPY, "Copy Animation", look != "still",
-              lambda: editor.clipboard.put(as_text(session, port)))
+        entry(
+            icons.ICON_FA_COPY, "Copy Animation", look != "still", lambda: editor.clipboard.put(as_text(session, port))
+        )
         entry(icons.ICON_FA_PASTE, "Paste Animation", True, lambda: paste(session, ports, editor.clipboard.get()))
 
     def _typed(self, rows: Rows, port: Port, id: str, text: str, width: float) -> None:
@@ -265,8 +276,13 @@ def _paint(palette: Palette, rect: Rect, look: Look, hovered: bool) -> None:
 def _colored(palette: Palette, rect: Rect, text: str) -> bool:
     """The words of an expression, each in the color of what it is; True if there is no room for all of them."""
     colors = {
-        "number": palette.good, "name": palette.text, "function": palette.accent, "constant": palette.good,
-        "variable": color_of(palette, "expression"), "word": palette.accent, "unknown": palette.error,
+        "number": palette.good,
+        "name": palette.text,
+        "function": palette.accent,
+        "constant": palette.good,
+        "variable": color_of(palette, "expression"),
+        "word": palette.accent,
+        "unknown": palette.error,
     }
     draw, pad = imgui.get_window_draw_list(), imgui.get_style().frame_padding.x
     draw.push_clip_rect(rect[:2], rect[2:], True)

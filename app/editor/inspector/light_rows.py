@@ -58,9 +58,7 @@ def _kind(rows: Rows, key: str, light: Light, put: Callable[[Light], object]) ->
 class _Row:
     """One of them."""
 
-    def __init__(
-        self, rows: Rows, id: str, value: Numbers, index: int, light: Light, part: Part, put: Put
-    ) -> None:
+    def __init__(self, rows: Rows, id: str, value: Numbers, index: int, light: Light, part: Part, put: Put) -> None:
         self.rows, self.id, self.value, self.index, self.light, self.part = rows, id, value, index, light, part
         self.key, self.plain, self.put = f"{id} {index} {part.name}", part.of(light), put
 

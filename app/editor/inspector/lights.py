@@ -52,29 +52,83 @@ _ANGLE = Value("", "float", 0.0, low=0.0, high=90.0, minimum=0.0, maximum=180.0,
 _LENGTH = Value("", "float", 0.0, low=0.0, high=20.0, minimum=0.0, unit="scene")
 
 PARTS = (
-    Part("place", Value(
-        "place", "vector", (), 3, low=-10.0, high=10.0, unit="scene", doc="Where it is in the world.",
-    ), (_POINT, _SPOT, _SPHERE)),
-    Part("direction", Value(
-        "direction", "vector", (), 3, low=-1.0, high=1.0, doc="Where it shines to in the world; any length will do.",
-    ), (_SPOT, _SUN)),
+    Part(
+        "place",
+        Value(
+            "place",
+            "vector",
+            (),
+            3,
+            low=-10.0,
+            high=10.0,
+            unit="scene",
+            doc="Where it is in the world.",
+        ),
+        (_POINT, _SPOT, _SPHERE),
+    ),
+    Part(
+        "direction",
+        Value(
+            "direction",
+            "vector",
+            (),
+            3,
+            low=-1.0,
+            high=1.0,
+            doc="Where it shines to in the world; any length will do.",
+        ),
+        (_SPOT, _SUN),
+    ),
     Part("color", Value("color", "color", (), 4, doc="Scene-linear; it is multiplied with the intensity.")),
-    Part("intensity", Value(
-        "intensity", "float", 0.0, low=-50.0, high=50.0, doc="How strong it is: W/sr, so that the light at a distance "
-        "d is the intensity / d²; W/m² for a sun, the same everywhere. Below 0 it takes light away.",
-    )),
-    Part("reach", structs.replace(
-        _LENGTH, name="reach", doc="The distance at which it has faded to nothing; 0 is no end.",
-    ), (_POINT, _SPOT, _SPHERE)),
-    Part("inner", structs.replace(
-        _ANGLE, name="inner angle", doc="Half the angle of the cone in which it shines fully.",
-    ), (_SPOT,)),
-    Part("outer", structs.replace(
-        _ANGLE, name="outer angle", doc="Half the angle of the cone in which it shines at all.",
-    ), (_SPOT,)),
-    Part("size", structs.replace(
-        _LENGTH, name="size", high=2.0, doc="The radius of the sphere: a larger one has wider reflections.",
-    ), (_SPHERE,)),
+    Part(
+        "intensity",
+        Value(
+            "intensity",
+            "float",
+            0.0,
+            low=-50.0,
+            high=50.0,
+            doc="How strong it is: W/sr, so that the light at a distance "
+            "d is the intensity / d²; W/m² for a sun, the same everywhere. Below 0 it takes light away.",
+        ),
+    ),
+    Part(
+        "reach",
+        structs.replace(
+            _LENGTH,
+            name="reach",
+            doc="The distance at which it has faded to nothing; 0 is no end.",
+        ),
+        (_POINT, _SPOT, _SPHERE),
+    ),
+    Part(
+        "inner",
+        structs.replace(
+            _ANGLE,
+            name="inner angle",
+            doc="Half the angle of the cone in which it shines fully.",
+        ),
+        (_SPOT,),
+    ),
+    Part(
+        "outer",
+        structs.replace(
+            _ANGLE,
+            name="outer angle",
+            doc="Half the angle of the cone in which it shines at all.",
+        ),
+        (_SPOT,),
+    ),
+    Part(
+        "size",
+        structs.replace(
+            _LENGTH,
+            name="size",
+            high=2.0,
+            doc="The radius of the sphere: a larger one has wider reflections.",
+        ),
+        (_SPHERE,),
+    ),
 )
 """What can be set of lights, in the order in which it is shown."""
 
@@ -85,7 +139,8 @@ def parts_of(kind: LightKind) -> tuple[Part, ...]:
     new = fresh(kind)
     return tuple(
         replace(part, declaration=structs.replace(part.declaration, default=part.of(new)))
-        for part in PARTS if kind in part.kinds
+        for part in PARTS
+        if kind in part.kinds
     )
 
 

@@ -162,8 +162,12 @@ class _Act:
 def _acts(value: Numbers, index: int) -> tuple[_Act, ...]:
     count = count_of(value)
     return (
-        _Act(icons.ICON_FA_CLONE, "Duplicate", lambda: added(value, index, light_at(value, index)),
-             index >= 0 and count < MAX_LIGHTS),
+        _Act(
+            icons.ICON_FA_CLONE,
+            "Duplicate",
+            lambda: added(value, index, light_at(value, index)),
+            index >= 0 and count < MAX_LIGHTS,
+        ),
         _Act(icons.ICON_FA_ARROW_UP, "Move Up", lambda: moved(value, index, -1), index > 0),
         _Act(icons.ICON_FA_ARROW_DOWN, "Move Down", lambda: moved(value, index, 1), 0 <= index < count - 1),
         _Act(icons.ICON_FA_TRASH, "Remove", lambda: removed(value, index), index >= 0),

@@ -24,8 +24,16 @@ NO_VALUE = "—"
 
 
 def number_field(
-    fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False,
-    suffix: str | None = None, plain: bool = False,
+    fields: Fields,
+    id: str,
+    value: Plain,
+    declaration: Value,
+    width: float,
+    *,
+    label: str = "",
+    mixed: bool = False,
+    suffix: str | None = None,
+    plain: bool = False,
 ) -> Edit | None:
     """One number. Shift drags finely, Ctrl in round steps; Escape brings back what was there before.
 
@@ -89,8 +97,16 @@ def _wheeled(fields: Fields, id: str, value: float, declaration: Value) -> Edit 
 
 
 def _draw(
-    fields: Fields, rect: Rect, value: float, declaration: Value, unit: str, label: str, mixed: bool, hovered: bool,
-    active: bool, plain: bool,
+    fields: Fields,
+    rect: Rect,
+    value: float,
+    declaration: Value,
+    unit: str,
+    label: str,
+    mixed: bool,
+    hovered: bool,
+    active: bool,
+    plain: bool,
 ) -> None:
     palette, pad = fields.palette, imgui.get_style().frame_padding.x * 0.75
     background(palette, rect, hovered=hovered, active=active)
@@ -131,8 +147,16 @@ def vector_field(
 
 
 def row_of_numbers(
-    fields: Fields, id: str, value: tuple[float, ...], declaration: Value, width: float, names: tuple[str, ...],
-    mixed: bool = False, first: int = 0, keep_type: bool = False, plain: bool = False,
+    fields: Fields,
+    id: str,
+    value: tuple[float, ...],
+    declaration: Value,
+    width: float,
+    names: tuple[str, ...],
+    mixed: bool = False,
+    first: int = 0,
+    keep_type: bool = False,
+    plain: bool = False,
 ) -> Edit | None:
     """Numbers side by side; a name stands in each where there is room for it. Floats unless `keep_type`."""
     gap = imgui.get_style().item_inner_spacing.x * 0.5
@@ -165,4 +189,3 @@ def matrix_field(
         found = row_of_numbers(fields, id, value, declaration, width, ("",) * 3, mixed, row * 3) or found
     imgui.pop_style_var()
     return found
-

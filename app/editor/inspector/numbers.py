@@ -13,16 +13,34 @@ from ....nodes import Unit, Value
 from ...errors import UsageError
 from .arithmetic import evaluate
 
-SUFFIX: Mapping[Unit | None, str] = MappingProxyType({
-    "px": "px", "height": "h", "deg": "°", "EV": "EV", "s": "s", None: "", "ratio": "", "count": "", "scene": "",
-})
+SUFFIX: Mapping[Unit | None, str] = MappingProxyType(
+    {
+        "px": "px",
+        "height": "h",
+        "deg": "°",
+        "EV": "EV",
+        "s": "s",
+        None: "",
+        "ratio": "",
+        "count": "",
+        "scene": "",
+    }
+)
 """The unit as it is shown behind a number."""
 
-MEANING: Mapping[Unit | None, str] = MappingProxyType({
-    "px": "pixels at full size", "height": "fraction of the picture's height", "deg": "degrees",
-    "EV": "photographic stops", "s": "seconds", "ratio": "a plain factor", "count": "a whole number", None: "",
-    "scene": "scene units",
-})
+MEANING: Mapping[Unit | None, str] = MappingProxyType(
+    {
+        "px": "pixels at full size",
+        "height": "fraction of the picture's height",
+        "deg": "degrees",
+        "EV": "photographic stops",
+        "s": "seconds",
+        "ratio": "a plain factor",
+        "count": "a whole number",
+        None: "",
+        "scene": "scene units",
+    }
+)
 
 RATE = Value("rate", "float", 24.0, low=1.0, high=60.0, minimum=0.01, maximum=1000.0)
 """Frames per second."""

@@ -92,9 +92,7 @@ def _draw(fields: Fields, id: str, value: tuple[float, ...], rect: Rect) -> None
     for start, end in pairwise(places):
         colors = [u32(swatch(ramp_color(value, t))) for t in (start, end - 1e-9)]
         low, high = (left + t * (right - left) for t in (start, end))
-        lines.add_rect_filled_multi_color(
-            (low, rect[1]), (high, bottom), colors[0], colors[1], colors[1], colors[0]
-        )
+        lines.add_rect_filled_multi_color((low, rect[1]), (high, bottom), colors[0], colors[1], colors[1], colors[0])
     lines.add_rect((left, rect[1]), (right, bottom), u32(palette.border))
     size = imgui.get_font_size() * 0.34
     for index, stop in enumerate(split(value, 5)):
@@ -116,9 +114,11 @@ def _below(fields: Fields, id: str, value: tuple[float, ...], declaration: Value
 
     def with_place(edit: Edit) -> Edit | None:
         place = edit.value
-        return replace(edit, value=changed(value, 5, index, (float(place), *stop[1:]))) if isinstance(
-            place, int | float
-        ) else None
+        return (
+            replace(edit, value=changed(value, 5, index, (float(place), *stop[1:])))
+            if isinstance(place, int | float)
+            else None
+        )
 
     def with_color(edit: Edit) -> Edit | None:
         color = edit.value

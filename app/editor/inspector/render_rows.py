@@ -62,9 +62,7 @@ class RenderRows:
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _layers(
-        self, rows: Rows, id: str, item: Node, roles: Sequence[Value], seen: Overview | str | None
-    ) -> None:
+    def _layers(self, rows: Rows, id: str, item: Node, roles: Sequence[Value], seen: Overview | str | None) -> None:
         """A field for the layer of every output, and one for how its numbers are meant; last what is not there."""
         uses = seen.uses if isinstance(seen, Overview) else {}
         there = {role for role, use in uses.items() if use.layer or use.open or use.fault}
@@ -131,8 +129,10 @@ class RenderRows:
 
         dropdown(rows.editor, button, f"button use {key}", "Choose what this layer is used for", offer)
         maybe = item.role is None and bool(item.candidates)
-        words = f"may be {either([role.words for role in item.candidates])}" if maybe else (
-            item.role.words if item.role else item.reason
+        words = (
+            f"may be {either([role.words for role in item.candidates])}"
+            if maybe
+            else (item.role.words if item.role else item.reason)
         )
         with font(rows.editor, "text", SMALL):
             wrapped(rows.palette.warning if maybe else rows.palette.dim, words)
@@ -177,16 +177,19 @@ def _file(rows: Rows, id: str, seen: Overview) -> None:
         names = [part[1] or f"part {part[0]}" for part in seen.parts]
         heads = {name.partition(".")[0] for name in names}
         shared = heads.pop() if len(heads) == 1 and len(names) > 1 else ""
-        _facts(rows, [
-            (name.removeprefix(f"{shared}."), ", ".join(word for word in part[2:] if word))
-            for name, part in zip(names, seen.parts, strict=True)
-        ])
+        _facts(
+            rows,
+            [
+                (name.removeprefix(f"{shared}."), ", ".join(word for word in part[2:] if word))
+                for name, part in zip(names, seen.parts, strict=True)
+            ],
+        )
     if seen.camera.camera and _opened(rows, f"Camera###camera {id}", f"more {id} camera"):
         _facts(rows, camera_rows(seen.camera))
     if seen.metadata and _opened(rows, f"Metadata ({len(seen.metadata)})###metadata {id}", f"more {id} metadata"):
-        _facts(rows, [
-            (name, words if len(words) <= _LONGEST else f"{words[:_LONGEST]}…") for name, words in seen.metadata
-        ])
+        _facts(
+            rows, [(name, words if len(words) <= _LONGEST else f"{words[:_LONGEST]}…") for name, words in seen.metadata]
+        )
     if seen.report and rows.wide_button(f"{icons.ICON_FA_COPY}  Copy Report", f"report {id}", "All of it, as text"):
         rows.editor.clipboard.put(seen.report)
 

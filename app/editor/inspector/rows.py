@@ -53,7 +53,13 @@ class Rows:
         self.field_width = max(self.width - self.name_width - self.gap, 1.0)
 
     def name(
-        self, key: str, label: str, *, doc: str = "", changed: bool = False, color: RGB | None = None,
+        self,
+        key: str,
+        label: str,
+        *,
+        doc: str = "",
+        changed: bool = False,
+        color: RGB | None = None,
         spare: float = 0.0,
     ) -> None:
         """The name of a row, as the last item; the field comes next, on the same line.

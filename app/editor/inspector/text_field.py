@@ -21,8 +21,18 @@ def lines_of(text: str) -> int:
 
 
 def text_field(
-    fields: Fields, id: str, value: Plain, declaration: Value, width: float, *, label: str = "", mixed: bool = False,
-    hint: str = "", fault: bool = False, lines: int = 0, elide_left: bool = False,
+    fields: Fields,
+    id: str,
+    value: Plain,
+    declaration: Value,
+    width: float,
+    *,
+    label: str = "",
+    mixed: bool = False,
+    hint: str = "",
+    fault: bool = False,
+    lines: int = 0,
+    elide_left: bool = False,
 ) -> Edit | None:
     """A text that a click lets type in. `hint` is shown while it is empty; `elide_left` keeps its end in view."""
     assert isinstance(value, str)
@@ -45,8 +55,12 @@ def text_field(
         lines_drawn = imgui.get_window_draw_list()
         lines_drawn.push_clip_rect(rect[:2], rect[2:], True)
         lines_drawn.add_text(
-            imgui.get_font(), imgui.get_font_size(), (rect[0] + pad.x, rect[1] + pad.y),
-            imgui.get_color_u32((*color, 1.0)), text, wrap_width=rect[2] - rect[0] - 2 * pad.x,
+            imgui.get_font(),
+            imgui.get_font_size(),
+            (rect[0] + pad.x, rect[1] + pad.y),
+            imgui.get_color_u32((*color, 1.0)),
+            text,
+            wrap_width=rect[2] - rect[0] - 2 * pad.x,
         )
         lines_drawn.pop_clip_rect()
         return None

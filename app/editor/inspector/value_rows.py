@@ -44,9 +44,7 @@ class ValueRows:
     def __post_init__(self) -> None:
         self._keying = Keying(self.fields)
 
-    def draw(
-        self, rows: Rows, ports: Ports, declaration: Value, label: str = "", color: RGB | None = None
-    ) -> None:
+    def draw(self, rows: Rows, ports: Ports, declaration: Value, label: str = "", color: RGB | None = None) -> None:
         """One row; `ports` are the same value of several nodes, the active one first."""
         editor, port = rows.editor, ports[0]
         session, key = editor.session, str(port)
@@ -56,8 +54,14 @@ class ValueRows:
         value = value_now(session, port)[0] if moves else graph.value(port)
         changed = any(one in graph.animation or graph.value(one) != default_of(graph, one) for one in ports)
         control = session.control_of(port) if len(ports) == 1 else None
-        rows.name(key, label or declaration.label or port.socket, doc=_tip(declaration, control), changed=changed,
-                  color=color, spare=WIDTH * ui_scale())
+        rows.name(
+            key,
+            label or declaration.label or port.socket,
+            doc=_tip(declaration, control),
+            changed=changed,
+            color=color,
+            spare=WIDTH * ui_scale(),
+        )
         if imgui.is_item_hovered() and imgui.is_mouse_double_clicked(imgui.MouseButton_.left):
             rows.act(lambda: reset(session, ports))
         menu = imgui.is_item_hovered() and imgui.is_mouse_released(imgui.MouseButton_.right)
@@ -134,9 +138,14 @@ class ValueRows:
         port = ports[0]
         graph = rows.editor.session.graph
         if declaration.type == "path" and isinstance(value, str):
-            return self.files.path(rows, str(port), value, declaration, width, lambda path: apply(
-                rows.editor.session, ports, declaration, Edit(path)
-            ))
+            return self.files.path(
+                rows,
+                str(port),
+                value,
+                declaration,
+                width,
+                lambda path: apply(rows.editor.session, ports, declaration, Edit(path)),
+            )
         if declaration.role and isinstance(value, str):
             return self._of_layer(rows, port, declaration, value, width, mixed)
         if declaration.space and isinstance(value, str):
@@ -199,9 +208,12 @@ class ValueRows:
 
         entry(icons.ICON_FA_ROTATE_LEFT, "Reset", True, lambda: reset(session, ports))
         entry(icons.ICON_FA_COPY, "Copy Value", True, lambda: editor.clipboard.put(as_text(value)))
-        entry(icons.ICON_FA_PASTE, "Paste Value", source is None, lambda: apply(
-            session, ports, declaration, Edit(from_text(editor.clipboard.get()))
-        ))
+        entry(
+            icons.ICON_FA_PASTE,
+            "Paste Value",
+            source is None,
+            lambda: apply(session, ports, declaration, Edit(from_text(editor.clipboard.get()))),
+        )
         imgui.separator()
         if control is None:
             entry(icons.ICON_FA_SLIDERS, "Expose as Control", len(ports) == 1, lambda: session.expose(port))

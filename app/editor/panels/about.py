@@ -52,7 +52,8 @@ class About:
 
 def _versions() -> list[tuple[str, str]]:
     return [
-        ("Halation", metadata.version("halation")), ("Python", platform.python_version()),
+        ("Halation", metadata.version("halation")),
+        ("Python", platform.python_version()),
         ("System", platform.platform(terse=True)),
         *((name, metadata.version(name)) for name in _LIBRARIES),
     ]

@@ -20,8 +20,11 @@ from .listing import make_folder
 from .places import PlaceKind, completed
 
 PLACE_ICONS: dict[PlaceKind, str] = {
-    "home": icons.ICON_FA_HOUSE, "document": icons.ICON_FA_DIAGRAM_PROJECT, "folder": icons.ICON_FA_FOLDER,
-    "recent": icons.ICON_FA_CLOCK_ROTATE_LEFT, "drive": icons.ICON_FA_HARD_DRIVE,
+    "home": icons.ICON_FA_HOUSE,
+    "document": icons.ICON_FA_DIAGRAM_PROJECT,
+    "folder": icons.ICON_FA_FOLDER,
+    "recent": icons.ICON_FA_CLOCK_ROTATE_LEFT,
+    "drive": icons.ICON_FA_HARD_DRIVE,
 }
 
 
@@ -157,8 +160,12 @@ class FileBrowser:
         """Arrows choose; up and down only where a field does not need them."""
         if self._elsewhere:
             return
-        keys = ((imgui.Key.down_arrow, columns), (imgui.Key.up_arrow, -columns), (imgui.Key.page_down, 10 * columns),
-                (imgui.Key.page_up, -10 * columns))
+        keys = (
+            (imgui.Key.down_arrow, columns),
+            (imgui.Key.up_arrow, -columns),
+            (imgui.Key.page_down, 10 * columns),
+            (imgui.Key.page_up, -10 * columns),
+        )
         step = sum(amount for key, amount in keys if imgui.is_key_pressed(key))
         if columns > 1 and not now.query and not now.browse.saving:
             step += imgui.is_key_pressed(imgui.Key.right_arrow) - imgui.is_key_pressed(imgui.Key.left_arrow)
@@ -217,7 +224,8 @@ class FileBrowser:
             answer()
             return
         editor.dialogs.question = Question(
-            "Replace the file?", f"{target.name} is already in {target.parent.name or target.parent}.",
+            "Replace the file?",
+            f"{target.name} is already in {target.parent.name or target.parent}.",
             (("Replace", answer), ("Cancel", lambda: None)),
         )
 

@@ -42,6 +42,7 @@ def ranked(query: str, offered: tuple[Command, ...], recent: Collection[str]) ->
     labels = tuple(command.label for command in offered)
     found = [(offered[one.index], one) for one in match(query, labels)]
     if query.strip():
+
         def worth(pair: tuple[Command, Match]) -> tuple[bool, float, int]:
             return bool(pair[0].reason), -pair[1].score - pair[0].weight, pair[1].index
 
@@ -68,13 +69,23 @@ def _all(editor: Editor) -> Iterator[Command]:
         menu = action.menu.split("/")
         full = f"{menu[1]} {label}" if len(menu) > 1 and menu[1].lower() not in label.lower() else label
         yield Command(
-            action.id, full, menu[0] or "Action", partial(editor.actions.run, action.id, editor),
-            editor.actions.shortcut(action.id), action.doc, reason(editor, action),
+            action.id,
+            full,
+            menu[0] or "Action",
+            partial(editor.actions.run, action.id, editor),
+            editor.actions.shortcut(action.id),
+            action.doc,
+            reason(editor, action),
         )
     for id, type in editor.session.types.items():
         doc = (type.__doc__ or "").strip().splitlines()
-        yield Command(f"add {id}", f"Add {words(id).title()}", words(type.category).capitalize(),
-                      partial(_add, editor, id), doc=doc[0] if doc else "")
+        yield Command(
+            f"add {id}",
+            f"Add {words(id).title()}",
+            words(type.category).capitalize(),
+            partial(_add, editor, id),
+            doc=doc[0] if doc else "",
+        )
     for entry in code_entries():
         yield Command(f"add {entry.id}", "Add Code", "Code", partial(_add, editor, entry.id), doc=entry.doc)
     for path in paths():

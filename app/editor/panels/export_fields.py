@@ -89,8 +89,10 @@ def _frames(editor: Editor, form: Form) -> None:
         most = max(os.cpu_count() or 1, 1)
         form.jobs = min(max(imgui.slider_int("##jobs", form.jobs, 1, most)[1], 1), 256)
         record(editor, "render jobs")
-        tip("So many processes share the frames, each with pictures of its own on the device. "
-            "Where nodes make a frame of the one before, one process renders all.")
+        tip(
+            "So many processes share the frames, each with pictures of its own on the device. "
+            "Where nodes make a frame of the one before, one process renders all."
+        )
 
 
 def _extent_text(extent: Extent, frames: tuple[int, ...]) -> str:
@@ -153,8 +155,10 @@ def _options(editor: Editor, form: Form) -> None:
     label("", _LABELS)
     form.resume = imgui.checkbox("Resume", form.resume)[1]
     record(editor, "render resume")
-    tip("Keep frames whose files are there and would come out the same: after a render that was stopped, or a change "
-        "that only some frames see.")
+    tip(
+        "Keep frames whose files are there and would come out the same: after a render that was stopped, or a change "
+        "that only some frames see."
+    )
 
 
 def _consequences(editor: Editor, form: Form, aim: Aim) -> None:

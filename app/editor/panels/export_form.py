@@ -22,7 +22,9 @@ Extent = Literal["this frame", "all frames", "what is played", "some frames"]
 Depth = Literal["", "half", "float"]
 
 DEPTHS: tuple[tuple[Depth, str], ...] = (
-    ("", "as the format has it"), ("half", "16 bit"), ("float", "32 bit (16 in PNG and TIFF)"),
+    ("", "as the format has it"),
+    ("half", "16 bit"),
+    ("float", "32 bit (16 in PNG and TIFF)"),
 )
 PICTURES = (".exr", ".png", ".jpg", ".tif", ".webp", ".hdr")
 VIDEOS = (".mp4", ".mov", ".mkv", ".webm")
@@ -148,7 +150,9 @@ class Form:
         """The choices as the exporter wants them."""
         frames = self.frames(editor)
         made = Options(
-            frames=frames, precision=self.precision or None, view=self.view,
+            frames=frames,
+            precision=self.precision or None,
+            view=self.view,
             resume=self.resume and not any(is_video(str(self.file(editor, name))) for name in self.wanted(editor)),
             jobs=self.jobs if len(frames) > 1 else 1,
         )

@@ -29,12 +29,13 @@ _WIDTH, _HEIGHT = 92.0, 56.0
 _PAUSE = 1.5
 """Seconds between two small pictures of a render that runs."""
 
-_COLORS: dict[State, str] = {
-    "done": "good", "failed": "error", "cancelled": "dim", "running": "text", "waiting": "dim"
-}
+_COLORS: dict[State, str] = {"done": "good", "failed": "error", "cancelled": "dim", "running": "text", "waiting": "dim"}
 _ICONS: dict[State, str] = {
-    "done": icons.ICON_FA_FILM, "failed": icons.ICON_FA_TRIANGLE_EXCLAMATION, "cancelled": icons.ICON_FA_BAN,
-    "running": icons.ICON_FA_FILM, "waiting": icons.ICON_FA_HOURGLASS_HALF,
+    "done": icons.ICON_FA_FILM,
+    "failed": icons.ICON_FA_TRIANGLE_EXCLAMATION,
+    "cancelled": icons.ICON_FA_BAN,
+    "running": icons.ICON_FA_FILM,
+    "waiting": icons.ICON_FA_HOURGLASS_HALF,
 }
 
 

@@ -39,7 +39,12 @@ def read_folder(folder: Path) -> tuple[Item, ...]:
 
 
 def arranged(
-    items: Sequence[Item], endings: Collection[str], *, query: str = "", order: Order = "name", down: bool = False,
+    items: Sequence[Item],
+    endings: Collection[str],
+    *,
+    query: str = "",
+    order: Order = "name",
+    down: bool = False,
     hidden: bool = False,
 ) -> tuple[Item, ...]:
     """What a list shows: folders first, then files whose name ends in one of `endings` (none: all), sorted.
@@ -47,11 +52,13 @@ def arranged(
     With a `query` the best matches come first instead.
     """
     wanted = [
-        item for item in items
+        item
+        for item in items
         if (hidden or not item.hidden) and (item.is_folder or not endings or _ending(item.name) in endings)
     ]
     keys = {
-        "name": lambda item: _natural(item.name), "size": lambda item: (item.size, _natural(item.name)),
+        "name": lambda item: _natural(item.name),
+        "size": lambda item: (item.size, _natural(item.name)),
         "time": lambda item: (item.time, _natural(item.name)),
     }
     wanted.sort(key=keys[order], reverse=down)
@@ -158,7 +165,8 @@ def _natural(name: str) -> tuple[tuple[bool, int, str], ...]:
 def _reason(error: OSError) -> str:
     known = {
         PermissionError: "it may not be read or written; ask its owner, or choose another folder",
-        FileNotFoundError: "there is no such folder", NotADirectoryError: "this is a file, not a folder",
+        FileNotFoundError: "there is no such folder",
+        NotADirectoryError: "this is a file, not a folder",
         FileExistsError: "there is something of that name already",
     }
     return next((sentence for kind, sentence in known.items() if isinstance(error, kind)), error.strerror or str(error))

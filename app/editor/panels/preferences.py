@@ -118,8 +118,11 @@ class PreferencesDialog:
     def _folders(self, editor: Editor) -> None:
         """Where shaders in the Interactive Shader Format are looked for."""
         now = editor.store.now.isf_folders
-        wrapped(editor.palette.dim, "Folders with .fs files in the Interactive Shader Format; what is in them can be "
-                f"added to the graph. {', '.join(CUSTOMARY)} are looked at anyway.")
+        wrapped(
+            editor.palette.dim,
+            "Folders with .fs files in the Interactive Shader Format; what is in them can be "
+            f"added to the graph. {', '.join(CUSTOMARY)} are looked at anyway.",
+        )
         for index, folder in enumerate(now):
             if quiet(editor, icons.ICON_FA_XMARK, f"forget isf {index}", "No longer look there"):
                 _change(editor, isf_folders=tuple(one for one in now if one != folder))
@@ -141,7 +144,13 @@ class PreferencesDialog:
         record(editor, "button add isf")
 
     def _number(
-        self, editor: Editor, name: str, text: str, low: float, high: float, logarithmic: bool = False,
+        self,
+        editor: Editor,
+        name: str,
+        text: str,
+        low: float,
+        high: float,
+        logarithmic: bool = False,
     ) -> None:
         """A slider that takes effect when it is let go."""
         whole = isinstance(getattr(editor.store.now, name), int)

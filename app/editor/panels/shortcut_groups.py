@@ -9,13 +9,18 @@ from ..action import Action
 from ..editor import Editor
 
 _SCOPES = {
-    "graph": "Graph, with the mouse over it", "viewer": "Viewer, with the mouse over it",
+    "graph": "Graph, with the mouse over it",
+    "viewer": "Viewer, with the mouse over it",
     "animation": "Animation, with the mouse over it",
 }
 
 MOUSE: tuple[tuple[str, str], ...] = (
-    ("Middle drag, Alt+drag", "Move the view"), ("Wheel", "Zoom"), ("Right click", "Menu of what is there"),
-    ("Shift+click", "Select more"), ("Drag on nothing", "Select with a frame"), ("Ctrl+Right drag", "Cut links"),
+    ("Middle drag, Alt+drag", "Move the view"),
+    ("Wheel", "Zoom"),
+    ("Right click", "Menu of what is there"),
+    ("Shift+click", "Select more"),
+    ("Drag on nothing", "Select with a frame"),
+    ("Ctrl+Right drag", "Cut links"),
 )
 
 

@@ -14,8 +14,11 @@ from ..toolkit.words import ICONS, level_color, wrapped
 
 _WIDTH, _GAP, _BELOW, _MOST, _FADE = 360.0, 8.0, 34.0, 5, 0.6
 _TOAST = (
-    FIXED | int(imgui.WindowFlags_.no_decoration) | int(imgui.WindowFlags_.always_auto_resize)
-    | int(imgui.WindowFlags_.no_nav) | int(imgui.WindowFlags_.no_focus_on_appearing)
+    FIXED
+    | int(imgui.WindowFlags_.no_decoration)
+    | int(imgui.WindowFlags_.always_auto_resize)
+    | int(imgui.WindowFlags_.no_nav)
+    | int(imgui.WindowFlags_.no_focus_on_appearing)
 )
 
 

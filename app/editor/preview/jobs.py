@@ -24,7 +24,13 @@ class Job:
     """
 
     def __init__(
-        self, renderer: Renderer, wish: Wish, ports: Mapping[str, Port], frame: int, timed: bool, ahead: bool = False,
+        self,
+        renderer: Renderer,
+        wish: Wish,
+        ports: Mapping[str, Port],
+        frame: int,
+        timed: bool,
+        ahead: bool = False,
         part: Part | None = None,
     ) -> None:
         self.wish, self.ports, self.frame, self.ahead, self.part = wish, ports, frame, ahead, part

@@ -69,8 +69,14 @@ class Preview:
     # --- what the editor says ----------------------------------------------------------------------------------------
 
     def want(
-        self, graph: Graph, ports: Mapping[str, Port], *, bindings: Mapping[str, Binding] | None = None,
-        scale: float = 1.0, frame: int = 1, size: Size | None = None,
+        self,
+        graph: Graph,
+        ports: Mapping[str, Port],
+        *,
+        bindings: Mapping[str, Binding] | None = None,
+        scale: float = 1.0,
+        frame: int = 1,
+        size: Size | None = None,
     ) -> None:
         """What panels want to show, by their names. Costs nothing when it is the same as before."""
         before = self._wish

@@ -98,11 +98,22 @@ class Shelf:
         texture = self._runner.texture(surface.key)
         assert texture is not None
         self._revision += not same
-        return _Picture(Shown(
-            port, texture.handle, size, face.full_size, wish.scale, kind_of(wish.graph, port, surface.channels),
-            surface.channels, surface.key, before.shown.revision if before is not None and same else self._revision,
-            wish.frame, surface.window.start if surface.window else (0, 0),
-        ), lease)
+        return _Picture(
+            Shown(
+                port,
+                texture.handle,
+                size,
+                face.full_size,
+                wish.scale,
+                kind_of(wish.graph, port, surface.channels),
+                surface.channels,
+                surface.key,
+                before.shown.revision if before is not None and same else self._revision,
+                wish.frame,
+                surface.window.start if surface.window else (0, 0),
+            ),
+            lease,
+        )
 
     def full_size(self, port: Port, wish: Wish, plan: Plan, size: Size) -> Size:
         """The size at scale 1 of what was rounded at this one: as before, or that of a picture or the canvas."""

@@ -116,9 +116,7 @@ class Take:
     # --- parts -------------------------------------------------------------------------------------------------------
 
     def _sizes(self) -> dict[str, int]:
-        return {
-            face.surface.key: face.surface.nbytes for frame in self._leases for face in self._faces[frame].values()
-        }
+        return {face.surface.key: face.surface.nbytes for frame in self._leases for face in self._faces[frame].values()}
 
     def _make_room(self, most: int, now: int) -> None:
         """Let frames go that are wanted last, until the others fit."""

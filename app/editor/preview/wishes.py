@@ -44,14 +44,18 @@ class Wish:
 
     def equals(self, other: Wish) -> bool:
         """True where the same pixels are wanted; layout does not matter."""
-        return self.ports == other.ports and self.scale == other.scale and self.same_world(other) and (
-            self.graph is other.graph or _logic(self.graph) == _logic(other.graph)
+        return (
+            self.ports == other.ports
+            and self.scale == other.scale
+            and self.same_world(other)
+            and (self.graph is other.graph or _logic(self.graph) == _logic(other.graph))
         )
 
     def same_world(self, other: Wish) -> bool:
         """True where all that comes from outside of the graph is the same."""
         return (
-            (self.frame, self.size) == (other.frame, other.size) and self.bindings.keys() == other.bindings.keys()
+            (self.frame, self.size) == (other.frame, other.size)
+            and self.bindings.keys() == other.bindings.keys()
             and all(_same(item, other.bindings[name]) for name, item in self.bindings.items())
         )
 
@@ -65,8 +69,15 @@ class Wish:
 def _logic(graph: Graph) -> tuple[Any, ...]:
     """All of a graph that pixels depend on."""
     return (
-        graph.nodes, graph.links, graph.inputs, graph.outputs, graph.controls, graph.animation, graph.settings,
-        graph.muted, graph.folder,
+        graph.nodes,
+        graph.links,
+        graph.inputs,
+        graph.outputs,
+        graph.controls,
+        graph.animation,
+        graph.settings,
+        graph.muted,
+        graph.folder,
     )
 
 

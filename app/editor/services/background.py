@@ -19,7 +19,11 @@ class Background(Generic[K, V]):
     """
 
     def __init__(
-        self, name: str, make: Callable[[K], V], kept: int, waiting: int = sys.maxsize,
+        self,
+        name: str,
+        make: Callable[[K], V],
+        kept: int,
+        waiting: int = sys.maxsize,
         begin: Callable[[], object] = lambda: None,
     ) -> None:
         self._name, self._make, self._begin = name, make, begin

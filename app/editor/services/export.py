@@ -98,9 +98,15 @@ class Export:
             self.began = time.monotonic()
             try:
                 self._process = subprocess.Popen(
-                    self.job.words, cwd=self.job.graph.folder or ".", stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                    stderr=subprocess.PIPE, encoding="utf-8", errors="surrogateescape",
-                    env={**os.environ, "PYTHONIOENCODING": "utf-8"}, start_new_session=True,
+                    self.job.words,
+                    cwd=self.job.graph.folder or ".",
+                    stdin=subprocess.PIPE,
+                    stdout=subprocess.PIPE,
+                    stderr=subprocess.PIPE,
+                    encoding="utf-8",
+                    errors="surrogateescape",
+                    env={**os.environ, "PYTHONIOENCODING": "utf-8"},
+                    start_new_session=True,
                 )
             except OSError as fault:
                 self.sentence = f"the export cannot be started: {fault.filename or ''} {fault.strerror}"

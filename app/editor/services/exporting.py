@@ -74,7 +74,10 @@ class Exports:
         return tuple(one for one in self.all if one.state in ("running", "waiting"))
 
     def start(
-        self, graph: Graph, destinations: Sequence[tuple[str, Path]], bindings: Mapping[str, object] | None = None,
+        self,
+        graph: Graph,
+        destinations: Sequence[tuple[str, Path]],
+        bindings: Mapping[str, object] | None = None,
         options: Options = Options(),
     ) -> Export:
         """Render the graph as it is now, saved or not, to pairs of an output's name and a file; "" is all outputs.

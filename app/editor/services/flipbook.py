@@ -84,9 +84,7 @@ class Flipbook:
     @property
     def _state(self) -> tuple[tuple[frozenset[int], bool], ...]:
         """Of every strip the frames that are written, and whether its render has ended."""
-        return tuple(
-            (_written(strip), strip.export is None or strip.export.ended > 0.0) for strip in self.strips
-        )
+        return tuple((_written(strip), strip.export is None or strip.export.ended > 0.0) for strip in self.strips)
 
 
 def _written(strip: Strip) -> frozenset[int]:

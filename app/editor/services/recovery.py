@@ -190,14 +190,18 @@ class Recovery:
         except Exception as fault:
             return f"unsaved work is not kept because of a fault in Halation ({type(fault).__name__}: {fault})"
         with self._change:
-            self._adopted = self._adopted[len(adopted):]
+            self._adopted = self._adopted[len(adopted) :]
         return ""
 
 
 def _text(graph: Graph, path: Path | None) -> str:
     record = _Record(
-        msgspec.Raw(document.dumps(graph).strip().encode()), _plain(path.absolute()) if path else "",
-        _plain(Path(graph.folder).absolute()), time.time(), metadata.version("halation"), len(graph.nodes),
+        msgspec.Raw(document.dumps(graph).strip().encode()),
+        _plain(path.absolute()) if path else "",
+        _plain(Path(graph.folder).absolute()),
+        time.time(),
+        metadata.version("halation"),
+        len(graph.nodes),
     )
     return msgspec.json.encode(record).decode()
 

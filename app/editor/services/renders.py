@@ -18,8 +18,17 @@ from .sequences import standing
 from .versions import Versions
 
 ROLES = (
-    Role.BEAUTY, Role.ALBEDO, Role.EMISSION, Role.DEPTH, Role.NORMAL, Role.POSITION, Role.VELOCITY, Role.OCCLUSION,
-    Role.OBJECT_ID, Role.MATERIAL_ID, Role.UV,
+    Role.BEAUTY,
+    Role.ALBEDO,
+    Role.EMISSION,
+    Role.DEPTH,
+    Role.NORMAL,
+    Role.POSITION,
+    Role.VELOCITY,
+    Role.OCCLUSION,
+    Role.OBJECT_ID,
+    Role.MATERIAL_ID,
+    Role.UV,
 )
 """What a render is read for."""
 

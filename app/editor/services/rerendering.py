@@ -46,7 +46,10 @@ class Rerendering:
     """
 
     def __init__(
-        self, path: Path, bindings: Callable[[Graph], Mapping[str, str]], load: Callable[[], Graph],
+        self,
+        path: Path,
+        bindings: Callable[[Graph], Mapping[str, str]],
+        load: Callable[[], Graph],
         render: Callable[[Graph, Progress], Report],
     ) -> None:
         self._path, self._bindings = path.absolute(), bindings

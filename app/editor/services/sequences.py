@@ -44,7 +44,9 @@ def patterns(paths: Sequence[Path]) -> tuple[tuple[Path, ...], dict[Path, Path]]
     """Dropped files with several of one sequence made one, and the sequence that each of the others is a frame of."""
     suggested = {path: found for path in paths if (found := suggest_pattern(str(path)))}
     counts = {found: [*suggested.values()].count(found) for found in suggested.values()}
-    made = tuple(dict.fromkeys(
-        Path(suggested[path]) if path in suggested and counts[suggested[path]] > 1 else path for path in paths
-    ))
+    made = tuple(
+        dict.fromkeys(
+            Path(suggested[path]) if path in suggested and counts[suggested[path]] > 1 else path for path in paths
+        )
+    )
     return made, {path: Path(suggested[path]) for path in made if path in suggested}

@@ -87,12 +87,19 @@ class Watcher:
         self._thread.start()
 
     def watch(
-        self, graph: Path | None = None, groups: Iterable[Path] = (), pictures: Iterable[Path] = (),
-        shaders: Iterable[Path] = (), nodes: Iterable[Path] = (), code: Iterable[Path] = (),
+        self,
+        graph: Path | None = None,
+        groups: Iterable[Path] = (),
+        pictures: Iterable[Path] = (),
+        shaders: Iterable[Path] = (),
+        nodes: Iterable[Path] = (),
+        code: Iterable[Path] = (),
     ) -> None:
         """Watch these from now on, and nothing else. Files may be missing; of shaders and nodes, give the folders."""
         files = (
-            *_keys("graph", [graph] if graph else ()), *_keys("group", groups), *_keys("picture", pictures),
+            *_keys("graph", [graph] if graph else ()),
+            *_keys("group", groups),
+            *_keys("picture", pictures),
             *_keys("code", code),
         )
         wanted = _Watched(files, (*_keys("shader", shaders), *_keys("node", nodes)))
@@ -113,7 +120,8 @@ class Watcher:
         with self._lock:
             news, self._news = self._news, {}
             return tuple(
-                Change(*key, exists=one.stamp is not None) for key, one in news.items()
+                Change(*key, exists=one.stamp is not None)
+                for key, one in news.items()
                 if not self._is_ours(key[1], one.content)
             )
 
@@ -163,8 +171,15 @@ class Watcher:
     def _listen(self, folders: frozenset[tuple[Path, int]]) -> None:
         """Compare whenever something happens in the folders, until others are wanted. Raises OSError, RuntimeError."""
         told = watch(
-            *(path for path, _ in folders), watch_filter=None, recursive=False, debounce=100, step=20,
-            rust_timeout=int(1000 * _LOOK), stop_event=self._wake, yield_on_timeout=True, raise_interrupt=False,
+            *(path for path, _ in folders),
+            watch_filter=None,
+            recursive=False,
+            debounce=100,
+            step=20,
+            rust_timeout=int(1000 * _LOOK),
+            stop_event=self._wake,
+            yield_on_timeout=True,
+            raise_interrupt=False,
         )
         for _ in told:
             self._settle()

@@ -231,10 +231,16 @@ class Animating(State):
         if port is not None:
             return _whole(animation.get(port))
         selection = self.selection
-        return self._kept("key frames", (self.graph, selection), lambda: tuple(sorted(
-            {*_frames(animation, {id for id in self.graph.nodes if id in selection})}
-            or {*_frames(animation, None)}
-        )))
+        return self._kept(
+            "key frames",
+            (self.graph, selection),
+            lambda: tuple(
+                sorted(
+                    {*_frames(animation, {id for id in self.graph.nodes if id in selection})}
+                    or {*_frames(animation, None)}
+                )
+            ),
+        )
 
     def next_key(self, port: Port | None = None) -> int | None:
         """The next frame with a key, as `key_frames` finds them."""
@@ -252,9 +258,11 @@ class Animating(State):
 
     def _timed(self, place: Route) -> Graph:
         """The graph at a place, with the rate and range of the document."""
-        return self._kept(f"timed {len(place)}", (self.root, self.graph), lambda: replace(
-            self.graph if place == self.place else inside(self.root, place), settings=self.settings
-        ))
+        return self._kept(
+            f"timed {len(place)}",
+            (self.root, self.graph),
+            lambda: replace(self.graph if place == self.place else inside(self.root, place), settings=self.settings),
+        )
 
     def _at_now(self, shown: Iterable[Port]) -> Graph:
         graph = self.graph
@@ -323,6 +331,4 @@ def _whole(animation: Animation | None) -> tuple[int, ...]:
 
 
 def _frames(animation: Mapping[Port, Animation], nodes: set[str] | None) -> Iterable[int]:
-    return (
-        frame for port, item in animation.items() if nodes is None or port.node in nodes for frame in _whole(item)
-    )
+    return (frame for port, item in animation.items() if nodes is None or port.node in nodes for frame in _whole(item))

@@ -88,17 +88,21 @@ class Coding(State):
     @property
     def drafts(self) -> Mapping[Path, str]:
         """Code that differs from the file that it belongs to, by file."""
-        return self._kept("drafts", (self.root, self._mark), lambda: MappingProxyType({
-            path: text for path, text in coding.texts(self.root).items() if self._on_disk.get(path, text) != text
-        }))
+        return self._kept(
+            "drafts",
+            (self.root, self._mark),
+            lambda: MappingProxyType(
+                {path: text for path, text in coding.texts(self.root).items() if self._on_disk.get(path, text) != text}
+            ),
+        )
 
     @property
     def recoverable(self) -> Graph:
         """The document with drafts in it: nothing else would bring them back."""
         drafts = self.drafts
-        return self._kept("recoverable", (self.root, drafts), lambda: (
-            coding.kept(self.root, drafts) if drafts else self.root
-        ))
+        return self._kept(
+            "recoverable", (self.root, drafts), lambda: coding.kept(self.root, drafts) if drafts else self.root
+        )
 
     def reread_code(self, path: Path) -> None:
         """Take over what another program wrote to a file of code, drafts of it included; this is no step."""

@@ -48,8 +48,16 @@ class Ends(State):
         self.edit(f"Rename {key} to {new}", graph, chosen, moves={end: fresh})
 
     def set_input(
-        self, name: str, *, file: str | None = None, layer: str | None = None, default: Plain | Keep | None = KEEP,
-        doc: str | None = None, missing: Missing | None = None, color_space: str | None = None, merge: str = "",
+        self,
+        name: str,
+        *,
+        file: str | None = None,
+        layer: str | None = None,
+        default: Plain | Keep | None = KEEP,
+        doc: str | None = None,
+        missing: Missing | None = None,
+        color_space: str | None = None,
+        merge: str = "",
     ) -> None:
         """Change an input; what is not given stays. A default of None means that there is none."""
         if name not in self.graph.inputs:

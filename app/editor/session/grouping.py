@@ -73,6 +73,9 @@ class Grouping(State):
             raise UsageError(f"{target}: this is the file of the document itself: choose another name")
         save(body, target)
         if link:
-            self.edit(f"Link {id} to {target.name}", replace(
-                self.graph, nodes={**self.graph.nodes, id: Group(body, paths.relative(target, self.root.folder))}
-            ))
+            self.edit(
+                f"Link {id} to {target.name}",
+                replace(
+                    self.graph, nodes={**self.graph.nodes, id: Group(body, paths.relative(target, self.root.folder))}
+                ),
+            )

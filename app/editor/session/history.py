@@ -109,7 +109,8 @@ class History:
         """Apply what is no step, such as another folder, to every document of the past and future."""
         self._steps = [
             replace(
-                step, before=replace(step.before, root=edit(step.before.root)),
+                step,
+                before=replace(step.before, root=edit(step.before.root)),
                 after=replace(step.after, root=edit(step.after.root)),
             )
             for step in self._steps

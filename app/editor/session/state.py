@@ -122,7 +122,11 @@ class State:
         self._touch()
 
     def edit(
-        self, label: str, graph: Graph, select: Iterable[str] | None = None, merge: str = "",
+        self,
+        label: str,
+        graph: Graph,
+        select: Iterable[str] | None = None,
+        merge: str = "",
         moves: folding.Moves | None = None,
     ) -> None:
         """Put `graph` where `self.graph` is, as one step.
@@ -237,10 +241,15 @@ class State:
     def _checked(self, name: str, graph: Graph) -> tuple[Problem, ...]:
         """The problems of a graph, starting from those that were found last under that name."""
         (before, types), found = self._cache.get(name, ((None, None), ()))
-        return self._kept(name, (graph, self.types), lambda: (
-            again(graph, before, found, self.types) if isinstance(before, Graph) and types is self.types
-            else remarks(graph, self.types)
-        ))
+        return self._kept(
+            name,
+            (graph, self.types),
+            lambda: (
+                again(graph, before, found, self.types)
+                if isinstance(before, Graph) and types is self.types
+                else remarks(graph, self.types)
+            ),
+        )
 
     def _ordered_selection(self) -> list[str]:
         """What is selected, the active element last."""

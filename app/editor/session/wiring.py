@@ -101,9 +101,12 @@ class Wiring(State):
     def disconnect_all(self, key: str) -> None:
         """Remove every link of a node or end."""
         links = self.graph.links.items()
-        self.edit(f"Unlink {key}", wiring.cut(
-            self.graph, [end for end, start in links if key in (elements.owner(end), elements.owner(start))]
-        ))
+        self.edit(
+            f"Unlink {key}",
+            wiring.cut(
+                self.graph, [end for end, start in links if key in (elements.owner(end), elements.owner(start))]
+            ),
+        )
 
     def cut(self, targets: Collection[Port]) -> None:
         """Remove the links to `targets`."""

@@ -23,10 +23,12 @@ class Fonts:
 def load() -> Fonts:
     """Load the fonts that come with the window library, so that they look the same everywhere."""
     folder = Path(imgui_bundle.__file__).parent / "assets" / "fonts"
-    return Fonts(*(
-        _with_icons(folder, name)
-        for name in ("Roboto/Roboto-Regular.ttf", "Roboto/Roboto-Bold.ttf", "Inconsolata-Medium.ttf")
-    ))
+    return Fonts(
+        *(
+            _with_icons(folder, name)
+            for name in ("Roboto/Roboto-Regular.ttf", "Roboto/Roboto-Bold.ttf", "Inconsolata-Medium.ttf")
+        )
+    )
 
 
 def _with_icons(folder: Path, name: str) -> imgui.ImFont:

@@ -23,8 +23,10 @@ NEAR = 7.0
 """Pixels from a handle within which the mouse takes it."""
 
 KEY = 4.2
-_BUTTONS = int(imgui.ButtonFlags_.mouse_button_left) | int(imgui.ButtonFlags_.mouse_button_right) | int(
-    imgui.ButtonFlags_.mouse_button_middle
+_BUTTONS = (
+    int(imgui.ButtonFlags_.mouse_button_left)
+    | int(imgui.ButtonFlags_.mouse_button_right)
+    | int(imgui.ButtonFlags_.mouse_button_middle)
 )
 LEFT, RIGHT, MIDDLE = imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.MouseButton_.middle
 
@@ -71,7 +73,7 @@ class Ruler:
             if self._hold == "now":
                 timeline.stop()
         if hovered and io.mouse_wheel:
-            timeline.zoom(session, plane.frame(mouse.x), 1.25 ** io.mouse_wheel)
+            timeline.zoom(session, plane.frame(mouse.x), 1.25**io.mouse_wheel)
         if hovered and imgui.is_mouse_double_clicked(MIDDLE):
             timeline.view = None
         if not active:
@@ -128,8 +130,11 @@ class Ruler:
         with font(editor, "text", SMALL * 0.92):
             for tick in ticks(plane.view.first, plane.view.last, plane.across, 58.0 * scale, whole=True):
                 x = round(plane.x(tick.at)) + 0.5
-                draw.add_line((x, bottom - (12.0 if tick.label else 9.0) * scale), (x, bottom - 4.0 * scale),
-                              line if tick.label else faint)
+                draw.add_line(
+                    (x, bottom - (12.0 if tick.label else 9.0) * scale),
+                    (x, bottom - 4.0 * scale),
+                    line if tick.label else faint,
+                )
                 if tick.label:
                     wide = imgui.calc_text_size(tick.label).x
                     draw.add_text((round(x - wide * 0.5), top + 3.0 * scale), u32(palette.dim), tick.label)
@@ -138,8 +143,10 @@ class Ruler:
         """What can be shown at once is green, what has no file is red."""
         draw, palette, scale = imgui.get_window_draw_list(), editor.palette, ui_scale()
         bottom = plane.rect[3]
-        for frames, color in ((_runs(editor.preview.frames), palette.good), (self.missing.gaps(editor.session),
-                                                                             palette.error)):
+        for frames, color in (
+            (_runs(editor.preview.frames), palette.good),
+            (self.missing.gaps(editor.session), palette.error),
+        ):
             for first, last in frames:
                 a, b = plane.x(first - 0.5), max(plane.x(last + 0.5), plane.x(first - 0.5) + 1.5)
                 draw.add_rect_filled((a, bottom - 3.0 * scale), (b, bottom), u32(color, 0.95))

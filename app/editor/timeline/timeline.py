@@ -25,7 +25,8 @@ HEIGHT = 40.0
 """Of the bar, at UI scale 1."""
 
 _LOOPS: dict[Loop, str] = {
-    "loop": icons.ICON_FA_REPEAT, "once": icons.ICON_FA_ARROW_RIGHT_TO_BRACKET,
+    "loop": icons.ICON_FA_REPEAT,
+    "once": icons.ICON_FA_ARROW_RIGHT_TO_BRACKET,
     "ping-pong": icons.ICON_FA_RIGHT_LEFT,
 }
 _ROOMY, _NARROW = 1050.0, 760.0
@@ -154,4 +155,3 @@ class Timeline:
         imgui.set_cursor_screen_pos(rect[:2])
         imgui.dummy((max(rect[2] - rect[0], 1.0), rect[3] - rect[1]))
         tip("Frames that are ready are shown at once. They keep to a half of the memory budget.")
-

@@ -89,7 +89,13 @@ def outline(color: RGB, thickness: float = 2.0) -> None:
 
 
 def dropdown(
-    surface: Surface, label: str, name: str, doc: str, fill: Callable[[], object], *, lit: bool = False,
+    surface: Surface,
+    label: str,
+    name: str,
+    doc: str,
+    fill: Callable[[], object],
+    *,
+    lit: bool = False,
     width: float = 0.0,
 ) -> None:
     """A quiet button that opens a menu below it."""

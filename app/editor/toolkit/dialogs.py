@@ -14,8 +14,11 @@ if TYPE_CHECKING:
     from ..editor import Editor
 
 FIXED = (
-    int(imgui.WindowFlags_.no_docking) | int(imgui.WindowFlags_.no_saved_settings) | int(imgui.WindowFlags_.no_move)
-    | int(imgui.WindowFlags_.no_collapse) | int(imgui.WindowFlags_.no_resize)
+    int(imgui.WindowFlags_.no_docking)
+    | int(imgui.WindowFlags_.no_saved_settings)
+    | int(imgui.WindowFlags_.no_move)
+    | int(imgui.WindowFlags_.no_collapse)
+    | int(imgui.WindowFlags_.no_resize)
 )
 
 
@@ -38,7 +41,11 @@ def backdrop(editor: Editor, name: str, opacity: float = 0.45) -> bool:
 
 @contextmanager
 def dialog(
-    editor: Editor, title: str, size: tuple[float, float], *, top: float = 0.5,
+    editor: Editor,
+    title: str,
+    size: tuple[float, float],
+    *,
+    top: float = 0.5,
 ) -> Iterator[None]:
     """A window over everything; `size` in pixels at scale 1, a height of 0 is what it needs.
 

@@ -57,8 +57,17 @@ def combo(surface: Surface, name: str, now: str, choices: Sequence[str], width: 
 
 
 def number(
-    surface: Surface, name: str, value: float, form: str, width: float, doc: str, *, neutral: float | None = None,
-    speed: float = 0.01, low: float = 0.0, high: float = 0.0,
+    surface: Surface,
+    name: str,
+    value: float,
+    form: str,
+    width: float,
+    doc: str,
+    *,
+    neutral: float | None = None,
+    speed: float = 0.01,
+    low: float = 0.0,
+    high: float = 0.0,
 ) -> float:
     """A number that is dragged or typed, in the color of errors while it is not neutral; a right click makes it so."""
     changed = neutral is not None and value != neutral

@@ -21,7 +21,8 @@ SMALL, TITLE, BIG = EM * 0.86, EM * 1.125, EM * 1.6
 """Font sizes besides that of everything else: notes and headings of sections, titles of dialogs, the program's name."""
 
 ICONS: dict[Level, str] = {
-    "info": icons.ICON_FA_CIRCLE_INFO, "warning": icons.ICON_FA_TRIANGLE_EXCLAMATION,
+    "info": icons.ICON_FA_CIRCLE_INFO,
+    "warning": icons.ICON_FA_TRIANGLE_EXCLAMATION,
     "error": icons.ICON_FA_CIRCLE_XMARK,
 }
 
@@ -115,8 +116,10 @@ def nothing_here(editor: Editor, icon: str, title: str, sentence: str) -> None:
     height = size.y + 56 * scale
     left, top = imgui.get_cursor_pos_x(), imgui.get_cursor_pos_y() + max((room.y - height) * 0.4, 0.0)
     imgui.set_cursor_pos_y(top)
-    for text, base, color in ((icon, 22.0, mix(editor.palette.dim, editor.palette.panel, 0.35)),
-                              (title, EM, editor.palette.text)):
+    for text, base, color in (
+        (icon, 22.0, mix(editor.palette.dim, editor.palette.panel, 0.35)),
+        (title, EM, editor.palette.text),
+    ):
         with font(editor, "bold", base):
             imgui.set_cursor_pos_x(left + max((room.x - imgui.calc_text_size(text).x) / 2, 0.0))
             imgui.text_colored(vec4(color), text)

@@ -82,9 +82,7 @@ class Sight:
         grown = zoom / self.zoom
         x, y = (
             offset - (offset - self.pan[i]) * grown
-            for i, offset in enumerate(
-                (at[i] - self.origin[i]) * self.density - self.panel[i] / 2 for i in (0, 1)
-            )
+            for i, offset in enumerate((at[i] - self.origin[i]) * self.density - self.panel[i] / 2 for i in (0, 1))
         )
         return replace(self, zoom=zoom, pan=(x, y))
 
@@ -158,8 +156,14 @@ def box_grip(at: Point, box: Box, reach: float) -> Grip:
     if not (left - reach <= at[0] <= right + reach and top - reach <= at[1] <= bottom + reach):
         return ""
     sides: dict[tuple[str, str], Grip] = {
-        ("n", "w"): "nw", ("n", "e"): "ne", ("s", "w"): "sw", ("s", "e"): "se", ("n", ""): "n", ("s", ""): "s",
-        ("", "w"): "w", ("", "e"): "e",
+        ("n", "w"): "nw",
+        ("n", "e"): "ne",
+        ("s", "w"): "sw",
+        ("s", "e"): "se",
+        ("n", ""): "n",
+        ("s", ""): "s",
+        ("", "w"): "w",
+        ("", "e"): "e",
     }
     vertical = "n" if abs(at[1] - top) <= reach else "s" if abs(at[1] - bottom) <= reach else ""
     horizontal = "w" if abs(at[0] - left) <= reach else "e" if abs(at[0] - right) <= reach else ""
@@ -173,7 +177,11 @@ def box_dragged(box: Box, grip: Grip, by: Point) -> Box:
         dx = min(max(by[0], -left), 1.0 - right)
         dy = min(max(by[1], -top), 1.0 - bottom)
         return left + dx, top + dy, right + dx, bottom + dy
-    return ordered((
-        left + (by[0] if "w" in grip else 0.0), top + (by[1] if "n" in grip else 0.0),
-        right + (by[0] if "e" in grip else 0.0), bottom + (by[1] if "s" in grip else 0.0),
-    ))
+    return ordered(
+        (
+            left + (by[0] if "w" in grip else 0.0),
+            top + (by[1] if "n" in grip else 0.0),
+            right + (by[0] if "e" in grip else 0.0),
+            bottom + (by[1] if "s" in grip else 0.0),
+        )
+    )

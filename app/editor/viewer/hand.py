@@ -25,12 +25,21 @@ NOTCHES = 4.0
 _PAUSE = 0.7
 """Seconds without the wheel that end a step."""
 
-_CURSORS: Mapping[str, imgui.MouseCursor_] = MappingProxyType({
-    "n": imgui.MouseCursor_.resize_ns, "s": imgui.MouseCursor_.resize_ns, "w": imgui.MouseCursor_.resize_ew,
-    "e": imgui.MouseCursor_.resize_ew, "nw": imgui.MouseCursor_.resize_nwse, "se": imgui.MouseCursor_.resize_nwse,
-    "ne": imgui.MouseCursor_.resize_nesw, "sw": imgui.MouseCursor_.resize_nesw, "move": imgui.MouseCursor_.resize_all,
-    "line": imgui.MouseCursor_.resize_all, "angle": imgui.MouseCursor_.hand,
-})
+_CURSORS: Mapping[str, imgui.MouseCursor_] = MappingProxyType(
+    {
+        "n": imgui.MouseCursor_.resize_ns,
+        "s": imgui.MouseCursor_.resize_ns,
+        "w": imgui.MouseCursor_.resize_ew,
+        "e": imgui.MouseCursor_.resize_ew,
+        "nw": imgui.MouseCursor_.resize_nwse,
+        "se": imgui.MouseCursor_.resize_nwse,
+        "ne": imgui.MouseCursor_.resize_nesw,
+        "sw": imgui.MouseCursor_.resize_nesw,
+        "move": imgui.MouseCursor_.resize_all,
+        "line": imgui.MouseCursor_.resize_all,
+        "angle": imgui.MouseCursor_.hand,
+    }
+)
 
 
 class Hand:

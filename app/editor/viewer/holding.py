@@ -22,8 +22,22 @@ if TYPE_CHECKING:
     from ..editor import Editor
 
 What = Literal[
-    "pan", "handle", "light", "light depth", "light drop", "goal", "goal depth", "sun", "orbit", "track", "wipe",
-    "region", "new region", "measure", "pick", "matte",
+    "pan",
+    "handle",
+    "light",
+    "light depth",
+    "light drop",
+    "goal",
+    "goal depth",
+    "sun",
+    "orbit",
+    "track",
+    "wipe",
+    "region",
+    "new region",
+    "measure",
+    "pick",
+    "matte",
 ]
 
 ARM = 56.0
@@ -48,7 +62,13 @@ class Aim:
 
 
 def aim(
-    editor: Editor, sight: Sight, at: Point, scale: float = 1.0, *, ctrl: bool = False, alt: bool = False,
+    editor: Editor,
+    sight: Sight,
+    at: Point,
+    scale: float = 1.0,
+    *,
+    ctrl: bool = False,
+    alt: bool = False,
     shift: bool = False,
 ) -> Aim:
     """What is under the mouse. `scale` is that of the interface."""

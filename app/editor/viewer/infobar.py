@@ -90,7 +90,8 @@ def of_pixel(editor: Editor, pixel: Pixels | None, values: tuple[float, ...], ki
         hue, saturation, value = hsv(tuple(float(part) for part in shown))
         light = float(np.dot(values[:3], LUMINANCE))
         words += [
-            Word("", (float(shown[0]), float(shown[1]), float(shown[2])), 1.5), Word(eight, palette.dim, 0.5),
+            Word("", (float(shown[0]), float(shown[1]), float(shown[2])), 1.5),
+            Word(eight, palette.dim, 0.5),
             Word(f"H{hue:4.0f} S{saturation:5.2f} V{value:5.2f}", palette.dim, 1.5),
             Word(f"L {written(light)}", palette.dim, 1.5),
         ]

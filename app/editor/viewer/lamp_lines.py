@@ -84,9 +84,7 @@ def _knob(lines: imgui.ImDrawList, at: Point, light: Light, ring: RGB) -> None:
         lines.add_line((at[0] - half, at[1]), (at[0] + half, at[1]), u32(ink), 1.5 * scale)
 
 
-def _goal(
-    editor: Editor, lines: imgui.ImDrawList, sight: Sight, lamp: Lamp, ring: RGB, *, near: bool
-) -> None:
+def _goal(editor: Editor, lines: imgui.ImDrawList, sight: Sight, lamp: Lamp, ring: RGB, *, near: bool) -> None:
     """What a spot shines to: a ring at the end of a line."""
     assert lamp.aims is not None
     scale, (seen, depth) = ui_scale(), lamp.aims

@@ -65,7 +65,12 @@ def asked_view(graph: Graph, port: Port) -> str:
 
 
 def look_of(
-    state: ViewerState, sight: Sight, meaning: Meaning, span: tuple[float, float], view: str, surround: RGB,
+    state: ViewerState,
+    sight: Sight,
+    meaning: Meaning,
+    span: tuple[float, float],
+    view: str,
+    surround: RGB,
     color: ColorSettings = DEFAULT_COLOR,
 ) -> Look:
     """What the display needs to know.
@@ -81,11 +86,27 @@ def look_of(
     compare = "b" if state.compare == "toggle" and state.toggled else compare
     gray = _GRAYS[state.background]
     return Look(
-        zoom=sight.zoom, pan=sight.pan, channels=state.channels, meaning="image" if meaning == "auto" else meaning,
-        low=span[0], high=span[1], exposure=state.exposure, gamma=state.gamma, view=state.view or view,
-        display=state.display, look=state.look, color=color, compare=compare, wipe=state.wipe, angle=state.wipe_angle,
-        checker=state.background == "checker", background=(gray, gray, gray), clipping=state.warn_clipping,
-        nonfinite=state.warn_nonfinite, region=region, surround=surround,
+        zoom=sight.zoom,
+        pan=sight.pan,
+        channels=state.channels,
+        meaning="image" if meaning == "auto" else meaning,
+        low=span[0],
+        high=span[1],
+        exposure=state.exposure,
+        gamma=state.gamma,
+        view=state.view or view,
+        display=state.display,
+        look=state.look,
+        color=color,
+        compare=compare,
+        wipe=state.wipe,
+        angle=state.wipe_angle,
+        checker=state.background == "checker",
+        background=(gray, gray, gray),
+        clipping=state.warn_clipping,
+        nonfinite=state.warn_nonfinite,
+        region=region,
+        surround=surround,
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 Array = np.ndarray
 
+
 @dataclass(frozen=True)
 class Statistics:
     """Per channel, of finite numbers; `wrong` counts the pixels that hold others."""

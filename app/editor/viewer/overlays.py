@@ -22,6 +22,7 @@ from .strokes import BLACK, WHITE, around, cross, frame, label
 if TYPE_CHECKING:
     from ..editor import Editor
 
+
 def draw_overlays(editor: Editor, sight: Sight) -> None:
     """Everything that belongs to a place on the picture."""
     lines = imgui.get_window_draw_list()
@@ -63,7 +64,10 @@ def _visible(sight: Sight) -> tuple[int, int, int, int]:
     (left, top), (right, bottom) = (sight.pixel(corner) for corner in _corners(sight))
     width, height = sight.picture
     return (
-        max(math.floor(left), 0), max(math.floor(top), 0), min(math.ceil(right), width), min(math.ceil(bottom), height)
+        max(math.floor(left), 0),
+        max(math.floor(top), 0),
+        min(math.ceil(right), width),
+        min(math.ceil(bottom), height),
     )
 
 

@@ -18,11 +18,10 @@ if TYPE_CHECKING:
 
 def ports_of(graph: Graph) -> tuple[tuple[str, tuple[Port, ...]], ...]:
     """Everything that can be shown, under headings, as the graph flows."""
-    nodes = tuple(
-        Port(id, name) for id in _ordered(graph) for name in signature(graph.nodes[id]).outputs
-    )
+    nodes = tuple(Port(id, name) for id in _ordered(graph) for name in signature(graph.nodes[id]).outputs)
     groups = (
-        ("Outputs", tuple(Port(OUTPUTS, name) for name in graph.outputs)), ("Nodes", nodes),
+        ("Outputs", tuple(Port(OUTPUTS, name) for name in graph.outputs)),
+        ("Nodes", nodes),
         ("Inputs", tuple(Port(INPUTS, name) for name in graph.inputs)),
     )
     return tuple(group for group in groups if group[1])

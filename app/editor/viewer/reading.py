@@ -49,7 +49,8 @@ class Reader:
         """Statistics of a box of fractions."""
         part = texels(box, shown.texture.size)
         return self._kept(
-            ("box", name), (_mark(shown), part),
+            ("box", name),
+            (_mark(shown), part),
             lambda: statistics(probe.region(shown.texture, part)[..., : shown.channels]),
         )
 

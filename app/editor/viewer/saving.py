@@ -29,7 +29,10 @@ def ask_to_save(editor: Editor, a: Shown, b: Shown | None, look: Look) -> None:
         editor.display.drop("saved")
     name = f"{editor.session.name}.{a.port.node.rpartition('/')[2]}.png"
     editor.dialogs.browse = Browse(
-        "Save what is seen", "export", lambda path: editor.attempt(lambda: _save(editor, path, pixels)), saving=True,
+        "Save what is seen",
+        "export",
+        lambda path: editor.attempt(lambda: _save(editor, path, pixels)),
+        saving=True,
         name=name,
     )
 

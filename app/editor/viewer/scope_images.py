@@ -48,9 +48,14 @@ def vectorscope_image(rgb: Array, dark: bool, size: int = 256) -> Array:
     axis = (np.arange(size, dtype=np.float32) + 0.5) / size * (2 * scopes.CHROMA) - scopes.CHROMA
     blue, red = np.meshgrid(axis, -axis)
     luma = np.full_like(blue, 0.55)
-    color = np.stack([
-        luma + 1.5748 * red, luma - 0.1873 * blue - 0.4681 * red, luma + 1.8556 * blue,
-    ], axis=2)
+    color = np.stack(
+        [
+            luma + 1.5748 * red,
+            luma - 0.1873 * blue - 0.4681 * red,
+            luma + 1.8556 * blue,
+        ],
+        axis=2,
+    )
     return _image(np.clip(color, 0.15, 1.0) if dark else _ink(color), light)
 
 

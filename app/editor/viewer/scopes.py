@@ -17,8 +17,12 @@ SKIN_ANGLE = 123.0
 """Degrees from the axis of Cb towards that of Cr: where skin of every tone lies."""
 
 TARGETS = (
-    ("R", (0.75, 0.0, 0.0)), ("Yl", (0.75, 0.75, 0.0)), ("G", (0.0, 0.75, 0.0)),
-    ("Cy", (0.0, 0.75, 0.75)), ("B", (0.0, 0.0, 0.75)), ("Mg", (0.75, 0.0, 0.75)),
+    ("R", (0.75, 0.0, 0.0)),
+    ("Yl", (0.75, 0.75, 0.0)),
+    ("G", (0.0, 0.75, 0.0)),
+    ("Cy", (0.0, 0.75, 0.75)),
+    ("B", (0.0, 0.0, 0.75)),
+    ("Mg", (0.75, 0.0, 0.75)),
 )
 """The colors of bars at 75 %."""
 
@@ -56,10 +60,13 @@ def waveform(rgb: Array, columns: int, rows: int, low: float = 0.0, high: float 
     height, width, _ = rgb.shape
     level = rows - 1 - _bins(rgb, low, high, rows)
     column = np.broadcast_to((np.arange(width) * columns // max(width, 1))[None, :], (height, width))
-    return np.stack([
-        np.bincount((level[..., index] * columns + column).ravel(), minlength=rows * columns).reshape(rows, columns)
-        for index in range(3)
-    ], axis=2)
+    return np.stack(
+        [
+            np.bincount((level[..., index] * columns + column).ravel(), minlength=rows * columns).reshape(rows, columns)
+            for index in range(3)
+        ],
+        axis=2,
+    )
 
 
 def parade(rgb: Array, columns: int, rows: int, low: float = 0.0, high: float = 1.0) -> Array:

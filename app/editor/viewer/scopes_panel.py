@@ -99,8 +99,19 @@ class Scopes:
         """Measure again if the picture, or how it is shown, has changed, but not too often."""
         viewer = editor.viewer
         mark = (
-            shown.key, shown.revision, tuple(names), viewer.exposure, viewer.gamma, viewer.view, viewer.display,
-            viewer.region, viewer.scopes_of_scene, viewer.scopes_logarithmic, viewer.low, viewer.high, viewer.meaning,
+            shown.key,
+            shown.revision,
+            tuple(names),
+            viewer.exposure,
+            viewer.gamma,
+            viewer.view,
+            viewer.display,
+            viewer.region,
+            viewer.scopes_of_scene,
+            viewer.scopes_logarithmic,
+            viewer.low,
+            viewer.high,
+            viewer.meaning,
             editor.palette.name,
         )
         now = time.monotonic()
@@ -135,9 +146,7 @@ class Scopes:
         view = asked_view(editor.session.graph, port) if port else ""
         sight = Sight((0.0, 0.0), (1, 1), shown.full_size)
         span = range_of(viewer, meaning, lambda: whole)
-        return displayed(
-            part, look_of(viewer, sight, meaning, span, view, editor.palette.surround, coloring(editor))
-        )
+        return displayed(part, look_of(viewer, sight, meaning, span, view, editor.palette.surround, coloring(editor)))
 
     def _image(self, name: str, rgb: np.ndarray, logarithmic: bool, dark: bool) -> np.ndarray:
         low, high = self._range

@@ -20,8 +20,11 @@ if TYPE_CHECKING:
     from ..preview import Shown
 
 _FLAGS = (
-    int(imgui.TableFlags_.row_bg) | int(imgui.TableFlags_.scroll_y) | int(imgui.TableFlags_.sizing_fixed_fit)
-    | int(imgui.TableFlags_.borders_inner_v) | int(imgui.TableFlags_.pad_outer_x)
+    int(imgui.TableFlags_.row_bg)
+    | int(imgui.TableFlags_.scroll_y)
+    | int(imgui.TableFlags_.sizing_fixed_fit)
+    | int(imgui.TableFlags_.borders_inner_v)
+    | int(imgui.TableFlags_.pad_outer_x)
 )
 _HEADINGS = ("", "x, y", *(f"{pair:>9}" for pair in ("R / X", "G / Y", "B / Z", "A / W")))
 
@@ -35,9 +38,7 @@ def rows_of(editor: Editor, reader: Reader) -> list[tuple[str, str, tuple[float,
     if viewer.pixel is not None:
         points.append(("", viewer.pixel))
     width, height = viewer.picture
-    points += (
-        (f"{number}", (int(x * width), int(y * height))) for number, (x, y) in enumerate(viewer.markers, 1)
-    )
+    points += ((f"{number}", (int(x * width), int(y * height))) for number, (x, y) in enumerate(viewer.markers, 1))
     for mark, pixel in points:
         for name, one in shown:
             if mark and name not in ("A", "B"):
@@ -54,7 +55,8 @@ def rows_of(editor: Editor, reader: Reader) -> list[tuple[str, str, tuple[float,
                 continue
             found = reader.measured(editor.probe, name, one, box)
             rows += [
-                (f"{name} least", "", found.low), (f"{name} mean", f"{found.count} px", found.mean),
+                (f"{name} least", "", found.low),
+                (f"{name} mean", f"{found.count} px", found.mean),
                 (f"{name} most", f"{found.wrong} NaN" if found.wrong else "", found.high),
             ]
     return rows

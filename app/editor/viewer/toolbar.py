@@ -24,9 +24,17 @@ from .wanted import A, B
 if TYPE_CHECKING:
     from ..editor import Editor
 
-_SHORT: Mapping[str, str] = MappingProxyType({
-    "color": "RGB", "red": "R", "green": "G", "blue": "B", "alpha": "A", "luminance": "Lum", "false color": "False",
-})
+_SHORT: Mapping[str, str] = MappingProxyType(
+    {
+        "color": "RGB",
+        "red": "R",
+        "green": "G",
+        "blue": "B",
+        "alpha": "A",
+        "luminance": "Lum",
+        "false color": "False",
+    }
+)
 _GAP, _APART = 2.0, 10.0
 """Between tools, and between groups of them."""
 
@@ -92,22 +100,33 @@ def _tools(editor: Editor, asked_view: str, is_data: bool) -> list[_Tool]:
     if focused(editor.session):
         found.append(_action(editor, icons.ICON_FA_CROSSHAIRS, "viewer.pick_focus"))
     lit, widest = viewer.channels != "color", max(map(room_for, _SHORT.values()))
-    found.append(
-        _menu(editor, _SHORT[viewer.channels], "channels", "Channels", lit=lit, apart=True, width=widest)
-    )
+    found.append(_menu(editor, _SHORT[viewer.channels], "channels", "Channels", lit=lit, apart=True, width=widest))
     if not is_data or viewer.meaning == "image":  # other data is shown as it is
         found += _brightness(editor)
     found += [
-        _menu(editor, f"1/{1 / viewer.proxy:.0f}", "proxy", "Proxy: compute fewer pixels", lit=viewer.proxy != 1.0,
-              apart=True, more=lambda: _proxy_while_dragging(editor)),
+        _menu(
+            editor,
+            f"1/{1 / viewer.proxy:.0f}",
+            "proxy",
+            "Proxy: compute fewer pixels",
+            lit=viewer.proxy != 1.0,
+            apart=True,
+            more=lambda: _proxy_while_dragging(editor),
+        ),
         _action(editor, icons.ICON_FA_PLAY if viewer.paused else icons.ICON_FA_PAUSE, "viewer.pause"),
-        _action(editor, icons.ICON_FA_EXPAND, "viewer.fit", apart=True), _action(editor, "1:1", "viewer.actual"),
+        _action(editor, icons.ICON_FA_EXPAND, "viewer.fit", apart=True),
+        _action(editor, "1:1", "viewer.actual"),
         _menu(editor, icons.ICON_FA_TRIANGLE_EXCLAMATION, "warnings", "Warnings", lit=viewer.warn_clipping, apart=True),
         _action(editor, icons.ICON_FA_CROP_SIMPLE, "viewer.region"),
         _action(editor, icons.ICON_FA_TABLE_LIST, "viewer.table"),
         _action(editor, icons.ICON_FA_FLOPPY_DISK, "viewer.save"),
-        _menu(editor, icons.ICON_FA_CHESS_BOARD, "background", "Behind what is transparent",
-              lit=viewer.background != "checker"),
+        _menu(
+            editor,
+            icons.ICON_FA_CHESS_BOARD,
+            "background",
+            "Behind what is transparent",
+            lit=viewer.background != "checker",
+        ),
     ]
     if not is_data or viewer.meaning == "image":
         found.append(_view(editor, asked_view))
@@ -122,7 +141,14 @@ def _action(editor: Editor, icon: str, id: str, apart: bool = False) -> _Tool:
 
 
 def _dropdown(
-    editor: Editor, label: str, name: str, doc: str, fill: Draw, lit: bool, apart: bool = False, width: float = 0.0,
+    editor: Editor,
+    label: str,
+    name: str,
+    doc: str,
+    fill: Draw,
+    lit: bool,
+    apart: bool = False,
+    width: float = 0.0,
 ) -> _Tool:
     def listed() -> None:
         if imgui.begin_menu(f"{doc}##{name}"):
@@ -136,7 +162,14 @@ def _dropdown(
 
 
 def _menu(
-    editor: Editor, label: str, name: str, doc: str, *, lit: bool, apart: bool = False, more: Draw | None = None,
+    editor: Editor,
+    label: str,
+    name: str,
+    doc: str,
+    *,
+    lit: bool,
+    apart: bool = False,
+    more: Draw | None = None,
     width: float = 0.0,
 ) -> _Tool:
     """A menu of the menu bar."""
@@ -173,15 +206,29 @@ def _brightness(editor: Editor) -> list[_Tool]:
 
     def exposure(width: float) -> None:
         viewer.exposure = number(
-            editor, "viewer exposure", viewer.exposure, "%+.2f EV", width,
-            f"{doc} in the viewer, in stops: drag, or click and type; right click for 0", neutral=0.0, speed=0.02,
-            low=-20.0, high=20.0,
+            editor,
+            "viewer exposure",
+            viewer.exposure,
+            "%+.2f EV",
+            width,
+            f"{doc} in the viewer, in stops: drag, or click and type; right click for 0",
+            neutral=0.0,
+            speed=0.02,
+            low=-20.0,
+            high=20.0,
         )
 
     def gamma(width: float) -> None:
         viewer.gamma = number(
-            editor, "viewer gamma", viewer.gamma, "\u03b3 %.2f", width,
-            "Gamma in the viewer: drag, or click and type; right click for 1", neutral=1.0, low=0.1, high=5.0,
+            editor,
+            "viewer gamma",
+            viewer.gamma,
+            "\u03b3 %.2f",
+            width,
+            "Gamma in the viewer: drag, or click and type; right click for 1",
+            neutral=1.0,
+            low=0.1,
+            high=5.0,
         )
 
     reset = _action(editor, icons.ICON_FA_ROTATE_LEFT, "viewer.neutral")

@@ -41,7 +41,8 @@ if TYPE_CHECKING:
 TABLE_LINES = 7
 """Always the same, whatever it holds: else the picture would move under the pointer."""
 _CATCH = (
-    int(imgui.ButtonFlags_.mouse_button_left) | int(imgui.ButtonFlags_.mouse_button_middle)
+    int(imgui.ButtonFlags_.mouse_button_left)
+    | int(imgui.ButtonFlags_.mouse_button_middle)
     | int(imgui.ButtonFlags_.mouse_button_right)
 )
 _EMPTY = "Nothing to show yet: add a node (Tab over the graph), or drop an image here."

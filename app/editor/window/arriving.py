@@ -41,7 +41,8 @@ def _has_graph(path: Path) -> bool:
 
 def _ask(editor: Editor, path: Path) -> None:
     editor.dialogs.question = Question(
-        "Rendered by Halation", f"{path.name} holds the graph that made it.",
+        "Rendered by Halation",
+        f"{path.name} holds the graph that made it.",
         (
             ("Open its graph", lambda: open_made(editor, path)),
             ("Read it as a picture", lambda: editor.attempt(lambda: _read(editor, [path]))),
@@ -68,7 +69,8 @@ def _read(editor: Editor, paths: Sequence[Path]) -> None:
     found = find_sequence(str(pattern))
     count = len(found.frames) if found else 0
     editor.dialogs.question = Question(
-        "One of a sequence", f"{first.name} is one of {count} frames of {pattern.name}.",
+        "One of a sequence",
+        f"{first.name} is one of {count} frames of {pattern.name}.",
         (
             ("Read the sequence", lambda: editor.attempt(lambda: drop([frames.get(path, path) for path in files]))),
             ("Only this frame", lambda: editor.attempt(lambda: drop(files))),

@@ -44,8 +44,17 @@ def assemble(device: Device, state: Path | None = None) -> Editor:
     renderer.pictures.look = renders.render
     display = Display(device)
     return Editor(
-        session, Preview(renderer, display), store, Actions(table(), lambda: store.now.shortcuts), Exports(),
-        Recovery(folder, store.now.autosave), Watcher(), SystemClipboard(), display, Probe(device), renders=renders,
+        session,
+        Preview(renderer, display),
+        store,
+        Actions(table(), lambda: store.now.shortcuts),
+        Exports(),
+        Recovery(folder, store.now.autosave),
+        Watcher(),
+        SystemClipboard(),
+        display,
+        Probe(device),
+        renders=renders,
     )
 
 

@@ -20,7 +20,8 @@ def guarded(editor: Editor, name: str, draw: Callable[[], object]) -> bool:
         _recover(state)
         if name not in editor.faults:
             editor.log.add(
-                f"the panel {name} failed ({type(error).__name__}: {error}); the document is safe", "error",
+                f"the panel {name} failed ({type(error).__name__}: {error}); the document is safe",
+                "error",
                 traceback.format_exc(),
             )
         editor.faults[name] = traceback.format_exc()

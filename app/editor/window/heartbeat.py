@@ -64,8 +64,9 @@ class Heartbeat:
         preview.glimpse = glimpse(editor)
         place = editor.session.place
         flat = {name: Port("/".join((*place, port.node)), port.socket) for name, port in ports.items()}
-        preview.want(editor.session.root, flat, bindings=editor.session.bindings, scale=scale,
-                     frame=editor.session.frame)
+        preview.want(
+            editor.session.root, flat, bindings=editor.session.bindings, scale=scale, frame=editor.session.frame
+        )
         preview.work(PLAY_BUDGET if editor.timeline.playback.playing else FRAME_BUDGET)
 
     def _play(self, editor: Editor) -> None:
@@ -92,8 +93,12 @@ class Heartbeat:
             return
         self._watched = now
         editor.watcher.watch(
-            session.path, groups_of(session.root), all_files(pictures_of(session.root, session.bindings)),
-            [shader_folder()], [self.nodes.folder], coding.files(session.root),
+            session.path,
+            groups_of(session.root),
+            all_files(pictures_of(session.root, session.bindings)),
+            [shader_folder()],
+            [self.nodes.folder],
+            coding.files(session.root),
         )
         session.note_code_files()
 
@@ -129,7 +134,8 @@ def _graph_changed(editor: Editor, path: Path) -> None:
         editor.say(f"{path.name} changed on disk and was loaded again")
         return
     editor.dialogs.question = Question(
-        "Changed on disk", f"{path.name} was changed by another program, and here are changes that are not saved.",
+        "Changed on disk",
+        f"{path.name} was changed by another program, and here are changes that are not saved.",
         (
             ("Load theirs", lambda: editor.attempt(session.reload)),
             ("Keep mine", lambda: editor.say("kept; saving will replace the other version")),

@@ -21,15 +21,21 @@ def hints(editor: Editor, panel: str) -> tuple[Hint, ...]:
             return (("Drag", "the region"),)
         if viewer.orbits:
             return (
-                ("Drag", "go around"), ("Shift+drag", "move the scene"), ("Wheel", "nearer"),
-                ("Space+drag", "move the picture"), (_key(editor, "viewer.frame_scene"), "show all of it"),
+                ("Drag", "go around"),
+                ("Shift+drag", "move the scene"),
+                ("Wheel", "nearer"),
+                ("Space+drag", "move the picture"),
+                (_key(editor, "viewer.frame_scene"), "show all of it"),
             )
         if picks(editor):
             return ("Click", "pick an object, or no longer"), ("Drag", "move the picture"), ("Wheel", "zoom")
         if can_add(editor):
             return (
-                ("Drag", "move a light"), ("Alt+drag or wheel", "nearer or farther"), ("Shift+drag", "onto a surface"),
-                ("Double click", "add one"), (_key(editor, "viewer.remove_light"), "remove it"),
+                ("Drag", "move a light"),
+                ("Alt+drag or wheel", "nearer or farther"),
+                ("Shift+drag", "onto a surface"),
+                ("Double click", "add one"),
+                (_key(editor, "viewer.remove_light"), "remove it"),
             )
     if panel == "Graph" and getattr(canvas, "tool", ""):
         return ("Drag", "across links"), ("Escape", "leave it")
@@ -43,20 +49,35 @@ def _key(editor: Editor, keys: str) -> str:
 
 _HINTS: dict[str, tuple[Hint, ...]] = {
     "Graph": (
-        ("node.add", "add a node"), ("Drag a pin", "link"), ("Middle drag", "move the view"), ("Wheel", "zoom"),
-        ("Right click", "menu"), ("Ctrl+Right drag", "cut links"),
+        ("node.add", "add a node"),
+        ("Drag a pin", "link"),
+        ("Middle drag", "move the view"),
+        ("Wheel", "zoom"),
+        ("Right click", "menu"),
+        ("Ctrl+Right drag", "cut links"),
     ),
     "Viewer": (
-        ("Wheel", "zoom"), ("Middle drag", "move the picture"), ("viewer.fit", "fit"), ("viewer.wipe", "wipe"),
-        ("Ctrl+drag", "measure"), ("Ctrl+click", "marker"), ("Right click", "menu"),
+        ("Wheel", "zoom"),
+        ("Middle drag", "move the picture"),
+        ("viewer.fit", "fit"),
+        ("viewer.wipe", "wipe"),
+        ("Ctrl+drag", "measure"),
+        ("Ctrl+click", "marker"),
+        ("Right click", "menu"),
     ),
     "Inspector": (
-        ("Drag", "change (Shift: finely)"), ("Click", "type, also +1 or *2"), ("Double click a name", "reset"),
+        ("Drag", "change (Shift: finely)"),
+        ("Click", "type, also +1 or *2"),
+        ("Double click a name", "reset"),
         ("Right click", "more"),
     ),
     "Timeline": (
-        ("Drag", "go to a frame"), ("time.play", "play"), ("Wheel", "zoom"), ("Middle drag", "move along"),
-        ("Drag a corner", "play only a part"), ("Right click", "more"),
+        ("Drag", "go to a frame"),
+        ("time.play", "play"),
+        ("Wheel", "zoom"),
+        ("Middle drag", "move along"),
+        ("Drag a corner", "play only a part"),
+        ("Right click", "more"),
     ),
     "Scopes": (("viewer.region", "measure a part of the picture"),),
     "History": (("Click", "go back or forth to a step"),),

@@ -60,7 +60,12 @@ STAGED = frozenset({"Viewer", "Timeline", "Scopes"})
 """What shows a flipbook in place of the document while one is open."""
 
 OVERLAYS: tuple[tuple[str, Callable[[], Panel]], ...] = (
-    ("Start", StartScreen), ("Shortcuts", CheatSheet), ("Preferences", PreferencesDialog),
-    ("Command palette", CommandPalette), ("Files", FileBrowser), ("About", About), ("Question", QuestionDialog),
+    ("Start", StartScreen),
+    ("Shortcuts", CheatSheet),
+    ("Preferences", PreferencesDialog),
+    ("Command palette", CommandPalette),
+    ("Files", FileBrowser),
+    ("About", About),
+    ("Question", QuestionDialog),
     ("Messages", Toasts),
 )

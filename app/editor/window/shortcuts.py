@@ -48,12 +48,10 @@ def _pressed(editor: Editor, text: str, repeats: bool) -> bool:
 _ROUTE = int(imgui.InputFlags_.route_global)
 _REPEAT = int(imgui.InputFlags_.repeat)
 _ANY_POPUP = int(imgui.PopupFlags_.any_popup)
-_MODIFIERS = sum(int(item) for item in (
-    imgui.Key.mod_ctrl, imgui.Key.mod_shift, imgui.Key.mod_alt, imgui.Key.mod_super
-))
-_TAKEN = (
-    imgui.Key.space, imgui.Key.left_arrow, imgui.Key.right_arrow, imgui.Key.up_arrow, imgui.Key.down_arrow
+_MODIFIERS = sum(
+    int(item) for item in (imgui.Key.mod_ctrl, imgui.Key.mod_shift, imgui.Key.mod_alt, imgui.Key.mod_super)
 )
+_TAKEN = (imgui.Key.space, imgui.Key.left_arrow, imgui.Key.right_arrow, imgui.Key.up_arrow, imgui.Key.down_arrow)
 """Keys that would press buttons, or move on to the next one, if they were not ours."""
 
 _OURS = 0x48414C41

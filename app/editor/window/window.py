@@ -39,8 +39,14 @@ class Window:
     """One window with one editor, from opening to closing."""
 
     def __init__(
-        self, path: Path | None, bindings: Mapping[str, str], *, version: tuple[int, int] = (4, 5),
-        state: Path | None = None, size: tuple[int, int] = SIZE, form: Form | None = None,
+        self,
+        path: Path | None,
+        bindings: Mapping[str, str],
+        *,
+        version: tuple[int, int] = (4, 5),
+        state: Path | None = None,
+        size: tuple[int, int] = SIZE,
+        form: Form | None = None,
     ) -> None:
         self._path, self._bindings, self._state = path, dict(bindings), state
         self._form: Form | None = form
@@ -249,8 +255,11 @@ class Window:
         """Save the window as it was shown last."""
         pixels = self.device.read_screen()
         self.editor.dialogs.browse = Browse(
-            "Save a screenshot", "export",
-            lambda path: self.editor.attempt(lambda: save_screenshot(path, pixels)), saving=True, name="halation.png",
+            "Save a screenshot",
+            "export",
+            lambda path: self.editor.attempt(lambda: save_screenshot(path, pixels)),
+            saving=True,
+            name="halation.png",
         )
 
 

@@ -31,9 +31,16 @@ Step = tuple[str, int, Code]
 CHANNELS: Mapping[str, int] = MappingProxyType(
     {name: place for letters in ("xyzw", "rgba") for place, name in enumerate(letters)}
 )
-COMPARISONS: Mapping[str, Callable[[float, float], bool]] = MappingProxyType({
-    "<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq, "!=": operator.ne,
-})
+COMPARISONS: Mapping[str, Callable[[float, float], bool]] = MappingProxyType(
+    {
+        "<": operator.lt,
+        "<=": operator.le,
+        ">": operator.gt,
+        ">=": operator.ge,
+        "==": operator.eq,
+        "!=": operator.ne,
+    }
+)
 
 
 def constant(made: Made) -> Code:
@@ -48,6 +55,7 @@ def variable(name: str) -> Code:
 
 def named(text: str, position: int, name: str) -> Code:
     """The value of another name. What is wrong with it is said with the character here, unless it points at one."""
+
     def run(scope: Scope) -> Made:
         try:
             found = scope.value(name)
@@ -70,6 +78,7 @@ def named(text: str, position: int, name: str) -> Code:
 
 def call(text: str, position: int, function: Function, arguments: Sequence[Code]) -> Code:
     """A function of arguments."""
+
     def run(scope: Scope) -> Made:
         try:
             return applied(function.name, function.call, tuple([code(scope) for code in arguments]))
@@ -111,6 +120,7 @@ def comparison(text: str, left: Code, name: str, position: int, right: Code) -> 
 
 def logic(text: str, first: Code, steps: Sequence[Step], *, any_of: bool) -> Code:
     """`or` (any of them) or `and`: what comes after the answer is known is not looked at."""
+
     def run(scope: Scope) -> Made:
         made = _truth(text, steps[0][1], first(scope))
         for _, position, code in steps:
@@ -129,6 +139,7 @@ def negation(text: str, position: int, code: Code) -> Code:
 
 def signed(code: Code, *, minus: bool) -> Code:
     """A sign in front."""
+
     def run(scope: Scope) -> Made:
         made = code(scope)
         if isinstance(made, tuple):
@@ -160,6 +171,7 @@ def channel(text: str, position: int, code: Code, name: str) -> Code:
 
 def listed(text: str, position: int, codes: Sequence[Code]) -> Code:
     """A list of numbers."""
+
     def run(scope: Scope) -> Made:
         parts = [code(scope) for code in codes]
         if any(isinstance(part, tuple) for part in parts):

@@ -29,7 +29,15 @@ MAX_DEPTH = 64
 _OR, _AND, _COMPARE, _SUM, _PRODUCT = 1, 2, 3, 4, 5
 
 _LEVELS = {
-    "or": _OR, "||": _OR, "and": _AND, "&&": _AND, "+": _SUM, "-": _SUM, "*": _PRODUCT, "/": _PRODUCT, "%": _PRODUCT,
+    "or": _OR,
+    "||": _OR,
+    "and": _AND,
+    "&&": _AND,
+    "+": _SUM,
+    "-": _SUM,
+    "*": _PRODUCT,
+    "/": _PRODUCT,
+    "%": _PRODUCT,
     **dict.fromkeys(evaluate.COMPARISONS, _COMPARE),
 }
 _CONSTANTS = {"pi": math.pi, "tau": math.tau, "e": math.e, "true": True, "false": False}

@@ -15,21 +15,48 @@ if TYPE_CHECKING:
     from ....nodes.input.read_image import ReadImage
 
 DATA_AS_COLOR = Rule(
-    "data-as-color", "warning",
+    "data-as-color",
+    "warning",
     "A layer of data (depth, normals, motion, ids) goes into a node that is about color or light: what comes out "
     "means nothing.",
     "Link the picture; to look at data use levels or gradient_map, and read it as a Field or Vector.",
 )
 
-_COLOR = frozenset({
-    "auto_exposure", "bloom", "bright_pass", "cdl", "channel_mixer", "chroma_key", "color_space", "dither", "exposure",
-    "eye_adaptation", "eye_glare", "film_grain", "film_halation", "ghosts", "hue_saturation", "kernel_glare",
-    "local_tone_map", "lut_file", "over_exposure", "photoreceptor_tone_map", "saturation", "scotopic_vision",
-    "split_toning", "star", "streaks", "tone_map", "white_balance",
-})
+_COLOR = frozenset(
+    {
+        "auto_exposure",
+        "bloom",
+        "bright_pass",
+        "cdl",
+        "channel_mixer",
+        "chroma_key",
+        "color_space",
+        "dither",
+        "exposure",
+        "eye_adaptation",
+        "eye_glare",
+        "film_grain",
+        "film_halation",
+        "ghosts",
+        "hue_saturation",
+        "kernel_glare",
+        "local_tone_map",
+        "lut_file",
+        "over_exposure",
+        "photoreceptor_tone_map",
+        "saturation",
+        "scotopic_vision",
+        "split_toning",
+        "star",
+        "streaks",
+        "tone_map",
+        "white_balance",
+    }
+)
 _DATA = re.compile(
     r"(.*[._ ])?(z|z?_?depth|position|p|normals?|n|vector|velocity|motion_?vectors?|motion|uvs?|st"
-    r"|(object|material)_?(id|index)|index(ob|ma)|crypto.*)(\.[a-z]+)?", re.IGNORECASE
+    r"|(object|material)_?(id|index)|index(ob|ma)|crypto.*)(\.[a-z]+)?",
+    re.IGNORECASE,
 )
 """Names of layers that are never color, such as `Depth`, `ViewLayer.Normal` and `CryptoObject00`."""
 _OUTPUTS = frozenset({"depth", "normal", "position", "velocity", "object_id", "material_id", "uv"})

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from ....nodes.distort.transform import Transform
 
 FILTERING_TWICE = Rule(
-    "filtering-twice", "warning",
+    "filtering-twice",
+    "warning",
     "A picture is resampled or blurred twice where once would do, which costs sharpness and time. Transforms right "
     "behind each other with the same edge act as one, and are fine.",
     "Put transforms next to each other; make one of two resizes or two blurs.",

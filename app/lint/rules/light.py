@@ -16,13 +16,15 @@ if TYPE_CHECKING:
     from ....nodes.input.read_image import ReadImage
 
 DISPLAY_LIGHT = Rule(
-    "display-light", "warning",
+    "display-light",
+    "warning",
     "A node that reckons with light gets a picture that a tone map made ready for the display: brightness is bent, "
     "and lights are cut off.",
     "Put the node before the tone map.",
 )
 CLIPPED_LIGHT = Rule(
-    "clipped-light", "warning",
+    "clipped-light",
+    "warning",
     "A node that makes lights glow or spread gets a file of 8 bits, in which nothing is brighter than white.",
     "Read an EXR of the same picture, or allow it where the file is all there is.",
 )
@@ -31,11 +33,27 @@ _TONE = frozenset({"tone_map", "local_tone_map", "photoreceptor_tone_map"})
 _RECODES = frozenset({"color_space", "lut_file"})
 _GLOWS = frozenset({"bloom", "bright_pass", "eye_glare", "ghosts", "kernel_glare", "star", "streaks"})
 _SPREADS = frozenset({"depth_of_field"})
-_LIGHT = _GLOWS | _SPREADS | {
-    "auto_exposure", "deferred_lighting", "eye_adaptation", "film_halation", "fog", "image_based_light",
-    "light_shafts", "local_tone_map", "motion_blur", "over_exposure", "photoreceptor_tone_map", "scotopic_vision",
-    "screen_reflections", "sun_beams", "tone_map",
-}
+_LIGHT = (
+    _GLOWS
+    | _SPREADS
+    | {
+        "auto_exposure",
+        "deferred_lighting",
+        "eye_adaptation",
+        "film_halation",
+        "fog",
+        "image_based_light",
+        "light_shafts",
+        "local_tone_map",
+        "motion_blur",
+        "over_exposure",
+        "photoreceptor_tone_map",
+        "scotopic_vision",
+        "screen_reflections",
+        "sun_beams",
+        "tone_map",
+    }
+)
 _BYTES = frozenset({".bmp", ".gif", ".jpeg", ".jpg", ".tga", ".webp"})
 """Endings of files that hold 8 bits whatever is in them; those of a PNG or TIFF may be more."""
 

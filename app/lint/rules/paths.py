@@ -12,11 +12,15 @@ from ...written import Written
 from ..sheet import Check, Sheet
 
 ABSOLUTE_PATH = Rule(
-    "absolute-path", "warning", "A path begins at the root of one machine: on another one the file is not there.",
+    "absolute-path",
+    "warning",
+    "A path begins at the root of one machine: on another one the file is not there.",
     "Write the path from the folder of the graph file.",
 )
 BACKSLASH_PATH = Rule(
-    "backslash-path", "warning", "A path with backslashes is one name on every system but Windows.",
+    "backslash-path",
+    "warning",
+    "A path with backslashes is one name on every system but Windows.",
     "Write it with slashes, which Windows takes too.",
 )
 

@@ -11,15 +11,20 @@ from ...graph.still import named
 from ..sheet import Check, Sheet
 
 UNUSED_BRANCH = Rule(
-    "unused-branch", "warning", "Nodes lead to no output, so that they never do anything.",
+    "unused-branch",
+    "warning",
+    "Nodes lead to no output, so that they never do anything.",
     "Link the last of them to an output, or remove them.",
 )
 UNUSED_INPUT = Rule(
-    "unused-input", "warning", "An input of the graph feeds nothing, so that a picture bound to it is ignored.",
+    "unused-input",
+    "warning",
+    "An input of the graph feeds nothing, so that a picture bound to it is ignored.",
     "Link it, or remove it.",
 )
 STALE_LAYOUT = Rule(
-    "stale-layout", "warning",
+    "stale-layout",
+    "warning",
     "The layout places nodes that are not there, as after a node was deleted by hand or in a merge.",
     "Remove the entries, or save the graph in the editor.",
 )
@@ -66,7 +71,9 @@ def _wanted(sheet: Sheet) -> set[str]:
     graph, viewers = sheet.graph, sheet.graph.ui.get("viewers")
     found = {
         named(graph, name)[0].node
-        for item in graph.animation.values() if isinstance(item, Expression) for name in item.names
+        for item in graph.animation.values()
+        if isinstance(item, Expression)
+        for name in item.names
     }
     shown = cast("Mapping[str, Any]", viewers).values() if isinstance(viewers, Mapping) else ()
     return (found | {str(port).partition(".")[0] for port in shown}) & graph.nodes.keys()

@@ -30,27 +30,45 @@ class Codec:
 
 
 _LOSSLESS = MappingProxyType({"level": "3", "slicecrc": "1", "slices": "4", "g": "1"})
-CODECS: Mapping[str, Codec] = MappingProxyType({
-    "h264": Codec("libx264", ("yuv420p", "yuv420p"), MappingProxyType({"crf": "16", "preset": "medium"}), even=True),
-    "h265": Codec(
-        "libx265", ("yuv420p10le", "yuv420p10le"),
-        MappingProxyType({"crf": "18", "x265-params": "log-level=none:pools=none:frame-threads=1:info=0"}),
-        even=True, tag="hvc1",
-    ),
-    "prores": Codec("prores_ks", ("yuv422p10le", "yuv422p10le"), MappingProxyType({"profile": "3", "vendor": "apl0"})),
-    "prores4444": Codec(
-        "prores_ks", ("yuva444p10le", "yuva444p10le"), MappingProxyType({"profile": "4", "vendor": "apl0"}), alpha=True,
-    ),
-    "ffv1": Codec("ffv1", ("bgra", "gbrap16le"), _LOSSLESS, alpha=True),
-    "qtrle": Codec("qtrle", ("argb", "argb"), MappingProxyType({}), alpha=True),
-    "vp9": Codec(
-        "libvpx-vp9", ("yuv420p", "yuv420p"), MappingProxyType({"crf": "24", "b": "0", "cpu-used": "2"}),
-    ),
-})
-_HELD = MappingProxyType({
-    ".mp4": ("h264", "h265"), ".m4v": ("h264", "h265"), ".mov": ("prores", "prores4444", "h264", "h265", "qtrle"),
-    ".mkv": ("ffv1", "h264", "h265", "vp9"), ".webm": ("vp9",),
-})
+CODECS: Mapping[str, Codec] = MappingProxyType(
+    {
+        "h264": Codec(
+            "libx264", ("yuv420p", "yuv420p"), MappingProxyType({"crf": "16", "preset": "medium"}), even=True
+        ),
+        "h265": Codec(
+            "libx265",
+            ("yuv420p10le", "yuv420p10le"),
+            MappingProxyType({"crf": "18", "x265-params": "log-level=none:pools=none:frame-threads=1:info=0"}),
+            even=True,
+            tag="hvc1",
+        ),
+        "prores": Codec(
+            "prores_ks", ("yuv422p10le", "yuv422p10le"), MappingProxyType({"profile": "3", "vendor": "apl0"})
+        ),
+        "prores4444": Codec(
+            "prores_ks",
+            ("yuva444p10le", "yuva444p10le"),
+            MappingProxyType({"profile": "4", "vendor": "apl0"}),
+            alpha=True,
+        ),
+        "ffv1": Codec("ffv1", ("bgra", "gbrap16le"), _LOSSLESS, alpha=True),
+        "qtrle": Codec("qtrle", ("argb", "argb"), MappingProxyType({}), alpha=True),
+        "vp9": Codec(
+            "libvpx-vp9",
+            ("yuv420p", "yuv420p"),
+            MappingProxyType({"crf": "24", "b": "0", "cpu-used": "2"}),
+        ),
+    }
+)
+_HELD = MappingProxyType(
+    {
+        ".mp4": ("h264", "h265"),
+        ".m4v": ("h264", "h265"),
+        ".mov": ("prores", "prores4444", "h264", "h265", "qtrle"),
+        ".mkv": ("ffv1", "h264", "h265", "vp9"),
+        ".webm": ("vp9",),
+    }
+)
 """Ending -> the codecs that such a file holds, the usual one first."""
 
 WRITABLE = tuple(_HELD)

@@ -10,13 +10,28 @@ from .signals import RGB, matrix_of
 
 _MATRICES = {0: "RGB", 1: "BT.709", 4: "FCC", 5: "BT.601", 6: "BT.601", 7: "SMPTE 240M", 8: "YCgCo", 9: "BT.2020"}
 _TRANSFERS = {
-    1: "BT.709", 4: "gamma 2.2", 5: "gamma 2.8", 6: "BT.601", 8: "linear", 13: "sRGB", 14: "BT.2020", 15: "BT.2020",
-    16: "PQ", 18: "HLG",
+    1: "BT.709",
+    4: "gamma 2.2",
+    5: "gamma 2.8",
+    6: "BT.601",
+    8: "linear",
+    13: "sRGB",
+    14: "BT.2020",
+    15: "BT.2020",
+    16: "PQ",
+    18: "HLG",
 }
 _PRIMARIES = {1: "BT.709", 5: "BT.601, 625 lines", 6: "BT.601, 525 lines", 9: "BT.2020", 11: "DCI P3", 12: "Display P3"}
-_STORED = frozenset({
-    "major_brand", "minor_version", "compatible_brands", "encoder", "duration", "creation_time",
-})
+_STORED = frozenset(
+    {
+        "major_brand",
+        "minor_version",
+        "compatible_brands",
+        "encoder",
+        "duration",
+        "creation_time",
+    }
+)
 """Tags that say how a file is stored."""
 
 
@@ -26,17 +41,21 @@ def said_of(facts: Facts) -> Mapping[str, int | float | str]:
     luma = facts.pixels.startswith(("yuv", "nv", "p0", "p2", "p4", "uyvy", "y2"))
     full = facts.range == 2 or facts.pixels.startswith("yuvj") or not luma
     guessed = "" if matrix == facts.matrix else " (not said)"
-    return MappingProxyType({
-        "video:frames": facts.count,
-        "video:rate": float(facts.rate),
-        "video:seconds": round(facts.seconds, 6),
-        "video:codec": facts.codec,
-        "video:pixels": facts.pixels,
-        "video:matrix": _MATRICES.get(matrix, str(matrix)) + guessed if luma else _MATRICES[RGB],
-        "video:range": "full" if full else "limited",
-        "video:transfer": _TRANSFERS.get(facts.transfer, "sRGB (not said)" if facts.transfer in (0, 2) else "unknown"),
-        "video:primaries": _PRIMARIES.get(facts.primaries, "BT.709 (not said)"),
-    })
+    return MappingProxyType(
+        {
+            "video:frames": facts.count,
+            "video:rate": float(facts.rate),
+            "video:seconds": round(facts.seconds, 6),
+            "video:codec": facts.codec,
+            "video:pixels": facts.pixels,
+            "video:matrix": _MATRICES.get(matrix, str(matrix)) + guessed if luma else _MATRICES[RGB],
+            "video:range": "full" if full else "limited",
+            "video:transfer": _TRANSFERS.get(
+                facts.transfer, "sRGB (not said)" if facts.transfer in (0, 2) else "unknown"
+            ),
+            "video:primaries": _PRIMARIES.get(facts.primaries, "BT.709 (not said)"),
+        }
+    )
 
 
 def passed_on(facts: Facts) -> Mapping[str, str]:

@@ -190,10 +190,19 @@ def _facts(path: str, container: Any, stream: Any, frame: Any, count: int) -> Fa
     rate = stream.average_rate or stream.guessed_rate or _USUAL_RATE
     parts = frame.format.components
     return Facts(
-        path, size, count, Fraction(rate), container.format.name.partition(",")[0], stream.codec_context.codec.name,
-        frame.format.name, max(part.bits for part in parts),
+        path,
+        size,
+        count,
+        Fraction(rate),
+        container.format.name.partition(",")[0],
+        stream.codec_context.codec.name,
+        frame.format.name,
+        max(part.bits for part in parts),
         any(part.is_alpha for part in parts) or frame.format.has_palette,
-        int(frame.colorspace), int(frame.color_range), int(frame.color_trc), int(frame.color_primaries),
+        int(frame.colorspace),
+        int(frame.color_range),
+        int(frame.color_trc),
+        int(frame.color_primaries),
         MappingProxyType({_tag(name): text for name, text in container.metadata.items()}),
     )
 

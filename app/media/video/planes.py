@@ -15,11 +15,27 @@ _CENTERED = ("mjpeg", "mpeg1video", "theora")
 """Codecs whose chroma lies in the middle between samples of luma; elsewhere it lies at the left ones, as in MPEG-2."""
 
 _UNPACKED = {
-    "nv12": "yuv420p", "nv21": "yuv420p", "nv16": "yuv422p", "nv24": "yuv444p", "nv42": "yuv444p",
-    "nv20le": "yuv422p10le", "p010le": "yuv420p10le", "p012le": "yuv420p12le", "p016le": "yuv420p16le",
-    "p210le": "yuv422p10le", "p216le": "yuv422p16le", "p410le": "yuv444p10le", "p416le": "yuv444p16le",
-    "yuyv422": "yuv422p", "uyvy422": "yuv422p", "yvyu422": "yuv422p", "y210le": "yuv422p10le",
-    "pal8": "gbrap", "ya8": "gbrap", "ya16le": "gbrap16le", "ya16be": "gbrap16le",
+    "nv12": "yuv420p",
+    "nv21": "yuv420p",
+    "nv16": "yuv422p",
+    "nv24": "yuv444p",
+    "nv42": "yuv444p",
+    "nv20le": "yuv422p10le",
+    "p010le": "yuv420p10le",
+    "p012le": "yuv420p12le",
+    "p016le": "yuv420p16le",
+    "p210le": "yuv422p10le",
+    "p216le": "yuv422p16le",
+    "p410le": "yuv444p10le",
+    "p416le": "yuv444p16le",
+    "yuyv422": "yuv422p",
+    "uyvy422": "yuv422p",
+    "yvyu422": "yuv422p",
+    "y210le": "yuv422p10le",
+    "pal8": "gbrap",
+    "ya8": "gbrap",
+    "ya16le": "gbrap16le",
+    "ya16be": "gbrap16le",
 }
 """Formats that keep several channels in one plane -> the same numbers with a plane each."""
 
@@ -138,4 +154,3 @@ def _floats(array: Array) -> Array:
     if array.dtype.kind == "f":
         return array
     return array.astype(np.float32) / np.float32(np.iinfo(array.dtype).max)
-

@@ -16,9 +16,16 @@ from ..color import decode_srgb
 
 Array = np.ndarray
 
-LUMA: Mapping[int, tuple[float, float]] = MappingProxyType({
-    1: (0.2126, 0.0722), 4: (0.30, 0.11), 5: (0.299, 0.114), 6: (0.299, 0.114), 7: (0.212, 0.087), 9: (0.2627, 0.0593),
-})
+LUMA: Mapping[int, tuple[float, float]] = MappingProxyType(
+    {
+        1: (0.2126, 0.0722),
+        4: (0.30, 0.11),
+        5: (0.299, 0.114),
+        6: (0.299, 0.114),
+        7: (0.212, 0.087),
+        9: (0.2627, 0.0593),
+    }
+)
 """The weights of red and blue in luma by the number of the matrix: BT.709, FCC, BT.601 twice, SMPTE 240M, BT.2020."""
 
 RGB, UNKNOWN = 0, 2
@@ -97,10 +104,14 @@ def linear(encoded: Array, transfer: int) -> Array:
     becomes 1. What says nothing is taken for sRGB, as 8-bit pictures are. Raises InputError for an unknown curve.
     """
     if transfer in (1, 6, 14, 15):
-        return _mirrored(encoded, lambda size: np.where(
-            size < 4.5 * _BT709_BETA, size / 4.5,
-            ((size + (_BT709_ALPHA - 1.0)) / _BT709_ALPHA) ** (1.0 / 0.45),
-        ))
+        return _mirrored(
+            encoded,
+            lambda size: np.where(
+                size < 4.5 * _BT709_BETA,
+                size / 4.5,
+                ((size + (_BT709_ALPHA - 1.0)) / _BT709_ALPHA) ** (1.0 / 0.45),
+            ),
+        )
     if transfer in (0, 2, 13):
         return decode_srgb(encoded).astype(np.float32)
     if transfer == 8:

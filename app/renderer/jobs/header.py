@@ -30,8 +30,15 @@ def whole(graph: Graph) -> str:
 
 
 def header(
-    graph: str, target: Target, wanted: Wanted, frames: tuple[int, int], writing: Writing, file: Destination,
-    plan: Plan, sources: Sequence[Source], hashes: Hashes,
+    graph: str,
+    target: Target,
+    wanted: Wanted,
+    frames: tuple[int, int],
+    writing: Writing,
+    file: Destination,
+    plan: Plan,
+    sources: Sequence[Source],
+    hashes: Hashes,
 ) -> dict[str, Any]:
     """What a file says: metadata of what was read passes through, and how to make it again is added.
 
@@ -75,7 +82,12 @@ def settings(
 
 
 def frame_key(
-    graph: str, wanted: Wanted, plan: Plan, file: Destination, writing: Writing, sources: Sequence[Source],
+    graph: str,
+    wanted: Wanted,
+    plan: Plan,
+    file: Destination,
+    writing: Writing,
+    sources: Sequence[Source],
     hashes: Hashes,
 ) -> str:
     """What tells whether a file is still what would be written: it is equal only where all bytes of pixels are.
@@ -121,7 +133,13 @@ def _content_keys(plan: Plan, contents: Mapping[str, str], before: str) -> dict[
         picture, surface = item.picture, plan.surfaces[item.surface]
         content = surface.key if picture.in_memory else contents[picture.path]
         keys[item.surface] = _digest(
-            content, picture.frame, picture.layer, picture.kind, picture.width, picture.space, surface.texel,
+            content,
+            picture.frame,
+            picture.layer,
+            picture.kind,
+            picture.width,
+            picture.space,
+            surface.texel,
             surface.size,
         )
     for one in plan.passes:
@@ -139,4 +157,3 @@ def _work(one: Pass) -> tuple[object, ...]:
 
 def _digest(*parts: object) -> str:
     return blake2b("\0".join(map(str, parts)).encode(), digest_size=16).hexdigest()
-

@@ -36,6 +36,7 @@ from functools import cached_property
 
 __all__ = ["FrameReport", "Progress", "Report", "Writing", "run_job"]
 
+
 class FrameReport(Struct, frozen=True):
     """What became of a frame. `passes` were executed for it; none where its files were `kept` as they were.
 
@@ -78,8 +79,14 @@ class Report(Struct, frozen=True):
 
 
 def run_job(
-    renderer: Renderer, graph: Graph, wanted: Wanted, writing: Writing, frames: Sequence[int] | None = None, *,
-    resume: bool = False, progress: Progress | None = None,
+    renderer: Renderer,
+    graph: Graph,
+    wanted: Wanted,
+    writing: Writing,
+    frames: Sequence[int] | None = None,
+    *,
+    resume: bool = False,
+    progress: Progress | None = None,
 ) -> Report:
     """Render frames, by default that of `wanted`, and write them.
 
@@ -94,8 +101,13 @@ def run_job(
     finally:
         job.close()
     return Report(
-        tuple(reports), renderer.runner.counters.passes - counters, renderer.runner.programs.compiled - programs,
-        renderer.runner.textures.peak, dict(renderer.pictures.repaired), job.videos, job.seconds,
+        tuple(reports),
+        renderer.runner.counters.passes - counters,
+        renderer.runner.programs.compiled - programs,
+        renderer.runner.textures.peak,
+        dict(renderer.pictures.repaired),
+        job.videos,
+        job.seconds,
     )
 
 
@@ -110,8 +122,14 @@ class _Task(Struct, frozen=True):
 
 class _Job:
     def __init__(
-        self, renderer: Renderer, graph: Graph, wanted: Wanted, writing: Writing, resume: bool,
-        progress: Progress | None, frames: tuple[int, ...],
+        self,
+        renderer: Renderer,
+        graph: Graph,
+        wanted: Wanted,
+        writing: Writing,
+        resume: bool,
+        progress: Progress | None,
+        frames: tuple[int, ...],
     ) -> None:
         self._files = destinations(graph, wanted, writing, frames)
         first = self._files[frames[0]]
@@ -238,7 +256,14 @@ class _Job:
         """What a file says of itself."""
         wanted, device = replace(self._wanted, frame=task.frame), self._renderer.device
         said = header(
-            self._text, device.target, wanted, self._reel.frames, self._writing, file, task.plan, task.sources,
+            self._text,
+            device.target,
+            wanted,
+            self._reel.frames,
+            self._writing,
+            file,
+            task.plan,
+            task.sources,
             self._hashes,
         )
         said["halation:driver"] = device.driver
@@ -258,8 +283,13 @@ class _Job:
                     self._films.add(file, layers, said)
                     continue
                 media.write(
-                    file.path, layers, kinds=file.kinds, precision=self._writing.precision,
-                    compression=self._writing.compression, metadata=said, encoding=file.encoding,
+                    file.path,
+                    layers,
+                    kinds=file.kinds,
+                    precision=self._writing.precision,
+                    compression=self._writing.compression,
+                    metadata=said,
+                    encoding=file.encoding,
                 )
             self.seconds["write"] += time.perf_counter() - started
             pictures = (file.path for file in task.files if file.path not in self._writing.videos)

@@ -137,7 +137,8 @@ class Sources:
         used = self._graph.upstream(OUTPUTS)
         named = {owner: path for owner, (_, path) in path_texts(self._graph).items()}
         return {
-            owner: path for owner, path in named.items()
+            owner: path
+            for owner, path in named.items()
             if owner == CONFIG
             or (not owner.rpartition(".")[0].endswith(INPUTS) and owner.split(".")[0].split("/")[0] in used)
         }

@@ -28,7 +28,10 @@ class Strips:
     leaves nothing behind. `said` is the header of a file."""
 
     def __init__(
-        self, plan: Plan, files: Sequence[Destination], writing: Writing,
+        self,
+        plan: Plan,
+        files: Sequence[Destination],
+        writing: Writing,
         said: Callable[[Destination], Mapping[str, Any]],
     ) -> None:
         names = plan.tiling.by_rows if plan.tiling else frozenset[str]()
@@ -47,8 +50,14 @@ class Strips:
                 continue
             if row == 0:
                 self._open[file.path] = RowFile(
-                    file.path, size, layer, file.kinds[layer], precision=self._writing.precision,
-                    compression=self._writing.compression, encoding=file.encoding, metadata=self._said(file),
+                    file.path,
+                    size,
+                    layer,
+                    file.kinds[layer],
+                    precision=self._writing.precision,
+                    compression=self._writing.compression,
+                    encoding=file.encoding,
+                    metadata=self._said(file),
                 )
             self._open[file.path].add(pixels)
 

@@ -112,7 +112,11 @@ def _combined(graph: Graph, axes: Sequence[Axis], frame: int) -> Iterator[Cell]:
 
 
 def sweep(
-    renderer: Renderer, graph: Graph, axes: Sequence[Axis], swept: Swept, frame: int,
+    renderer: Renderer,
+    graph: Graph,
+    axes: Sequence[Axis],
+    swept: Swept,
+    frame: int,
     step: Callable[[str], None] = lambda name: None,
 ) -> Sheet:
     """Render all cells and put them on a sheet; `step` hears the label of what comes next.

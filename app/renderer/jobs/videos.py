@@ -26,8 +26,13 @@ class Videos:
         if file.path not in self._open:
             height, width = next(iter(layers.values())).shape[:2]
             self._open[file.path] = media.VideoFile(
-                file.path, (width, height), self._rate(), codec=self._writing.codec,
-                deep=self._writing.precision == "float", encoding=file.encoding, metadata=said,
+                file.path,
+                (width, height),
+                self._rate(),
+                codec=self._writing.codec,
+                deep=self._writing.precision == "float",
+                encoding=file.encoding,
+                metadata=said,
             )
         self._open[file.path].add(layers, file.kinds)
 

@@ -98,7 +98,9 @@ def describe(context: moderngl.Context) -> Target:
         )
     software = is_software(renderer)
     return Target(
-        renderer, version, software,
+        renderer,
+        version,
+        software,
         max_size=int(info["GL_MAX_TEXTURE_SIZE"]),
         max_samplers=int(info["GL_MAX_TEXTURE_IMAGE_UNITS"]),
         precision="float" if software else "half",

@@ -198,4 +198,3 @@ def missing(found: Sequence[Found], path: Path) -> InputError | None:
         f"{path}: what it was made of is not there: {names}; say where with -i {owner}=FILE, or name a folder to look "
         "in with --search DIR"
     )
-

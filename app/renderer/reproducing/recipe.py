@@ -86,8 +86,14 @@ def read_recipe(path: str | Path, catalogue: Mapping[str, type[Node]] | None = N
     except ValueError as fault:
         raise InputError(f"{path}: its header is damaged ({fault}): render the picture again") from None
     return Recipe(
-        Path(path), graph, said.get("halation:version", ""), said.get("halation:renderer", ""),
-        said.get("halation:driver", ""), used, color=said.get("halation:color", ""), **settings,
+        Path(path),
+        graph,
+        said.get("halation:version", ""),
+        said.get("halation:renderer", ""),
+        said.get("halation:driver", ""),
+        used,
+        color=said.get("halation:color", ""),
+        **settings,
     )
 
 
@@ -107,8 +113,11 @@ def _settings(text: str) -> dict[str, Any]:
     for name in ("node", "view", "display", "look", "colorspace", "compression"):
         if name in plain:
             found[name] = plain[name]
-    for name, known in (("precision", ("half", "float")), ("intermediates", ("half", "float")),
-                        ("form", ("fragment", "compute"))):
+    for name, known in (
+        ("precision", ("half", "float")),
+        ("intermediates", ("half", "float")),
+        ("form", ("fragment", "compute")),
+    ):
         if plain.get(name) in known:
             found[name] = plain[name]
     if "frame" in plain:

@@ -79,7 +79,10 @@ def open_alike(recipe: Recipe) -> Device:
 
 
 def reproduce(
-    renderer: Renderer, recipe: Recipe, found: Sequence[Found], files: Sequence[Path] = (),
+    renderer: Renderer,
+    recipe: Recipe,
+    found: Sequence[Found],
+    files: Sequence[Path] = (),
     tolerance: float | None = None,
 ) -> Reproduction:
     """Render what a recipe says with the files that were found, and compare; `files` keep what was rendered.

@@ -93,7 +93,8 @@ class Decoding:
     def cancel(self) -> None:
         """Nothing more is wanted."""
         left = {
-            self._uploads[surface][1].key: future for surface, future in self._started.items()
+            self._uploads[surface][1].key: future
+            for surface, future in self._started.items()
             if not future.cancel() and not (future.done() and future.exception())
         }
         self._begun.update(left)

@@ -163,9 +163,7 @@ class Executor:
             texture.cost = self._costs.of(plan, one)
         self.counters.passes += 1
 
-    def _dispatch(
-        self, plan: Plan, one: Pass, program: Program, textures: list[Texture], made: list[Texture]
-    ) -> None:
+    def _dispatch(self, plan: Plan, one: Pass, program: Program, textures: list[Texture], made: list[Texture]) -> None:
         assert isinstance(program.handle, moderngl.ComputeShader)
         first = 0
         if one.shader.reads_images:

@@ -74,7 +74,12 @@ class WholeRun(Run):
     """
 
     def __init__(
-        self, executor: Executor, plan: Plan, kept: Lease, decode: Decode, wanted: Iterable[int],
+        self,
+        executor: Executor,
+        plan: Plan,
+        kept: Lease,
+        decode: Decode,
+        wanted: Iterable[int],
         timings: Timings | None,
     ) -> None:
         super().__init__(plan)
@@ -195,8 +200,11 @@ def _count_readers(plan: Plan, needed: list[int], wanted: tuple[int, ...]) -> di
 def needed_uploads(plan: Plan, needed: list[int], wanted: tuple[int, ...], given: Container[str]) -> list[Awaited]:
     """What must be decoded, in the order in which passes want it, since these keys are not `given`."""
     uploads = {upload.surface: (upload, plan.surfaces[upload.surface]) for upload in plan.uploads}
-    return [uploads[number] for number in _reads(plan, needed, wanted)
-            if number in uploads and uploads[number][1].key not in given]
+    return [
+        uploads[number]
+        for number in _reads(plan, needed, wanted)
+        if number in uploads and uploads[number][1].key not in given
+    ]
 
 
 def carried(plan: Plan, following: Plan) -> tuple[int, ...]:

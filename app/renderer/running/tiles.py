@@ -47,9 +47,7 @@ class TiledRun(Run):
     What is read anywhere is put together in memory before; so are the outputs, unless their rows are taken.
     """
 
-    def __init__(
-        self, runner: Runs, load: Loader, plan: Plan, finished: Callable[[dict[str, Array]], None]
-    ) -> None:
+    def __init__(self, runner: Runs, load: Loader, plan: Plan, finished: Callable[[dict[str, Array]], None]) -> None:
         assert plan.tiling is not None
         super().__init__(plan)
         self._tiling = plan.tiling
@@ -156,7 +154,9 @@ class TiledRun(Run):
             names = {ref: name for name, ref in stage.outputs.items()}
             pixels = [arrays[names[ref]] if ref in names else None for ref in refs]
             found[index] = Held(
-                op.shapes, op.owner, tuple(None if array is None else _picture(op.owner, array) for array in pixels),
+                op.shapes,
+                op.owner,
+                tuple(None if array is None else _picture(op.owner, array) for array in pixels),
                 tuple(array is not None and array.dtype == np.float16 for array in pixels),
                 tuple(keys.get(ref, "") for ref in refs),
             )

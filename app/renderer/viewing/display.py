@@ -217,18 +217,21 @@ def _settings(program: ViewProgram, panel: Size, picture: Size, look: Look) -> N
     left, top = origin(look, panel, picture)
     angle = math.radians(look.angle)
     found: dict[str, object] = {
-        "meaning": get_args(Meaning).index(look.meaning), "channels": get_args(Channels).index(look.channels),
-        "exposure": 2.0**look.exposure, "gamma": look.gamma,
+        "meaning": get_args(Meaning).index(look.meaning),
+        "channels": get_args(Channels).index(look.channels),
+        "exposure": 2.0**look.exposure,
+        "gamma": look.gamma,
         "range": (look.low, look.high if look.high != look.low else look.low + 1e-6),
         "wipe_point": _on_panel(look, (left, top), (look.wipe[0] * picture[0], look.wipe[1] * picture[1])),
         "wipe_normal": (math.cos(angle), math.sin(angle)),
-        "checker": look.checker, "clipping": look.clipping, "nonfinite": look.nonfinite,
-        "background": look.background, "surround": look.surround,
+        "checker": look.checker,
+        "clipping": look.clipping,
+        "nonfinite": look.nonfinite,
+        "background": look.background,
+        "surround": look.surround,
     }
     x, y, width, height = look.region or (-1e9, -1e9, 2e9, 2e9)
-    found["region"] = (
-        *_on_panel(look, (left, top), (x, y)), *_on_panel(look, (left, top), (x + width, y + height))
-    )
+    found["region"] = (*_on_panel(look, (left, top), (x, y)), *_on_panel(look, (left, top), (x + width, y + height)))
     for name, value in found.items():
         program.set(name, value)
 

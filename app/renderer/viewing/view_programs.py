@@ -56,7 +56,12 @@ class ViewPrograms:
         self._known: dict[object, ViewProgram] = {}
 
     def get(
-        self, view: Seen | None, color: ColorSettings, compare: Compare = "off", *, texels: bool = False,
+        self,
+        view: Seen | None,
+        color: ColorSettings,
+        compare: Compare = "off",
+        *,
+        texels: bool = False,
         viewed: bool = False,
     ) -> ViewProgram:
         """The program for a view, or for data, of pictures whose colors are managed that way.
@@ -99,7 +104,12 @@ def _source(view: ColorProgram | None, library: Library, compare: Compare, texel
     names |= {mode: number for number, mode in enumerate(cast("tuple[str, ...]", get_args(Meaning)))}
     names |= {"DATA": view is None and not viewed, "VIEWED": viewed}
     defines = [f"#define {name.replace(' ', '_').upper()} {number:d}" for name, number in names.items()]
-    return "\n".join([
-        "#version 410 core", *defines, f"#define COMPARE COMPARE_{compare.upper()}", view.text.body if view else "",
-        *(text.body for text in library.closure((f"viewer/{'texels' if texels else 'display'}",), "viewer")),
-    ])
+    return "\n".join(
+        [
+            "#version 410 core",
+            *defines,
+            f"#define COMPARE COMPARE_{compare.upper()}",
+            view.text.body if view else "",
+            *(text.body for text in library.closure((f"viewer/{'texels' if texels else 'display'}",), "viewer")),
+        ]
+    )

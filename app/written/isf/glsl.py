@@ -21,22 +21,74 @@ _DIRECTIVE = re.compile(r"^[ \t]*#[ \t]*(?:version|extension|line)\b[^\n]*", re.
 _QUALIFIED = re.compile(r"\s+(?:in|out|varying|uniform)\b")
 _CALLED = re.compile(r"\s*\(")
 
-WORDS: Mapping[str, str] = MappingProxyType({
-    "main": "isf_main", "gl_FragColor": "isf_FragColor", "gl_FragCoord": "isf_FragCoord",
-    "vv_FragNormCoord": "isf_FragNormCoord", "vv_vertShaderInit": "isf_vertShaderInit",
-})
-CALLS: Mapping[str, str] = MappingProxyType({
-    "texture": "isf_texture", "texture2D": "isf_texture", "texture2DRect": "IMG_PIXEL", "textureLod": "isf_textureLod",
-    "texture2DLod": "isf_textureLod", "texelFetch": "isf_texelFetch", "dFdy": "isf_dFdy",
-})
+WORDS: Mapping[str, str] = MappingProxyType(
+    {
+        "main": "isf_main",
+        "gl_FragColor": "isf_FragColor",
+        "gl_FragCoord": "isf_FragCoord",
+        "vv_FragNormCoord": "isf_FragNormCoord",
+        "vv_vertShaderInit": "isf_vertShaderInit",
+    }
+)
+CALLS: Mapping[str, str] = MappingProxyType(
+    {
+        "texture": "isf_texture",
+        "texture2D": "isf_texture",
+        "texture2DRect": "IMG_PIXEL",
+        "textureLod": "isf_textureLod",
+        "texture2DLod": "isf_textureLod",
+        "texelFetch": "isf_texelFetch",
+        "dFdy": "isf_dFdy",
+    }
+)
 """Functions that see where rows begin."""
 
-LATER = frozenset({
-    "active", "asm", "buffer", "cast", "class", "coherent", "common", "enum", "extern", "external", "filter", "fixed",
-    "goto", "half", "inline", "input", "interface", "long", "namespace", "noinline", "output", "partition", "patch",
-    "precise", "public", "readonly", "resource", "restrict", "sample", "shared", "short", "sizeof", "static",
-    "subroutine", "superp", "template", "this", "typedef", "union", "unsigned", "using", "writeonly",
-})
+LATER = frozenset(
+    {
+        "active",
+        "asm",
+        "buffer",
+        "cast",
+        "class",
+        "coherent",
+        "common",
+        "enum",
+        "extern",
+        "external",
+        "filter",
+        "fixed",
+        "goto",
+        "half",
+        "inline",
+        "input",
+        "interface",
+        "long",
+        "namespace",
+        "noinline",
+        "output",
+        "partition",
+        "patch",
+        "precise",
+        "public",
+        "readonly",
+        "resource",
+        "restrict",
+        "sample",
+        "shared",
+        "short",
+        "sizeof",
+        "static",
+        "subroutine",
+        "superp",
+        "template",
+        "this",
+        "typedef",
+        "union",
+        "unsigned",
+        "using",
+        "writeonly",
+    }
+)
 """Words that became keywords after the GLSL that shaders are written in."""
 
 QUALIFIERS = frozenset({"smooth", "flat", "noperspective", "centroid"})
@@ -87,13 +139,26 @@ void main() {
     gl_Position.y = -gl_Position.y;
 }"""
 
-UNIFORMS: Mapping[str, str] = MappingProxyType({
-    "PASSINDEX": "int", "RENDERSIZE": "vec2", "TIME": "float", "TIMEDELTA": "float", "DATE": "vec4",
-    "FRAMEINDEX": "int",
-})
-_TYPES: Mapping[str, str] = MappingProxyType({
-    "event": "bool", "bool": "bool", "long": "int", "float": "float", "point2D": "vec2", "color": "vec4",
-})
+UNIFORMS: Mapping[str, str] = MappingProxyType(
+    {
+        "PASSINDEX": "int",
+        "RENDERSIZE": "vec2",
+        "TIME": "float",
+        "TIMEDELTA": "float",
+        "DATE": "vec4",
+        "FRAMEINDEX": "int",
+    }
+)
+_TYPES: Mapping[str, str] = MappingProxyType(
+    {
+        "event": "bool",
+        "bool": "bool",
+        "long": "int",
+        "float": "float",
+        "point2D": "vec2",
+        "color": "vec4",
+    }
+)
 
 
 def shader_text(code: Code, header: Header) -> ShaderText:
@@ -110,8 +175,11 @@ def shader_text(code: Code, header: Header) -> ShaderText:
     where = "#define isf_FragNormCoord (isf_FragCoord.xy / RENDERSIZE)"
     where = "in vec2 isf_FragNormCoord;" if vertex.strip() else where
     top = [
-        *declared, "uniform vec2 isf_range;", "vec4 isf_FragColor = vec4(0.0);",
-        "#define isf_FragCoord vec4(gl_FragCoord.x, RENDERSIZE.y - gl_FragCoord.y, gl_FragCoord.zw)", where,
+        *declared,
+        "uniform vec2 isf_range;",
+        "vec4 isf_FragColor = vec4(0.0);",
+        "#define isf_FragCoord vec4(gl_FragCoord.x, RENDERSIZE.y - gl_FragCoord.y, gl_FragCoord.zw)",
+        where,
         _READING + (_DERIVATIVES if "isf_dFdy" in used else ""),
     ]
     painted = Stage(
@@ -127,8 +195,7 @@ def samplers(header: Header, used: frozenset[str]) -> tuple[str, ...]:
     """The pictures that the text reads, by the names that the head gives them."""
     pictures = (one.name for one in header.inputs if one.type in PICTURES)
     return tuple(
-        name for name in (*pictures, *header.buffers, *header.imported)
-        if {renamed(name), *_around(name)} & used
+        name for name in (*pictures, *header.buffers, *header.imported) if {renamed(name), *_around(name)} & used
     )
 
 

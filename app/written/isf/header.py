@@ -185,8 +185,11 @@ class _Reading:
         """Several passes may draw into one buffer: what any of them says of it holds."""
         before = buffers.get(name, Buffer(name))
         buffers[name] = Buffer(
-            name, persistent or before.persistent, bool(_flag(raw, "FLOAT")) or before.floating,
-            self._size(raw, "WIDTH", name) or before.width, self._size(raw, "HEIGHT", name) or before.height,
+            name,
+            persistent or before.persistent,
+            bool(_flag(raw, "FLOAT")) or before.floating,
+            self._size(raw, "WIDTH", name) or before.width,
+            self._size(raw, "HEIGHT", name) or before.height,
         )
 
     def _old_buffers(self, buffers: dict[str, Buffer]) -> None:
@@ -224,8 +227,11 @@ class _Reading:
             name, path = self._name(said, "an imported picture"), self._text(raw, "PATH")
             parts = PurePosixPath(path).parts
             if not parts or "\\" in path or ":" in path or path.startswith("/") or ".." in parts or "\0" in path:
-                self._fail(f"the imported picture '{name}' has the PATH '{path[:60]}': it is the name of a file in the "
-                           "folder of the shader or in one below", name)
+                self._fail(
+                    f"the imported picture '{name}' has the PATH '{path[:60]}': it is the name of a file in the "
+                    "folder of the shader or in one below",
+                    name,
+                )
             found[name] = path
         return found
 
@@ -257,8 +263,10 @@ class _Reading:
 
     def _name(self, name: Any, what: str) -> str:
         if not isinstance(name, str) or not _NAME.fullmatch(name) or len(name) > 200:
-            self._fail(f"{what} has the name {json.dumps(name)[:60]}: GLSL has names of letters, digits and _",
-                       name if isinstance(name, str) else "")
+            self._fail(
+                f"{what} has the name {json.dumps(name)[:60]}: GLSL has names of letters, digits and _",
+                name if isinstance(name, str) else "",
+            )
         if _TAKEN.fullmatch(name):
             self._fail(f"{what} is called '{name}', which means something else: choose another name", name)
         return name

@@ -24,8 +24,11 @@ def attributes(entries: Iterable[Entry]) -> dict[str, str]:
     found: dict[str, str] = {}
     for name in names:
         called = name.lstrip("_") or name
-        while called in _TAKEN or keyword.iskeyword(called) or called in found.values() or (
-            called != name and called in names
+        while (
+            called in _TAKEN
+            or keyword.iskeyword(called)
+            or called in found.values()
+            or (called != name and called in names)
         ):
             called += "_"
         found[name] = called
@@ -94,8 +97,11 @@ def number_of(uniform: Uniform) -> float:
 def is_position(entry: Entry) -> bool:
     """True for a point that lies in the picture, as fractions of it: rows run from the bottom."""
     return (
-        entry.type == "point2D" and len(entry.low) == 2 and len(entry.high) == 2
-        and min(entry.low) >= 0.0 and max(entry.high) <= 1.0
+        entry.type == "point2D"
+        and len(entry.low) == 2
+        and len(entry.high) == 2
+        and min(entry.low) >= 0.0
+        and max(entry.high) <= 1.0
     )
 
 

@@ -25,7 +25,10 @@ _FLOATS = (-3.4e38, 3.4e38)
 
 _LIGHTS = ("display", "linear")
 _LIGHT = Value(
-    LIGHT, "choice", "display", choices=_LIGHTS,
+    LIGHT,
+    "choice",
+    "display",
+    choices=_LIGHTS,
     doc="What the shader computes with: display values (sRGB), as hosts of the format give it, or linear light.",
 )
 _AROUND = """#include "lib/isf.glsl"
@@ -58,8 +61,13 @@ def isf_node(code: Code) -> type[Written]:
     used = words(*(stage.text for stage in (text.fragment, text.vertex) if stage))
     called = attributes(header.inputs)
     shader = Shader(
-        header, text, PurePath(code.file).parent.as_posix() if code.file else "", called, samplers(header, used),
-        values(header, used), tuple(name for name in UNIFORMS if name in used or name == "RENDERSIZE"),
+        header,
+        text,
+        PurePath(code.file).parent.as_posix() if code.file else "",
+        called,
+        samplers(header, used),
+        values(header, used),
+        tuple(name for name in UNIFORMS if name in used or name == "RENDERSIZE"),
     )
     body: dict[str, Any] = {"__module__": __name__, "__doc__": doc_of(header.doc, called), "__annotations__": {}}
     found: dict[str, Value] = {}
@@ -97,7 +105,8 @@ class _Drawing:
         entries = {entry.name: entry for entry in self.header.inputs}
         self.uniforms: dict[str, Uniform] = {
             name: uniform_of(entry, self._plain(name), self.light == "display")
-            for name, entry in entries.items() if entry.type not in PICTURES
+            for name, entry in entries.items()
+            if entry.type not in PICTURES
         }
         lengths = {name: number_of(uniform) for name, uniform in self.uniforms.items()}
         self.lengths = lengths | {"WIDTH": float(draw.size[0]), "HEIGHT": float(draw.size[1])}
@@ -111,12 +120,13 @@ class _Drawing:
             buffer = self.header.buffers.get(target)
             size = sizes.get(target, self.draw.size)
             held = _BYTES if buffer and not buffer.floating else _FLOATS
-            known = self._known(index, size) | {
-                renamed(name): self.uniforms[name] for name in self.shader.values
-            }
+            known = self._known(index, size) | {renamed(name): self.uniforms[name] for name in self.shader.values}
             made = self.draw.program(
-                self.shader.text, {renamed(name): pictures[name] for name in self.shader.samplers},
-                known | {"isf_range": held}, size=size, result=_result(buffer),
+                self.shader.text,
+                {renamed(name): pictures[name] for name in self.shader.samplers},
+                known | {"isf_range": held},
+                size=size,
+                result=_result(buffer),
             )
             if buffer:
                 drawn.add(target)
@@ -152,8 +162,11 @@ class _Drawing:
         """What the format itself tells a shader: time counts frames, never a clock."""
         frame, rate = self.draw.frame - self.draw.start, self.draw.rate
         found: dict[str, Uniform] = {
-            "PASSINDEX": index, "RENDERSIZE": (float(size[0]), float(size[1])), "TIME": frame / rate,
-            "TIMEDELTA": 1.0 / rate if frame else 0.0, "FRAMEINDEX": frame,
+            "PASSINDEX": index,
+            "RENDERSIZE": (float(size[0]), float(size[1])),
+            "TIME": frame / rate,
+            "TIMEDELTA": 1.0 / rate if frame else 0.0,
+            "FRAMEINDEX": frame,
             "DATE": (2000.0, 1.0, 1.0, (frame / rate) % 86400.0),
         }
         return {name: found[name] for name in self.shader.builtin}

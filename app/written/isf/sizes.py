@@ -15,15 +15,36 @@ MAX_DEPTH = 50
 Run = Callable[[Mapping[str, float]], float]
 
 _TOKENS = re.compile(r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)|(?P<name>\$?[A-Za-z_]\w*)|(?P<sign>.))")
-_OPERATORS: Mapping[str, Callable[[float, float], float]] = MappingProxyType({
-    "+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv, "%": math.fmod, "^": math.pow,
-})
-FUNCTIONS: Mapping[str, tuple[Callable[..., float], int]] = MappingProxyType({
-    "floor": (math.floor, 1), "ceil": (math.ceil, 1), "trunc": (math.trunc, 1), "abs": (abs, 1),
-    "round": (lambda x: math.floor(x + 0.5), 1), "sqrt": (math.sqrt, 1), "exp": (math.exp, 1), "log": (math.log, 1),
-    "sin": (math.sin, 1), "cos": (math.cos, 1), "tan": (math.tan, 1), "pow": (math.pow, 2), "mod": (math.fmod, 2),
-    "min": (min, 0), "max": (max, 0), "clamp": (lambda low, x, high: min(max(x, low), high), 3),
-})
+_OPERATORS: Mapping[str, Callable[[float, float], float]] = MappingProxyType(
+    {
+        "+": operator.add,
+        "-": operator.sub,
+        "*": operator.mul,
+        "/": operator.truediv,
+        "%": math.fmod,
+        "^": math.pow,
+    }
+)
+FUNCTIONS: Mapping[str, tuple[Callable[..., float], int]] = MappingProxyType(
+    {
+        "floor": (math.floor, 1),
+        "ceil": (math.ceil, 1),
+        "trunc": (math.trunc, 1),
+        "abs": (abs, 1),
+        "round": (lambda x: math.floor(x + 0.5), 1),
+        "sqrt": (math.sqrt, 1),
+        "exp": (math.exp, 1),
+        "log": (math.log, 1),
+        "sin": (math.sin, 1),
+        "cos": (math.cos, 1),
+        "tan": (math.tan, 1),
+        "pow": (math.pow, 2),
+        "mod": (math.fmod, 2),
+        "min": (min, 0),
+        "max": (max, 0),
+        "clamp": (lambda low, x, high: min(max(x, low), high), 3),
+    }
+)
 """What they compute, and of how many numbers; 0 stands for any. `clamp(low, x, high)` is as exprtk has it."""
 
 

@@ -194,9 +194,16 @@ def smeared(tree: Tree, a: Any, velocity: Any, depth: Any) -> Any:
 
 
 WORKS: dict[str, Callable[..., Any]] = {
-    "copy": lambda tree, a: a, **{name: lambda tree, a, s=sigma: tree.blur(a, s) for name, sigma in SIGMAS.items()},
-    "T2": bloom, "T3": mapped, "T4": lambda tree, a: tree.sobel(a), "T5": ten, "T6": displaced, "T8": defocused,
-    "T9": smeared, "T10": ten,
+    "copy": lambda tree, a: a,
+    **{name: lambda tree, a, s=sigma: tree.blur(a, s) for name, sigma in SIGMAS.items()},
+    "T2": bloom,
+    "T3": mapped,
+    "T4": lambda tree, a: tree.sobel(a),
+    "T5": ten,
+    "T6": displaced,
+    "T8": defocused,
+    "T9": smeared,
+    "T10": ten,
 }
 
 

@@ -51,7 +51,9 @@ def command(program: str, task: str, folder: Path, size: tuple[int, int], out: P
     width, height = size
     a, b = picture(folder, "a"), picture(folder, "b")
     single = {
-        "copy": "nop", "T2": "bloom radius=16 threshold=80 strength=50", "T3": "reinhard05",
+        "copy": "nop",
+        "T2": "bloom radius=16 threshold=80 strength=50",
+        "T3": "reinhard05",
         "T4": f"edge-sobel keep-sign=false gegl:crop width={width} height={height}",
     } | {name: f"gaussian-blur std-dev-x={s} std-dev-y={s} abyss-policy=clamp" for name, s in SIGMAS.items()}
     if task in single:

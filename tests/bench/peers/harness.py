@@ -1,8 +1,8 @@
 """What the peers in Python share: pictures in, a function, a picture out; or the function alone, again and again.
 
-    opencv_peer.py --list
-    opencv_peer.py TASK FOLDER --out FILE        the whole work of a process; of T10 FILE has {} for the frame
-    opencv_peer.py TASK FOLDER --repeat 5        seconds of the function with arrays in memory, as JSON
+opencv_peer.py --list
+opencv_peer.py TASK FOLDER --out FILE        the whole work of a process; of T10 FILE has {} for the frame
+opencv_peer.py TASK FOLDER --repeat 5        seconds of the function with arrays in memory, as JSON
 """
 
 from __future__ import annotations

@@ -104,8 +104,15 @@ def ten(a: Array, b: Array) -> Array:
     """T5."""
     f = np.float32
     x = graded(
-        a, f(Ten.exposure), np.array(Ten.gain, f), np.array(Ten.lift, f), f(1.0 / Ten.gamma), f(Ten.saturation),
-        f(Ten.curve[0]), f(Ten.curve[1]), np.array(LUMINANCE, f),
+        a,
+        f(Ten.exposure),
+        np.array(Ten.gain, f),
+        np.array(Ten.lift, f),
+        f(1.0 / Ten.gamma),
+        f(Ten.saturation),
+        f(Ten.curve[0]),
+        f(Ten.curve[1]),
+        np.array(LUMINANCE, f),
     )
     return finished(x, blur(x, Ten.sigma), b, f(Ten.mix), f(Ten.edges))
 
@@ -218,7 +225,11 @@ def _gathered(a: Array, depth: Array) -> Array:
 
 WORKS = {name: lambda a, sigma=sigma: blur(a, sigma) for name, sigma in SIGMAS.items()}
 WORKS |= {
-    "copy": lambda a: a, "T5": ten, "T10": ten, "T7": _occlusion, "T8": _gathered,
+    "copy": lambda a: a,
+    "T5": ten,
+    "T10": ten,
+    "T7": _occlusion,
+    "T8": _gathered,
     "T6": lambda a, noise: displaced(a, noise, np.float32(scaled(PUSH, a.shape[1]))),
     "T9": lambda a, velocity: smeared(a, velocity, STEPS),
 }

@@ -16,7 +16,10 @@ Array = np.ndarray
 Texture = moderngl.Texture
 GROUP = 64
 FORMATS: Mapping[tuple[str, int], str] = {
-    ("f2", 4): "rgba16f", ("f4", 4): "rgba32f", ("f4", 1): "r32f", ("f4", 2): "rg32f",
+    ("f2", 4): "rgba16f",
+    ("f4", 4): "rgba32f",
+    ("f4", 1): "r32f",
+    ("f4", 2): "rg32f",
 }
 ROUNDED = "vec4(unpackHalf2x16(packHalf2x16((o).xy)), unpackHalf2x16(packHalf2x16((o).zw)))"
 """The software rasterizer cuts off what does not fit into a half: round first."""
@@ -64,19 +67,24 @@ class Device:
         texture.read_into(made)
         return made
 
-    def run(self, text: str, into: Texture, of: Sequence[Texture], invocations: tuple[int, int],
-            **values: Any) -> Texture:
+    def run(
+        self, text: str, into: Texture, of: Sequence[Texture], invocations: tuple[int, int], **values: Any
+    ) -> Texture:
         """Run a shader: it reads `at0(p)`, `at1(p)`..., knows `last`, the last pixel, and says `put(p, o)`."""
         formats = [FORMATS[item.dtype, item.components] for item in (into, *of)]
         key = (text, *formats)
         if key not in self._programs:
-            head = [f"#version 450\nlayout(local_size_x={GROUP}) in;",
-                    f"layout(binding=0, {formats[0]}) writeonly uniform image2D into;",
-                    f"#define put(p, o) imageStore(into, p, {ROUNDED if into.dtype == 'f2' else 'o'})",
-                    "#define last (imageSize(into) - 1)"]
+            head = [
+                f"#version 450\nlayout(local_size_x={GROUP}) in;",
+                f"layout(binding=0, {formats[0]}) writeonly uniform image2D into;",
+                f"#define put(p, o) imageStore(into, p, {ROUNDED if into.dtype == 'f2' else 'o'})",
+                "#define last (imageSize(into) - 1)",
+            ]
             for number, form in enumerate(formats[1:]):
-                head += [f"layout(binding={number + 1}, {form}) readonly uniform image2D of{number};",
-                         f"#define at{number}(p) imageLoad(of{number}, p)"]
+                head += [
+                    f"layout(binding={number + 1}, {form}) readonly uniform image2D of{number};",
+                    f"#define at{number}(p) imageLoad(of{number}, p)",
+                ]
             self._programs[key] = self.context.compute_shader("\n".join([*head, text]))
         program = self._programs[key]
         for name, value in values.items():
@@ -184,7 +192,11 @@ void main() {{
             for j in range(-reach, count + reach)
         }
         return self._along(
-            f"uniform float w[{reach + 1}];\n{_strip(taps, count, axis, '1', 'last')}", into, of, axis, count,
+            f"uniform float w[{reach + 1}];\n{_strip(taps, count, axis, '1', 'last')}",
+            into,
+            of,
+            axis,
+            count,
             w=[float(weight) for weight in weights],
         )
 
@@ -205,9 +217,7 @@ void main() {{
         """Back to the large size along one axis, by cubic B-splines."""
         return self.pixels(f"{enlarging(0, factor, apron, axis)} o = found;", into, of, head=SPLINE)
 
-    def _along(
-        self, text: str, into: Texture, of: Texture, axis: int, count: int, **values: Any
-    ) -> Texture:
+    def _along(self, text: str, into: Texture, of: Texture, axis: int, count: int, **values: Any) -> Texture:
         length, lines = into.size if axis == 0 else into.size[::-1]
         return self.run(text, into, [of], (lines, -(-length // count)), **values)
 
@@ -216,8 +226,10 @@ def enlarging(number: int, factor: int, apron: int, axis: int) -> str:
     """GLSL that sets `found` to a pixel of an enlarged texture."""
     spots = [f"ivec2(i + {k}, p.y)" if axis == 0 else f"ivec2(p.x, i + {k})" for k in range(-1, 3)]
     terms = " + ".join(f"w[{k}] * at{number}({spot})" for k, spot in enumerate(spots))
-    return (f"float c = (p.{'xy'[axis]} + 0.5 + {apron}) / {factor}.0 - 0.5; int i = int(floor(c)); "
-            f"vec4 w = spline(c - i); vec4 found = {terms};")
+    return (
+        f"float c = (p.{'xy'[axis]} + 0.5 + {apron}) / {factor}.0 - 0.5; int i = int(floor(c)); "
+        f"vec4 w = spline(c - i); vec4 found = {terms};"
+    )
 
 
 def _strip(

@@ -47,9 +47,11 @@ ROWS = 8
 """Pixels of a column to an invocation, where three rows slide through registers."""
 LIGHT = f"dot(x, vec3{LUMINANCE})"
 GRADES = (
-    f"x *= {Ten.exposure};", f"x = x * vec3{Ten.gain} + vec3{Ten.lift};",
+    f"x *= {Ten.exposure};",
+    f"x = x * vec3{Ten.gain} + vec3{Ten.lift};",
     f"x = pow(max(x, 0), vec3({1.0 / Ten.gamma}));",
-    f"x = max(mix(vec3({LIGHT}), x, {Ten.saturation}), 0);", f"x = {Ten.curve[0]} * x / (x + {Ten.curve[1]});",
+    f"x = max(mix(vec3({LIGHT}), x, {Ten.saturation}), 0);",
+    f"x = {Ten.curve[0]} * x / (x + {Ten.curve[1]});",
 )
 
 
@@ -99,12 +101,16 @@ def mapped(device: Device, a: Texture) -> Texture:
     sums = a
     while max(sums.size) > 1:
         term = f"log({Reinhard.delta} + max({LIGHT.replace('x,', 'at0(q).rgb,')}, 0))" if sums is a else "at0(q).x"
-        body = ("float s = 0; for (int j = 0; j < 8; ++j) for (int i = 0; i < 8; ++i) { ivec2 q = p * 8 + ivec2(i, j); "
-                f"if (q.x < {sums.width} && q.y < {sums.height}) s += {term}; }} o = vec4(s);")
+        body = (
+            "float s = 0; for (int j = 0; j < 8; ++j) for (int i = 0; i < 8; ++i) { ivec2 q = p * 8 + ivec2(i, j); "
+            f"if (q.x < {sums.width} && q.y < {sums.height}) s += {term}; }} o = vec4(s);"
+        )
         sums = device.pixels(body, device.texture("sums", -(-sums.width // 8), -(-sums.height // 8)), sums)
     mean = f"exp(at1(ivec2(0)).x / {a.width * a.height}.0)"
-    body = (f"vec4 c = at0(p); vec3 x = c.rgb; float k = {Reinhard.key} / {mean}, l = {LIGHT} * k; "
-            f"o = vec4(x * (k * (1 + l / {Reinhard.white**2}) / (1 + l)), c.a);")
+    body = (
+        f"vec4 c = at0(p); vec3 x = c.rgb; float k = {Reinhard.key} / {mean}, l = {LIGHT} * k; "
+        f"o = vec4(x * (k * (1 + l / {Reinhard.white**2}) / (1 + l)), c.a);"
+    )
     return device.pixels(body, result(device, a), a, sums)
 
 
@@ -116,8 +122,10 @@ def ten(device: Device, a: Texture, b: Texture) -> Texture:
     assert found is not None
     small, factor, apron = found
     wide = device.enlarged(small, device.texture("wide", a.width, small.height), factor, apron, 0)
-    tail = (f"{enlarging(1, factor, apron, 1)} o = mix(v, found, {Ten.mix}); o.rgb += {Ten.edges} * e; "
-            "o += (1 - o.a) * at2(p);")
+    tail = (
+        f"{enlarging(1, factor, apron, 1)} o = mix(v, found, {Ten.mix}); o.rgb += {Ten.edges} * e; "
+        "o += (1 - o.a) * at2(p);"
+    )
     return sobel(device, tail, result(device, a), graded, wide, b, head=SPLINE)
 
 
@@ -137,9 +145,11 @@ def ten_apart(device: Device, a: Texture, b: Texture) -> Texture:
 
 def displaced(device: Device, a: Texture, noise: Texture) -> Texture:
     """T6."""
-    body = (f"vec2 u = clamp(vec2(p) + {scaled(PUSH, a.width)} * at1(p).xy, vec2(0), vec2(last)); ivec2 i = ivec2(u), "
-            "j = min(i + 1, last); vec2 f = u - i; o = mix(mix(at0(i), at0(ivec2(j.x, i.y)), f.x), "
-            "mix(at0(ivec2(i.x, j.y)), at0(j), f.x), f.y);")
+    body = (
+        f"vec2 u = clamp(vec2(p) + {scaled(PUSH, a.width)} * at1(p).xy, vec2(0), vec2(last)); ivec2 i = ivec2(u), "
+        "j = min(i + 1, last); vec2 f = u - i; o = mix(mix(at0(i), at0(ivec2(j.x, i.y)), f.x), "
+        "mix(at0(ivec2(i.x, j.y)), at0(j), f.x), f.y);"
+    )
     return device.pixels(body, result(device, a), a, noise)
 
 
@@ -152,11 +162,14 @@ def points(places: list[tuple[float, float]]) -> str:
 def occlusion(device: Device, depth: Texture, normal: Texture) -> Texture:
     """T7."""
     far, count, radius = Occlusion, Occlusion.samples, scaled(Occlusion.radius, depth.width)
-    head = points([((i + 0.5) / count * radius, i * GOLDEN_ANGLE) for i in range(count)]) + f"""
+    head = (
+        points([((i + 0.5) / count * radius, i * GOLDEN_ANGLE) for i in range(count)])
+        + f"""
 vec3 place(ivec2 q, float z) {{
   vec2 size = vec2(last + 1), view = vec2(size.x / size.y, 1) / {far.focal};
   return vec3(((q.x + 0.5) / size.x * 2 - 1) * view.x * z, (1 - (q.y + 0.5) / size.y * 2) * view.y * z, -z);
 }}"""
+    )
     body = f"""
 float z = at0(p).x, turn = float((p.x * 73 ^ p.y * 151) & 255) * (6.2831853 / 256), s = 0;
 vec3 center = place(p, z), n = at1(p).xyz; vec2 cs = vec2(cos(turn), sin(turn));
@@ -173,8 +186,11 @@ o = vec4(max(0, 1 - 2 * s * {far.reach} / {count}));"""
 def gathered(device: Device, a: Texture, depth: Texture) -> Texture:
     """T8."""
     largest = scaled(Lens.largest, a.width)
-    head = points([(math.sqrt(i / Lens.samples) * largest, i * GOLDEN_ANGLE) for i in range(1, Lens.samples)]) + f"""
+    head = (
+        points([(math.sqrt(i / Lens.samples) * largest, i * GOLDEN_ANGLE) for i in range(1, Lens.samples)])
+        + f"""
 float circle(float z) {{ return min(abs(z - {Lens.focus}) / z * {scaled(Lens.aperture, a.width)}, {largest}); }}"""
+    )
     body = f"""
 float z = at1(p).x, own = circle(z), total = 1; o = at0(p);
 for (int i = 0; i < {Lens.samples - 1}; ++i) {{
@@ -188,11 +204,11 @@ o /= total;"""
 
 def smeared(device: Device, a: Texture, velocity: Texture) -> Texture:
     """T9."""
-    body = (f"vec2 u = at1(p).zw; o = vec4(0); for (int i = 0; i < {STEPS}; ++i) o += at0(clamp(p + ivec2(round(u * "
-            f"((i + 0.5) / {STEPS}.0 - 0.5))), ivec2(0), last)); o /= {STEPS};")
+    body = (
+        f"vec2 u = at1(p).zw; o = vec4(0); for (int i = 0; i < {STEPS}; ++i) o += at0(clamp(p + ivec2(round(u * "
+        f"((i + 0.5) / {STEPS}.0 - 0.5))), ivec2(0), last)); o /= {STEPS};"
+    )
     return device.pixels(body, result(device, a), a, velocity)
-
-
 
 
 def blurred(device: Device, a: Texture, sigma: float) -> Texture:
@@ -203,9 +219,15 @@ def blurred(device: Device, a: Texture, sigma: float) -> Texture:
 WORKS: Mapping[str, Shaded] = {
     "copy": lambda device, a: a,
     **{name: lambda device, a, sigma=sigma: blurred(device, a, sigma) for name, sigma in SIGMAS.items()},
-    "T2": bloom, "T3": mapped, "T4": lambda device, a: sobel(device, "o = vec4(e, v.a);", result(device, a), a),
-    "T5": ten_apart if os.environ.get("RAW_UNFUSED") else ten, "T6": displaced, "T7": occlusion, "T8": gathered,
-    "T9": smeared, "T10": ten,
+    "T2": bloom,
+    "T3": mapped,
+    "T4": lambda device, a: sobel(device, "o = vec4(e, v.a);", result(device, a), a),
+    "T5": ten_apart if os.environ.get("RAW_UNFUSED") else ten,
+    "T6": displaced,
+    "T7": occlusion,
+    "T8": gathered,
+    "T9": smeared,
+    "T10": ten,
 }
 
 

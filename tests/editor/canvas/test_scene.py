@@ -83,11 +83,17 @@ def test_a_changed_value_leaves_all_boxes_and_links_but_its_own_node() -> None:
     assert second == staged(graph.set(P("exposure.stops"), 2.0))
 
 
-@pytest.mark.parametrize("change", [
-    lambda graph: graph.mute("bloom"), lambda graph: graph.disconnect(P("bloom.image")),
-    lambda graph: graph.replace("bloom", catalogue()["noise"]()), lambda graph: graph.add("b", catalogue()["clip"]()),
-    lambda graph: graph.add_input("more", Input()), lambda graph: graph.rename("bloom", "glow"),
-])
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda graph: graph.mute("bloom"),
+        lambda graph: graph.disconnect(P("bloom.image")),
+        lambda graph: graph.replace("bloom", catalogue()["noise"]()),
+        lambda graph: graph.add("b", catalogue()["clip"]()),
+        lambda graph: graph.add_input("more", Input()),
+        lambda graph: graph.rename("bloom", "glow"),
+    ],
+)
 def test_what_is_staged_again_is_what_is_staged_anew(change) -> None:
     stage, graph = Stage(), pinned(chain("exposure", "bloom"))
     staged(graph, stage)

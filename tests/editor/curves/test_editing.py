@@ -33,7 +33,11 @@ def at(port: Port, *frames: float, channel: int = 0) -> frozenset:
 def test_rows_are_grouped_by_node_and_selected_ones_come_first() -> None:
     found = rows(graph(), {"soften"})
     assert [(row.node, row.label) for row in found] == [
-        ("soften", "soften"), ("soften", "sigma"), ("gain", "gain"), ("gain", "gain"), ("gain", "clamp"),
+        ("soften", "soften"),
+        ("soften", "sigma"),
+        ("gain", "gain"),
+        ("gain", "gain"),
+        ("gain", "clamp"),
         ("gain", "tint"),
     ]
     assert [row.channels for row in found][-1] == "rgba"
@@ -146,9 +150,15 @@ def test_easing_lays_handles_flat() -> None:
 
 
 def test_kinds_of_handles() -> None:
-    animation = {GAIN: Keys((
-        Key(0, 0.0, "bezier"), Key(10, 1.0, "bezier", left=(-2.0, 0.0), right=(4.0, 4.0)), Key(20, 2.0, "bezier"),
-    ))}
+    animation = {
+        GAIN: Keys(
+            (
+                Key(0, 0.0, "bezier"),
+                Key(10, 1.0, "bezier", left=(-2.0, 0.0), right=(4.0, 4.0)),
+                Key(20, 2.0, "bezier"),
+            )
+        )
+    }
     straight = editing.straightened(animation, at(GAIN, 10))[GAIN]
     assert editing.aligned(straight, 10.0) and straight.key(10).left[0] == -2.0
     assert editing.automatic(animation, at(GAIN, 10))[GAIN].key(10).left == ()

@@ -36,7 +36,9 @@ def test_keys_of_the_sheet() -> None:
     assert sheet_marks(shown, found.animation, entries, PLANE, -500.0, 20.0) == [[], [], []]
     moved = found.animate(GAIN, Keys((Key(11, 1.0),)))
     assert [mark.x for mark in sheet_marks(rows(moved), moved.animation, entries, PLANE, 50.0, 20.0)[0]] == [
-        100.0, 110.0, 600.0,
+        100.0,
+        110.0,
+        600.0,
     ]
 
 

@@ -33,8 +33,10 @@ def curve(keys: Keys, channel: int) -> np.ndarray:
     before, after = outside(keys, channel, inner, PLANE.view.first, PLANE.view.last)
     lines = [line for line in points([before, inner, after], PLANE) if len(line)]
     found = np.concatenate(lines)
-    return np.stack([PLANE.view.first + found[:, 0] / PLANE.across,
-                     PLANE.view.low + (PLANE.rect[3] - found[:, 1]) / PLANE.up], axis=1)
+    return np.stack(
+        [PLANE.view.first + found[:, 0] / PLANE.across, PLANE.view.low + (PLANE.rect[3] - found[:, 1]) / PLANE.up],
+        axis=1,
+    )
 
 
 @pytest.mark.parametrize(("ends", "channels"), [*itertools.product(("hold", "linear", "loop", "mirror"), (1, 3))])

@@ -105,10 +105,18 @@ def test_unknown_keys_of_nodes_come_along():
     assert after.extra == {"nodes.n0": {"later": 1}, "nodes.n1": {"later": 1}, "": {"other": 2}}
 
 
-@pytest.mark.parametrize(("name", "kind", "wanted"), [
-    ("blur", "", "blur2"), ("n3", "", "n4"), ("blur9", "", "blur11"), ("free", "", "free"),
-    ("convolve3x3", "convolve3x3", "convolve3x33"), ("convolve3x32", "convolve3x3", "convolve3x33"), ("7", "", "8"),
-])
+@pytest.mark.parametrize(
+    ("name", "kind", "wanted"),
+    [
+        ("blur", "", "blur2"),
+        ("n3", "", "n4"),
+        ("blur9", "", "blur11"),
+        ("free", "", "free"),
+        ("convolve3x3", "convolve3x3", "convolve3x33"),
+        ("convolve3x32", "convolve3x3", "convolve3x33"),
+        ("7", "", "8"),
+    ],
+)
 def test_names_of_copies(name, kind, wanted):
     assert copy_of(name, {"blur", "n3", "blur9", "blur10", "convolve3x3", "convolve3x32", "7"}, kind) == wanted
 

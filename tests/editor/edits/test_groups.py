@@ -35,26 +35,43 @@ def test_ends_are_named_and_typed_by_what_crosses_the_border():
     graph = Graph(inputs={"a": Input(), "depth": Input(Kind.FIELD)}, outputs={"image": Output(), "second": Output()})
     graph = graph.add("blend", Blend()).add("soften", Soften()).add("meter", Meter()).add("split", Split())
     for start, end in (
-        ("inputs.a", "blend.first"), ("inputs.a", "blend.second"), ("inputs.depth", "blend.mask"),
-        ("inputs.a", "meter.image"), ("meter.mean", "blend.gain"), ("blend.out", "soften.image"),
-        ("blend.out", "split.image"), ("soften.out", "outputs.image"), ("split.rest", "outputs.second"),
+        ("inputs.a", "blend.first"),
+        ("inputs.a", "blend.second"),
+        ("inputs.depth", "blend.mask"),
+        ("inputs.a", "meter.image"),
+        ("meter.mean", "blend.gain"),
+        ("blend.out", "soften.image"),
+        ("blend.out", "split.image"),
+        ("soften.out", "outputs.image"),
+        ("split.rest", "outputs.second"),
     ):
         graph = graph.connect(port(start), port(end))
     after, id = grouped(graph, {"blend", "soften", "inputs.a"}, "look")
     assert id == "look"
     made = body(after, "look")
     assert {name: (end.kind, end.width) for name, end in made.inputs.items()} == {
-        "first": (Kind.IMAGE, 4), "mask": (Kind.FIELD, 1), "gain": (Kind.NUMBER, 1),
+        "first": (Kind.IMAGE, 4),
+        "mask": (Kind.FIELD, 1),
+        "gain": (Kind.NUMBER, 1),
     }
     assert links(made) == {
-        "blend.first": "inputs.first", "blend.second": "inputs.first", "blend.mask": "inputs.mask",
-        "blend.gain": "inputs.gain", "soften.image": "blend.out", "outputs.out": "soften.out",
+        "blend.first": "inputs.first",
+        "blend.second": "inputs.first",
+        "blend.mask": "inputs.mask",
+        "blend.gain": "inputs.gain",
+        "soften.image": "blend.out",
+        "outputs.out": "soften.out",
         "outputs.out2": "blend.out",
     }
     assert set(after.inputs) == {"a", "depth"}
     assert links(after) == {
-        "look.first": "inputs.a", "look.mask": "inputs.depth", "look.gain": "meter.mean", "meter.image": "inputs.a",
-        "outputs.image": "look.out", "split.image": "look.out2", "outputs.second": "split.rest",
+        "look.first": "inputs.a",
+        "look.mask": "inputs.depth",
+        "look.gain": "meter.mean",
+        "meter.image": "inputs.a",
+        "outputs.image": "look.out",
+        "split.image": "look.out2",
+        "outputs.second": "split.rest",
     }
 
 
@@ -118,9 +135,9 @@ def test_nodes_of_unknown_type_can_be_grouped():
 
 
 def test_names_that_are_taken_are_counted_up():
-    graph = chain(1).add("g", Group(Graph(inputs={"image": Input()}).add("n0", Gain()).connect(
-        port("inputs.image"), port("n0.image")
-    )))
+    graph = chain(1).add(
+        "g", Group(Graph(inputs={"image": Input()}).add("n0", Gain()).connect(port("inputs.image"), port("n0.image")))
+    )
     after, put = ungrouped(graph.connect(port("n0.out"), port("g.image")), "g")
     assert put == ("n1",)
     assert links(after)["n1.image"] == "n0.out"

@@ -136,9 +136,12 @@ def test_a_chain_put_into_a_link_is_as_wired_by_hand(seed):
             for number, id in enumerate(ids):
                 before = before.add(id, catalogue()[rng.choice(filters)]())
                 if number:
-                    before = wiring.linked(before, id, Port(ids[number - 1], next(iter(
-                        signature(before.nodes[ids[number - 1]]).outputs
-                    ))), True)
+                    before = wiring.linked(
+                        before,
+                        id,
+                        Port(ids[number - 1], next(iter(signature(before.nodes[ids[number - 1]]).outputs))),
+                        True,
+                    )
             after = wiring.spliced(before, set(ids), target)
         except GraphError:
             continue

@@ -27,7 +27,12 @@ def links(graph: Graph) -> dict[str, str]:
 def test_the_types_that_fit_a_source():
     graph = chain(1).add_input("depth", Input(Kind.FIELD)).add("slope", Slope()).add("lens", Unknown("lens"))
     assert wiring.fitting(graph, port("inputs.beauty"), True, TOYS) == (
-        "gain", "soften", "blend", "split", "flow", "meter"
+        "gain",
+        "soften",
+        "blend",
+        "split",
+        "flow",
+        "meter",
     )
     assert "slope" in wiring.fitting(graph, port("inputs.depth"), True, TOYS)
     assert wiring.fitting(graph, port("slope.flow"), True, TOYS) == ("gain", "flow"), "a position is a vector of two"
@@ -100,10 +105,16 @@ def test_a_chain_is_put_into_a_link_as_a_whole():
 
 
 def test_only_what_would_be_covered_is_pushed_aside_and_what_follows_it():
-    graph = with_places(pinned(chain(3)), {
-        "inputs.beauty": (0.0, 0.0), "n0": (200.0, 0.0), "n1": (450.0, 0.0), "n2": (700.0, 0.0),
-        "outputs.image": (950.0, 0.0),
-    })
+    graph = with_places(
+        pinned(chain(3)),
+        {
+            "inputs.beauty": (0.0, 0.0),
+            "n0": (200.0, 0.0),
+            "n1": (450.0, 0.0),
+            "n2": (700.0, 0.0),
+            "outputs.image": (950.0, 0.0),
+        },
+    )
     graph, dot = routes.add_dot(graph, port("n2.image"), (660.0, 0.0))
     graph, frame = add_frame(graph, ["n2", "outputs.image"], positions(graph))
     sizes = {key: (180.0, 100.0) for key in keys(graph) if "." not in key or key.startswith(("inputs", "outputs"))}
@@ -113,7 +124,12 @@ def test_only_what_would_be_covered_is_pushed_aside_and_what_follows_it():
     by = 400.0 + 180.0 + MARGIN - 450.0
     moved = {key: spot[0] - positions(graph)[key][0] for key, spot in positions(after).items() if key in keys(graph)}
     assert moved == {
-        "inputs.beauty": 0.0, "n0": 0.0, "n1": by, "n2": by, "outputs.image": by, f"dots.{dot}": by,
+        "inputs.beauty": 0.0,
+        "n0": 0.0,
+        "n1": by,
+        "n2": by,
+        "outputs.image": by,
+        f"dots.{dot}": by,
         f"frames.{frame}": by,
     }
     assert positions(after)["soften"] == (400.0, 20.0)
@@ -128,7 +144,10 @@ def test_only_what_would_be_covered_is_pushed_aside_and_what_follows_it():
 def test_extracted_nodes_keep_the_links_among_themselves():
     after = wiring.extracted(chain(4), ["n1", "n2"])
     assert links(after) == {
-        "n0.image": "inputs.beauty", "n3.image": "n0.out", "n2.image": "n1.out", "outputs.image": "n3.out"
+        "n0.image": "inputs.beauty",
+        "n3.image": "n0.out",
+        "n2.image": "n1.out",
+        "outputs.image": "n3.out",
     }
     with pytest.raises(GraphError, match="nothing to take out"):
         wiring.extracted(after, ["n1", "n2"])

@@ -35,8 +35,11 @@ THREE = numbers_of((A, B, C))
 
 edits = st.lists(
     st.tuples(
-        st.sampled_from(["add", "double", "remove", "move", "turn", "set"]), st.integers(0, 9),
-        st.sampled_from(LightKind), st.sampled_from(PARTS), st.floats(0.0, 90.0),
+        st.sampled_from(["add", "double", "remove", "move", "turn", "set"]),
+        st.integers(0, 9),
+        st.sampled_from(LightKind),
+        st.sampled_from(PARTS),
+        st.floats(0.0, 90.0),
     ),
     max_size=16,
 )

@@ -23,10 +23,27 @@ class TestTyping:
     @pytest.mark.parametrize(
         ("text", "number"),
         [
-            ("0.5", 0.5), (" .5 ", 0.5), ("-2", -2.0), ("1e-3", 0.001), ("0.5+1", 1.5), ("(2-3)*4**2", -16.0),
-            ("-2**2", -4.0), ("2**-1", 0.5), ("2^3^0", 2.0), ("7/2-1", 2.5), ("--3", 3.0),
-            ("+1", 11.0), ("*2", 20.0), ("/4", 2.5), ("**2", 100.0), ("*2+1", 21.0), ("-=4", 6.0), ("+= 2", 12.0),
-            ("+-3", 7.0), ("*=3", 30.0), ("*(1+1)", 20.0),
+            ("0.5", 0.5),
+            (" .5 ", 0.5),
+            ("-2", -2.0),
+            ("1e-3", 0.001),
+            ("0.5+1", 1.5),
+            ("(2-3)*4**2", -16.0),
+            ("-2**2", -4.0),
+            ("2**-1", 0.5),
+            ("2^3^0", 2.0),
+            ("7/2-1", 2.5),
+            ("--3", 3.0),
+            ("+1", 11.0),
+            ("*2", 20.0),
+            ("/4", 2.5),
+            ("**2", 100.0),
+            ("*2+1", 21.0),
+            ("-=4", 6.0),
+            ("+= 2", 12.0),
+            ("+-3", 7.0),
+            ("*=3", 30.0),
+            ("*(1+1)", 20.0),
         ],
     )
     def test_arithmetic(self, text, number):
@@ -35,8 +52,15 @@ class TestTyping:
     @pytest.mark.parametrize(
         ("text", "declaration", "number"),
         [
-            ("2EV", STOPS, 2.0), ("-1.5 stops", STOPS, -1.5), ("30deg", ANGLE, 30.0), ("0.5turn", ANGLE, 180.0),
-            ("90°+1", ANGLE, 91.0), ("50%", GAIN, 0.5), ("2x", GAIN, 2.0), ("7", SEED, 7), ("16", GAIN, 16.0),
+            ("2EV", STOPS, 2.0),
+            ("-1.5 stops", STOPS, -1.5),
+            ("30deg", ANGLE, 30.0),
+            ("0.5turn", ANGLE, 180.0),
+            ("90°+1", ANGLE, 91.0),
+            ("50%", GAIN, 0.5),
+            ("2x", GAIN, 2.0),
+            ("7", SEED, 7),
+            ("16", GAIN, 16.0),
         ],
     )
     def test_units(self, text, declaration, number):
@@ -45,27 +69,41 @@ class TestTyping:
     @pytest.mark.parametrize(
         ("text", "declaration", "reason"),
         [
-            ("", GAIN, "type a number"), ("1+", GAIN, "missing at the end"), ("(1", GAIN, r"a '\)' is missing"),
-            ("1)", GAIN, r"a '\(' is missing"), ("1 2", GAIN, "not expected"), ("1/0", GAIN, "divides by zero"),
-            ("9**9**9", WEIGHT, "too large"), ("1e999", WEIGHT, "too large"), ("(-2)**0.5", WEIGHT, "is no number"),
-            ("2px", STOPS, r"'px' does not fit: this counts stops \(EV\)"), ("3 foo", GAIN, "'foo' is no unit"),
-            ("50%", STOPS, "percent do not fit"), ("17", GAIN, "17 is too large: it takes 0 to 16"),
-            ("-1", GAIN, "-1 is too small"), ("1.5", SEED, "a whole number is wanted, not 1.5"),
-            ("__import__('os')", GAIN, "is no part of a number"), ("a", GAIN, "is no part of a number"),
-            ("1" * 201, GAIN, "too long"), ("*", GAIN, "missing"), ("1 = 1", GAIN, "'=' is no part"),
+            ("", GAIN, "type a number"),
+            ("1+", GAIN, "missing at the end"),
+            ("(1", GAIN, r"a '\)' is missing"),
+            ("1)", GAIN, r"a '\(' is missing"),
+            ("1 2", GAIN, "not expected"),
+            ("1/0", GAIN, "divides by zero"),
+            ("9**9**9", WEIGHT, "too large"),
+            ("1e999", WEIGHT, "too large"),
+            ("(-2)**0.5", WEIGHT, "is no number"),
+            ("2px", STOPS, r"'px' does not fit: this counts stops \(EV\)"),
+            ("3 foo", GAIN, "'foo' is no unit"),
+            ("50%", STOPS, "percent do not fit"),
+            ("17", GAIN, "17 is too large: it takes 0 to 16"),
+            ("-1", GAIN, "-1 is too small"),
+            ("1.5", SEED, "a whole number is wanted, not 1.5"),
+            ("__import__('os')", GAIN, "is no part of a number"),
+            ("a", GAIN, "is no part of a number"),
+            ("1" * 201, GAIN, "too long"),
+            ("*", GAIN, "missing"),
+            ("1 = 1", GAIN, "'=' is no part"),
         ],
     )
     def test_mistakes_are_named(self, text, declaration, reason):
         with pytest.raises(UsageError, match=reason):
             typed(text, 1.0, declaration)
 
-    @given(st.recursive(
-        st.floats(0.0, 100.0).map(lambda x: f"{x:.3f}"),
-        lambda part: st.tuples(st.sampled_from(["({}+{})", "{}*{}", "({}-{})", "-{}-{}"]), part, part).map(
-            lambda found: found[0].format(*found[1:])
-        ),
-        max_leaves=12,
-    ))
+    @given(
+        st.recursive(
+            st.floats(0.0, 100.0).map(lambda x: f"{x:.3f}"),
+            lambda part: st.tuples(st.sampled_from(["({}+{})", "{}*{}", "({}-{})", "-{}-{}"]), part, part).map(
+                lambda found: found[0].format(*found[1:])
+            ),
+            max_leaves=12,
+        )
+    )
     def test_it_agrees_with_python(self, text):
         if len(text) <= 200:
             wanted = eval(compile(ast.parse(text, mode="eval"), "", "eval"))
@@ -107,10 +145,21 @@ class TestDragging:
 @pytest.mark.parametrize(
     ("text", "caret", "direction", "wanted"),
     [
-        ("1.25", 4, 1, ("1.26", 4)), ("1.25", 3, 1, ("1.35", 3)), ("1.25", 1, -1, ("0.25", 1)),
-        ("1.25", 2, 1, ("2.25", 1)), ("0.99", 4, 1, ("1.00", 4)), ("9", 1, 1, ("10", 2)), ("10", 2, -1, ("9", 1)),
-        ("100", 1, 1, ("200", 1)), ("-1", 2, 1, ("0", 1)), ("0.0", 3, -1, ("-0.1", 4)), ("-5", 0, -1, ("-6", 2)),
-        ("1+1", 3, 1, ("1+1", 3)), ("", 0, 1, ("", 0)), (".", 1, 1, (".", 1)), (".5", 2, 1, ("0.6", 3)),
+        ("1.25", 4, 1, ("1.26", 4)),
+        ("1.25", 3, 1, ("1.35", 3)),
+        ("1.25", 1, -1, ("0.25", 1)),
+        ("1.25", 2, 1, ("2.25", 1)),
+        ("0.99", 4, 1, ("1.00", 4)),
+        ("9", 1, 1, ("10", 2)),
+        ("10", 2, -1, ("9", 1)),
+        ("100", 1, 1, ("200", 1)),
+        ("-1", 2, 1, ("0", 1)),
+        ("0.0", 3, -1, ("-0.1", 4)),
+        ("-5", 0, -1, ("-6", 2)),
+        ("1+1", 3, 1, ("1+1", 3)),
+        ("", 0, 1, ("", 0)),
+        (".", 1, 1, (".", 1)),
+        (".5", 2, 1, ("0.6", 3)),
     ],
 )
 def test_arrow_keys_change_the_digit_at_the_caret(text, caret, direction, wanted):
@@ -119,7 +168,11 @@ def test_arrow_keys_change_the_digit_at_the_caret(text, caret, direction, wanted
 
 def test_what_is_shown():
     assert [shown(number, GAIN) for number in (1.0, 0.5, -0.0001, 0.001234, 12.3456)] == [
-        "1.00", "0.50", "-0.0001", "0.00123", "12.35",
+        "1.00",
+        "0.50",
+        "-0.0001",
+        "0.00123",
+        "12.35",
     ]
     assert shown(-0.0, GAIN) == "0.00"
     assert shown(7, SEED) == "7"
@@ -128,7 +181,13 @@ def test_what_is_shown():
 
 def test_a_narrow_field_shows_fewer_digits():
     assert [shortened(text) for text in ("0.185", "1.5", "-0.4", "7", "1.2e-05", "-0.0", "—")] == [
-        "0.18", "2", "0", "7", "1.2e-05", "0", "—",
+        "0.18",
+        "2",
+        "0",
+        "7",
+        "1.2e-05",
+        "0",
+        "—",
     ]
 
 

@@ -6,8 +6,18 @@ import pytest
 from halation.app.editor.panels.fuzzy import Match, match, runs
 
 NODES = (
-    "Blend", "Bloom", "Box Blur", "Directional Blur", "Gaussian Blur", "Grade", "Luminance", "Premultiply",
-    "RGB Curves", "Threshold", "Tone Map", "Unpremultiply",
+    "Blend",
+    "Bloom",
+    "Box Blur",
+    "Directional Blur",
+    "Gaussian Blur",
+    "Grade",
+    "Luminance",
+    "Premultiply",
+    "RGB Curves",
+    "Threshold",
+    "Tone Map",
+    "Unpremultiply",
 )
 
 
@@ -18,9 +28,18 @@ def found(query: str, candidates: tuple[str, ...] = NODES) -> list[str]:
 @pytest.mark.parametrize(
     ("query", "first"),
     [
-        ("gb", "Gaussian Blur"), ("blur", "Box Blur"), ("bl", "Blend"), ("blo", "Bloom"), ("tm", "Tone Map"),
-        ("lum", "Luminance"), ("premul", "Premultiply"), ("rgb", "RGB Curves"), ("blur gauss", "Gaussian Blur"),
-        ("GRADE", "Grade"), ("hold", "Threshold"), ("up", "Unpremultiply"),
+        ("gb", "Gaussian Blur"),
+        ("blur", "Box Blur"),
+        ("bl", "Blend"),
+        ("blo", "Bloom"),
+        ("tm", "Tone Map"),
+        ("lum", "Luminance"),
+        ("premul", "Premultiply"),
+        ("rgb", "RGB Curves"),
+        ("blur gauss", "Gaussian Blur"),
+        ("GRADE", "Grade"),
+        ("hold", "Threshold"),
+        ("up", "Unpremultiply"),
     ],
 )
 def test_the_wanted_one_is_first(query: str, first: str) -> None:

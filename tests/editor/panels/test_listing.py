@@ -16,8 +16,12 @@ def item(name: str, is_folder: bool = False, size: int = 0, time: float = 0.0) -
 
 
 ITEMS = (
-    item("b10.exr", size=1, time=3.0), item("b9.exr", size=5, time=1.0), item("A.json", size=3, time=2.0),
-    item(".hidden.exr"), item("zoo", True), item("Attic", True),
+    item("b10.exr", size=1, time=3.0),
+    item("b9.exr", size=5, time=1.0),
+    item("A.json", size=3, time=2.0),
+    item(".hidden.exr"),
+    item("zoo", True),
+    item("Attic", True),
 )
 
 
@@ -100,7 +104,9 @@ def test_places(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     shots.mkdir()
     found = places(shots, [shots, tmp_path / "gone"], [tmp_path])
     assert [(one.title, one.kind) for one in found if one.kind != "drive"] == [
-        ("This document", "document"), ("Home", "home"), ("Pictures", "folder"),
+        ("This document", "document"),
+        ("Home", "home"),
+        ("Pictures", "folder"),
     ]
     assert [one.kind for one in found][-1] == "drive"
 

@@ -91,8 +91,11 @@ def test_taking_a_shortcut_over_and_giving_it_back(desk: Editor) -> None:
 
 
 def test_the_same_keys_may_serve_two_panels() -> None:
-    acts = (Action("a", "A", print, shortcut="A", scope="graph"), Action("b", "B", print, shortcut="A", scope="viewer"),
-            Action("c", "C", print, shortcut="A"))
+    acts = (
+        Action("a", "A", print, shortcut="A", scope="graph"),
+        Action("b", "B", print, shortcut="A", scope="viewer"),
+        Action("c", "C", print, shortcut="A"),
+    )
     actions = Actions(acts, dict)
     assert [one.id for one in actions.conflicts("a", "A")] == ["c"]
     assert [one.id for one in actions.conflicts("c", "A")] == ["a", "b"]

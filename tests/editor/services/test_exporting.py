@@ -83,9 +83,11 @@ def test_failures_are_sentences(exports, folder, tmp_path):
     broken = broken.connect(Port("lost", "out"), Port("n0", "image"))
     unlinked = brighter(folder).disconnect(Port("n0", "image"))
     cases = [
-        (broken, out, "gone.exr"), (unlinked, out, "n0"),
+        (broken, out, "gone.exr"),
+        (unlinked, out, "n0"),
         (brighter(folder), tmp_path / "no" / "out.exr", "no such folder"),
-        (brighter(folder), folder / "a.exr", "is read by 'beauty'"), (brighter(folder), tmp_path / "out.xyz", ".xyz"),
+        (brighter(folder), folder / "a.exr", "is read by 'beauty'"),
+        (brighter(folder), tmp_path / "out.xyz", ".xyz"),
     ]
     running = [(exports.start(graph, [("", path)]), words) for graph, path, words in cases]
     for one, words in running:

@@ -27,9 +27,18 @@ def written(file, text):
 def test_what_is_changed_is_there_the_next_time(store, file, tmp_path):
     first = store()
     assert first.now == Preferences() and not first.flush() and not file.exists()
-    changes = {"theme": "light", "ui_scale": 1.5, "shortcuts": {"save": "Ctrl+K", "open": ""}, "thumbnails": False,
-               "timings": True, "minimap": False, "autosave": 10.0, "memory_budget": 2048, "hint_seen": True,
-               "proxy_while_dragging": False}
+    changes = {
+        "theme": "light",
+        "ui_scale": 1.5,
+        "shortcuts": {"save": "Ctrl+K", "open": ""},
+        "thumbnails": False,
+        "timings": True,
+        "minimap": False,
+        "autosave": 10.0,
+        "memory_budget": 2048,
+        "hint_seen": True,
+        "proxy_while_dragging": False,
+    }
     first.change(**changes)
     first.used("image", tmp_path / "picture.exr")
     assert first.flush() and not first.flush()
@@ -40,8 +49,16 @@ def test_what_is_changed_is_there_the_next_time(store, file, tmp_path):
 
 @pytest.mark.parametrize(
     ("name", "value"),
-    [("theme", "pink"), ("ui_scale", 0.5), ("ui_scale", float("nan")), ("autosave", 11.0), ("memory_budget", 1.5),
-     ("minimap", 1), ("shortcuts", {"save": 3}), ("sound", True)],
+    [
+        ("theme", "pink"),
+        ("ui_scale", 0.5),
+        ("ui_scale", float("nan")),
+        ("autosave", 11.0),
+        ("memory_budget", 1.5),
+        ("minimap", 1),
+        ("shortcuts", {"save": 3}),
+        ("sound", True),
+    ],
 )
 def test_a_value_that_makes_no_sense_is_refused(store, name, value):
     found = store()
@@ -52,8 +69,17 @@ def test_a_value_that_makes_no_sense_is_refused(store, name, value):
 
 def test_broken_values_fall_back_one_by_one_and_unknown_ones_stay(store, file):
     recent = [{"path": "a.json", "time": 2.0}, {"path": 7}, {"path": "b.json", "time": 1.0}]
-    written(file, {"theme": "pink", "minimap": False, "ui_scale": 9, "shortcuts": {"save": "Ctrl+K", "open": 4},
-                   "recent": recent, "sound": {"loud": 3}})
+    written(
+        file,
+        {
+            "theme": "pink",
+            "minimap": False,
+            "ui_scale": 9,
+            "shortcuts": {"save": "Ctrl+K", "open": 4},
+            "recent": recent,
+            "sound": {"loud": 3},
+        },
+    )
     found = store()
     assert (found.now.theme, found.now.minimap, found.now.ui_scale) == ("dark", False, 0.0)
     assert found.now.shortcuts == {"save": "Ctrl+K"} and [one.path for one in found.now.recent] == ["a.json", "b.json"]

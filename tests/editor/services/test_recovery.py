@@ -264,5 +264,6 @@ def killed(delay: float, state: Path, path: Path) -> list[tuple[str, int, float]
         time.sleep(delay)
         running.kill()
         lines = [first, *running.stdout.readlines()]
-    return [(word, int(count), float(when)) for line in lines if line.endswith("\n") for word, count, when in
-            [line.split()]]
+    return [
+        (word, int(count), float(when)) for line in lines if line.endswith("\n") for word, count, when in [line.split()]
+    ]

@@ -34,16 +34,22 @@ def found(files: ShaderFiles, *folders: Path) -> tuple[ShaderFile, ...]:
 
 def test_shaders_are_found_under_their_categories(files: ShaderFiles, tmp_path: Path) -> None:
     top = tmp_path / "isf"
-    put(top / "Blur It.fs", CATEGORIES=["Blur", "Other"], DESCRIPTION="Blurs.\nA lot.", INPUTS=[
-        {"NAME": "inputImage", "TYPE": "image"},
-    ])
+    put(
+        top / "Blur It.fs",
+        CATEGORIES=["Blur", "Other"],
+        DESCRIPTION="Blurs.\nA lot.",
+        INPUTS=[
+            {"NAME": "inputImage", "TYPE": "image"},
+        ],
+    )
     put(top / "Mine" / "bars.FS", INPUTS=[])
     (top / "broken.fs").write_text("void main() {}")
     (top / "binary.fs").write_bytes(b"\xff\xfe\x00")
     (top / "note.txt").write_text("no shader")
     got = found(files, top, tmp_path / "gone")
     assert [(one.path.name, one.category, one.takes) for one in got] == [
-        ("Blur It.fs", "Blur", True), ("bars.FS", "Mine", False),
+        ("Blur It.fs", "Blur", True),
+        ("bars.FS", "Mine", False),
     ]
     entry = shader_entries(got)[0]
     assert (entry.title, entry.category, entry.doc) == ("Blur It", "ISF blur", "Blurs.")

@@ -19,6 +19,7 @@ from halation.nodes import catalogue
 def watcher(request, monkeypatch):
     """One that the system tells of changes, and one on a system that refuses to."""
     if request.param == "compared":
+
         def refuse(*paths, **options):
             raise OSError("OS file watch limit reached")
 
@@ -194,5 +195,8 @@ def test_the_pictures_of_a_graph(tmp_path):
     graph = graph.connect(Port("inputs", "beauty"), Port("group", "fed"))
     bindings = {"bound": str(tmp_path / "c.exr:Depth"), "number": 3.0}
     assert {file.relative_to(tmp_path) for file in pictures_of(graph, bindings)} == {
-        Path("a.exr"), Path("c.exr"), Path("lib/own.exr"), Path("lib/deep.exr"),
+        Path("a.exr"),
+        Path("c.exr"),
+        Path("lib/own.exr"),
+        Path("lib/deep.exr"),
     }

@@ -14,7 +14,7 @@ from halation.app.graph import Graph, Input, Keys, Output, Port, Unknown
 from halation.app.graph.paths import rebased
 from halation.app.written import Written
 
-GAIN = "vec4 gain(vec4 image, float k // = 2, 0..4, \"How Much\"\n) { return image * k; }"
+GAIN = 'vec4 gain(vec4 image, float k // = 2, 0..4, "How Much"\n) { return image * k; }'
 HEAD = '/*{"ISFVSN": "2", "INPUTS": [{"NAME": "inputImage", "TYPE": "image"}]}*/'
 GLOW = HEAD + "\nvoid main() { gl_FragColor = vec4(1.0); }"
 

@@ -39,8 +39,11 @@ def test_open_save_and_open_again(session, tmp_path):
 def test_a_file_that_cannot_be_read_leaves_the_document(session, tmp_path):
     session.edit("Start", chain(1))
     (tmp_path / "bad.json").write_text("{")
-    for act in (lambda: session.open(tmp_path / "bad.json"), lambda: session.open_text("nothing"),
-                lambda: session.open_copy(tmp_path / "none.json")):
+    for act in (
+        lambda: session.open(tmp_path / "bad.json"),
+        lambda: session.open_text("nothing"),
+        lambda: session.open_copy(tmp_path / "none.json"),
+    ):
         with pytest.raises(DocumentError):
             act()
     assert "n0" in session.graph.nodes and session.history.can_undo
@@ -189,7 +192,8 @@ def test_dropped_files(tmp_path):
     with pytest.raises(HalationError):
         session.drop_files([tmp_path / "none.json"])
     assert json.loads((tmp_path / "doc.json").read_text()) == {
-        "halation": 1, "outputs": {"image": {"type": "Image"}},
+        "halation": 1,
+        "outputs": {"image": {"type": "Image"}},
         "ui": {"nodes": {"outputs.image": {"x": 0.0, "y": 0.0}}},
     }
 

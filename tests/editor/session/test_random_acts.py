@@ -40,8 +40,11 @@ def some_keys(session: Session, rng: Random) -> list[str]:
 
 def any_target(session: Session, rng: Random) -> Port:
     graph = session.graph
-    sockets = [Port(id, name) for id, item in graph.nodes.items()
-               for name in (*signature(item).inputs, *signature(item).values)]
+    sockets = [
+        Port(id, name)
+        for id, item in graph.nodes.items()
+        for name in (*signature(item).inputs, *signature(item).values)
+    ]
     return rng.choice([*graph.links, *sockets, *(Port("outputs", name) for name in graph.outputs), Port("no", "body")])
 
 
@@ -53,9 +56,9 @@ def any_source(session: Session, rng: Random) -> Port:
 
 def any_value(session: Session, rng: Random) -> Port:
     graph = session.graph
-    return rng.choice([Port("no", "body"), *(
-        Port(id, name) for id, item in graph.nodes.items() for name in signature(item).values
-    )])
+    return rng.choice(
+        [Port("no", "body"), *(Port(id, name) for id, item in graph.nodes.items() for name in signature(item).values)]
+    )
 
 
 def spot(rng: Random) -> tuple[float, float]:
@@ -170,8 +173,16 @@ ACTS: dict[str, Act] = {
     ),
     "express": lambda s, r: s.express(
         some_animated(s, r),
-        r.choice(["", "=frame / 9", "1 +", f"`{any_value(s, r).node}`.{any_value(s, r).socket}", str(any_value(s, r)),
-                  r.choice([*s.graph.controls, "no"])]),
+        r.choice(
+            [
+                "",
+                "=frame / 9",
+                "1 +",
+                f"`{any_value(s, r).node}`.{any_value(s, r).socket}",
+                str(any_value(s, r)),
+                r.choice([*s.graph.controls, "no"]),
+            ]
+        ),
     ),
     "bake": lambda s, r: s.bake(some_animated(s, r), r.choice([None, [1, 3], []])),
     "set_code": lambda s, r: s.set_code(
@@ -188,18 +199,64 @@ ACTS: dict[str, Act] = {
 }
 
 OTHERS = {
-    "edit", "go", "go_to", "new", "open", "open_copy", "open_made", "open_text", "restore", "save", "save_as", "revert",
-    "reload", "reload_groups", "migrate", "save_group", "add_group", "drop_files", "add_matte", "animate_all",
-    "set_all", "add_code_file", "export_code", "save_code", "save_drafts", "reread_code", "note_code_files",
+    "edit",
+    "go",
+    "go_to",
+    "new",
+    "open",
+    "open_copy",
+    "open_made",
+    "open_text",
+    "restore",
+    "save",
+    "save_as",
+    "revert",
+    "reload",
+    "reload_groups",
+    "migrate",
+    "save_group",
+    "add_group",
+    "drop_files",
+    "add_matte",
+    "animate_all",
+    "set_all",
+    "add_code_file",
+    "export_code",
+    "save_code",
+    "save_drafts",
+    "reread_code",
+    "note_code_files",
     "keep_draft",
 }
 """What needs files or graphs, and what all the others call: tested by name elsewhere."""
 
 QUESTIONS = {
-    "value", "is_default", "linked", "control_of", "fitting", "fitting_files", "refusal", "relative", "position",
-    "frame_members", "copy", "viewed", "viewed_in_root", "can_animate", "animation", "key_at", "value_now",
-    "value_then", "animated_outside", "expression_fault", "key_frames", "next_key", "previous_key",
-    "code", "fits_picture", "differs_from_disk",
+    "value",
+    "is_default",
+    "linked",
+    "control_of",
+    "fitting",
+    "fitting_files",
+    "refusal",
+    "relative",
+    "position",
+    "frame_members",
+    "copy",
+    "viewed",
+    "viewed_in_root",
+    "can_animate",
+    "animation",
+    "key_at",
+    "value_now",
+    "value_then",
+    "animated_outside",
+    "expression_fault",
+    "key_frames",
+    "next_key",
+    "previous_key",
+    "code",
+    "fits_picture",
+    "differs_from_disk",
 }
 
 

@@ -26,10 +26,14 @@ def run(playback: Playback, seconds: float, each: float, start: float = 100.0) -
     return shown
 
 
-@pytest.mark.parametrize(("loop", "wanted"), [
-    ("loop", [1, 2, 3, 4, 1, 2, 3, 4, 1]), ("once", [1, 2, 3, 4, 4, 4, 4, 4, 4]),
-    ("ping-pong", [1, 2, 3, 4, 3, 2, 1, 2, 3]),
-])
+@pytest.mark.parametrize(
+    ("loop", "wanted"),
+    [
+        ("loop", [1, 2, 3, 4, 1, 2, 3, 4, 1]),
+        ("once", [1, 2, 3, 4, 4, 4, 4, 4, 4]),
+        ("ping-pong", [1, 2, 3, 4, 3, 2, 1, 2, 3]),
+    ],
+)
 def test_courses(loop, wanted):
     course = Course(1, 4, loop=loop)
     assert [course.at(place) for place in range(9)] == wanted

@@ -41,9 +41,13 @@ class Lit(Filter):
 @pytest.fixture
 def editor() -> Any:
     return SimpleNamespace(
-        session=Session({**catalogue(), "lamps": Lit}), viewer=ViewerState(), dragging=False, lights={},
+        session=Session({**catalogue(), "lamps": Lit}),
+        viewer=ViewerState(),
+        dragging=False,
+        lights={},
         preview=SimpleNamespace(camera={Port("lamps", "camera"): CAMERA}.get, shown=lambda name: None),
-        attempt=lambda act: act(), say=lambda text: None,
+        attempt=lambda act: act(),
+        say=lambda text: None,
     )
 
 
@@ -98,7 +102,8 @@ def lit(editor: Any, *lights: Light) -> Port:
 def test_lights_in_front_of_the_camera_can_be_dragged(editor: Any) -> None:
     port = lit(editor)
     assert [(lamp.index, lamp.at) for lamp in lamps(editor)] == [
-        (3, pytest.approx((0.7, 0.5))), (0, pytest.approx((0.5, 0.5))),
+        (3, pytest.approx((0.7, 0.5))),
+        (0, pytest.approx((0.5, 0.5))),
     ]
     steps = editor.session.history.position
     assert drag(editor, (561.0, 201.0), (401.0, 101.0)) == "light"

@@ -58,9 +58,14 @@ def editor() -> Any:
     """With a node that has lights and a camera, selected. What is seen has no depth yet."""
     said: list[str] = []
     made = SimpleNamespace(
-        session=Session({**catalogue(), "lamps": Lit}), viewer=ViewerState(), dragging=False, lights={}, said=said,
+        session=Session({**catalogue(), "lamps": Lit}),
+        viewer=ViewerState(),
+        dragging=False,
+        lights={},
+        said=said,
         preview=SimpleNamespace(camera={Port("lamps", "camera"): CAMERA}.get, shown=lambda name: None),
-        attempt=lambda act: act(), say=said.append,
+        attempt=lambda act: act(),
+        say=said.append,
     )
     graph = made.session.graph.add("lamps", Lit()).add("camera", catalogue()["camera"]())
     made.session.edit("Add", graph.connect(Port("camera", "camera"), Port("lamps", "camera")))
@@ -87,10 +92,20 @@ def see(editor: Any, socket: str, *values: float) -> None:
     session.select(["lamps"])
     known = {"depth": "depth", "place": "position"}
     editor.probe = SimpleNamespace(pixel=lambda texture, x, y: values)
-    editor.preview.shown = lambda name: SimpleNamespace(
-        port=Port(source, socket), full_size=(400, 200), texture=SimpleNamespace(size=(400, 200)), channels=len(values),
-        key=f"{values}", revision=1, size=(400, 200), start=(0, 0),
-    ) if known[name] == socket else None
+    editor.preview.shown = lambda name: (
+        SimpleNamespace(
+            port=Port(source, socket),
+            full_size=(400, 200),
+            texture=SimpleNamespace(size=(400, 200)),
+            channels=len(values),
+            key=f"{values}",
+            revision=1,
+            size=(400, 200),
+            start=(0, 0),
+        )
+        if known[name] == socket
+        else None
+    )
 
 
 def test_alt_moves_along_the_line_of_sight(editor: Any) -> None:

@@ -94,7 +94,9 @@ def test_scopes_see_data_in_its_range() -> None:
 @pytest.fixture
 def editor() -> Any:
     return SimpleNamespace(
-        session=Session(), viewer=ViewerState(), dragging=False,
+        session=Session(),
+        viewer=ViewerState(),
+        dragging=False,
         store=SimpleNamespace(now=SimpleNamespace(proxy_while_dragging=True)),
     )
 

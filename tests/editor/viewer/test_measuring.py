@@ -14,8 +14,16 @@ def test_statistics_leave_out_what_is_not_finite() -> None:
 
 @pytest.mark.parametrize(
     ("number", "text"),
-    [(0.18, "0.18000"), (1.5, "1.5000"), (123.456, "123.46"), (1e7, "1.00e+07"), (-0.0001, "-1.00e-04"),
-     (float("nan"), "NaN"), (float("-inf"), "-inf"), (0.0, "0.00000")],
+    [
+        (0.18, "0.18000"),
+        (1.5, "1.5000"),
+        (123.456, "123.46"),
+        (1e7, "1.00e+07"),
+        (-0.0001, "-1.00e-04"),
+        (float("nan"), "NaN"),
+        (float("-inf"), "-inf"),
+        (0.0, "0.00000"),
+    ],
 )
 def test_numbers_are_short(number: float, text: str) -> None:
     assert measuring.written(number) == text

@@ -29,8 +29,12 @@ START = Orbit((0.1, 0.2, 0.75), 6.5, 8.0, 14.0)
 def editor() -> Any:
     """With a scene that is seen."""
     made = SimpleNamespace(
-        session=Session(catalogue()), viewer=ViewerState(picture=(400, 200)), dragging=False, lights={},
-        preview=SimpleNamespace(camera=lambda port: None, shown=lambda name: None), attempt=lambda act: act(),
+        session=Session(catalogue()),
+        viewer=ViewerState(picture=(400, 200)),
+        dragging=False,
+        lights={},
+        preview=SimpleNamespace(camera=lambda port: None, shown=lambda name: None),
+        attempt=lambda act: act(),
     )
     made.session.add_node("scene")
     made.viewer.scene = orbited(made.session)
@@ -52,7 +56,8 @@ def drag(editor: Any, start: tuple[float, float], end: tuple[float, float], what
 def test_it_is_the_camera_that_the_node_draws_with() -> None:
     turn, tilt = math.radians(8.0), math.radians(14.0)
     eye = (
-        0.1 + 6.5 * math.sin(turn) * math.cos(tilt), 0.2 - 6.5 * math.cos(turn) * math.cos(tilt),
+        0.1 + 6.5 * math.sin(turn) * math.cos(tilt),
+        0.2 - 6.5 * math.cos(turn) * math.cos(tilt),
         0.75 + 6.5 * math.sin(tilt),
     )
     expected = look_at(eye, START.target, (50.0 / 36.0, 50.0 / 36.0 * ASPECT))
@@ -89,8 +94,14 @@ def test_what_is_moved_stays_under_the_mouse(editor: Any, depth: float | None) -
     editor.viewer.orbiting = True
     editor.probe = SimpleNamespace(pixel=lambda texture, x, y: (depth or 1e10,))
     editor.preview.shown = lambda name: SimpleNamespace(
-        port=Port("scene", "depth"), full_size=(400, 200), texture=SimpleNamespace(size=(400, 200)), channels=1, key="",
-        revision=1, size=(400, 200), start=(0, 0),
+        port=Port("scene", "depth"),
+        full_size=(400, 200),
+        texture=SimpleNamespace(size=(400, 200)),
+        channels=1,
+        key="",
+        revision=1,
+        size=(400, 200),
+        start=(0, 0),
     )
     place = unproject(before.camera(ASPECT), 0.25, 0.5, depth or before.distance)
     drag(editor, (200.0, 200.0), (360.0, 120.0), "track")
