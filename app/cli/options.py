@@ -70,7 +70,7 @@ def rooted(command: Callable[..., int]) -> Callable[..., int]:
 
     @functools.wraps(command)
     def run(*args: Any, root: Root = None, **options: Any) -> int:
-        from ..graph.fence import fenced
+        from ..resources.sandbox import fenced
 
         with fenced(root):
             return command(*args, **options)

@@ -14,16 +14,17 @@ from .ir import MAX_WEIGHTS, Held, Memory, Picture, Read, Ref
 from .library import Library, installed
 from .lowering.named import named_files
 from .lowering.upstream import Upstream
-from .outside import Frame, Outside, Probed
+from ..resources.provider import Frame, Outside, Probed
 from .parts.tiles import Stage, Tiling
 from .parts.tiling import tile_plan
 from .plan import FIRST_TABLE, Pass, Plan, Shader, Surface, Upload
 from .planner import Planner, compile_graph, examine, graph_library
-from .raster import ATTRIBUTES, Mesh
-from .recolor import ColorProgram, Table
+from ..resources.mesh import ATTRIBUTES, Mesh
+from ..resources.color_program import ColorProgram, Table
 from .request import Request
 from .target import NULL, Form, Precision, Target
-from .working import Working, library_for
+from ..resources.working_space import Working
+from .working import library_for
 
 __all__ = [
     "ATTRIBUTES",

@@ -12,13 +12,14 @@ from typing import ClassVar
 from msgspec import Struct, field
 from msgspec.structs import force_setattr
 
-from ...nodes import Camera, ColorSettings, Edge, Kind, ShaderText, Size
+from ...nodes import Camera, Edge, ShaderText, Size
 from ..graph import Port
+from ..resources.color_program import ColorProgram, Table
+from ..resources.mesh import Mesh
+from ..resources.picture import Picture
+from ..resources.record import Record
 from ..written import unprefixed
 from .areas import Around, Region
-from .raster import Mesh
-from .recolor import ColorProgram, Table
-from .record import Record
 
 
 class Shape(Struct, frozen=True, gc=False):
@@ -85,32 +86,6 @@ class Accessor(Struct, frozen=True, gc=False):
     glsl: str
     operand: Ref | Constant
     around: Around | None = None
-
-
-class Picture(Record, frozen=True):
-    """Pixels from outside: a layer of a file, or an array bound to an input (then `path` is the input's name).
-
-    `frame` is that of a video, whose file holds all of them; of a picture it is 1. `pixels` is that array, which the
-    compiler never looks at: a plan has all that it needs to run. `space` is what color in a file is in, "" to find out;
-    `color` says how colors are managed. With a folder `within` the file must lie in it, links followed. Rows of it can
-    be read alone if it is `by_rows`; `rows` are those that are read, the first and the one after the last, None
-    for all.
-    """
-
-    path: str
-    layer: str
-    kind: Kind
-    width: int
-    in_memory: bool = False
-    pixels: object = None
-    frame: int = 1
-    space: str = ""
-    color: ColorSettings = field(default_factory=ColorSettings)
-    within: str = ""
-    by_rows: bool = False
-    rows: tuple[int, int] | None = None
-
-    aside: ClassVar[frozenset[str]] = frozenset({"pixels"})
 
 
 class Op(Record, frozen=True):

@@ -14,7 +14,7 @@ from msgspec import field
 from ...shaders import folder
 from ..errors import ShaderError
 from ..glsl import Function, Text, parse
-from .record import Record
+from ..resources.record import Record
 
 _ACCESSOR = re.compile(r"\w+_(?:at|near|raw|size)")
 

@@ -12,9 +12,9 @@ from ..graph import Port
 from .areas import Region
 from .ir import Memory, Picture
 from .parts.tiles import Tiling
-from .raster import Mesh
-from .recolor import Table
-from .record import Record
+from ..resources.mesh import Mesh
+from ..resources.color_program import Table
+from ..resources.record import Record
 from .target import Form, Target
 
 Depth = Literal["f2", "f4"]

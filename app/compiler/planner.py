@@ -18,7 +18,7 @@ from .lowering.expand import written_texts
 from .lowering.lower import lower
 from .lowering.relower import relower
 from .lowering.steps import Lowered
-from .outside import Outside
+from ..resources.provider import Outside
 from .parts.regions import focused
 from .parts.tiling import tile
 from .plan import Plan

@@ -3,20 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import ClassVar
 
-from .record import Record
-
-ATTRIBUTES: Mapping[str, int] = {
-    "place": 3,
-    "normal": 3,
-    "uv": 2,
-    "albedo": 3,
-    "emission": 3,
-    "metal_rough": 2,
-    "object_material_moving": 3,
-}
-"""What a vertex holds, in order, and how many floats of each."""
+from ..resources.mesh import ATTRIBUTES
 
 CHANNELS: Mapping[str, tuple[int, bool, str]] = {
     "albedo": (4, False, "vec4(v_albedo, 1.0)"),
@@ -28,16 +16,6 @@ CHANNELS: Mapping[str, tuple[int, bool, str]] = {
     "surface": (4, True, "vec4(v_uv, v_object_material)"),
 }
 """What is drawn: channels, whether it is data, and the GLSL that computes it. Where nothing is, all is 0."""
-
-
-class Mesh(Record, frozen=True):
-    """Triangles: float32 [vertices, floats of ATTRIBUTES], uint32 [3 * triangles]. Equal digests, equal triangles."""
-
-    digest: str
-    vertices: object
-    indices: object
-
-    aside: ClassVar[frozenset[str]] = frozenset({"vertices", "indices"})
 
 
 def vertex_text(library: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import ClassVar, Literal
 
-from .record import Record
+from ..resources.record import Record
 
 Form = Literal["fragment", "compute"]
 Precision = Literal["half", "float"]

@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 from ..errors import DocumentError, OutputError
-from ..graph.fence import outside
+from ..resources.sandbox import outside
 from .limits import MAX_BYTES, size_fault
 
 STALE = 60.0

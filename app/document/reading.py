@@ -12,7 +12,7 @@ from ...nodes import ColorSettings, Node, Plain, Value, catalogue
 from ..errors import DocumentError, GraphError
 from ..graph import Animation, Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, signature
 from ..graph.animation import adapted
-from ..graph.fence import outside
+from ..resources.sandbox import outside
 from ..graph.names import did_you_mean, name_fault
 from ..graph.values import coerced, expected
 from ..written import CodeFault, Language, node_type

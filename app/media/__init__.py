@@ -14,7 +14,7 @@ from .managed import color_digest, color_mark
 from .metadata import Attribute, read_metadata
 from .primaries import working_of
 from .read import Pixels, Want, read, read_many
-from .store import sweep
+from ..resources.atomic_write import sweep
 from .write import check_destination, rounds, write
 
 if TYPE_CHECKING:

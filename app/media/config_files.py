@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 from typing import Any
 
-from ..graph.fence import ROOT, outside
+from ..resources.sandbox import ROOT, outside
 
 
 def config_fault(config: Any) -> str:

@@ -17,7 +17,7 @@ from .color import Array, to_display
 from .compare import three
 from .info import fault, opened
 from .metadata import read_metadata
-from .store import store
+from ..resources.atomic_write import store
 from .write import write
 
 _MAKER = ("halation:renderer", "halation:driver", "halation:version")

@@ -16,7 +16,7 @@ from msgspec import Struct
 
 from ...nodes import Kind, Size
 from ..errors import InputError
-from ..graph.fence import outside
+from ..resources.sandbox import outside
 from ..graph.frames import is_video
 from .layers import Layer, Part, layers_of, pick
 

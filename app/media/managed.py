@@ -19,7 +19,7 @@ from msgspec import Struct
 from ...nodes import WORKING_SPACE, ColorSettings
 from ...nodes.color._spaces import SPACES
 from ..errors import GraphError, HalationError, UsageError
-from ..graph.fence import outside
+from ..resources.sandbox import outside
 from .config_files import config_fault
 
 BUILT_IN = "ocio://default"

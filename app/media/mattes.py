@@ -19,7 +19,7 @@ import numpy as np
 
 from ...nodes import Kind, Matte, float_bits
 from ..errors import InputError
-from ..graph.fence import outside
+from ..resources.sandbox import outside
 from .color import Array
 from .layers import plain
 from .naming import Role

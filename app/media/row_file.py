@@ -13,7 +13,7 @@ from ..errors import OutputError
 from .color import Array
 from .encoding import Encoding
 from .metadata import add_metadata
-from .store import reason_of, unfinished
+from ..resources.atomic_write import reason_of, unfinished
 from .write import Precision, encoder_of, exr_parts, refusal
 
 _BLOCK = 2**16

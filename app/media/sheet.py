@@ -12,7 +12,7 @@ import OpenImageIO as oiio
 
 from ..errors import OutputError
 from .color import Array, decode_srgb, to_display
-from .store import store
+from ..resources.atomic_write import store
 
 RGB = tuple[float, float, float]
 

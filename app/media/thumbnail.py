@@ -12,7 +12,7 @@ from ..errors import InputError
 from .color import NO_VIEW, Array, to_display
 from .info import find_layer, info
 from .read import read
-from .store import store
+from ..resources.atomic_write import store
 
 _NO_PICTURES = ("null", "term", "ffmpeg", "openvdb", "ptex")
 

@@ -15,7 +15,7 @@ import numpy as np
 from ...nodes import Kind, Size
 from ..errors import OutputError
 from .encoding import Encoding
-from .store import check_room, reason_of, unfinished
+from ..resources.atomic_write import check_room, reason_of, unfinished
 from .video.codecs import find_codec
 from .video.library import library
 from .video.signals import Array, from_rgb, scales

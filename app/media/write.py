@@ -19,7 +19,7 @@ from .finite import as_half
 from .info import TAG
 from .layers import is_depth
 from .metadata import add_metadata
-from .store import check_room, store
+from ..resources.atomic_write import check_room, store
 
 _FORMATS = {
     ".exr": "openexr",

@@ -20,7 +20,7 @@ from ..compiler.devices import Measured
 from ..document.disk import read_text, write_text
 from ..errors import HalationError
 from ..graph import Graph, Port, Settings
-from ..graph.fence import outside
+from ..resources.sandbox import outside
 from ..media.pictures import Pictures
 from .opengl.device import Device
 from .running.runner import Runner

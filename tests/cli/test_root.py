@@ -13,7 +13,7 @@ import numpy as np
 import PyOpenColorIO as ocio
 import pytest
 from exr_files import write_exr
-from halation.app.graph.fence import ROOT
+from halation.app.resources.sandbox import ROOT
 
 CUBE = "LUT_3D_SIZE 2\n" + "".join(f"{r} {g} {b}\n" for b in (0, 1) for g in (0, 1) for r in (0, 1))
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"

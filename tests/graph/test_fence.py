@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from halation.app.errors import UsageError
-from halation.app.graph.fence import ROOT, fenced, outside
+from halation.app.resources.sandbox import ROOT, fenced, outside
 from hypothesis import given
 from hypothesis import strategies as st
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from halation.app import media
 from halation.app.errors import InputError, OutputError
-from halation.app.graph.fence import fenced
+from halation.app.resources.sandbox import fenced
 from halation.app.media.survey import survey
 from halation.nodes import Kind
 

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from halation.app.errors import OutputError
 from halation.app.media import read, write
-from halation.app.media.store import store
+from halation.app.resources.atomic_write import store
 from halation.nodes import Kind
 
 NAMES = ["a.exr", "a.png", "a.jpg", "a.webp", "a.tif", "a.hdr"]

@@ -7,7 +7,7 @@ import json
 import pytest
 from halation.app.compiler.devices import Measured
 from halation.app.errors import ShaderError
-from halation.app.graph.fence import fenced
+from halation.app.resources.sandbox import fenced
 from halation.app.renderer import calibration, open_device
 from halation.app.renderer.calibration import kept_or_measured, measured
 from halation.app.renderer.running.runner import Runner

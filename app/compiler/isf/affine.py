@@ -15,7 +15,7 @@ from msgspec import Struct
 from ....nodes import Size
 from ..areas import Around
 from ..ir import Constant, Program, Shape
-from ..record import Record
+from ...resources.record import Record
 
 TOLERANCE = 1e-5
 MAX_FACTOR = 4096

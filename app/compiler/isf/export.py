@@ -12,12 +12,12 @@ from .. import graph_library
 from ..fusion.fuse import fuse
 from ..ir import Picture, Program, Read, Ref
 from ..lowering.lower import lower
-from ..outside import Frame, Outside, Probed
-from ..raster import Mesh
-from ..recolor import ColorProgram
+from ...resources.provider import Frame, Outside, Probed
+from ...resources.mesh import Mesh
+from ...resources.color_program import ColorProgram
 from ..request import Request
 from ..target import NULL
-from ..working import Working
+from ...resources.working_space import Working
 from .affine import Knob, Point
 from .controls import Section, controlled, identifier
 from .model import FRAME, HEIGHT, WIDTH, Modelled, Modelling

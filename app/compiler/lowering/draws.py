@@ -62,8 +62,9 @@ from ..ir import (
     Shape,
 )
 from ..library import Library
-from ..raster import CHANNELS, Mesh
-from ..recolor import ColorProgram
+from ..raster import CHANNELS
+from ...resources.mesh import Mesh
+from ...resources.color_program import ColorProgram
 from . import fourier, gaussian, transforms
 
 

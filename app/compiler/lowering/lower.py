@@ -34,7 +34,7 @@ from ...errors import GraphError, HalationError, ShaderError
 from ...graph import INPUTS, OUTPUTS, Graph, Port, did_you_mean
 from ..ir import Builder, Call, Choice, Constant, Memory, Operand, Parameter, Program, Ref, Shape
 from ..library import Library
-from ..outside import Outside
+from ...resources.provider import Outside
 from ..request import Request
 from . import constants
 from .draws import Fed, Made, Recorder, choices

@@ -12,9 +12,9 @@ from ...errors import HalationError
 from ...graph import Graph, color_settings, make_socket
 from ..areas import Around, scaled
 from ..ir import Accessor, Builder, Call, Constant, Gather, Operand, Parameter, Picture, Read, Ref, Shape
-from ..outside import Outside, Probed
-from ..raster import Mesh
-from ..recolor import ColorProgram
+from ...resources.provider import Outside, Probed
+from ...resources.mesh import Mesh
+from ...resources.color_program import ColorProgram
 from ..request import Request
 from .draws import Fed, Files
 from .expand import Flat, nothing

@@ -20,7 +20,7 @@ from msgspec.structs import replace
 from ...errors import HalationError
 from ...graph import Graph
 from ..ir import Builder, Op, Ref
-from ..outside import Outside
+from ...resources.provider import Outside
 from ..request import Request
 from .lower import Lowering
 from .moments import Moments, looks_around

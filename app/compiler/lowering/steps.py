@@ -10,10 +10,10 @@ from ....nodes import Camera, ColorChange, ColorSettings, Missing, Render, Scene
 from ...graph import Port
 from ..ir import Builder, Operand, Picture, Program, Ref
 from ..library import Library
-from ..outside import Frame, Outside, Probed
-from ..raster import Mesh
-from ..recolor import ColorProgram
-from ..working import Working
+from ...resources.provider import Frame, Outside, Probed
+from ...resources.mesh import Mesh
+from ...resources.color_program import ColorProgram
+from ...resources.working_space import Working
 from .moments import Moments
 
 Shown = tuple[Port, int]

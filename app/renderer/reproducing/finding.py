@@ -15,7 +15,7 @@ from ....presets import paths as presets
 from ...compiler.lowering.named import CONFIG, path_texts
 from ...errors import InputError, UsageError
 from ...graph import INPUTS, Graph, did_you_mean
-from ...graph.fence import outside
+from ...resources.sandbox import outside
 from ...graph.frames import Pattern
 from ...graph.paths import relocated, repointed
 from ..jobs.sources import Hashes

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...errors import DeviceError, UsageError
 from ...graph import Graph, color_settings, node_output
-from ...graph.fence import ROOT
+from ...resources.sandbox import ROOT
 from ...media import color_digest
 from ...media.compare import CODE, Compared, compare
 from ...media.stored import stored

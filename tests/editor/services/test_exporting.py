@@ -123,7 +123,7 @@ def test_cancelling_leaves_nothing(exports, folder, tmp_path, passes):
 def test_one_that_does_not_listen_is_killed_and_its_part_removed(exports, folder, tmp_path, monkeypatch):
     """A render that is stuck while it writes."""
     code = (
-        "import os, signal, sys, time; from pathlib import Path; from halation.app.media.store import part_prefix;"
+        "import os, signal, sys, time; from pathlib import Path; from halation.app.resources.atomic_write import part_prefix;"
         "signal.signal(signal.SIGINT, signal.SIG_IGN); Path(part_prefix(os.getpid()) + 'x.exr').touch();"
         "print('ready', file=sys.stderr, flush=True); time.sleep(60)"
     )

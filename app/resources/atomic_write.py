@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ..errors import OutputError
-from ..graph.fence import outside
+from .sandbox import outside
 
 _FAULTS = {
     errno.ENOSPC: "the disk is full: make room or write elsewhere",

@@ -8,10 +8,10 @@ from typing import Protocol
 from msgspec import Struct
 
 from ...nodes import ColorChange, ColorSettings, Missing, Render, Scene, Size
-from .ir import Picture
-from .raster import Mesh
-from .recolor import ColorProgram
-from .working import Working
+from .color_program import ColorProgram
+from .mesh import Mesh
+from .picture import Picture
+from .working_space import Working
 
 
 class Probed(Struct, frozen=True):

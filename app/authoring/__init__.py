@@ -1,0 +1,1 @@
+"""Editing without a window: commands, history, selection, clipboard, recovery, preview scheduling."""

@@ -1,0 +1,1 @@
+"""Color: OpenColorIO configs, the working space, views, and color spaces of files."""

@@ -1,0 +1,1 @@
+"""What fills the inputs of a graph: files and arrays, probed while compiling and read while rendering."""

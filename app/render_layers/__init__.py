@@ -1,0 +1,1 @@
+"""What the layers of a render are: names, conventions, cameras, mattes."""

@@ -1,0 +1,36 @@
+"""Pixels from outside of a graph, named before they are read."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from msgspec import field
+
+from ...nodes import ColorSettings, Kind
+from .record import Record
+
+
+class Picture(Record, frozen=True):
+    """Pixels from outside: a layer of a file, or an array bound to an input (then `path` is the input's name).
+
+    `frame` is that of a video, whose file holds all of them; of a picture it is 1. `pixels` is that array, which the
+    compiler never looks at: a plan has all that it needs to run. `space` is what color in a file is in, "" to find out;
+    `color` says how colors are managed. With a folder `within` the file must lie in it, links followed. Rows of it can
+    be read alone if it is `by_rows`; `rows` are those that are read, the first and the one after the last, None
+    for all.
+    """
+
+    path: str
+    layer: str
+    kind: Kind
+    width: int
+    in_memory: bool = False
+    pixels: object = None
+    frame: int = 1
+    space: str = ""
+    color: ColorSettings = field(default_factory=ColorSettings)
+    within: str = ""
+    by_rows: bool = False
+    rows: tuple[int, int] | None = None
+
+    aside: ClassVar[frozenset[str]] = frozenset({"pixels"})

@@ -1,0 +1,1 @@
+"""Files that change: noticed, read again, rendered again."""
