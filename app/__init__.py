@@ -1,13 +1,13 @@
 """Halation from Python: load a graph, render it to numpy arrays, save.
 
-    import halation.app as hal
+    import halation as hal
 
     graph = hal.load("bloom.json")
     pictures = hal.render(graph, {"beauty": "shot.exr"}, values={"bloom.intensity": 0.3})
     hal.write("out.png", pictures["image"])
 
 Pictures are float arrays [height, width, channels], row 0 at the top, scene-linear, color premultiplied.
-Everything raises `HalationError` (see `halation.app.errors`) with one sentence that says what to do.
+Everything raises `HalationError` (see `halation.errors`) with one sentence that says what to do.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from .compiler import Precision
     from .graph import Graph, Port
-    from .media.pictures import Binding
+    from .inputs.provider import Binding
     from .renderer import Renderer
 
 __all__ = ["HalationError", "load", "render", "render_frames", "save", "write"]
@@ -108,7 +108,8 @@ def write(
 
     EXR keeps the numbers; PNG, JPEG, TIFF and WebP show them through an OpenColorIO `view`. Raises OutputError.
     """
-    from ..nodes import Kind
+    from halation.nodes import Kind
+
     from . import media
 
     channels = {2: 1, 3: picture.shape[-1]}.get(picture.ndim, 0)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from halation.app.cli.program import app
+from halation.cli.program import app
 from typer.main import get_command
 
 PAGE = Path(__file__).parents[1] / "docs" / "command-line.md"

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import pytest
-from halation.app.cli.program import run
+from halation.cli.program import run
 
 
 @dataclass(frozen=True)

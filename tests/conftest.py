@@ -10,9 +10,9 @@ from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 import pytest
-from halation.app.graph import Graph, Input, Output, Port
-from halation.app.renderer import Renderer, Wanted, open_device
+from halation.graph import Graph, Input, Output, Port
 from halation.nodes import Camera, Kind, Node
+from halation.renderer import Renderer, Wanted, open_device
 
 Array = np.ndarray
 Run = Callable[..., Array]

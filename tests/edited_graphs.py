@@ -5,9 +5,9 @@ from __future__ import annotations
 import dataclasses
 from random import Random
 
-from halation.app.document import dumps, loads
-from halation.app.errors import GraphError
-from halation.app.graph import Control, Expression, Graph, Group, Input, Key, Keys, Port, Unknown, signature
+from halation.document import dumps, loads
+from halation.errors import GraphError
+from halation.graph import Control, Expression, Graph, Group, Input, Key, Keys, Port, Unknown, signature
 from halation.nodes import Kind
 from random_graphs import random_graph, random_node, sources
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
-from halation.app import media
+from halation import media
 from halation.nodes import Camera, Kind, look_at
 from halation.presets import sample
 

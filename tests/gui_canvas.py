@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from halation.app.editor.edits.elements import with_places
-from halation.app.graph import Graph, Input, Output, Port
+from halation.authoring.edits.elements import with_places
+from halation.graph import Graph, Input, Output, Port
 from halation.nodes import catalogue
 
 

@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
-from halation.app.editor.editor import Editor
-from halation.app.editor.keys import chord
-from halation.app.editor.window.opengl import needs_no_display
-from halation.app.editor.window.window import Window
+from halation.editor.editor import Editor
+from halation.editor.keys import chord
+from halation.editor.window.opengl import needs_no_display
+from halation.editor.window.window import Window
 from imgui_bundle import ImVec2, hello_imgui, imgui, immapp
 from imgui_bundle.immapp import testing
 

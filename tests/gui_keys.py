@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from gui_driver import Ui
-from halation.app.graph import Expression, Key, Keys, Port
+from halation.graph import Expression, Key, Keys, Port
 
 
 def animation(ui: Ui) -> Iterator[str]:

@@ -9,12 +9,12 @@ from pathlib import Path
 from gui_driver import Ui
 from gui_keys import animation
 from halation import presets
-from halation.app.document import save
-from halation.app.editor.dialogs import Browse, Question
-from halation.app.editor.editor import Editor
-from halation.app.editor.services.export import Export, Job, State
-from halation.app.editor.services.recovery import Recovery
-from halation.app.graph import Control, Graph, Input, Output, Port, Settings
+from halation.authoring.services.export import Export, Job, State
+from halation.authoring.services.recovery import Recovery
+from halation.document import save
+from halation.editor.dialogs import Browse, Question
+from halation.editor.editor import Editor
+from halation.graph import Control, Graph, Input, Output, Port, Settings
 from halation.nodes import Kind, Light, LightKind, catalogue, numbers_of
 from toy_nodes import Lamps, Tint
 

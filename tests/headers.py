@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from halation.app.compiler import Frame, Picture, Probed
-from halation.app.media.pictures import Pictures
+from halation.inputs.provider import Pictures
 from halation.nodes import Missing
+from halation.resources.picture import Picture
+from halation.resources.provider import Frame, Probed
 
 
 class Headers(Pictures):

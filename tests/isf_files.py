@@ -6,8 +6,8 @@ import json
 from typing import Any
 
 import numpy as np
-from halation.app.graph import Graph, Input, Output, Port, Settings
-from halation.app.written import Code, Written, node_type
+from halation.custom_nodes import Code, Written, node_type
+from halation.graph import Graph, Input, Output, Port, Settings
 from halation.nodes import Kind
 
 Array = np.ndarray

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from halation.app.graph import Graph, Input, Output, Port
+from halation.graph import Graph, Input, Output, Port
 from halation.nodes import Kind, catalogue
 
 NODES = catalogue()

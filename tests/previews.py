@@ -5,13 +5,13 @@ from __future__ import annotations
 import time
 
 import numpy as np
-from halation.app.editor.preview import Preview
-from halation.app.graph import Graph, Input, Output, Port
-from halation.app.renderer import Renderer, Wanted
+from halation.authoring.preview import Preview
+from halation.graph import Graph, Input, Output, Port
 from halation.nodes import Kind
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.saturation import Saturation
+from halation.renderer import Renderer, Wanted
 
 PICTURE = np.random.default_rng(8).random((23, 37, 4), np.float32)
 IMAGE = Port("outputs", "image")

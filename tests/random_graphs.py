@@ -5,7 +5,7 @@ from __future__ import annotations
 from random import Random
 
 import numpy as np
-from halation.app.graph import Graph, Input, Output, Port, conversion, signature
+from halation.graph import Graph, Input, Output, Port, conversion, signature
 from halation.nodes import Kind, Node, Source, Temporal, catalogue, look_at
 
 SIZE = (37, 23)

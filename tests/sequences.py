@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 from conftest import graph_of
-from halation.app.graph import Expression, Graph, Output, Port, Settings
-from halation.app.renderer import Reel, Renderer, Wanted
+from halation.graph import Expression, Graph, Output, Port, Settings
 from halation.nodes import Node
 from halation.nodes.input.noise import Noise
+from halation.renderer import Reel, Renderer, Wanted
 
 Array = np.ndarray
 Shot = Mapping[str, Callable[[int], Array]]

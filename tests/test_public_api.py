@@ -5,12 +5,12 @@ from __future__ import annotations
 import inspect
 from dataclasses import replace
 
-import halation.app as hal
+import halation as hal
 import numpy as np
 import pytest
 from exr_files import header, read
-from halation.app import errors
-from halation.app.graph import Graph, Input, Output, Port, Settings
+from halation import errors
+from halation.graph import Graph, Input, Output, Port, Settings
 from halation.nodes import Kind
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.time.frame_blend import FrameBlend

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from random import Random
 from typing import Annotated, Any, Literal
 
-from halation.app.errors import GraphError
-from halation.app.graph import Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, signature
+from halation.errors import GraphError
+from halation.graph import Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, signature
 from halation.nodes import (
     RGBA,
     Field,

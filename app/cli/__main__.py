@@ -1,4 +1,4 @@
-"""`python -m halation.app.cli`."""
+"""`python -m halation.cli`."""
 
 from . import main
 

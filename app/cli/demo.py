@@ -18,7 +18,8 @@ def demo(
     as_json: AsJson = False,
 ) -> int:
     """Render every preset on the sample frame, as PNG and EXR: of those that move, the frame in the middle."""
-    from ...presets import paths
+    from halation.presets import paths
+
     from .. import document
     from ..renderer import Wanted
     from ..renderer.jobs.job import Writing, run_job

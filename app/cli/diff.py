@@ -13,7 +13,7 @@ from .outcome import print_json
 from .versions import is_colored, painted, show, version
 
 if TYPE_CHECKING:
-    from ..document.versions import Change, Difference, Line
+    from ..document.diff_merge import Change, Difference, Line
 
 TROUBLE = 2
 """What `diff` makes of exit code 1, which says that there is a difference."""
@@ -39,7 +39,7 @@ def diff(
 
     Nodes, values, links, keys, ends, settings, code; groups are looked into. How a file is written makes no difference.
     """
-    from ..document.versions import difference, told
+    from ..document.diff_merge import difference, told
     from ..errors import RenderError, UsageError
 
     if a == b == "-":
@@ -85,7 +85,7 @@ def as_tree(found: Difference, lines: tuple[Line, ...]) -> dict[str, Any]:
 
 def _change(change: Change) -> dict[str, Any]:
     """What is absent has no key."""
-    from ..document.versions import ABSENT, plain
+    from ..document.diff_merge import ABSENT, plain
 
     sides = {"before": plain(change.before), "after": plain(change.after)}
     return {"at": list(change.at), **{side: part for side, part in sides.items() if part is not ABSENT}}

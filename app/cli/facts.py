@@ -7,7 +7,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from ...nodes import Node, Socket, Value
+    from halation.nodes import Node, Socket, Value
 
 
 def doc_of(node: type[Node]) -> str:

@@ -15,9 +15,10 @@ from .options import AsJson
 from .outcome import print_json
 
 if TYPE_CHECKING:
-    from ...nodes import Kind, Node
+    from halation.nodes import Kind, Node
+
+    from ..color.transforms import Array
     from ..graph import Graph
-    from ..media.color import Array
     from ..renderer import Renderer
 
 Step = Callable[[str], None]
@@ -43,8 +44,9 @@ def gallery(
     as_json: AsJson = False,
 ) -> int:
     """Make contact sheets of all presets, of those that move, and of all nodes at their defaults, over the sample."""
-    from ...nodes import catalogue
-    from ...presets import paths
+    from halation.nodes import catalogue
+    from halation.presets import paths
+
     from ..media.sheet import write_sheet
     from .specimen import drawn
 
@@ -67,7 +69,8 @@ def gallery(
 
 def preset_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet:
     """Every preset on its own sample; of those that move, the frame in the middle."""
-    from ...presets import paths
+    from halation.presets import paths
+
     from .. import document
     from ..media.sheet import grouped_sheet
 
@@ -94,7 +97,8 @@ def time_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet:
 
 def moving() -> dict[str, Graph]:
     """The presets that have frames, by name."""
-    from ...presets import paths
+    from halation.presets import paths
+
     from .. import document
 
     return {path.stem: graph for path in paths() if (graph := document.load(path)).settings.frames}
@@ -115,8 +119,9 @@ def frames_of(graph: Graph, renderer: Renderer, frames: Iterable[int]) -> dict[i
 
 def node_sheet(renderer: Renderer, step: Step = lambda name: None, ids: tuple[str, ...] = ()) -> Sheet:
     """Every node that draws, at its defaults over the sample, by category; or only these."""
-    from ...nodes import catalogue
-    from ...presets import sample
+    from halation.nodes import catalogue
+    from halation.presets import sample
+
     from ..editor.theme.palette import DARK
     from ..media.sheet import grouped_sheet
     from .specimen import drawn
@@ -133,7 +138,8 @@ def node_sheet(renderer: Renderer, step: Step = lambda name: None, ids: tuple[st
 
 def picture_of(node: type[Node], renderer: Renderer, sample: Path) -> Array:
     """What a node makes of the sample, as light of the display: its first picture, else its data made visible."""
-    from ...nodes import Kind
+    from halation.nodes import Kind
+
     from .specimen import CANVAS, over, untouched
 
     graph = over(node, sample)
@@ -151,8 +157,9 @@ def picture_of(node: type[Node], renderer: Renderer, sample: Path) -> Array:
 
 def light_of(kind: Kind, array: Array) -> Array:
     """An output as light of the display, which a picture that stays within 0..1 is taken to be already."""
-    from ...nodes import Kind
-    from ..editor.preview.data import are_normals, balanced, data_range
+    from halation.nodes import Kind
+
+    from ..authoring.preview.data import are_normals, balanced, data_range
     from ..media.sheet import data_shown, light_shown, shown_over_checker
 
     if kind in (Kind.IMAGE, Kind.COLOR):

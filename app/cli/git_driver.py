@@ -39,7 +39,7 @@ def git_driver(
 
 def _diff(words: Sequence[str]) -> int:
     """`git diff`: path, then file, hash and mode of both sides; the new path of one that moved. Git wants a 0."""
-    from ..document.versions import difference, told
+    from ..document.diff_merge import difference, told
     from ..graph import Graph
 
     path, colored = words[7] if len(words) > 7 else words[0], is_colored()
@@ -67,7 +67,7 @@ def _diff(words: Sequence[str]) -> int:
 
 def _text(file: str) -> int:
     """`git log -p`, `git show`: a fact on each line, which git compares."""
-    from ..document.versions import facts
+    from ..document.diff_merge import facts
 
     text = _read(file)
     graph = _graph(text, file)

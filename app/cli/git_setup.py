@@ -60,7 +60,7 @@ def git_setup(
 
 def settings() -> dict[str, str]:
     """What the configuration of git says, with this Halation, wherever it is installed."""
-    call = f"{shlex.quote(Path(sys.executable).as_posix())} -P -m halation.app.cli git-driver"
+    call = f"{shlex.quote(Path(sys.executable).as_posix())} -P -m halation.cli git-driver"
     return {
         "diff.halation.command": f"{call} diff --",
         "diff.halation.textconv": f"{call} text --",

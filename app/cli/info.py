@@ -12,11 +12,12 @@ from .options import AsJson
 from .outcome import print_json
 
 if TYPE_CHECKING:
-    from ...nodes import Camera
-    from ..media.camera import Solved
+    from halation.nodes import Camera
+
     from ..media.layers import Layer
     from ..media.sequences import Sequence
-    from ..media.survey import Survey
+    from ..render_layers.camera import Solved
+    from ..render_layers.survey import Survey
 
 
 def info(
@@ -29,9 +30,9 @@ def info(
 ) -> int:
     """Show the parts, layers and metadata of a picture, what each layer of a render is, how its data are meant, and the
     camera."""
-    from ..media.report import report
     from ..media.sequences import check_any, find_sequence
-    from ..media.survey import survey
+    from ..render_layers.report import report
+    from ..render_layers.survey import survey
 
     shot = find_sequence(str(file))
     if shot is not None:
@@ -146,7 +147,7 @@ def _layer_facts(layer: Layer) -> dict[str, Any]:
 def _camera_facts(camera: Camera | None, reason: str, solved: Solved | None) -> dict[str, Any]:
     if camera is None:
         return {"reason": reason}
-    from ..media.report import field_of_view
+    from ..render_layers.report import field_of_view
 
     facts = {
         "reason": reason,

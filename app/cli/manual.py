@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from .facts import default_text, doc_of, hard_range, socket_note, soft_range, type_of
 
 if TYPE_CHECKING:
-    from ...nodes import Node, Socket, Value
+    from halation.nodes import Node, Socket, Value
 
 _INTRODUCTION = """\
 # Nodes

@@ -14,7 +14,7 @@ from .outcome import note, print_json
 from .versions import text_of
 
 if TYPE_CHECKING:
-    from ..document.versions import Merged, Side
+    from ..document.diff_merge import Merged, Side
     from ..graph import Graph
 
 TROUBLE = 2
@@ -74,7 +74,7 @@ def merge(
 
 def merged_versions(base: str, ours: str, theirs: str) -> Merged:
     """The merge of three versions; a base without text is an empty graph. Raises DocumentError that names the side."""
-    from ..document.versions import merged
+    from ..document.diff_merge import merged
 
     return merged(_side(base, "base"), _side(ours, "ours"), _side(theirs, "theirs"))
 
@@ -103,9 +103,9 @@ def _resolve(graphs: Sequence[str], choices: Sequence[str], as_json: bool) -> in
     """Decide conflicts; the exit code is 1 if some are left."""
     from .. import document
     from ..document.canonical import pretty
+    from ..document.diff_merge import conflicts_of, resolved
     from ..document.disk import read_text, write_text
     from ..document.syntax import parse
-    from ..document.versions import conflicts_of, resolved
     from ..errors import UsageError
 
     chosen = dict(map(_choice, choices))
@@ -128,7 +128,7 @@ def _resolve(graphs: Sequence[str], choices: Sequence[str], as_json: bool) -> in
 
 
 def _choice(text: str) -> tuple[str, Side]:
-    from ..document.versions import SIDES
+    from ..document.diff_merge import SIDES
     from ..errors import UsageError
 
     path, _, word = text.rpartition("=")

@@ -11,7 +11,7 @@ from .options import AsJson
 from .outcome import print_json
 
 if TYPE_CHECKING:
-    from ...nodes import Node, Value
+    from halation.nodes import Node, Value
 
 
 def nodes(
@@ -24,7 +24,8 @@ def nodes(
     as_json: AsJson = False,
 ) -> int:
     """List the nodes, or show one with its sockets, values, ranges and units, and the passes that it compiles to."""
-    from ...nodes import catalogue
+    from halation.nodes import catalogue
+
     from ..errors import UsageError
     from ..graph import did_you_mean
 
@@ -50,9 +51,9 @@ def nodes(
 
 def _written(file: str) -> type[Node]:
     """The node that is made of a file of code. Raises UsageError."""
+    from ..custom_nodes import CodeFault, node_type
     from ..document.code import read_code
     from ..errors import UsageError
-    from ..written import CodeFault, node_type
 
     try:
         return node_type(read_code("isf" if file.endswith(".fs") else "glsl", None, file, ""))

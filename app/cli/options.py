@@ -16,10 +16,15 @@ from . import parsing
 from .outcome import note
 
 if TYPE_CHECKING:
-    from ...nodes import ColorChange, ColorSettings, Missing, Render, Scene
-    from ..compiler import ColorProgram, Frame, Mesh, Picture, Probed, Working
+    from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene
+
     from ..graph import Graph
-    from ..media.pictures import Pictures
+    from ..inputs.provider import Pictures
+    from ..resources.color_program import ColorProgram
+    from ..resources.mesh import Mesh
+    from ..resources.picture import Picture
+    from ..resources.provider import Frame, Probed
+    from ..resources.working_space import Working
 
 Inputs = Annotated[
     list[str] | None,
@@ -165,7 +170,7 @@ class Lazy:
     @cached_property
     def pictures(self) -> Pictures:
         """The real ones."""
-        from ..media.pictures import Pictures
+        from ..inputs.provider import Pictures
 
         return Pictures()
 

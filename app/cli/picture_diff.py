@@ -107,7 +107,7 @@ def _told(name: str, far: Compared) -> dict[str, Any]:
 
 
 def _is_color(graphs: Sequence[Graph], name: str) -> bool:
-    from ...nodes import Kind
+    from halation.nodes import Kind
 
     return all(graph.outputs[name].kind is Kind.IMAGE for graph in graphs if name in graph.outputs)
 

@@ -109,7 +109,7 @@ def render(
 
     if not deterministic and jobs == 1:  # a pinned driver is loaded with other settings
         warm()
-    from ..media.ahead import Ahead
+    from ..inputs.prefetch import Ahead
 
     alone = jobs == 1 and not resume and not targets and not most
     ahead = Ahead(opened_graph, bindings) if alone else None  # it reads while all else is loaded

@@ -13,9 +13,9 @@ from .outcome import note, print_json
 from .watchdog import PATIENCE, Timeout, watched
 
 if TYPE_CHECKING:
-    from ..renderer.reproducing.finding import Found
-    from ..renderer.reproducing.recipe import Recipe
-    from ..renderer.reproducing.reproduction import Layer, Reproduction
+    from ..renderer.provenance.finding import Found
+    from ..renderer.provenance.recipe import Recipe
+    from ..renderer.provenance.reproduction import Layer, Reproduction
 
 _SHORT = 12
 
@@ -46,8 +46,8 @@ def reproduce(
     as_json: AsJson = False,
 ) -> int:
     """Rebuild a picture from its own header, and say what differs: 0 if the pixels are the same, 1 if not."""
-    from ..renderer.reproducing.finding import Finder, missing
-    from ..renderer.reproducing.recipe import read_recipe
+    from ..renderer.provenance.finding import Finder, missing
+    from ..renderer.provenance.recipe import read_recipe
 
     given = parsing.assignments(inputs or (), "-i")
     recipe = read_recipe(picture)
@@ -63,7 +63,7 @@ def reproduce(
     if (code := watched(context, recipe.graph, timeout)) is not None:
         return code
     from ..renderer import Renderer
-    from ..renderer.reproducing.reproduction import open_alike, reproduce
+    from ..renderer.provenance.reproduction import open_alike, reproduce
 
     renderer = Renderer(open_alike(recipe), budget=0)
     note(renderer.device.description)
@@ -81,7 +81,7 @@ def _saved(recipe: Recipe, found: tuple[Found, ...], path: Path) -> str:
 
     from .. import document
     from ..graph.paths import rebased
-    from ..renderer.reproducing.finding import pointed
+    from ..renderer.provenance.finding import pointed
 
     whole = pointed(recipe.graph, found)
     folder = str(path.absolute().parent)

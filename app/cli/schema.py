@@ -8,7 +8,8 @@ from .outcome import print_json
 
 def schema(as_json: AsJson = False) -> int:
     """Print a JSON Schema (draft 2020-12) of graph files: every node with its values, limits, choices and words."""
-    from ...nodes import catalogue
+    from halation.nodes import catalogue
+
     from ..document.canonical import pretty
     from ..document.schema import schema as made
 

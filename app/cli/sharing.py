@@ -54,7 +54,7 @@ def share(words: Sequence[str], frames: Sequence[int], jobs: int, progress: Told
     # Processes that each used all cores would only get into each other's way.
     fewer = {"LP_NUM_THREADS": threads, "OPENIMAGEIO_THREADS": threads}
     environment = {**fewer, **os.environ, "PYTHONIOENCODING": "utf-8"}
-    command = [sys.executable, "-P", "-m", "halation.app.cli", "render", *words, "--json", "--progress=json"]
+    command = [sys.executable, "-P", "-m", "halation.cli", "render", *words, "--json", "--progress=json"]
     crew = [
         subprocess.Popen(
             [*command, f"--frames={format_frames(part)}"],

@@ -7,9 +7,12 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from ...nodes import ColorSettings, Kind, Matte, Missing, Node, Render, Size, Socket, Source, catalogue
-from ..compiler import NULL, Frame, Picture, Plan, Probed, Request, Target, compile_graph
+from halation.nodes import ColorSettings, Kind, Matte, Missing, Node, Render, Size, Socket, Source, catalogue
+
+from ..compiler import NULL, Plan, Request, Target, compile_graph
 from ..graph import Graph, Input, Output, Port, Settings
+from ..resources.picture import Picture
+from ..resources.provider import Frame, Probed
 from .options import Lazy
 
 NODE = "node"

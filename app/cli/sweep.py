@@ -58,7 +58,8 @@ def sweep(
 
     One value that is swept makes a row that wraps, two make a grid; a value that is given once is just set.
     """
-    from ...nodes import Kind
+    from halation.nodes import Kind
+
     from .. import media
     from ..errors import UsageError
     from ..renderer import DEFAULT_BUDGET, Wanted

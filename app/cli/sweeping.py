@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 from .options import changed
 
 if TYPE_CHECKING:
-    from ...nodes import Value
+    from halation.nodes import Value
+
     from ..graph import Graph
     from ..renderer.jobs.sweep import Axis
 

@@ -11,8 +11,8 @@ from .options import AsJson
 from .outcome import note, print_json
 
 if TYPE_CHECKING:
-    from ..suite.cases import Case
-    from ..suite.results import Outcome
+    from ..regression.cases import Case
+    from ..regression.results import Outcome
 
 _MARKS = {"passed": "pass", "failed": "FAIL", "blessed": "new ", "skipped": "skip"}
 
@@ -49,17 +49,17 @@ def test(
     as_json: AsJson = False,
 ) -> int:
     """Render graphs and compare with golden pictures; see docs/testing.md for the files that say what and how."""
-    from ..suite.selection import chosen
-    from ..suite.suites import load_suites
+    from ..regression.selection import chosen
+    from ..regression.suites import load_suites
 
     cases = chosen(load_suites(suites or [Path()]), select)
     if listed:
         return _listed(cases, as_json)
-    from ..suite.crew import run_cases
-    from ..suite.junit import write_junit
-    from ..suite.report import check_report, write_report
-    from ..suite.results import as_json as for_machines
-    from ..suite.running import How
+    from ..regression.crew import run_cases
+    from ..regression.junit import write_junit
+    from ..regression.report import check_report, write_report
+    from ..regression.results import as_json as for_machines
+    from ..regression.running import How
 
     check_report(report, junit)
     how = How(update, out, pictures=report is not None, deterministic=deterministic)
@@ -90,7 +90,7 @@ def _listed(cases: tuple[Case, ...], as_json: bool) -> int:
 
 def _line(outcome: Outcome) -> str:
     """One line of what became of a case; a sentence follows where there is one to say."""
-    from ..suite.cases import number
+    from ..regression.cases import number
 
     worst = outcome.worst
     measured = worst is not None and worst.value is not None and outcome.status == "passed"

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from .options import standard_input
 
 if TYPE_CHECKING:
-    from ..document.versions import Line
+    from ..document.diff_merge import Line
     from ..graph import Graph
 
 _COLORS = {"+": "32", "-": "31", "~": "36", "@": "35"}

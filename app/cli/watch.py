@@ -29,9 +29,9 @@ from .options import (
 from .outcome import INTERRUPTED, note
 
 if TYPE_CHECKING:
-    from ..editor.services.rerendering import Turn
     from ..graph import Graph
     from ..renderer.jobs.job import Progress, Report
+    from ..watch.rerendering import Turn
 
 _LISTED = 3
 
@@ -57,9 +57,9 @@ def watch(
 
     What is broken is said in a sentence, and waited for.
     """
-    from ..editor.services.rerendering import Rerendering
     from ..renderer import Renderer, Wanted, open_device
     from ..renderer.jobs.job import Writing, run_job
+    from ..watch.rerendering import Rerendering
 
     if str(graph) == "-":
         raise UsageError("-: standard input cannot be watched: name the file of a graph")

@@ -47,14 +47,14 @@ def watched(context: typer.Context, graph: Graph, timeout: float, text: str = ""
     with tempfile.TemporaryDirectory(prefix="halation-") as folder:
         beat = Path(folder, "heartbeat")
         beat.touch()
-        return _watch([sys.executable, "-P", "-m", "halation.app.cli", *context.obj], beat, timeout, text)
+        return _watch([sys.executable, "-P", "-m", "halation.cli", *context.obj], beat, timeout, text)
 
 
 def has_loops(graph: Graph) -> bool:
     """True if somebody wrote code with loops in it, or in one of its groups: only those can take for ever."""
+    from ..custom_nodes import Written
     from ..glsl import words
     from ..graph import Group
-    from ..written import Written
 
     return any(
         has_loops(item.graph)

@@ -7,44 +7,32 @@ plans for a part of a picture, or by tiles. `planner` runs them and remembers wh
 
 from __future__ import annotations
 
-from ..glsl import parse
 from .areas import Region, scaled
 from .explain import as_json, dot, explain
-from .ir import MAX_WEIGHTS, Held, Memory, Picture, Read, Ref
+from .ir import MAX_WEIGHTS, Held, Memory, Read, Ref
 from .library import Library, installed
 from .lowering.named import named_files
 from .lowering.upstream import Upstream
-from ..resources.provider import Frame, Outside, Probed
-from .parts.tiles import Stage, Tiling
-from .parts.tiling import tile_plan
 from .plan import FIRST_TABLE, Pass, Plan, Shader, Surface, Upload
 from .planner import Planner, compile_graph, examine, graph_library
-from ..resources.mesh import ATTRIBUTES, Mesh
-from ..resources.color_program import ColorProgram, Table
 from .request import Request
 from .target import NULL, Form, Precision, Target
-from ..resources.working_space import Working
+from .tiling.tiles import Stage, Tiling
+from .tiling.tiling import tile_plan
 from .working import library_for
 
 __all__ = [
-    "ATTRIBUTES",
     "FIRST_TABLE",
     "MAX_WEIGHTS",
     "NULL",
-    "ColorProgram",
     "Form",
-    "Frame",
     "Held",
     "Library",
     "Memory",
-    "Mesh",
-    "Outside",
     "Pass",
-    "Picture",
     "Plan",
     "Planner",
     "Precision",
-    "Probed",
     "Read",
     "Ref",
     "Region",
@@ -52,12 +40,10 @@ __all__ = [
     "Shader",
     "Stage",
     "Surface",
-    "Table",
     "Target",
     "Tiling",
     "Upload",
     "Upstream",
-    "Working",
     "as_json",
     "compile_graph",
     "dot",
@@ -67,7 +53,6 @@ __all__ = [
     "installed",
     "library_for",
     "named_files",
-    "parse",
     "scaled",
     "tile_plan",
 ]

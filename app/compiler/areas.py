@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
+from halation.nodes import Affine, Edge, Size
 from msgspec import Struct
-
-from ...nodes import Affine, Edge, Size
 
 Span = tuple[int, int]
 """Pixels along an axis: the first, and the one after the last."""

@@ -9,16 +9,16 @@ from collections.abc import Iterator, Mapping
 from types import MappingProxyType
 from typing import ClassVar
 
+from halation.nodes import Camera, Edge, ShaderText, Size
 from msgspec import Struct, field
 from msgspec.structs import force_setattr
 
-from ...nodes import Camera, Edge, ShaderText, Size
+from ..custom_nodes import unprefixed
 from ..graph import Port
 from ..resources.color_program import ColorProgram, Table
 from ..resources.mesh import Mesh
 from ..resources.picture import Picture
 from ..resources.record import Record
-from ..written import unprefixed
 from .areas import Around, Region
 
 

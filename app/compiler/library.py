@@ -9,9 +9,9 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import ClassVar
 
+from halation.shaders import folder
 from msgspec import field
 
-from ...shaders import folder
 from ..errors import ShaderError
 from ..glsl import Function, Text, parse
 from ..resources.record import Record

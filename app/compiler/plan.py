@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import ClassVar, Literal
 
+from halation.nodes import Camera, Size, Uniform
 from msgspec import Struct, field
 
-from ...nodes import Camera, Size, Uniform
 from ..graph import Port
-from .areas import Region
-from .ir import Memory, Picture
-from .parts.tiles import Tiling
-from ..resources.mesh import Mesh
 from ..resources.color_program import Table
+from ..resources.mesh import Mesh
+from ..resources.picture import Picture
 from ..resources.record import Record
+from .areas import Region
+from .ir import Memory
 from .target import Form, Target
+from .tiling.tiles import Tiling
 
 Depth = Literal["f2", "f4"]
 FIRST_TABLE = 16

@@ -10,21 +10,22 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from ..graph import Graph, color_settings
+from ..resources.picture import Picture
+from ..resources.provider import Outside
 from .fusion.fuse import fuse
 from .fusion.rewrites import rewritten
-from .ir import Picture, Read
+from .ir import Read
 from .library import Library, installed
 from .lowering.expand import written_texts
+from .lowering.incremental import relower
 from .lowering.lower import lower
-from .lowering.relower import relower
 from .lowering.steps import Lowered
-from ..resources.provider import Outside
-from .parts.regions import focused
-from .parts.tiling import tile
 from .plan import Plan
 from .request import Request
 from .scheduling.schedule import Scheduled, formats, reschedule, schedule
 from .target import NULL, Precision, Target
+from .tiling.regions import focused
+from .tiling.tiling import tile
 from .working import library_for
 
 KEPT = 4

@@ -6,13 +6,14 @@ import math
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from halation.nodes import Size
 from msgspec import Struct, field
 
-from ...nodes import Size
 from ..errors import UsageError
 from ..graph import Port
+from ..resources.picture import Picture
 from .areas import Region
-from .ir import Memory, Picture
+from .ir import Memory
 
 
 class Request(Struct, frozen=True):

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any, cast
 
-from ...nodes import Plain
+from halation.nodes import Plain
+
 from ..errors import DocumentError
 from ..graph import Animation, Expression, Key, Keys
 from . import records

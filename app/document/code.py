@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from ..custom_nodes import Code, CodeFault, Language, Written
 from ..errors import DocumentError
-from ..written import Code, CodeFault, Language, Written
 from .disk import read_text
 
 

@@ -6,16 +6,16 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, cast, get_args
 
+from halation.nodes import ColorSettings, Node, Plain, Value, catalogue
 from msgspec import Struct, field
 
-from ...nodes import ColorSettings, Node, Plain, Value, catalogue
+from ..custom_nodes import CodeFault, Language, node_type
 from ..errors import DocumentError, GraphError
 from ..graph import Animation, Control, Graph, Group, Input, Item, Output, Port, Settings, Unknown, signature
 from ..graph.animation import adapted
-from ..resources.sandbox import outside
 from ..graph.names import did_you_mean, name_fault
 from ..graph.values import coerced, expected
-from ..written import CodeFault, Language, node_type
+from ..resources.sandbox import outside
 from . import limits, records
 from .animation import read_animation
 from .code import read_code

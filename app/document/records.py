@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from typing import Annotated, Any, TypeVar
 
 import msgspec
+from halation.nodes import Kind, Missing
 
-from ...nodes import Kind, Missing
 from ..errors import DocumentError
 from ..graph import Interpolation, Outside
 from .syntax import member

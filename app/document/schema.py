@@ -11,10 +11,10 @@ from collections.abc import Mapping
 from typing import Any, get_args
 
 import msgspec
+from halation.nodes import LIGHT_NUMBERS, MAX_LIGHTS, MAX_POINTS, Node, Value
 
-from ...nodes import LIGHT_NUMBERS, MAX_LIGHTS, MAX_POINTS, Node, Value
+from ..custom_nodes import Language
 from ..graph import INPUTS, OUTPUTS
-from ..written import Language
 from . import records
 from .migrations import FORMAT
 

@@ -7,12 +7,13 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from ...nodes import Plain, Value
+from halation.nodes import Plain, Value
+
+from ..custom_nodes import Written
 from ..errors import GraphError, OutputError
 from ..graph import Control, Graph, Group, Input, Item, Output, Settings, Unknown, signature
 from ..graph.names import name_fault
 from ..graph.values import coerced, expected
-from ..written import Written
 from .animation import written_animation
 from .canonical import pretty
 from .code import written_code

@@ -7,28 +7,28 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Protocol, TypeVar
 
+from ..authoring.log import Log
+from ..authoring.services.renders import Renders
+from ..authoring.services.shader_files import ShaderFiles
 from ..errors import HalationError
 from .canvas.view import CanvasView
 from .code.state import CodeState
 from .curves.state import CurvesState
 from .dialogs import Dialogs
-from .log import Log
-from .services.renders import Renders
-from .services.shader_files import ShaderFiles
 from .theme.palette import PALETTES, Palette
 from .timeline.state import TimelineState
 from .viewer.state import ViewerState
 
 if TYPE_CHECKING:
+    from ..authoring.preview import Preview
+    from ..authoring.services.exporting import Exports
+    from ..authoring.services.preferences import Store
+    from ..authoring.services.recovery import Recovery
+    from ..authoring.session import Session
     from ..renderer.viewing.display import Display
     from ..renderer.viewing.probe import Probe
+    from ..watch.watching import Watcher
     from .action import Actions, Scope
-    from .preview import Preview
-    from .services.exporting import Exports
-    from .services.preferences import Store
-    from .services.recovery import Recovery
-    from .services.watching import Watcher
-    from .session import Session
     from .theme.fonts import Fonts
 
 T = TypeVar("T")

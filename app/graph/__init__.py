@@ -5,14 +5,14 @@ from __future__ import annotations
 from .animation import ANIMATED, Animation
 from .color import color_settings
 from .conversion import conversion, make_socket
+from .evaluate_at_frame import animation_fault, is_animated, keyed_range, still, value_at
 from .expressions import Expression
 from .graph import Graph, Group, Item, declared, signature
 from .keys import Interpolation, Key, Keys, Outside
 from .lookup import node_output
+from .model import Control, Input, Output, Port, Settings, Signature, Unknown
 from .names import INPUTS, OUTPUTS, did_you_mean
-from .parts import Control, Input, Output, Port, Settings, Signature, Unknown
 from .problems import Problem, problems
-from .still import animation_fault, is_animated, keyed_range, still, value_at
 
 __all__ = [
     "ANIMATED",

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from ...nodes import Value
+from halation.nodes import Value
+
 from .expressions import Expression
 from .keys import Keys
-from .parts import Port
+from .model import Port
 from .values import coerced, value_fault
 
 Animation = Keys | Expression

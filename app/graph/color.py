@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import PurePath
 
+from halation.nodes import ColorSettings
 from msgspec import structs
 
-from ...nodes import ColorSettings
 from .graph import Graph
 
 BUILT_IN = "ocio://"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from ...nodes import Color, Field, Image, Kind, Number, Plain, Socket, Value, Vector, Viewpoint
+from halation.nodes import Color, Field, Image, Kind, Number, Plain, Socket, Value, Vector, Viewpoint
 
 _FITS: Mapping[Kind, frozenset[Kind]] = MappingProxyType(
     {

@@ -8,15 +8,15 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, Literal, Self
 
+from halation.nodes import Node, Plain, Pointwise, Socket, Value
 from msgspec import structs
 
-from ...nodes import Node, Plain, Pointwise, Socket, Value
 from ..errors import GraphError
 from .animation import ANIMATED, Animation, adapted, moved, unfit
 from .conversion import conversion
+from .model import Control, Input, Output, Port, Settings, Signature, Unknown, freeze
 from .names import INPUTS, OUTPUTS, check_name, did_you_mean, fresh_name, pick
 from .notes import linked_routes, moved_keys, moved_layout, renamed, without, without_route
-from .parts import Control, Input, Output, Port, Settings, Signature, Unknown, freeze
 from .relink import moved_links, relinked
 from .values import coerced, value_fault
 from .walk import Wired, loop_sentence, route

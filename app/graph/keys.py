@@ -19,7 +19,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
-from ...nodes import Plain
+from halation.nodes import Plain
+
 from ..errors import GraphError
 from . import bezier
 

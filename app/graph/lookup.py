@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..errors import GraphError
 from .graph import Graph, signature
-from .parts import Port
+from .model import Port
 
 
 def node_output(graph: Graph, text: str) -> Port:

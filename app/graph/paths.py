@@ -8,10 +8,10 @@ from dataclasses import replace
 from pathlib import Path, PurePath
 from typing import get_args
 
+from halation.nodes import Node, Plain
 from msgspec import structs
 
-from ...nodes import Node, Plain
-from ..written import Language, Written, node_type
+from ..custom_nodes import Language, Written, node_type
 from .color import BUILT_IN
 from .graph import Graph, Group, Item, signature
 
@@ -114,3 +114,8 @@ def _is_ours(item: Item | None, control: str) -> bool:
         target = item.graph.controls[control].target
         item, control = item.graph.nodes.get(target.node), target.socket
     return True
+
+
+def full(path: str, folder: str) -> Path:
+    """The file that a graph in `folder` names, always written in the same way; links stay as they are."""
+    return Path(os.path.abspath(Path(folder, path)))  # noqa: PTH100

@@ -6,14 +6,15 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
-from ...nodes import Node, catalogue
+from halation.nodes import Node, catalogue
+
 from ..errors import GraphError
 from . import rules
+from .evaluate_at_frame import animation_fault, loop_faults
 from .graph import Graph, Group, Item, signature
+from .model import Input, Port, Unknown
 from .names import INPUTS, OUTPUTS, did_you_mean, name_fault, pick
-from .parts import Input, Port, Unknown
 from .rules import Rule, Severity
-from .still import animation_fault, loop_faults
 from .unmerged import CONFLICTS, unmerged
 from .values import numbers, value_fault
 from .walk import loop_sentence, loops

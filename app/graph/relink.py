@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from .parts import Port, Signature
+from .model import Port, Signature
 
 Fits = Callable[[Port, Port], bool]
 """Whether a link from the first port can feed the second."""

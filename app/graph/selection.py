@@ -8,8 +8,8 @@ from dataclasses import replace
 from ..errors import GraphError
 from .graph import Graph, signature
 from .lookup import node_output
+from .model import Input, Output, Port
 from .names import INPUTS, OUTPUTS, did_you_mean
-from .parts import Input, Output, Port
 
 
 def selected(graph: Graph, ids: Sequence[str]) -> Graph:

@@ -6,7 +6,7 @@ import math
 from itertools import pairwise
 from typing import Any, cast
 
-from ...nodes import LIGHT_NUMBERS, MAX_LIGHTS, MAX_POINTS, LightKind, Plain, Value
+from halation.nodes import LIGHT_NUMBERS, MAX_LIGHTS, MAX_POINTS, LightKind, Plain, Value
 
 _INT32 = 2**31
 _FLOAT32 = 3.4028234663852886e38

@@ -9,8 +9,8 @@ from types import MappingProxyType
 from typing import Generic, TypeVar
 
 from ..errors import GraphError
+from .model import Port
 from .names import INPUTS, OUTPUTS
-from .parts import Port
 
 Steps = Mapping[str, Iterable[str]]
 

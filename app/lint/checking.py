@@ -7,7 +7,8 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
-from ...nodes import Node, catalogue
+from halation.nodes import Node, catalogue
+
 from .. import document, graph
 from ..document.disk import read_text
 from ..document.positions import Positions

@@ -8,16 +8,22 @@ from functools import cached_property
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from ...nodes import ColorChange, ColorSettings, Missing, Render, Scene
-from ..compiler import ColorProgram, Frame, Mesh, Picture, Probed, Request, Working, examine, named_files
+from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene
+
+from ..compiler import Request, examine, named_files
 from ..errors import DeviceError, HalationError, InputError, ShaderError, UsageError
 from ..graph import INPUTS, OUTPUTS, Graph, Group, Problem, keyed_range
 from ..graph.rules import Rule
+from ..resources.color_program import ColorProgram
+from ..resources.mesh import Mesh
+from ..resources.picture import Picture
+from ..resources.provider import Frame, Probed
+from ..resources.working_space import Working
 from .rules.paths import named_paths
 
 if TYPE_CHECKING:
-    from ..media.color_faults import ColorFault
-    from ..media.pictures import Pictures
+    from ..color.faults import ColorFault
+    from ..inputs.provider import Pictures
 
 UNREADABLE_FILE = Rule(
     "unreadable-file",
@@ -70,7 +76,7 @@ class World:
     @cached_property
     def pictures(self) -> Pictures:
         """The real ones; what reads files is loaded when the first is asked for."""
-        from ..media.pictures import Pictures
+        from ..inputs.provider import Pictures
 
         return Pictures()
 
@@ -184,7 +190,7 @@ def _color_faults(graph: Graph) -> Iterator[ColorFault]:
     """What is wrong with names of color management; what knows them is loaded only for a graph that has some."""
     named = (*(end.view for end in graph.outputs.values()), *(end.color_space for end in graph.inputs.values()))
     if graph.settings.color != ColorSettings() or any(name not in ("", "none") for name in named):
-        from ..media.color_faults import color_faults
+        from ..color.faults import color_faults
 
         yield from color_faults(graph)
 

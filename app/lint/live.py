@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from ...nodes import Node
+from halation.nodes import Node
+
 from ..graph import Graph, Problem, problems
 from ..graph.problems import differ_in_nodes, rechecked
 from .allowing import allowed

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple, TypeGuard
 
-from ...nodes import Node
+from halation.nodes import Node
+
 from ..compiler import Library, installed
 from ..graph import Graph, Group, Item, Port, Problem, signature
 from ..graph.rules import Rule

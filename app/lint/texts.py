@@ -7,7 +7,8 @@ from collections.abc import Iterator, Mapping
 from itertools import zip_longest
 from typing import Any, cast
 
-from ...nodes import Node
+from halation.nodes import Node
+
 from .. import document
 from ..document.syntax import member, parse
 from ..errors import DocumentError, GraphError

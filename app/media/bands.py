@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import OpenImageIO as oiio
+from halation.nodes import Kind
 from msgspec.structs import replace
 
-from ...nodes import Kind
+from ..color.transforms import Array
 from ..errors import InputError
-from .color import Array
 from .finite import has_bad, not_finite
 from .info import check_memory, described, fault, find_layer, opened
 from .layers import Layer

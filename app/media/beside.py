@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from halation.nodes import Kind
 
-from ...nodes import Kind
-from .color import Array
+from ..color.transforms import Array
 from .compare import amplified
 from .sheet import data_shown, sheet, shown
 from .write import write

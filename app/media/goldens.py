@@ -10,14 +10,14 @@ from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
+from halation.nodes import Kind
 
-from ...nodes import Kind
+from ..color.transforms import Array, to_display
 from ..errors import InputError, OutputError
-from .color import Array, to_display
+from ..resources.atomic_write import store
 from .compare import three
 from .info import fault, opened
 from .metadata import read_metadata
-from ..resources.atomic_write import store
 from .write import write
 
 _MAKER = ("halation:renderer", "halation:driver", "halation:version")

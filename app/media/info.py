@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
-import hashlib
 import math
 import os
 from collections.abc import Iterator
@@ -12,12 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import OpenImageIO as oiio
+from halation.nodes import Kind, Size
 from msgspec import Struct
 
-from ...nodes import Kind, Size
 from ..errors import InputError
-from ..resources.sandbox import outside
 from ..graph.frames import is_video
+from ..resources.input_files import check_file, fingerprint
 from .layers import Layer, Part, layers_of, pick
 
 if TYPE_CHECKING:
@@ -107,26 +105,6 @@ def layer_or_first(header: ImageInfo, socket: Input) -> str:
     return socket.layer
 
 
-def fingerprint(path: str | Path) -> str:
-    """A cheap mark of this version of the file: where it is, when it was written, how long it is. Raises InputError."""
-    check_inside(path)
-    try:
-        status = Path(path).stat()
-    except (OSError, ValueError) as error:
-        raise InputError(f"{_shown(path)}: {_missing(Path(path))}") from error
-    return f"{Path(path).absolute()}:{status.st_mtime_ns}:{status.st_size}"
-
-
-def content_hash(path: str | Path) -> str:
-    """SHA-256 of the bytes of the file, in hexadecimal. Raises InputError."""
-    check_inside(path)
-    try:
-        with Path(path).open("rb") as file:
-            return hashlib.file_digest(file, "sha256").hexdigest()
-    except (OSError, ValueError) as error:
-        raise InputError(f"{_shown(path)}: cannot be read: {getattr(error, 'strerror', None) or error}") from error
-
-
 @contextmanager
 def opened(path: str | Path) -> Iterator[oiio.ImageInput]:
     """The open file; alpha is left as stored, because it must be applied to linear color."""
@@ -144,34 +122,6 @@ def opened(path: str | Path) -> Iterator[oiio.ImageInput]:
     finally:
         if handle is not None:
             handle.close()
-
-
-def check_inside(path: str | Path) -> None:
-    """Raise InputError for a file that `--root` forbids."""
-    if said := outside(path):
-        raise InputError(f"{_shown(path)}: {said}")
-
-
-def check_file(path: str | Path) -> Path:
-    """The file, if there is one that may be read and holds something. Raises InputError."""
-    check_inside(path)
-    file = Path(path)
-    try:
-        file.stat()
-    except FileNotFoundError:
-        pass
-    except (OSError, ValueError) as error:
-        said = _missing(file) if not isinstance(error, PermissionError) else "may not be read: check its permissions"
-        raise InputError(f"{_shown(path)}: {said}") from error
-    if file.is_dir():
-        raise InputError(f"{path}: is a folder: name a picture inside it")
-    if not file.is_file():
-        raise InputError(f"{path}: {_missing(file)}")
-    if not os.access(file, os.R_OK):
-        raise InputError(f"{path}: may not be read: check its permissions")
-    if file.stat().st_size == 0:
-        raise InputError(f"{path}: is empty (0 bytes): copy or render it again")
-    return file
 
 
 def described(handle: oiio.ImageInput, path: str) -> ImageInfo:
@@ -272,19 +222,3 @@ def fault(message: str) -> str:
             return sentence
     first = message.strip().splitlines()[0] if message.strip() else "no reason given"
     return f"is no picture that can be read ({first})"
-
-
-def _shown(path: str | Path) -> str:
-    """A path as a sentence can hold it."""
-    return str(path).replace("\0", "\\0")
-
-
-def _missing(path: Path) -> str:
-    """What to say of a file that is not there."""
-    try:
-        if not path.parent.is_dir():
-            return "there is no such file; its folder is missing too"
-        guess = difflib.get_close_matches(path.name, (item.name for item in path.parent.iterdir()), 1)
-    except (OSError, ValueError):
-        return "no file can have such a name: check it"
-    return f"there is no such file; did you mean '{guess[0]}'?" if guess else "there is no such file: check the name"

@@ -7,19 +7,20 @@ from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
+from halation.nodes import ColorSettings, Kind
 from msgspec import Struct, field
 
-from ...nodes import ColorSettings, Kind
+from ..color.file_space import AUTO, space_of
+from ..color.management import DEFAULT_COLOR, managed
+from ..color.transforms import Array, as_float, available_cores, is_working, to_working
 from ..errors import InputError
 from ..graph.frames import is_video
-from .color import Array, as_float, available_cores, is_working, to_working
-from .file_space import AUTO, space_of
+from ..resources.input_files import check_file
+from ..resources.input_files import fingerprint as marked
 from .finite import has_bad, not_finite
 from .hints import hints_of
-from .info import ImageInfo, check_file, check_memory, described, described_video, fault, find_layer, opened
-from .info import fingerprint as marked
+from .info import ImageInfo, check_memory, described, described_video, fault, find_layer, opened
 from .layers import Layer
-from .managed import DEFAULT_COLOR, managed
 
 READ_AS = {"float16": "half", "uint8": "uint8", "uint16": "uint16", "uint32": "uint"}
 _ALPHA = ("a", "alpha")

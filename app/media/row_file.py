@@ -8,12 +8,13 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
-from ...nodes import Kind, Size
+from halation.nodes import Kind, Size
+
+from ..color.encoding import Encoding
+from ..color.transforms import Array
 from ..errors import OutputError
-from .color import Array
-from .encoding import Encoding
-from .metadata import add_metadata
 from ..resources.atomic_write import reason_of, unfinished
+from .metadata import add_metadata
 from .write import Precision, encoder_of, exr_parts, refusal
 
 _BLOCK = 2**16

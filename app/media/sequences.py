@@ -21,13 +21,14 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from halation.nodes import Missing
 from msgspec import Struct
 
-from ...nodes import Missing
-from ..compiler import Frame
 from ..errors import InputError, UsageError
 from ..graph.frames import Pattern, format_frames, is_video
-from .info import check_inside, video_facts
+from ..resources.input_files import check_inside
+from ..resources.provider import Frame
+from .info import video_facts
 from .thumbnail import readable
 
 if TYPE_CHECKING:

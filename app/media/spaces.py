@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from ...nodes import ColorSettings
+from halation.nodes import ColorSettings
+
+from ..color.file_space import FileSpace, space_of
+from ..color.management import DEFAULT_COLOR, managed
 from ..errors import HalationError
 from ..graph.frames import is_video
-from .file_space import FileSpace, space_of
 from .hints import hints_of
 from .info import described, opened
-from .managed import DEFAULT_COLOR, managed
 
 
 def layer_spaces(path: str | Path, color: ColorSettings = DEFAULT_COLOR, wanted: str = "") -> Mapping[str, FileSpace]:

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from ..color.transforms import Array
 from ..errors import InputError
-from .color import Array
 from .info import described, fault, opened
 
 

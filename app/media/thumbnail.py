@@ -6,13 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
+from halation.nodes import Kind
 
-from ...nodes import Kind
+from ..color.transforms import NO_VIEW, Array, to_display
 from ..errors import InputError
-from .color import NO_VIEW, Array, to_display
+from ..resources.atomic_write import store
 from .info import find_layer, info
 from .read import read
-from ..resources.atomic_write import store
 
 _NO_PICTURES = ("null", "term", "ffmpeg", "openvdb", "ptex")
 

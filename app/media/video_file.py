@@ -11,10 +11,10 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+from halation.nodes import Kind, Size
 
-from ...nodes import Kind, Size
+from ..color.encoding import Encoding
 from ..errors import OutputError
-from .encoding import Encoding
 from ..resources.atomic_write import check_room, reason_of, unfinished
 from .video.codecs import find_codec
 from .video.library import library

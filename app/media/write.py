@@ -9,17 +9,17 @@ from typing import Any, Literal
 
 import numpy as np
 import OpenImageIO as oiio
+from halation.nodes import Kind, Size
 from msgspec import Struct
 
-from ...nodes import Kind, Size
+from ..color.encoding import Encoding, png_space
+from ..color.transforms import Array
 from ..errors import OutputError, UsageError
-from .color import Array
-from .encoding import Encoding, png_space
+from ..resources.atomic_write import check_room, store
 from .finite import as_half
 from .info import TAG
 from .layers import is_depth
 from .metadata import add_metadata
-from ..resources.atomic_write import check_room, store
 
 _FORMATS = {
     ".exr": "openexr",

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .engine import DEFAULT_BUDGET, Renderer, Wanted
+    from .execution.executor import Counters
+    from .execution.run import Run
+    from .execution.runner import Runner
+    from .frame_renderer import Reel
     from .opengl.device import Device, describe
     from .opengl.textures import Lease
     from .opening import open_device
     from .pinned import open_pinned
-    from .reel import Reel
-    from .running.executor import Counters
-    from .running.run import Run
-    from .running.runner import Runner
     from .viewing.display import Display, Drawable, Handle
     from .viewing.look import Look, fitted, to_panel, to_picture
     from .viewing.probe import Nonfinite, Probe, first_nonfinite
@@ -50,7 +50,7 @@ __all__ = [
 
 _HOMES = MappingProxyType(
     {
-        "Counters": "running.executor",
+        "Counters": "execution.executor",
         "DEFAULT_BUDGET": "engine",
         "Device": "opengl.device",
         "Display": "viewing.display",
@@ -60,10 +60,10 @@ _HOMES = MappingProxyType(
         "Look": "viewing.look",
         "Nonfinite": "viewing.probe",
         "Probe": "viewing.probe",
-        "Reel": "reel",
+        "Reel": "frame_renderer",
         "Renderer": "engine",
-        "Run": "running.run",
-        "Runner": "running.runner",
+        "Run": "execution.run",
+        "Runner": "execution.runner",
         "Wanted": "engine",
         "describe": "opengl.device",
         "first_nonfinite": "viewing.probe",

@@ -15,9 +15,9 @@ from statistics import median
 from ..compiler import Pass, Plan
 from ..graph import Graph
 from .engine import Renderer, Wanted
+from .execution.run import Timings
+from .frame_renderer import Reel
 from .opengl.textures import Lease
-from .reel import Reel
-from .running.run import Timings
 
 Name = tuple[tuple[str, ...], tuple[str, ...], int]
 """What stands for a pass in every frame and every run: its nodes, its functions, and a count of such passes before."""

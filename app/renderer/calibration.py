@@ -12,18 +12,18 @@ from hashlib import blake2b
 from pathlib import Path
 from typing import get_args
 
+from halation.nodes import Size, catalogue
 from msgspec.structs import asdict, replace
 
-from ...nodes import Size, catalogue
 from ..compiler import Form, Request, compile_graph
 from ..compiler.devices import Measured
 from ..document.disk import read_text, write_text
 from ..errors import HalationError
 from ..graph import Graph, Port, Settings
+from ..inputs.provider import Pictures
 from ..resources.sandbox import outside
-from ..media.pictures import Pictures
+from .execution.runner import Runner
 from .opengl.device import Device
-from .running.runner import Runner
 
 SIZE = (1024, 1024)
 TURNS = 5

@@ -6,20 +6,20 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from halation.nodes import Size
 from msgspec import Struct, field
 
-from ...nodes import Size
 from ..compiler import Library, Memory, Plan, Planner, Precision, Region, Request
 from ..graph import Graph, Port
-from ..media.pictures import Pictures
+from ..inputs.provider import Pictures
+from .execution.decoding import Array
+from .execution.runner import Runner
 from .opengl.device import Device
 from .opening import open_device
-from .running.decoding import Array
-from .running.runner import Runner
 
 if TYPE_CHECKING:
-    from ..media.ahead import Ahead
-    from ..media.pictures import Binding
+    from ..inputs.prefetch import Ahead
+    from ..inputs.provider import Binding
 
 DEFAULT_BUDGET = 512 * 2**20
 

@@ -7,7 +7,7 @@ import errno
 import os
 import shutil
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -66,7 +66,7 @@ def check_room(path: str | Path) -> None:
 
 
 @contextmanager
-def unfinished(path: str | Path) -> Iterator[tuple[Path, Path]]:
+def unfinished(path: str | Path) -> Generator[tuple[Path, Path]]:
     """A new file that is gone afterwards, and the one that it may replace. Raises OutputError."""
     if said := outside(path):
         raise OutputError(f"{path}: {said}")

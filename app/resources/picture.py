@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from halation.nodes import ColorSettings, Kind
 from msgspec import field
 
-from ...nodes import ColorSettings, Kind
 from .record import Record
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Protocol
 
+from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene, Size
 from msgspec import Struct
 
-from ...nodes import ColorChange, ColorSettings, Missing, Render, Scene, Size
 from .color_program import ColorProgram
 from .mesh import Mesh
 from .picture import Picture

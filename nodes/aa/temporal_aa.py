@@ -40,7 +40,8 @@ class TemporalAa(Temporal):
     weigh_light: Annotated[
         bool,
         Doc(
-            "Let a sample of a lamp count less the brighter it is, as 1 / (1 + luminance): edges of lights are smooth too."
+            "Let a sample of a lamp count less the brighter it is, as 1 / (1 + luminance): edges of lights are "
+            "smooth too."
         ),
     ] = True
     kernel: Annotated[

@@ -21,7 +21,8 @@ class BoxBlur(Filter):
     kind: Annotated[
         Literal["box", "tent", "iterated"],
         Doc(
-            "Box weighs all pixels alike. Tent, two boxes of half the radius, falls off in straight lines. Iterated, three "
+            "Box weighs all pixels alike. Tent, two boxes of half the radius, falls off in straight lines. Iterated, "
+            "three "
             "boxes of a third, is nearly a Gaussian whose sigma is a third of the radius."
         ),
     ] = "box"

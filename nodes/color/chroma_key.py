@@ -21,7 +21,8 @@ class ChromaKey(Pointwise):
     limit: Annotated[
         Literal["maximum", "average"],
         Doc(
-            "What the screen's channel may not exceed: the larger of the other two, or their average, which takes more off."
+            "What the screen's channel may not exceed: the larger of the other two, or their average, which takes "
+            "more off."
         ),
     ] = "maximum"
     black: Annotated[

@@ -23,7 +23,8 @@ class Posterize(Pointwise):
     channels: Annotated[
         Literal["luminance", "separate"],
         Doc(
-            "Luminance rounds how bright a pixel is and keeps its color; separate rounds red, green and blue on their own."
+            "Luminance rounds how bright a pixel is and keeps its color; separate rounds red, green and blue on "
+            "their own."
         ),
     ] = "luminance"
     amount: Annotated[

@@ -13,7 +13,8 @@ class Vignette(Pointwise):
     falloff: Annotated[
         Literal["smooth", "cos4"],
         Doc(
-            "Smooth is a soft ring at the radius. Cos4 is the natural light loss of a lens, cos^4 of the angle off axis, "
+            "Smooth is a soft ring at the radius. Cos4 is the natural light loss of a lens, cos^4 of the angle off "
+            "axis, "
             "where the radius is the focal length and softness has no effect."
         ),
     ] = "smooth"

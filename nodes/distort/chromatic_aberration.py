@@ -23,7 +23,8 @@ class ChromaticAberration(Filter):
             -0.05,
             0.05,
             unit="height",
-            doc="How far red and blue each lie from green: at half the height from the center, or everywhere if straight.",
+            doc="How far red and blue each lie from green: at half the height from the center, or everywhere if "
+            "straight.",
         ),
     ] = 0.006
     angle: Annotated[float, Slider(-180.0, 180.0, unit="deg", doc="Straight: where red goes, 0 is right.")] = 0.0

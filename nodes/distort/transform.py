@@ -30,7 +30,8 @@ class Transform(Filter):
     kernel: Annotated[
         Kernel,
         Doc(
-            "Nearest keeps data as it is, triangle is bilinear; Catmull-Rom and Lanczos (3 lobes) are sharp and may ring "
+            "Nearest keeps data as it is, triangle is bilinear; Catmull-Rom and Lanczos (3 lobes) are sharp and may "
+            "ring "
             "around lights, Mitchell is between."
         ),
     ] = "triangle"

@@ -1,20 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import (
-    Doc,
-    Draw,
-    Drawn,
-    Field,
-    Image,
-    Output,
-    Picks,
-    Reader,
-    RenderPath,
-    Vector,
-    matte_of,
-    picked,
-)
+from .._declare import Doc, Draw, Drawn, Field, Image, Output, Picks, Reader, RenderPath, Vector, matte_of, picked
 
 _AT_ONCE = 32
 """Ids that one draw looks for: two to a vector."""

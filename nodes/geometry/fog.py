@@ -21,7 +21,8 @@ class Fog(Filter):
     mode: Annotated[
         Literal["linear", "exponential", "exponential squared", "height"],
         Doc(
-            "Linear: from start to end. Exponential squared keeps what is near clearer. Height: a layer on the ground; it "
+            "Linear: from start to end. Exponential squared keeps what is near clearer. Height: a layer on the "
+            "ground; it "
             "needs a camera, or positions and eye."
         ),
     ] = "exponential"
@@ -62,7 +63,8 @@ class Fog(Filter):
     alpha: Annotated[
         Literal["keep", "fill"],
         Doc(
-            "Keep: fog only on what the picture covers, for a layer that goes over others. Fill: fog where it is empty too."
+            "Keep: fog only on what the picture covers, for a layer that goes over others. Fill: fog where it is "
+            "empty too."
         ),
     ] = "keep"
     sun: Annotated[Fraction, Doc("How much the fog glows towards the sun; it needs a camera.")] = 0.0

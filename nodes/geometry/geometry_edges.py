@@ -36,7 +36,8 @@ class GeometryEdges(Filter):
     softness: Annotated[
         Fraction,
         Doc(
-            "Lines gain strength up to so much above their threshold, as a part of it. Lines wider than 2 pixels are hard."
+            "Lines gain strength up to so much above their threshold, as a part of it. Lines wider than 2 pixels are "
+            "hard."
         ),
     ] = 0.5
 

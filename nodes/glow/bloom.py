@@ -48,7 +48,8 @@ class Bloom(Filter):
         Points,
         Curve(0.0, 2.0, minimum=0.0),
         Doc(
-            "How much each width counts, beside what scatter gives it: from a sixteenth of the radius, left, by doublings "
+            "How much each width counts, beside what scatter gives it: from a sixteenth of the radius, left, by "
+            "doublings "
             "to the whole radius, right. The sum stays."
         ),
     ] = (0.0, 1.0, 1.0, 1.0)

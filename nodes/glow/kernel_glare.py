@@ -70,7 +70,8 @@ class KernelGlare(Filter):
     quality: Annotated[
         Literal["full", "half", "quarter"],
         Doc(
-            "The size at which light is spread. Half is nearly four times as fast as full, and softens rays by a pixel; "
+            "The size at which light is spread. Half is nearly four times as fast as full, and softens rays by a "
+            "pixel; "
             "small pictures are always spread in full."
         ),
     ] = "half"

@@ -32,7 +32,8 @@ class SunBeams(Filter):
             unit="height",
             minimum=0.0,
             maximum=16.0,
-            doc="Only light this near to the source throws beams; it fades out over as much again. Large: all light does.",
+            doc="Only light this near to the source throws beams; it fades out over as much again. Large: all light "
+            "does.",
         ),
     ] = 0.06
     length: Annotated[

@@ -14,7 +14,8 @@ class Noise(Pointwise):
     kind: Annotated[
         Literal["gradient", "value", "white", "simplex"],
         Doc(
-            "Gradient is smooth and even (Perlin), value is smooth and blotchy, white has no relation between neighbors, "
+            "Gradient is smooth and even (Perlin), value is smooth and blotchy, white has no relation between "
+            "neighbors, "
             "simplex is like gradient with more contrast, and as strong at every evolution."
         ),
     ] = "gradient"
@@ -39,7 +40,8 @@ class Noise(Pointwise):
             unit="ratio",
             minimum=0.0,
             maximum=64.0,
-            doc="1 keeps the noise's own range, of which it rarely reaches the ends; above, what passes the ends is cut.",
+            doc="1 keeps the noise's own range, of which it rarely reaches the ends; above, what passes the ends is "
+            "cut.",
         ),
     ] = 2.0
     seed: Annotated[int, Slider(0, 1000, unit="count", doc="Another number is another pattern.")] = 0

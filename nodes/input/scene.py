@@ -71,7 +71,8 @@ class Scene(Source):
     jitter: Annotated[
         Fraction,
         Doc(
-            "How far from their middle pixels are sampled, for Temporal AA: 1 is all over the pixel. Cameras and velocity "
+            "How far from their middle pixels are sampled, for Temporal AA: 1 is all over the pixel. Cameras and "
+            "velocity "
             "are those of the middle."
         ),
     ] = 0.0

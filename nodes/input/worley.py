@@ -14,7 +14,8 @@ class Worley(Pointwise):
     feature: Annotated[
         Literal["f1", "f2", "f2-f1"],
         Doc(
-            "F1 is the distance to the nearest point, F2 that to the second nearest; their difference draws the borders."
+            "F1 is the distance to the nearest point, F2 that to the second nearest; their difference draws the "
+            "borders."
         ),
     ] = "f1"
     metric: Annotated[

@@ -107,7 +107,8 @@ class DepthOfField(Filter):
     quality: Annotated[
         Literal["draft", "normal", "high", "exact"],
         Doc(
-            "Discs up to so many pixels across are made at full size: 8, 12, 24, all. Exact costs the square of the blur."
+            "Discs up to so many pixels across are made at full size: 8, 12, 24, all. Exact costs the square of the "
+            "blur."
         ),
     ] = "normal"
 

@@ -17,7 +17,8 @@ class MotionBlur(Filter):
     velocity = Vector(
         width=4,
         doc=(
-            "Pixels of the full-size picture, x right, y down: x and y from the frame before, z and w to the frame after. "
+            "Pixels of the full-size picture, x right, y down: x and y from the frame before, z and w to the frame "
+            "after. "
             "Where z and w are 0, motion goes on evenly."
         ),
     )

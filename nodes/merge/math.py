@@ -42,7 +42,8 @@ class Math(Pointwise):
         Operation,
         Doc(
             "Multiply add: a b + c. Power: a^b for a above 0. Greater, less: 1 where a is greater (less) than b. "
-            "Modulo takes the sign of b. Sine, cosine: of a in radians; arc tangent: of a / b, all around. Logarithm and "
+            "Modulo takes the sign of b. Sine, cosine: of a in radians; arc tangent: of a / b, all around. Logarithm "
+            "and "
             "exponential: base e. Clamp: a within b..c. Remap: 0 at a = b, 1 at a = c, on and on. Smoothstep: the same "
             "with soft ends. Mix: a (1 - c) + b c."
         ),

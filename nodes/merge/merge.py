@@ -49,7 +49,8 @@ class Merge(Pointwise):
     mode: Annotated[
         Mode,
         Doc(
-            "Over covers, plus adds light. Subtract is b - a, divide is b / a. Hue, saturation, color and luminosity take "
+            "Over covers, plus adds light. Subtract is b - a, divide is b / a. Hue, saturation, color and luminosity "
+            "take "
             "that of the foreground and the rest of the background."
         ),
     ] = "over"

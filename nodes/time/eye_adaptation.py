@@ -29,7 +29,8 @@ class EyeAdaptation(Temporal):
     scale: Annotated[
         Literal["stops", "light"],
         Doc(
-            "What follows evenly: stops, as things look, or light itself, as published, which is quick towards the bright."
+            "What follows evenly: stops, as things look, or light itself, as published, which is quick towards the "
+            "bright."
         ),
     ] = "stops"
     key: Annotated[

@@ -27,11 +27,11 @@ sys.path.append(str(Path(__file__).parents[1]))
 
 import numpy as np
 from gui_driver import Ui, drive, headless
-from halation.app import document
-from halation.app.editor.preview import Glimpse, Preview
-from halation.app.graph import Graph, Output, Port
-from halation.app.renderer import Display, Renderer
+from halation import document
+from halation.authoring.preview import Glimpse, Preview
+from halation.graph import Graph, Output, Port
 from halation.nodes import Kind, catalogue
+from halation.renderer import Display, Renderer
 from imgui_bundle import ImVec2, immapp
 
 _TEN = (
@@ -74,7 +74,7 @@ def chain(types: list[str], size: tuple[int, int]) -> Graph:
         source = Port(id, next(iter(known[name].outputs)))
     graph = graph.add_output("image", Output(Kind.IMAGE)).connect(source, Port("outputs", "image"))
 
-    from halation.app.graph import Settings
+    from halation.graph import Settings
 
     return replace(graph, settings=Settings(size))
 

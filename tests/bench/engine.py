@@ -20,8 +20,8 @@ sys.path.append(str(Path(__file__).parents[1]))
 
 from bench.exr import read
 from bench.tasks import TASKS, picture
-from halation.app import document
-from halation.app.renderer import Renderer, Wanted
+from halation import document
+from halation.renderer import Renderer, Wanted
 
 
 def main() -> None:

@@ -52,7 +52,7 @@ def _result(ended: Ended) -> dict[str, Any]:
 
 def _loaded(words: list[str]) -> list[str]:
     """The heavy modules that a command loads."""
-    said = run([sys.executable, "-X", "importtime", "-m", "halation.app.cli", *words]).said
+    said = run([sys.executable, "-X", "importtime", "-m", "halation.cli", *words]).said
     names = {line.rpartition("|")[2].strip().partition(".")[0] for line in said.splitlines() if "|" in line}
     return sorted(names & {"numpy", *LIBRARIES})
 

@@ -23,7 +23,7 @@ from bench.gpu_work import WORK
 from bench.results import Results
 from bench.run import machine
 from bench.started import run
-from halation.app.renderer import open_device
+from halation.renderer import open_device
 
 Say = Callable[[str], None]
 PARTS = ("copies", "work", "presets")

@@ -18,13 +18,13 @@ from bench.gpu_table import FORMS, PRECISIONS
 from bench.gpu_work import DRY, UHD2, WORK, Work, counted, floor, picture
 from bench.results import Results
 from bench.started import run
-from halation.app import document
-from halation.app.compiler import Form
-from halation.app.errors import HalationError
-from halation.app.graph import Graph
-from halation.app.media.compare import flip
-from halation.app.renderer import Device, Reel, Renderer, Wanted
-from halation.app.renderer.bench import bench, held
+from halation import document
+from halation.compiler import Form
+from halation.errors import HalationError
+from halation.graph import Graph
+from halation.media.compare import flip
+from halation.renderer import Device, Reel, Renderer, Wanted
+from halation.renderer.bench import bench, held
 from msgspec import structs
 
 Say = Callable[[str], None]

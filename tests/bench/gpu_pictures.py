@@ -13,10 +13,10 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
-from halation.app import document
-from halation.app.compiler import Precision
-from halation.app.renderer import Reel, Renderer, Wanted, open_pinned
+from halation import document
+from halation.compiler import Precision
 from halation.presets import paths
+from halation.renderer import Reel, Renderer, Wanted, open_pinned
 
 Array = np.ndarray
 PRESETS = tuple(path.stem for path in paths())

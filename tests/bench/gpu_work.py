@@ -10,9 +10,9 @@ from types import MappingProxyType
 import numpy as np
 from bench.inputs import light
 from bench.tasks import TASKS
-from halation.app.compiler import Plan
-from halation.app.renderer.bench import Timed
+from halation.compiler import Plan
 from halation.presets import paths
+from halation.renderer.bench import Timed
 
 Array = np.ndarray
 Size = tuple[int, int]

@@ -14,11 +14,11 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from halation.app.errors import HalationError
-from halation.app.graph import Graph, Input, Output, Port, Settings
-from halation.app.renderer import Reel, Renderer, Wanted
-from halation.app.written import Code, CodeFault, node_type
+from halation.custom_nodes import Code, CodeFault, node_type
+from halation.errors import HalationError
+from halation.graph import Graph, Input, Output, Port, Settings
 from halation.nodes import Kind
+from halation.renderer import Reel, Renderer, Wanted
 
 
 def picture(size: int) -> np.ndarray:
@@ -107,7 +107,7 @@ def main() -> None:
 
 def sheet(tiles: list[np.ndarray], path: Path) -> None:
     """All pictures over gray, half as large, twenty to a row."""
-    import halation.app as hal
+    import halation as hal
 
     small = [np.nan_to_num(one[::2, ::2, :3] + 0.2 * (1.0 - one[::2, ::2, 3:])) for one in tiles]
     small += [np.zeros_like(small[0])] * (-len(small) % 20)

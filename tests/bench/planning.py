@@ -14,10 +14,10 @@ import time
 from collections.abc import Callable
 
 import numpy as np
-from halation.app.document import dumps, loads
-from halation.app.graph import Graph, Input, Output, Port
-from halation.app.renderer import Renderer, Wanted
+from halation.document import dumps, loads
+from halation.graph import Graph, Input, Output, Port
 from halation.nodes import Kind, catalogue
+from halation.renderer import Renderer, Wanted
 
 TIMES = 7
 TYPES = (

@@ -52,7 +52,7 @@ def installed(venvs: Path | None) -> Iterator[Program]:
 def halation() -> list[str]:
     """The command beside this Python, else its module."""
     beside = Path(sys.executable).with_name("halation")
-    return [str(beside)] if beside.exists() else [sys.executable, "-m", "halation.app.cli"]
+    return [str(beside)] if beside.exists() else [sys.executable, "-m", "halation.cli"]
 
 
 def rendering(task: str, folder: Path, size: Size, out: Path, frames: str = SEQUENCE) -> list[str]:

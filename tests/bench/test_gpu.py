@@ -13,10 +13,10 @@ from bench.gpu_measuring import engine, frames, take
 from bench.gpu_table import FLOORS, bandwidth, listing, rows, table
 from bench.gpu_work import DRY, FITTING, UHD, WORK, counted, floor, picture
 from bench.results import Results
-from halation.app import document
-from halation.app.compiler import Request, Target, compile_graph
-from halation.app.media.pictures import Pictures
-from halation.app.renderer import Wanted, open_device
+from halation import document
+from halation.compiler import Request, Target, compile_graph
+from halation.inputs.provider import Pictures
+from halation.renderer import Wanted, open_device
 
 HALF, FLOAT = 8, 16
 """Bytes of a pixel."""

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from bench import references, tasks
 from bench.inputs import pictures
-from halation.app import document
-from halation.app.renderer import Wanted
+from halation import document
+from halation.renderer import Wanted
 
 WIDTH, HEIGHT = tasks.SIZES["tiny"]
 ALIKE = 3e-4

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from commands import Cli, command
 from exr_files import write_exr
-from halation.app import renderer
+from halation import renderer
 
 WIDTH, HEIGHT = 48, 32
 RED = np.linspace(0.0, 1.0, WIDTH, dtype=np.float32).astype(np.float16).astype(np.float32)

@@ -21,9 +21,9 @@ from pathlib import Path
 def main(count: int, words: list[str]) -> None:
     import numpy  # noqa: F401
     import OpenImageIO as oiio
-    from halation.app import document, media  # noqa: F401
-    from halation.app.cli.program import run
-    from halation.app.renderer.jobs import job  # noqa: F401
+    from halation import document, media  # noqa: F401
+    from halation.cli.program import run
+    from halation.renderer.jobs import job  # noqa: F401
 
     folder = Path(words[words.index("-o") + 1]).parent
 

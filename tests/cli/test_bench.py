@@ -113,7 +113,7 @@ def test_passes_that_come_and_go(cli, graph, graphs, baseline):
 
 def test_one_slow_moment_fails_nothing():
     """The median of noise may be high, and so may one lucky baseline be low: both have to be."""
-    from halation.app.renderer.baseline import Against, Ratio
+    from halation.renderer.baseline import Against, Ratio
 
     def ratio(median, fastest):
         return Ratio(("blur",), ("gaussian",), median, fastest, 1.0, median)

@@ -11,8 +11,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from halation.app import document
-from halation.app.lint.checking import RULES
+from halation import document
+from halation.lint.checking import RULES
 from jsonschema import Draft202012Validator
 
 ROOT = Path(__file__).parents[2]
@@ -328,7 +328,7 @@ def test_standard_input(cli, tidy, monkeypatch):
 
 
 def test_a_picture_is_looked_at_once_however_many_graphs_name_it(cli, tidy, shot, monkeypatch):
-    headers, looked = importlib.import_module("halation.app.media.info"), []
+    headers, looked = importlib.import_module("halation.media.info"), []
     real = headers.info
     monkeypatch.setattr(headers, "info", lambda path: looked.append(path) or real(path))
     paths = [
@@ -345,7 +345,7 @@ def test_libraries_for_pictures_are_left_alone_where_there_is_none(tidy):
     """A pattern makes its own picture; what a whole folder costs is then reading and compiling."""
     path = tidy(inputs={"beauty": {"type": "Image", "default": [1.0, 1.0, 1.0, 1.0]}})
     code = (
-        "import sys; from halation.app.cli.program import run; code = run(['check', sys.argv[1]]); "
+        "import sys; from halation.cli.program import run; code = run(['check', sys.argv[1]]); "
         "print(code, [name for name in ('OpenImageIO', 'PyOpenColorIO', 'moderngl') if name in sys.modules])"
     )
     result = subprocess.run([sys.executable, "-c", code, path], capture_output=True, text=True)

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from halation.app import renderer
+from halation import renderer
 
 LONG = "n" * 300 + ".exr"
 
@@ -94,7 +94,7 @@ def test_a_folder_that_may_not_be_written(graphs, shot):
     """As another user, where we are root: nothing is locked to root."""
     root = os.getuid() == 0
     python = [*(("setpriv", "--reuid=65534", "--clear-groups") if root else ()), sys.executable]
-    if root and (not shutil.which("setpriv") or subprocess.run([*python, "-c", "import halation.app.cli"]).returncode):
+    if root and (not shutil.which("setpriv") or subprocess.run([*python, "-c", "import halation.cli"]).returncode):
         pytest.skip("another user cannot run this checkout")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -103,7 +103,7 @@ def test_a_folder_that_may_not_be_written(graphs, shot):
         old = folder / "out.exr"
         old.write_bytes(b"precious")
         folder.chmod(0o555)
-        command = [*python, "-m", "halation.app.cli", "render", "graph.json", "-o", "out.exr"]
+        command = [*python, "-m", "halation.cli", "render", "graph.json", "-o", "out.exr"]
         result = subprocess.run(command, cwd=folder, capture_output=True, text=True)
         folder.chmod(0o755)
         said = "halation: out.exr: cannot be written: the folder may not be written: choose another"

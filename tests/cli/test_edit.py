@@ -13,16 +13,15 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from halation import presets
-from halation.app import document
+from halation import document, presets
 
-HALATION = [sys.executable, "-m", "halation.app.cli", "edit"]
+HALATION = [sys.executable, "-m", "halation.cli", "edit"]
 LOOK = next(path for path in presets.paths() if path.stem == "agx_look")
 POSIX = pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 BROKEN_PARTS = """
 import sys
-from halation.app.editor.window import window
-from halation.app.errors import DeviceError
+from halation.editor.window import window
+from halation.errors import DeviceError
 
 def broken(*_, **__):
     raise {fault}
@@ -32,13 +31,13 @@ count = [0]
 def broken_later(self, *_):
     count[0] += 1
     if count[0] == 5:
-        from halation.app.graph import Port
+        from halation.graph import Port
         self.editor.session.set(Port("tone", "exposure"), 2.5)
     if count[0] > 8:
         broken()
 
 {what} = {how}
-from halation.app.cli.program import run
+from halation.cli.program import run
 sys.exit(run(["edit", *sys.argv[1:]]))
 """
 
@@ -126,7 +125,7 @@ def test_what_cannot_be_opened_is_a_sentence(place, tmp_path: Path, words, code:
 )
 def test_a_fault_at_the_start_is_a_sentence_and_no_crash(place, what: str, fault: str, code: int, sentence) -> None:
     script = BROKEN_PARTS.format(fault=fault, what=what, how="broken").replace(
-        "import DeviceError", "import DeviceError\nfrom halation.app import errors as document"
+        "import DeviceError", "import DeviceError\nfrom halation import errors as document"
     )
     found, said = ended(place, LOOK, program=[sys.executable, "-c", script])
     assert found == code and said.splitlines()[-1].startswith("halation: ") and sentence in said
@@ -189,8 +188,8 @@ def limited() -> None:
 EDITED = """
 import sys
 from time import monotonic
-from halation.app.editor.window import heartbeat
-from halation.app.graph import Port
+from halation.editor.window import heartbeat
+from halation.graph import Port
 
 beat, heard = heartbeat.Heartbeat.beat, []
 
@@ -206,7 +205,7 @@ def edited(self, editor):
         editor.closing = True
 
 heartbeat.Heartbeat.beat = edited
-from halation.app.cli.program import run
+from halation.cli.program import run
 sys.exit(run(["edit", *sys.argv[1:]]))
 """
 

@@ -8,7 +8,7 @@ import sys
 
 import moderngl
 import pytest
-from halation.app import renderer
+from halation import renderer
 
 REAL_DEVICE = renderer.open_device
 
@@ -180,8 +180,8 @@ def test_more_pixels_than_this_machine_can_hold(fails, graphs, monkeypatch):
 
 
 def test_a_shader_that_the_driver_refuses(fails, graphs, monkeypatch):
-    from halation.app import compiler
-    from halation.app.compiler.library import parse
+    from halation import compiler
+    from halation.compiler.library import parse
 
     code = "vec4 exposure(vec4 image, float stops) {\n    return image * stosp;\n}\n"
     library = compiler.Library({**compiler.installed().texts, "color/exposure": parse("color/exposure", code)})
@@ -213,7 +213,7 @@ def test_render_without_a_destination(cli, graphs):
 
 
 def test_a_bug_is_called_a_bug(cli, graphs, tmp_path, monkeypatch):
-    from halation.app.renderer.jobs import job
+    from halation.renderer.jobs import job
 
     monkeypatch.setattr(job, "run_job", lambda *_, **__: 1 / 0)
     result = cli("render", graphs(), "-o", tmp_path / "out.exr", "--json")
@@ -229,7 +229,7 @@ def test_too_little_memory(fails, graphs, monkeypatch):
     def refuse(*_, **__):
         raise MemoryError
 
-    from halation.app.renderer.jobs import job
+    from halation.renderer.jobs import job
 
     monkeypatch.setattr(job, "run_job", refuse)
     assert fails(1, "render", graphs()) == "there is not enough memory: render smaller with --scale or --size"

@@ -181,7 +181,7 @@ def test_several_processes_share_a_graph_from_standard_input(movie, tmp_path):
         [
             sys.executable,
             "-m",
-            "halation.app.cli",
+            "halation.cli",
             "render",
             "-",
             "-o",
@@ -268,7 +268,7 @@ def test_an_interruption_leaves_what_is_finished(movie, tmp_path):
         beauty={"missing": "nearest"},
     )
     process = subprocess.Popen(
-        [sys.executable, "-m", "halation.app.cli", "render", slow, "-o", tmp_path / "out.####.exr", "--progress=json"],
+        [sys.executable, "-m", "halation.cli", "render", slow, "-o", tmp_path / "out.####.exr", "--progress=json"],
         stderr=subprocess.PIPE,
         text=True,
     )

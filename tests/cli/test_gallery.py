@@ -15,12 +15,12 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation import nodes, presets
-from halation.app.cli import gallery, specimen
-from halation.app.graph import Graph, problems
-from halation.app.media.sheet import write_sheet
-from halation.app.renderer import Renderer
+from halation.cli import gallery, specimen
+from halation.graph import Graph, problems
+from halation.media.sheet import write_sheet
 from halation.nodes import Kind, Node, Source, catalogue
 from halation.presets import sample
+from halation.renderer import Renderer
 
 RENEW = bool(os.environ.get("HALATION_RENEW"))
 IMAGES = Path(__file__).parents[2] / "docs" / "images"

@@ -85,7 +85,7 @@ def test_setting_up_says_what_it_changed_and_does_it_once(cli, git, repository):
     (repository / ".gitattributes").write_text("*.exr binary\n")
     said = cli("git-setup", "--json").json["changed"]
     assert len(said) == 5 and all(
-        " -m halation.app.cli git-driver " in one for one in said if ".name" not in one and "git config" in one
+        " -m halation.cli git-driver " in one for one in said if ".name" not in one and "git config" in one
     )
     lines = (repository / ".gitattributes").read_text().splitlines()
     assert lines == ["*.exr binary", '"/my graphs/*.json" diff=halation merge=halation']

@@ -8,7 +8,7 @@ import re
 from pathlib import Path
 
 import pytest
-from halation.app.cli import manual
+from halation.cli import manual
 from halation.nodes import catalogue
 from markdown_it import MarkdownIt
 from markdown_it.token import Token

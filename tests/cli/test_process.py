@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-HALATION = [sys.executable, "-m", "halation.app.cli"]
+HALATION = [sys.executable, "-m", "halation.cli"]
 POSIX = pytest.mark.skipif(os.name == "nt", reason="POSIX signals, pipes and terminals")
 
 TEN = {
@@ -55,7 +55,7 @@ def halation(*words, **options):
 def modules(*words):
     """The modules that a command leaves loaded."""
     code = (
-        "import sys; from halation.app.cli.program import run; code = run(sys.argv[1:]); "
+        "import sys; from halation.cli.program import run; code = run(sys.argv[1:]); "
         "print('loaded', code, *sys.modules)"
     )
     result = subprocess.run([sys.executable, "-c", code, *map(str, words)], capture_output=True, text=True, timeout=100)
@@ -110,7 +110,7 @@ SELDOM = {
     "unicodedata",
     "zipfile",
     *(
-        f"halation.app.{name}"
+        f"halation.{name}"
         for name in (
             "editor",
             "lint",
@@ -154,8 +154,8 @@ def test_checking_loads_the_nodes_of_the_graph_alone(ten):
 
 
 def test_a_command_loads_no_other_one(ten):
-    commands = {f"halation.app.cli.{path.stem}" for path in (Path(__file__).parents[2] / "app" / "cli").glob("*.py")}
-    shared = {f"halation.app.cli.{name}" for name in ("program", "options", "outcome", "parsing", "check")}
+    commands = {f"halation.cli.{path.stem}" for path in (Path(__file__).parents[2] / "app" / "cli").glob("*.py")}
+    shared = {f"halation.cli.{name}" for name in ("program", "options", "outcome", "parsing", "check")}
     assert modules("check", ten) & commands == shared
 
 

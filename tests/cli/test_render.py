@@ -178,8 +178,8 @@ def test_scale_shrinks_lengths_in_pixels_too(cli, graphs, out, tmp_path):
 
 
 def test_frame_reaches_the_shaders(cli, graphs, out, monkeypatch):
-    from halation.app import compiler
-    from halation.app.compiler.library import parse
+    from halation import compiler
+    from halation.compiler.library import parse
 
     code = "vec4 exposure(vec4 image, float stops) { return vec4(vec3(float(frame)), stops); }\n"
     library = compiler.Library({**compiler.installed().texts, "color/exposure": parse("color/exposure", code)})
@@ -269,7 +269,7 @@ def test_broken_pixels_are_repaired_and_told(cli, graphs, out, tmp_path):
 
 @pytest.mark.parametrize("ending", [".exr", ".png"])
 def test_a_picture_says_how_to_make_it_again(cli, graphs, shot, tmp_path, ending):
-    from halation.app import document
+    from halation import document
 
     file = tmp_path / f"out{ending}"
     result = cli("render", graphs(), "--set", "light.stops=2.5", "--scale", "0.5", "-o", file)
@@ -286,7 +286,7 @@ def test_a_picture_says_how_to_make_it_again(cli, graphs, shot, tmp_path, ending
 
 
 def test_a_file_that_is_read_twice_is_hashed_once(cli, graphs, out, monkeypatch):
-    from halation.app import media
+    from halation import media
 
     seen = []
     real = media.content_hash

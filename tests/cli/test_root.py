@@ -13,7 +13,7 @@ import numpy as np
 import PyOpenColorIO as ocio
 import pytest
 from exr_files import write_exr
-from halation.app.resources.sandbox import ROOT
+from halation.resources.sandbox import ROOT
 
 CUBE = "LUT_3D_SIZE 2\n" + "".join(f"{r} {g} {b}\n" for b in (0, 1) for g in (0, 1) for r in (0, 1))
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
@@ -173,7 +173,7 @@ def test_processes_that_share_frames_are_inside_too(yard):
     (fence / "in.0002.exr").symlink_to(yard / "out" / "shot.exr")
     graph = written(yard, NAMED["an input"][1]("in.####.exr"))
     result = subprocess.run(
-        [sys.executable, "-m", "halation.app.cli", "render", graph, "-o", fence / "a.####.png", "--root", fence, "-j2"],
+        [sys.executable, "-m", "halation.cli", "render", graph, "-o", fence / "a.####.png", "--root", fence, "-j2"],
         capture_output=True,
         text=True,
         env={**os.environ, "LP_NUM_THREADS": "1"},

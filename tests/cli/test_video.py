@@ -16,7 +16,7 @@ import pytest
 av: Any = pytest.importorskip("av", reason="PyAV is not installed: pip install halation[video]")
 
 from exr_files import read  # noqa: E402
-from halation.app import media  # noqa: E402
+from halation import media  # noqa: E402
 from halation.nodes import Kind  # noqa: E402
 from videos import decoded, number_in, write_numbers  # noqa: E402
 
@@ -179,7 +179,7 @@ def test_an_interruption_leaves_nothing_half_written(movie, tmp_path):
     graph = movie(missing="nearest")
     out = tmp_path / "out.mp4"
     process = subprocess.Popen(
-        [sys.executable, "-m", "halation.app.cli", "render", graph, "-o", out, "--frames", "1-5000", "--progress=json"],
+        [sys.executable, "-m", "halation.cli", "render", graph, "-o", out, "--frames", "1-5000", "--progress=json"],
         stderr=subprocess.PIPE,
         text=True,
     )
@@ -198,7 +198,7 @@ def test_a_full_disk_leaves_nothing_half_written(movie, tmp_path, name):
     """A limit on the size of files fails in the same way, and any user may set it."""
     code = (
         "import resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000)); "
-        "from halation.app.cli.program import run; sys.exit(run(sys.argv[1:]))"
+        "from halation.cli.program import run; sys.exit(run(sys.argv[1:]))"
     )
     words = ["render", movie(missing="nearest"), "-o", tmp_path / name, "--frames", "1-60", "--size", "240x96"]
     result = subprocess.run([sys.executable, "-c", code, *map(str, words)], capture_output=True, text=True)
@@ -208,7 +208,7 @@ def test_a_full_disk_leaves_nothing_half_written(movie, tmp_path, name):
 
 
 def test_without_pyav_there_is_a_sentence(fails, movie, monkeypatch):
-    from halation.app.media.video import codecs, index
+    from halation.media.video import codecs, index
 
     graph = movie()
     monkeypatch.setattr(index, "library", lambda: None)

@@ -59,7 +59,7 @@ class Watching:
 
 @contextmanager
 def watching(graph, *words):
-    command = [sys.executable, "-m", "halation.app.cli", "watch", graph, *words, "--json"]
+    command = [sys.executable, "-m", "halation.cli", "watch", graph, *words, "--json"]
     with subprocess.Popen(
         [str(word) for word in command],
         stdout=subprocess.PIPE,

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-HALATION = [sys.executable, "-m", "halation.app.cli"]
+HALATION = [sys.executable, "-m", "halation.cli"]
 ENDLESS = """vec4 spin(vec4 image) {
     float x = image.r;
     while (true) {

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import json
 
-import halation.app as hal
+import halation as hal
 import numpy as np
 import pytest
-from halation.app import document
-from halation.app.errors import GraphError, UsageError
-from halation.app.graph import color_settings
-from halation.app.graph.paths import rebased
-from halation.app.media import displays, looks, views, working_of
-from halation.app.media.managed import color_digest, managed
-from halation.app.media.primaries import xyz_of
+from halation import document
+from halation.color.management import color_digest, managed
+from halation.color.primaries import working_of, xyz_of
+from halation.color.transforms import displays, looks, views
+from halation.errors import GraphError, UsageError
+from halation.graph import color_settings
+from halation.graph.paths import rebased
 from halation.nodes import ColorSettings
 from house_config import AP1_LUMINANCE, AP1_TO_REC709, HOUSE, studio, write_house
 

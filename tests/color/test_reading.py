@@ -5,15 +5,15 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-import halation.app as hal
+import halation as hal
 import numpy as np
 import OpenImageIO as oiio
 import pytest
 from exr_files import write_exr
-from halation.app import document
-from halation.app.errors import GraphError, InputError
-from halation.app.media import read
-from halation.app.media.spaces import layer_spaces
+from halation import document
+from halation.errors import GraphError, InputError
+from halation.media import read
+from halation.media.spaces import layer_spaces
 from halation.nodes import ColorSettings, Kind
 from house_config import AP1_TO_REC709, studio, through
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 
-import halation.app as hal
+import halation as hal
 import numpy as np
 import pytest
-from halation.app import document
-from halation.app.media import read, write
-from halation.app.media.encoding import Encoding
+from halation import document
+from halation.color.encoding import Encoding
+from halation.media import read, write
 from halation.nodes import ColorSettings, Kind
 from house_config import AP1_LUMINANCE, AP1_TO_REC709, studio, through
 

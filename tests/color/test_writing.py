@@ -6,11 +6,13 @@ import numpy as np
 import OpenImageIO as oiio
 import PyOpenColorIO as ocio
 import pytest
-from halation.app.errors import GraphError, UsageError
-from halation.app.media import gpu_view, read, to_display, write
-from halation.app.media.encoding import Encoding
-from halation.app.renderer import Display, Look, open_device
+from halation.color.encoding import Encoding
+from halation.color.gpu_programs import gpu_view
+from halation.color.transforms import to_display
+from halation.errors import GraphError, UsageError
+from halation.media import read, write
 from halation.nodes import ColorSettings, Kind
+from halation.renderer import Display, Look, open_device
 from house_config import AP1_TO_REC709, HOUSE, studio, through, write_house
 
 ACESCG = ColorSettings("", "ACEScg")

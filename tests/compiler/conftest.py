@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.compiler import Picture, Plan, Request, compile_graph
-from halation.app.graph import Graph
+from halation.compiler import Plan, Request, compile_graph
+from halation.graph import Graph
+from halation.resources.picture import Picture
 from headers import Headers
 
 SIZE = (37, 23)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.app.compiler.areas import Around, Region, inside
+from halation.compiler.areas import Around, Region, inside
 
 PADS = {"clamp": "edge", "wrap": "wrap", "reflect": "symmetric", "mirror": "reflect"}
 

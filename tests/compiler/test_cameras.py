@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.compiler import Picture, Request
-from halation.app.compiler.library import Library, parse
-from halation.app.compiler.lowering.lower import lower
-from halation.app.errors import GraphError
-from halation.app.graph import Graph, Group, Input, Output, Port
+from halation.compiler import Request
+from halation.compiler.library import Library, parse
+from halation.compiler.lowering.lower import lower
+from halation.errors import GraphError
+from halation.graph import Graph, Group, Input, Output, Port
 from halation.nodes import Camera, Draw, Drawn, Field, Filter, Image, Kind, Viewpoint, look_at
 from halation.nodes.input.camera import Camera as CameraNode
+from halation.resources.picture import Picture
 from headers import Headers
 
 SEEN: list[Camera | None] = []

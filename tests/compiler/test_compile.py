@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 
 import pytest
-from halation.app.compiler import dot, explain
-from halation.app.errors import GraphError
-from halation.app.graph import Control, Graph, Group, Input, Output, Port, Settings
+from halation.compiler import dot, explain
+from halation.errors import GraphError
+from halation.graph import Control, Graph, Group, Input, Output, Port, Settings
 from halation.nodes import Kind, catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure

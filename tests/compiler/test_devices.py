@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import inf
 
 import pytest
-from halation.app.compiler.devices import Measured, choose, is_software
-from halation.app.errors import DeviceError
+from halation.compiler.devices import Measured, choose, is_software
+from halation.errors import DeviceError
 
 LLVMPIPE = "llvmpipe (LLVM 15.0.6, 256 bits)"
 CARDS = (

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.compiler import Picture, Probed, Request, compile_graph, examine
-from halation.app.errors import HalationError, InputError
-from halation.app.graph import Graph
-from halation.app.media.pictures import Pictures
+from halation.compiler import Request, compile_graph, examine
+from halation.errors import HalationError, InputError
+from halation.graph import Graph
+from halation.inputs.provider import Pictures
+from halation.resources.picture import Picture
+from halation.resources.provider import Probed
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_graphs import SIZE, random_graph

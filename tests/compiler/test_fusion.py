@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from halation.app.compiler import Plan
-from halation.app.graph import Graph, Input, Output, Port
-from halation.app.written import Code, node_type
+from halation.compiler import Plan
+from halation.custom_nodes import Code, node_type
+from halation.graph import Graph, Input, Output, Port
 from halation.nodes import catalogue
 
 NODES = catalogue()

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.errors import GraphError, UsageError
-from halation.app.graph import Control, Graph, Group, Input, Output, Port, Settings, Unknown
+from halation.errors import GraphError, UsageError
+from halation.graph import Control, Graph, Group, Input, Output, Port, Settings, Unknown
 from halation.nodes import Kind, catalogue
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.input.checker import Checker
@@ -193,7 +193,7 @@ def test_a_default_that_does_not_fit_is_named(plan, default):
 def plan_without_bindings(made: Graph, inputs):
     from dataclasses import replace
 
-    from halation.app.compiler import Request, compile_graph
+    from halation.compiler import Request, compile_graph
 
     return compile_graph(replace(made, inputs=inputs, settings=SETTINGS), Request(), Headers((8, 6)))
 
@@ -219,9 +219,9 @@ def test_a_pass_keeps_within_the_uniforms_that_every_device_has(plan):
 
 
 def test_too_many_or_an_even_number_of_weights_is_an_error(plan):
-    from halation.app.compiler import Library, installed
-    from halation.app.compiler.library import parse
-    from halation.app.errors import ShaderError
+    from halation.compiler import Library, installed
+    from halation.compiler.library import parse
+    from halation.errors import ShaderError
     from halation.nodes import Draw, Drawn, Filter, Image
 
     def weighted(count: int) -> Graph:
@@ -246,8 +246,8 @@ def test_too_many_or_an_even_number_of_weights_is_an_error(plan):
 def test_more_outputs_than_the_device_writes_at_once_is_an_error(plan, limits):
     from dataclasses import replace
 
-    from halation.app.compiler import NULL
-    from halation.app.errors import DeviceError
+    from halation.compiler import NULL
+    from halation.errors import DeviceError
     from msgspec import structs
 
     with pytest.raises(DeviceError, match=r"node 'c': none writes 1 pictures at once, not 2"):

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from halation.app.cli.options import Lazy
-from halation.app.compiler.isf import Exported, export_isf
-from halation.app.compiler.isf.affine import length_text
-from halation.app.graph import Control, Graph, Input, Output, Port, Settings
-from halation.app.renderer import Renderer, Wanted
-from halation.app.written import Written
+from halation.cli.options import Lazy
+from halation.compiler.isf import Exported, export_isf
+from halation.compiler.isf.affine import length_text
+from halation.custom_nodes import Written
+from halation.graph import Control, Graph, Input, Output, Port, Settings
 from halation.nodes import Kind, Node, catalogue
+from halation.renderer import Renderer, Wanted
 from hypothesis import given
 from hypothesis import strategies as some
 from isf_files import Array, alone, opaque, shader

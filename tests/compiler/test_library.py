@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.compiler import Library, installed
-from halation.app.compiler.library import parse
-from halation.app.errors import ShaderError
-from halation.app.graph import Graph, Input, Output, Port
+from halation.compiler import Library, installed
+from halation.compiler.library import parse
+from halation.errors import ShaderError
+from halation.graph import Graph, Input, Output, Port
 from halation.nodes.color.exposure import Exposure
 
 GOOD = "vec4 exposure(vec4 image, float stops) { return image * exp2(stops); }\n"

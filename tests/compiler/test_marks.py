@@ -5,19 +5,21 @@ from __future__ import annotations
 from random import Random
 
 from edited_graphs import edited
-from halation.app.compiler import NULL, Library, Picture, Request, installed, parse
-from halation.app.compiler.fusion.fuse import fuse
-from halation.app.compiler.fusion.rewrites import rewritten
-from halation.app.compiler.ir import Foreign, Raster
-from halation.app.compiler.lowering.lower import lower
-from halation.app.compiler.scheduling.keys import Marks
-from halation.app.compiler.scheduling.schedule import formats
-from halation.app.compiler.shading.emit import emit
-from halation.app.errors import HalationError
-from halation.app.graph import Graph, Input, Output, Port
+from halation.compiler import NULL, Library, Request, installed
+from halation.compiler.codegen.emit import emit
+from halation.compiler.fusion.fuse import fuse
+from halation.compiler.fusion.rewrites import rewritten
+from halation.compiler.ir import Foreign, Raster
+from halation.compiler.lowering.lower import lower
+from halation.compiler.scheduling.keys import Marks
+from halation.compiler.scheduling.schedule import formats
+from halation.errors import HalationError
+from halation.glsl import parse
+from halation.graph import Graph, Input, Output, Port
 from halation.nodes import Kind
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.vignette import Vignette
+from halation.resources.picture import Picture
 from headers import Headers
 from hypothesis import given, settings
 from hypothesis import strategies as st

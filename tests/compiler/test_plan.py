@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 import pytest
-from halation.app.compiler import NULL, Plan
+from halation.compiler import NULL, Plan
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_graphs import random_graph

@@ -10,21 +10,23 @@ from random import Random
 import numpy as np
 import pytest
 from edited_graphs import edited, some_graph
-from halation.app.compiler import NULL, Picture, Planner, Probed, Region, Request, compile_graph
-from halation.app.compiler import planner as planning
-from halation.app.compiler.fusion.fuse import fuse
-from halation.app.compiler.fusion.rewrites import rewritten
-from halation.app.compiler.lowering.lower import lower
-from halation.app.compiler.planner import KEPT, graph_library
-from halation.app.compiler.scheduling.numbers import without
-from halation.app.errors import GraphError, HalationError
-from halation.app.graph import Control, Expression, Graph, Group, Input, Key, Keys, Output, Port, signature
-from halation.app.media.pictures import Pictures
+from halation.compiler import NULL, Planner, Region, Request, compile_graph
+from halation.compiler import planner as planning
+from halation.compiler.fusion.fuse import fuse
+from halation.compiler.fusion.rewrites import rewritten
+from halation.compiler.lowering.lower import lower
+from halation.compiler.planner import KEPT, graph_library
+from halation.compiler.scheduling.numbers import without
+from halation.errors import GraphError, HalationError
+from halation.graph import Control, Expression, Graph, Group, Input, Key, Keys, Output, Port, signature
+from halation.inputs.provider import Pictures
 from halation.nodes import Kind
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.saturation import Saturation
 from halation.nodes.merge.mix_images import MixImages
+from halation.resources.picture import Picture
+from halation.resources.provider import Probed
 from headers import Headers
 from hypothesis import given, settings
 from hypothesis import strategies as st

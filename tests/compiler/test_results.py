@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.compiler import Upstream
-from halation.app.errors import GraphError, InputError
-from halation.app.graph import Graph, Group, Input, Output, Port, Settings, Unknown
+from halation.compiler import Upstream
+from halation.errors import GraphError, InputError
+from halation.graph import Graph, Group, Input, Output, Port, Settings, Unknown
 from halation.nodes import Kind, catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
@@ -163,7 +163,7 @@ def test_an_error_says_which_node_is_at_fault(plan, made, node):
 
 
 def test_a_picture_that_cannot_be_read_is_the_fault_of_its_input():
-    from halation.app.compiler import Request, compile_graph
+    from halation.compiler import Request, compile_graph
 
     class Nowhere(Headers):
         def probe(self, picture):

@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from halation.app.compiler import Plan, Target, installed, parse
-from halation.app.errors import ShaderError
-from halation.app.graph import Graph, Input, Output, Port
+from halation.compiler import Plan, Target, installed
+from halation.errors import ShaderError
+from halation.glsl import parse
+from halation.graph import Graph, Input, Output, Port
 from halation.nodes import catalogue
 from random_graphs import random_graph
 

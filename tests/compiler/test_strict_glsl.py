@@ -10,10 +10,10 @@ import subprocess
 from collections.abc import Iterator
 
 import pytest
-from halation.app import document
-from halation.app.cli.specimen import drawn, planned
-from halation.app.compiler import NULL, Plan, Request, Target, compile_graph
-from halation.app.media.pictures import Pictures
+from halation import document
+from halation.cli.specimen import drawn, planned
+from halation.compiler import NULL, Plan, Request, Target, compile_graph
+from halation.inputs.provider import Pictures
 from halation.nodes import catalogue
 from halation.presets import paths
 

@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from halation.app import document
-from halation.app.errors import DocumentError
-from halation.app.graph import Graph, Unknown, problems
-from halation.app.written import Written
+from halation import document
+from halation.custom_nodes import Written
+from halation.errors import DocumentError
+from halation.graph import Graph, Unknown, problems
 from hypothesis import given
 from hypothesis import strategies as some
 

@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 from edited_graphs import edited, read, some_graph
-from halation.app.document import dumps
-from halation.app.document.versions import ABSENT, applied, difference, facts, told
-from halation.app.document.versions.parts import text_of
-from halation.app.graph import Expression, Graph, Group, Key, Keys, Output, Port, Settings, Unknown
+from halation.document import dumps
+from halation.document.diff_merge import ABSENT, applied, difference, facts, told
+from halation.document.diff_merge.parts import text_of
+from halation.graph import Expression, Graph, Group, Key, Keys, Output, Port, Settings, Unknown
 from halation.nodes import catalogue
 from hypothesis import given, settings
 from hypothesis import strategies as st

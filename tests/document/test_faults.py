@@ -9,9 +9,9 @@ from pathlib import Path
 from random import Random
 
 import pytest
-from halation.app.document import dumps, load, loads
-from halation.app.errors import DocumentError, GraphError
-from halation.app.graph import Graph
+from halation.document import dumps, load, loads
+from halation.errors import DocumentError, GraphError
+from halation.graph import Graph
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from toy_nodes import TOYS, random_graph, small

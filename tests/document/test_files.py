@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from halation.app.document import dumps, limits, load, loads, save
-from halation.app.errors import DocumentError, OutputError
-from halation.app.graph import Graph, Group
+from halation.document import dumps, limits, load, loads, save
+from halation.errors import DocumentError, OutputError
+from halation.graph import Graph, Group
 from toy_nodes import TOYS, Gain, small
 
 
@@ -63,7 +63,7 @@ class TestSave:
         path = tmp_path / "x.json"
         path.write_text("old")
         code = (
-            "import os, sys; from halation.app.document import save; from halation.app.graph import Graph\n"
+            "import os, sys; from halation.document import save; from halation.graph import Graph\n"
             "os.fsync = lambda handle: os._exit(9)\nsave(Graph(), sys.argv[1])"
         )
         assert subprocess.run([sys.executable, "-c", code, str(path)]).returncode == 9

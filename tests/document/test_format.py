@@ -8,10 +8,10 @@ from random import Random
 from typing import Any
 
 import pytest
-from halation.app.document import FORMAT, dumps, loads
-from halation.app.document.canonical import WIDTH, pretty
-from halation.app.errors import GraphError
-from halation.app.graph import Control, Graph, Group, Input, Output, Port, Settings, Unknown, problems
+from halation.document import FORMAT, dumps, loads
+from halation.document.canonical import WIDTH, pretty
+from halation.errors import GraphError
+from halation.graph import Control, Graph, Group, Input, Output, Port, Settings, Unknown, problems
 from halation.nodes import Kind
 from hypothesis import given, settings
 from hypothesis import strategies as st

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from halation.app import document
-from halation.app.graph import Group, Port, Settings, Unknown
+from halation import document
+from halation.graph import Group, Port, Settings, Unknown
 from halation.nodes import Kind
 
 FROZEN = sorted((Path(__file__).parent / "frozen").glob("*.json"))

@@ -7,9 +7,8 @@ import random
 from pathlib import Path
 
 import pytest
-from halation import presets
-from halation.app import document
-from halation.app.errors import DocumentError
+from halation import document, presets
+from halation.errors import DocumentError
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

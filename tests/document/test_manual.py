@@ -7,9 +7,9 @@ from dataclasses import fields
 from pathlib import Path
 
 import msgspec
-from halation.app import document
-from halation.app.document import records
-from halation.app.graph import Settings, problems
+from halation import document
+from halation.document import records
+from halation.graph import Settings, problems
 
 PAGE = (Path(__file__).parents[2] / "docs" / "format.md").read_text(encoding="utf-8")
 

@@ -9,13 +9,13 @@ from typing import Any
 
 import pytest
 from edited_graphs import edited, read, some_graph
-from halation.app.document import dumps
-from halation.app.document.versions import At, Merged, Side, conflicts_of, difference, merged, resolved
-from halation.app.document.versions.aligning import align_three
-from halation.app.document.versions.lines import merged_lines
-from halation.app.document.versions.parts import at_part, is_tree, parts_of, same
-from halation.app.errors import UsageError
-from halation.app.graph import Graph, Port, problems, signature
+from halation.document import dumps
+from halation.document.diff_merge import At, Merged, Side, conflicts_of, difference, merged, resolved
+from halation.document.diff_merge.aligning import align_three
+from halation.document.diff_merge.lines import merged_lines
+from halation.document.diff_merge.parts import at_part, is_tree, parts_of, same
+from halation.errors import UsageError
+from halation.graph import Graph, Port, problems, signature
 from halation.nodes import catalogue
 from hypothesis import given, settings
 from hypothesis import strategies as st

@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 
 import pytest
-from halation.app.document import loads
-from halation.app.document.positions import Positions
-from halation.app.document.syntax import member
-from halation.app.errors import DocumentError
+from halation.document import loads
+from halation.document.positions import Positions
+from halation.document.syntax import member
+from halation.errors import DocumentError
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

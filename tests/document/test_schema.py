@@ -8,10 +8,10 @@ from pathlib import Path
 from random import Random
 
 import pytest
-from halation.app import document
-from halation.app.document.schema import schema
-from halation.app.errors import DocumentError
-from halation.app.graph import Control, Expression, Graph, Group, Key, Keys, Port, problems
+from halation import document
+from halation.document.schema import schema
+from halation.errors import DocumentError
+from halation.graph import Control, Expression, Graph, Group, Key, Keys, Port, problems
 from halation.nodes import catalogue
 from hypothesis import given, settings
 from hypothesis import strategies as st

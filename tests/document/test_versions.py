@@ -6,9 +6,9 @@ import json
 from typing import Annotated, Any
 
 import pytest
-from halation.app.document import FORMAT, MIGRATIONS, dumps, loads
-from halation.app.errors import DocumentError
-from halation.app.graph import Group
+from halation.document import FORMAT, MIGRATIONS, dumps, loads
+from halation.errors import DocumentError
+from halation.graph import Group
 from halation.nodes import Image, Pointwise, Slider
 from toy_nodes import TOYS, Gain
 

@@ -6,8 +6,8 @@ import os
 from collections.abc import Iterator
 
 import pytest
-from halation.app.editor.preview import Preview
-from halation.app.renderer import Display, Renderer, open_device
+from halation.authoring.preview import Preview
+from halation.renderer import Display, Renderer, open_device
 
 
 @pytest.fixture

@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from exr_files import write_exr
-from halation.app.compiler import Library, installed
-from halation.app.compiler.library import parse
-from halation.app.graph import Graph, Group, Input, Output, Port, Settings
-from halation.app.renderer import Wanted
+from halation.compiler import Library, installed
+from halation.compiler.library import parse
+from halation.graph import Graph, Group, Input, Output, Port, Settings
 from halation.nodes import Kind, catalogue
 from halation.nodes.color.exposure import Exposure
+from halation.renderer import Wanted
 from previews import OUT, PICTURE, chain, passes, pixels, rendered, settle, want
 
 NODES = catalogue()
@@ -258,7 +258,7 @@ def test_an_input_without_a_picture(preview):
 
 
 def test_a_file_that_breaks_while_it_is_read(preview, engine):
-    from halation.app.errors import InputError
+    from halation.errors import InputError
 
     def broken(_):
         raise InputError("a.exr: it ends too soon")

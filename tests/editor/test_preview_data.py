@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from halation.app.editor.preview import data
+from halation.authoring.preview import data
 
 
 def test_ranges_ignore_stray_extremes() -> None:

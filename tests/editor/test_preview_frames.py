@@ -6,10 +6,10 @@ import time
 
 import numpy as np
 import pytest
-from halation.app.graph import Expression, Graph, Keys, Port
-from halation.app.renderer import Reel, Wanted
+from halation.graph import Expression, Graph, Keys, Port
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.time.light_trails import LightTrails
+from halation.renderer import Reel, Wanted
 from previews import pixels, settle
 from sequences import noise_graph
 

@@ -7,14 +7,14 @@ import time
 import numpy as np
 import pytest
 from conftest import graph_of
-from halation.app.compiler import Region
-from halation.app.editor.preview import Glimpse, Preview
-from halation.app.editor.preview.glimpses import GRID, Part
-from halation.app.graph import Graph, Port
-from halation.app.renderer import Renderer, Wanted
+from halation.authoring.preview import Glimpse, Preview
+from halation.authoring.preview.glimpses import GRID, Part
+from halation.compiler import Region
+from halation.graph import Graph, Port
 from halation.nodes import catalogue
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.time.light_trails import LightTrails
+from halation.renderer import Renderer, Wanted
 from previews import IMAGE, chain, pixels, settle, want
 
 WIDTH, HEIGHT = 1001, 701

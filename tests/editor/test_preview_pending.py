@@ -7,11 +7,11 @@ import time
 import numpy as np
 import pytest
 from exr_files import write_exr
-from halation.app.editor.services.renders import Pending
-from halation.app.graph import Graph, Port
-from halation.app.media.renders import find_render
+from halation.authoring.services.renders import Pending
+from halation.graph import Graph, Port
 from halation.nodes.input.constant import Constant
 from halation.nodes.input.read_render import ReadRender
+from halation.render_layers.render import find_render
 
 
 @pytest.fixture

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 from exr_files import write_exr
-from halation.app.editor.preview import Preview
-from halation.app.errors import GraphError
-from halation.app.graph import Graph, Group, Output, Port, Settings
+from halation.authoring.preview import Preview
+from halation.errors import GraphError
+from halation.graph import Graph, Group, Output, Port, Settings
 from halation.nodes import Kind, catalogue
 from previews import IMAGE, PICTURE, chain, passes, pixels, rendered, settle, want
 

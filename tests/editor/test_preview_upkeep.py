@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from halation.app.graph import Graph, Input, Port
+from halation.graph import Graph, Input, Port
 from halation.nodes import Kind
 from halation.nodes.color.exposure import Exposure
 from previews import PICTURE, chain, passes, rendered, settle, want

@@ -6,9 +6,9 @@ import re
 from dataclasses import replace
 
 import pytest
-from halation.app import document
-from halation.app.errors import DocumentError, GraphError
-from halation.app.graph import (
+from halation import document
+from halation.errors import DocumentError, GraphError
+from halation.graph import (
     Control,
     Expression,
     Graph,

@@ -6,9 +6,9 @@ import re
 from itertools import product
 
 import pytest
-from halation.app.errors import GraphError
-from halation.app.graph import Port, conversion, did_you_mean
-from halation.app.graph.conversion import make_socket
+from halation.errors import GraphError
+from halation.graph import Port, conversion, did_you_mean
+from halation.graph.conversion import make_socket
 from halation.nodes import Kind, Socket, catalogue
 from toy_nodes import Gain
 

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from random import Random
 
 import pytest
-from halation.app.errors import GraphError
-from halation.app.graph import Control, Graph, Group, Input, Output, Port, Unknown, conversion, problems, signature
+from halation.errors import GraphError
+from halation.graph import Control, Graph, Group, Input, Output, Port, Unknown, conversion, problems, signature
 from halation.nodes import Kind
 from hypothesis import given, settings
 from hypothesis import strategies as st

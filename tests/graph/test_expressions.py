@@ -12,12 +12,12 @@ from random import Random
 
 import numpy as np
 import pytest
-from halation.app.errors import GraphError
-from halation.app.graph.expressions import Expression, ExpressionError
-from halation.app.graph.expressions.functions import FUNCTIONS
-from halation.app.graph.expressions.noise import mixed
-from halation.app.graph.expressions.parser import MAX_DEPTH, MAX_LENGTH
-from halation.app.graph.expressions.tokens import written
+from halation.errors import GraphError
+from halation.graph.expressions import Expression, ExpressionError
+from halation.graph.expressions.functions import FUNCTIONS
+from halation.graph.expressions.noise import mixed
+from halation.graph.expressions.parser import MAX_DEPTH, MAX_LENGTH
+from halation.graph.expressions.tokens import written
 
 VALUES = {
     "glow": 2.0,

@@ -6,8 +6,8 @@ import os
 from pathlib import Path
 
 import pytest
-from halation.app.errors import UsageError
-from halation.app.resources.sandbox import ROOT, fenced, outside
+from halation.errors import UsageError
+from halation.resources.sandbox import ROOT, fenced, outside
 from hypothesis import given
 from hypothesis import strategies as st
 

@@ -8,9 +8,9 @@ from itertools import chain, combinations, pairwise
 from types import SimpleNamespace
 
 import pytest
-from halation.app.errors import UsageError
-from halation.app.graph import frames as module
-from halation.app.graph.frames import MOST_FRAMES, Pattern, check_numbered, format_frames, numbered, parse_frames
+from halation.errors import UsageError
+from halation.graph import frames as module
+from halation.graph.frames import MOST_FRAMES, Pattern, check_numbered, format_frames, numbered, parse_frames
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

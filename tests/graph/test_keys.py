@@ -8,8 +8,8 @@ from random import Random
 
 import numpy as np
 import pytest
-from halation.app.errors import GraphError
-from halation.app.graph.keys import Interpolation, Key, Keys, Outside, rounded
+from halation.errors import GraphError
+from halation.graph.keys import Interpolation, Key, Keys, Outside, rounded
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator

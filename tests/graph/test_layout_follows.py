@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from halation.app.graph import Graph, Port
+from halation.graph import Graph, Port
 from toy_nodes import Soften, small
 
 UI = {

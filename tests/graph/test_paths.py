@@ -6,9 +6,9 @@ import json
 from pathlib import Path
 
 import pytest
-from halation.app import document
-from halation.app.compiler.lowering.named import path_texts
-from halation.app.graph.paths import inlined, rebased, repointed
+from halation import document
+from halation.compiler.lowering.named import path_texts
+from halation.graph.paths import inlined, rebased, repointed
 
 INNER = {
     "halation": 1,

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from gui_driver import Ui, drive
-from halation.app.editor.window.window import Window
+from halation.editor.window.window import Window
 
 Gui = Callable[..., Window]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from gui_canvas import chain, empty, show
-from halation.app.graph import Port
+from halation.graph import Port
 
 
 def test_adds_a_node_by_searching(gui) -> None:

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from gui_canvas import chain, empty, row, show
-from halation.app.document import dumps, save
-from halation.app.graph import Port
+from halation.document import dumps, save
+from halation.graph import Port
 
 
 @dataclass

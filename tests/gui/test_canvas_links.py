@@ -5,8 +5,8 @@ from __future__ import annotations
 import dataclasses
 
 from gui_canvas import chain, empty, show
-from halation.app.editor.edits.elements import with_places
-from halation.app.graph import Group, Port
+from halation.authoring.edits.elements import with_places
+from halation.graph import Group, Port
 from halation.nodes import catalogue
 
 

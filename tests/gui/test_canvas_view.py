@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from gui_canvas import chain, empty, show
 from halation import presets
-from halation.app.editor.canvas.brush import READABLE
-from halation.app.graph import Port
+from halation.editor.canvas.brush import READABLE
+from halation.graph import Port
 
 
 def test_the_canvas_moves_on_while_something_is_dragged_to_its_border(gui) -> None:

@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from halation.app import document
-from halation.app.editor.keys import chord
-from halation.app.editor.panels.findings import findings
-from halation.app.graph import Graph, Output, Port, Settings, Unknown
-from halation.app.written import Written
+from halation import document
+from halation.custom_nodes import Written
+from halation.editor.keys import chord
+from halation.editor.panels.findings import findings
+from halation.graph import Graph, Output, Port, Settings, Unknown
 from halation.nodes import Kind, catalogue
 
 SIZE = (1100, 760)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from halation.app.media import read
+from halation.media import read
 from halation.nodes import ColorSettings, Kind
 from house_config import HOUSE, write_house
 from OpenImageIO import ImageOutput, ImageSpec

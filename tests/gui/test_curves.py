@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.graph import Expression, Graph, Key, Keys, Port
+from halation.graph import Expression, Graph, Key, Keys, Port
 from toy_nodes import Gain, Soften
 
 GAIN, TINT, SIGMA = Port("one", "gain"), Port("one", "tint"), Port("two", "sigma")

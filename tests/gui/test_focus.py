@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import halation.app as hal
+import halation as hal
 import pytest
-from halation.app import document
-from halation.app.editor.viewer.ground import depth_at
-from halation.app.graph import Graph, Output, Port, Settings
+from halation import document
+from halation.editor.viewer.ground import depth_at
+from halation.graph import Graph, Output, Port, Settings
 from halation.nodes import catalogue
 
 WIDTH, HEIGHT = 192, 108

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from halation.app import document
-from halation.app.graph import Graph, Group, Output, Port, Settings
-from halation.app.media import write
+from halation import document
+from halation.graph import Graph, Group, Output, Port, Settings
+from halation.media import write
 from halation.nodes import Kind, catalogue
 from imgui_bundle import imgui
 from toy_nodes import Tint

@@ -15,10 +15,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from halation import presets
-from halation.app import document
-from halation.app.editor.services.recovery import Recovery
-from halation.app.graph import Port
+from halation import document, presets
+from halation.authoring.services.recovery import Recovery
+from halation.graph import Port
 
 ROUNDS = int(os.environ.get("HALATION_KILLS", "10"))
 LOOK = next(path for path in presets.paths() if path.stem == "agx_look")
@@ -26,8 +25,8 @@ STOPS, AUTOSAVE = Port("tone", "exposure"), 0.5
 
 EDITING = """
 import sys, time
-from halation.app.editor.window import heartbeat
-from halation.app.graph import Port
+from halation.editor.window import heartbeat
+from halation.graph import Port
 
 beat, count = heartbeat.Heartbeat.beat, 0
 
@@ -45,7 +44,7 @@ def edited(self, editor):
     beat(self, editor)
 
 heartbeat.Heartbeat.beat = edited
-from halation.app.cli.program import run
+from halation.cli.program import run
 sys.exit(run(["edit", sys.argv[1]]))
 """
 

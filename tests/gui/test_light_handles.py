@@ -6,11 +6,11 @@ import math
 from pathlib import Path
 
 import pytest
-from halation.app import document
-from halation.app.editor.viewer.dome import flat
-from halation.app.editor.viewer.ground import depth_at
-from halation.app.editor.viewer.perspective import project
-from halation.app.graph import Graph, Output, Port, Settings
+from halation import document
+from halation.editor.viewer.dome import flat
+from halation.editor.viewer.ground import depth_at
+from halation.editor.viewer.perspective import project
+from halation.graph import Graph, Output, Port, Settings
 from halation.nodes import Camera, Light, LightKind, catalogue, lights_of, numbers_of
 
 LIGHTS = (

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from halation.app import document
-from halation.app.editor.viewer.ground import SCENE, depth_at
-from halation.app.editor.viewer.orbit import Orbit
-from halation.app.editor.viewer.perspective import project, unproject
-from halation.app.graph import Graph, Output, Port, Settings
+from halation import document
+from halation.editor.viewer.ground import SCENE, depth_at
+from halation.editor.viewer.orbit import Orbit
+from halation.editor.viewer.perspective import project, unproject
+from halation.graph import Graph, Output, Port, Settings
 from halation.nodes import catalogue
 
 WIDTH, HEIGHT = 192, 108
@@ -124,7 +124,7 @@ def test_the_wheel_goes_nearer_and_space_pans_the_picture(gui, path: Path) -> No
 
 
 def ui_key(name: str):
-    from halation.app.editor.keys import chord
+    from halation.editor.keys import chord
     from imgui_bundle import imgui
 
     return imgui.Key(chord(name))

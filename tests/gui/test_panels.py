@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from halation import presets
-from halation.app.graph import Port
+from halation.graph import Port
 
 PRESET = next(path for path in presets.paths() if path.stem == "soft_bloom")
 

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from halation.app.document import save
-from halation.app.editor.preview import rounds
-from halation.app.editor.window.status import _figures
-from halation.app.graph import Graph, Output, Port, Settings
+from halation.authoring.preview import rounds
+from halation.document import save
+from halation.editor.window.status import _figures
+from halation.graph import Graph, Output, Port, Settings
 from halation.nodes import catalogue
 
 SIZE = (800, 500)

@@ -10,9 +10,8 @@ import random
 import shutil
 
 import pytest
-from halation import presets
-from halation.app import document
-from halation.app.editor.keys import chord
+from halation import document, presets
+from halation.editor.keys import chord
 from imgui_bundle import ImVec2
 
 SIZE = (1400, 900)

@@ -19,9 +19,9 @@ import sys
 from pathlib import Path
 import numpy as np
 from gui_driver import drive
-from halation.app import document
-from halation.app.editor.panels.findings import findings
-from halation.app.graph import Graph, Output, Port, Settings, Unknown
+from halation import document
+from halation.editor.panels.findings import findings
+from halation.graph import Graph, Output, Port, Settings, Unknown
 from halation.nodes import Kind, Node, catalogue
 
 here = Path(sys.argv[1])

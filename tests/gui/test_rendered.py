@@ -7,12 +7,13 @@ from pathlib import Path
 
 import numpy as np
 from exr_files import read
-from halation.app import document, media
-from halation.app.editor.window.arriving import arrived
-from halation.app.graph import Port
-from halation.app.renderer import Renderer, Wanted
-from halation.app.renderer.jobs.job import Writing, run_job
+from halation import document
+from halation.color.transforms import to_display
+from halation.editor.window.arriving import arrived
+from halation.graph import Port
 from halation.presets import paths, sample
+from halation.renderer import Renderer, Wanted
+from halation.renderer.jobs.job import Writing, run_job
 
 BLOOM = next(path for path in paths() if path.stem == "soft_bloom")
 
@@ -55,7 +56,7 @@ def test_its_graph_is_opened_as_a_new_document(gui, tmp_path: Path) -> None:
         shown = ui.editor.preview.shown("A")
         size = shown.texture.size
         seen = ui.ask(lambda: ui.editor.probe.region(shown.texture, (0, 0, *size)))[..., :3]
-        expected = media.to_display(seen, "none")
+        expected = to_display(seen, "none")
         small = read(picture)[..., :3]
         assert abs(float(np.mean(expected) / 255.0) - float(small.mean())) < 0.02, "it is the picture again"
         ui.shot("opened.png")

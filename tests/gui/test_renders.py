@@ -8,8 +8,8 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from exr_files import write_exr
-from halation.app.editor.window.arriving import arrived
-from halation.app.graph import Port
+from halation.editor.window.arriving import arrived
+from halation.graph import Port
 from halation.presets import sample
 
 SAMPLE = Path(str(sample()))

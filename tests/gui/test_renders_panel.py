@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from exr_files import write_exr
 from halation import presets
-from halation.app.document import load, save
-from halation.app.graph import OUTPUTS, Expression, Port, Settings
-from halation.app.media import read
+from halation.document import load, save
+from halation.graph import OUTPUTS, Expression, Port, Settings
+from halation.media import read
 from halation.nodes import Kind
 
 PRESET = next(path for path in presets.paths() if path.stem == "soft_bloom")

@@ -6,11 +6,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from halation import presets
-from halation.app import document
-from halation.app.editor.dialogs import Question
-from halation.app.editor.panels.findings import findings
-from halation.app.graph import Port
+from halation import document, presets
+from halation.editor.dialogs import Question
+from halation.editor.panels.findings import findings
+from halation.graph import Port
 from imgui_bundle import imgui
 
 LOOK = next(path for path in presets.paths() if path.stem == "agx_look")

@@ -13,8 +13,8 @@ import OpenImageIO as oiio
 import pytest
 from gui_screens import SCREENS, made
 from halation import presets
-from halation.app.editor.theme.palette import PALETTES, RGB, Palette
-from halation.app.graph import Port
+from halation.editor.theme.palette import PALETTES, RGB, Palette
+from halation.graph import Port
 from imgui_bundle import imgui
 
 LOOKS = (

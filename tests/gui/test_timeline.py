@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
-from halation.app.editor.window.arriving import arrived
-from halation.app.graph import Expression, Graph, Output, Port, Settings
-from halation.app.renderer import Reel, Wanted
+from halation.editor.window.arriving import arrived
+from halation.graph import Expression, Graph, Output, Port, Settings
 from halation.nodes import catalogue
+from halation.renderer import Reel, Wanted
 
 NODES = catalogue()
 OUT = Port("outputs", "image")

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import halation.app as hal
+import halation as hal
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from halation import presets
-from halation.app import document
-from halation.app.editor.viewer.geometry import Sight
-from halation.app.graph import Graph, Output, Port, Settings
+from halation import document, presets
+from halation.editor.viewer.geometry import Sight
+from halation.graph import Graph, Output, Port, Settings
 from halation.nodes import Light, LightKind, catalogue, lights_of, numbers_of
 
 PRESET = next(path for path in presets.paths() if path.stem == "film_halation")
@@ -166,7 +165,7 @@ def test_at_full_size_pixels_are_shown_one_to_one(gui) -> None:
 
 
 def shown_plainly(picture: np.ndarray) -> np.ndarray:
-    from halation.app.media import to_display
+    from halation.color.transforms import to_display
 
     return to_display(picture, "none")[..., :3].astype(int)
 

@@ -9,8 +9,8 @@ import numpy as np
 import OpenImageIO as oiio
 from gui_driver import headless
 from halation import presets
-from halation.app.editor.window.opening import keep_layout, run
-from halation.app.editor.window.window import Window
+from halation.editor.window.opening import keep_layout, run
+from halation.editor.window.window import Window
 
 
 def visit(folder: Path, act: Callable[[Window], object]) -> None:

@@ -112,13 +112,13 @@ def test_the_source_archive_holds_what_a_build_needs(built: Built) -> None:
 def test_the_wheel_finds_its_nodes_shaders_and_presets(built: Built, tmp_path: Path) -> None:
     code = """
 from importlib.resources import files
-import halation.app, halation.nodes as nodes
+import halation, halation.nodes as nodes
 for node in nodes.catalogue().values():
     shader = files("halation.shaders") / node.category / f"{node.id}.glsl"
     print(node.id, len(shader.read_bytes()) if shader.is_file() else 0)
 for name in files("halation.presets").iterdir():
     print(name.name, name.is_file() and len(name.read_bytes()))
-print(halation.app.__file__)
+print(halation.__file__)
 """
     *lines, origin = built.run(code, tmp_path).splitlines()
     assert Path(origin).is_relative_to(built.target)
@@ -131,7 +131,7 @@ print(halation.app.__file__)
 
 
 def test_the_wheel_has_a_working_command(built: Built, tmp_path: Path) -> None:
-    assert PROJECT["project"]["scripts"] == {"halation": "halation.app.cli:main"}
-    code = "import sys; sys.argv = ['halation', 'nodes']; from halation.app.cli import main; sys.exit(main())"
+    assert PROJECT["project"]["scripts"] == {"halation": "halation.cli:main"}
+    code = "import sys; sys.argv = ['halation', 'nodes']; from halation.cli import main; sys.exit(main())"
     listing = built.run(code, tmp_path)
     assert all(path.stem in listing for path in (ROOT / "nodes").glob("[!_]*/[!_]*.py"))

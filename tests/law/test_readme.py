@@ -11,10 +11,10 @@ from pathlib import Path
 from types import ModuleType
 from typing import get_args
 
-from halation.app import document
-from halation.app.cli.outcome import EXIT_CODES
-from halation.app.graph import Interpolation, problems
-from halation.app.graph.expressions.functions import FUNCTIONS
+from halation import document
+from halation.cli.outcome import EXIT_CODES
+from halation.graph import Interpolation, problems
+from halation.graph.expressions.functions import FUNCTIONS
 from halation.nodes import Pointwise, Temporal, catalogue
 
 ROOT = Path(__file__).parents[2]
@@ -59,7 +59,7 @@ def test_files_and_folders_it_names_exist() -> None:
 def test_its_commands_and_exit_codes_exist() -> None:
     for command in sorted(set(re.findall(r"^halation ([\w-]+)", README, re.M))):
         result = subprocess.run(
-            [sys.executable, "-c", "from halation.app.cli import main; main()", command, "--help"],
+            [sys.executable, "-c", "from halation.cli import main; main()", command, "--help"],
             capture_output=True,
             text=True,
         )
@@ -69,13 +69,13 @@ def test_its_commands_and_exit_codes_exist() -> None:
 
 
 def test_its_python_names_exist() -> None:
-    import halation.app
-    import halation.app.cli
-    import halation.app.renderer
+    import halation
+    import halation.cli
+    import halation.renderer
 
     # The parts of app are attributes of it as soon as they are loaded, and must not shadow a function of its face.
     for name in re.findall(r"\bhal\.(\w+)\(", README):
-        assert callable(getattr(halation.app, name)), name
+        assert callable(getattr(halation, name)), name
 
 
 def test_the_page_on_time_knows_everything_there_is() -> None:

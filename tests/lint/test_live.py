@@ -5,8 +5,8 @@ from __future__ import annotations
 import dataclasses
 from random import Random
 
-from halation.app.graph import Port, Settings, problems, signature
-from halation.app.lint.live import again, remarks
+from halation.graph import Port, Settings, problems, signature
+from halation.lint.live import again, remarks
 from halation.nodes import catalogue
 from hypothesis import given, settings
 from hypothesis import strategies as st

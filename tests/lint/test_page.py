@@ -10,8 +10,8 @@ import os
 import re
 from pathlib import Path
 
-from halation.app import document
-from halation.app.lint.checking import RULES
+from halation import document
+from halation.lint.checking import RULES
 
 FILE = Path(__file__).parents[2] / "docs" / "checking.md"
 PAGE = FILE.read_text(encoding="utf-8")

@@ -6,9 +6,9 @@ import json
 from pathlib import Path
 from random import Random
 
-from halation.app.document import dumps
-from halation.app.lint.checking import RULES, Checker
-from halation.app.lint.sarif import sarif
+from halation.document import dumps
+from halation.lint.checking import RULES, Checker
+from halation.lint.sarif import sarif
 from halation.nodes import catalogue
 from hypothesis import given, settings
 from hypothesis import strategies as st

@@ -7,15 +7,17 @@ import dataclasses
 from pathlib import Path
 
 import pytest
-from halation.app.compiler import Picture, Probed, Request, compile_graph
-from halation.app.document import dumps, load, loads
-from halation.app.errors import HalationError
-from halation.app.graph import Expression, Graph, Group, Input, Output, Port
-from halation.app.graph import rules as graph_rules
-from halation.app.lint.checking import RULES, Checker
-from halation.app.lint.rules import CHECKS
-from halation.app.lint.sheet import Sheet
+from halation.compiler import Request, compile_graph
+from halation.document import dumps, load, loads
+from halation.errors import HalationError
+from halation.graph import Expression, Graph, Group, Input, Output, Port
+from halation.graph import rules as graph_rules
+from halation.lint.checking import RULES, Checker
+from halation.lint.rules import CHECKS
+from halation.lint.sheet import Sheet
 from halation.nodes import Kind
+from halation.resources.picture import Picture
+from halation.resources.provider import Probed
 from lint_graphs import BLOOM, DIM, DOUBLE, HALF, MOVE, NEAREST, NODES, SOFT, STILL, TONE, TURN, WRAPPED, chain
 
 ROOT = Path(__file__).parents[2]

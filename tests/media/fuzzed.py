@@ -32,10 +32,10 @@ def damaged(whole: bytes, number: int) -> bytes:
 
 
 def main(count: int, sources: list[Path]) -> int:
-    from halation.app.errors import InputError
-    from halation.app.media import info, read, read_metadata
-    from halation.app.media.survey import survey
+    from halation.errors import InputError
+    from halation.media import info, read, read_metadata
     from halation.nodes import Kind
+    from halation.render_layers.survey import survey
 
     refused = 0
     for source in sources:

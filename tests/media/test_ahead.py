@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from halation.app.compiler import Picture
-from halation.app.graph import Graph, Input, Output, Port
-from halation.app.media import read, write
-from halation.app.media.ahead import MOST, Ahead
-from halation.app.media.pictures import Pictures
+from halation.graph import Graph, Input, Output, Port
+from halation.inputs.prefetch import MOST, Ahead
+from halation.inputs.provider import Pictures
+from halation.media import read, write
 from halation.nodes import ColorSettings, Kind
+from halation.resources.picture import Picture
 
 WANTED = (Kind.IMAGE, 4, "", ColorSettings())
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from halation.app.media import Want, info, read
-from halation.app.media.bands import read_rows
+from halation.media import Want, info, read
+from halation.media.bands import read_rows
 from halation.nodes import Kind
 from oiio_pictures import stored
 

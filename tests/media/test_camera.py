@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from halation.app.errors import InputError
-from halation.app.media.camera import header_camera, residual_of, solve_camera
-from halation.app.media.read import Want, read_many
+from halation.errors import InputError
+from halation.media.read import Want, read_many
 from halation.nodes import Camera, Kind
 from halation.nodes._declare.camera import look_at
+from halation.render_layers.camera import header_camera, residual_of, solve_camera
 from raycast import seen
 
 ROOT = Path(__file__).parents[2]

@@ -11,9 +11,10 @@ import numpy as np
 import OpenImageIO as oiio
 import PyOpenColorIO as ocio
 import pytest
-from halation.app.errors import InputError, UsageError
-from halation.app.media import displays, gpu_view, read, to_display, views
-from halation.app.media.color import find_view
+from halation.color.gpu_programs import gpu_view
+from halation.color.transforms import displays, find_view, to_display, views
+from halation.errors import InputError, UsageError
+from halation.media import read
 from halation.nodes import Kind
 
 Make = Callable[..., Path]
@@ -185,7 +186,7 @@ def test_names_of_views() -> None:
 
 
 def test_opencolorio_is_loaded_when_needed() -> None:
-    code = "import sys, halation.app.media; print('PyOpenColorIO' in sys.modules)"
+    code = "import sys, halation.media; print('PyOpenColorIO' in sys.modules)"
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert result.stdout.strip() == "False"
 

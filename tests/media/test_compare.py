@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from halation.app.errors import UsageError
-from halation.app.media.compare import CODE, amplified, compare, flip, ssim
+from halation.errors import UsageError
+from halation.media.compare import CODE, amplified, compare, flip, ssim
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays

@@ -8,9 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from halation.app.errors import InputError
-from halation.app.media import content_hash, fingerprint, info, read, read_metadata
+from halation.errors import InputError
+from halation.media import info, read, read_metadata
 from halation.nodes import Kind
+from halation.resources.input_files import content_hash, fingerprint
 
 Make = Callable[..., Path]
 

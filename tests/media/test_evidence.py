@@ -6,13 +6,13 @@ import contextlib
 
 import numpy as np
 import pytest
-from halation.app.errors import InputError
-from halation.app.media import evidence
-from halation.app.media.camera import solve_camera
-from halation.app.media.conventions import Convention, DepthKind, Motion, Space, habit
-from halation.app.media.naming import Renderer, Role
+from halation.errors import InputError
 from halation.nodes import Camera
 from halation.nodes._declare.camera import look_at
+from halation.render_layers import evidence
+from halation.render_layers.camera import solve_camera
+from halation.render_layers.conventions import Convention, DepthKind, Motion, Space, habit
+from halation.render_layers.naming import Renderer, Role
 from raycast import Seen, seen
 
 WIDTH, HEIGHT = 160, 90

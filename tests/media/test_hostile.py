@@ -12,11 +12,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from halation.app import media
-from halation.app.errors import InputError, OutputError
-from halation.app.resources.sandbox import fenced
-from halation.app.media.survey import survey
+from halation import media
+from halation.errors import InputError, OutputError
 from halation.nodes import Kind
+from halation.render_layers.survey import survey
+from halation.resources.sandbox import fenced
 
 Make = Callable[..., Path]
 

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from halation.app.errors import InputError
-from halation.app.media import find_layer, info
-from halation.app.media.info import ImageInfo
-from halation.app.media.layers import Part, is_depth, layers_of
+from halation.errors import InputError
+from halation.media import find_layer, info
+from halation.media.info import ImageInfo
+from halation.media.layers import Part, is_depth, layers_of
 
 ROOT = Path(__file__).parents[2]
 NEON = ROOT / "presets/samples/neon.exr"

@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from exr_files import write_exr
-from halation.app.errors import InputError
-from halation.app.media.conventions import DepthKind
-from halation.app.media.mattes import id_map
-from halation.app.media.naming import Role
-from halation.app.media.overview import overview
-from halation.app.media.renders import find_render, is_render
-from halation.app.media.survey import survey
+from halation.errors import InputError
 from halation.presets import sample
+from halation.render_layers.conventions import DepthKind
+from halation.render_layers.mattes import id_map
+from halation.render_layers.naming import Role
+from halation.render_layers.overview import overview
+from halation.render_layers.render import find_render, is_render
+from halation.render_layers.survey import survey
 
 NEON = str(sample())
 ROLES = (Role.BEAUTY, Role.DEPTH, Role.NORMAL, Role.POSITION, Role.UV)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.app import media
-from halation.app.errors import InputError, UsageError
-from halation.app.graph import Graph, Input
-from halation.app.media.pictures import Pictures
+from halation import media
+from halation.errors import InputError, UsageError
+from halation.graph import Graph, Input
+from halation.inputs.provider import Pictures
 from halation.nodes import Kind
 
 GRAPH = Graph(

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from halation.app.media import Want, info, read, read_many
+from halation.media import Want, info, read, read_many
 from halation.nodes import Kind
 
 ROOT = Path(__file__).parents[2]

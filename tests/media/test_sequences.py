@@ -7,8 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from halation.app.errors import InputError
-from halation.app.media import find_sequence, frame_file, sequences, suggest_pattern
+from halation.errors import InputError
+from halation.media import find_sequence, frame_file, sequences, suggest_pattern
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

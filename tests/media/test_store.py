@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from halation.app.errors import OutputError
-from halation.app.media import read, write
-from halation.app.resources.atomic_write import store
+from halation.errors import OutputError
+from halation.media import read, write
 from halation.nodes import Kind
+from halation.resources.atomic_write import store
 
 NAMES = ["a.exr", "a.png", "a.jpg", "a.webp", "a.tif", "a.hdr"]
 PICTURE = {"image": np.random.default_rng(3).random((40, 50, 4), np.float32)}

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from halation.app.errors import InputError
-from halation.app.media.naming import Renderer, Role
-from halation.app.media.read import Want, read_many
-from halation.app.media.survey import Survey, survey
+from halation.errors import InputError
+from halation.media.read import Want, read_many
 from halation.nodes import Camera, Kind
 from halation.nodes._declare.camera import look_at
+from halation.render_layers.naming import Renderer, Role
+from halation.render_layers.survey import Survey, survey
 from raycast import Seen, seen
 
 ROOT = Path(__file__).parents[2]

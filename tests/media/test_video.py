@@ -12,10 +12,10 @@ import pytest
 
 av: Any = pytest.importorskip("av", reason="PyAV is not installed: pip install halation[video]")
 
-from halation.app import media  # noqa: E402
-from halation.app.errors import InputError  # noqa: E402
-from halation.app.media.video.index import surveyed  # noqa: E402
-from halation.app.media.video.reader import Reader, raw_frame  # noqa: E402
+from halation import media  # noqa: E402
+from halation.errors import InputError  # noqa: E402
+from halation.media.video.index import surveyed  # noqa: E402
+from halation.media.video.reader import Reader, raw_frame  # noqa: E402
 from halation.nodes import Kind  # noqa: E402
 from videos import bars, decoded, number_in, write_frames, write_numbers  # noqa: E402
 
@@ -187,7 +187,7 @@ def test_what_is_no_video_says_so(tmp_path: Path) -> None:
 
 
 def test_without_pyav_there_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from halation.app.media.video import index
+    from halation.media.video import index
 
     path = write_numbers(tmp_path / "a.mkv", "ffv1", "bgr0", 2)
     monkeypatch.setattr(index, "library", lambda: None)

@@ -13,9 +13,10 @@ from scipy.ndimage import map_coordinates
 
 av: Any = pytest.importorskip("av", reason="PyAV is not installed: pip install halation[video]")
 
-from halation.app import media  # noqa: E402
-from halation.app.media.video.signals import LUMA, from_rgb, linear, to_rgb  # noqa: E402
-from halation.app.media.video_file import exact_rate  # noqa: E402
+from halation import media  # noqa: E402
+from halation.color.encoding import Encoding  # noqa: E402
+from halation.media.video.signals import LUMA, from_rgb, linear, to_rgb  # noqa: E402
+from halation.media.video_file import exact_rate  # noqa: E402
 from halation.nodes import Kind  # noqa: E402
 from videos import write_frames  # noqa: E402
 
@@ -151,7 +152,7 @@ def test_colors_survive_every_codec(tmp_path: Path, name: str, codec: str, toler
     """Flat fields of color, so that nothing but matrix, range and curve is left to go wrong."""
     colors = np.array([[0.9, 0.1, 0.1], [0.1, 0.8, 0.2], [0.1, 0.2, 0.9], [0.5, 0.5, 0.5], [1.0, 1.0, 1.0], [0, 0, 0]])
     light = colors.repeat(16, 0)[None].repeat(32, 0).astype(np.float32)
-    video = media.VideoFile(tmp_path / name, (96, 32), 24.0, codec=codec, encoding=media.Encoding("none"))
+    video = media.VideoFile(tmp_path / name, (96, 32), 24.0, codec=codec, encoding=Encoding("none"))
     for _ in range(3):
         video.add({"image": light}, {"image": Kind.IMAGE})
     video.close()

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from halation.app.errors import UsageError
-from halation.app.media import Attribute, info, read, read_metadata, to_display, write
+from halation.color.transforms import to_display
+from halation.errors import UsageError
+from halation.media import Attribute, info, read, read_metadata, write
 from halation.nodes import Kind
 
 Make = Callable[..., Path]

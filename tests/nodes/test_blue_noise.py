@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import graph_of
-from halation.app.graph import Port
-from halation.app.renderer import Wanted
+from halation.graph import Port
 from halation.nodes.input.blue_noise import BlueNoise
+from halation.renderer import Wanted
 from hashes import pcg3d
 
 SIZE = 64

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import graph_of
-from halation.app.compiler import installed
-from halation.app.graph import Graph, Port
-from halation.app.renderer import Wanted
+from halation.compiler import installed
+from halation.graph import Graph, Port
 from halation.nodes import Filter, Kind, Node, Pointwise, Source, catalogue, look_at
+from halation.renderer import Wanted
 
 ROOT = Path(__file__).parents[2]
 NODES = list(catalogue().values())

@@ -10,8 +10,8 @@ from functools import cache
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from halation.app import media
-from halation.app.errors import GraphError
+from halation import media
+from halation.errors import GraphError
 from halation.nodes import Kind, float_bits, murmur3
 from halation.nodes.geometry.cryptomatte import Cryptomatte
 from halation.presets import sample

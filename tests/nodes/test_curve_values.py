@@ -6,9 +6,9 @@ from typing import Annotated
 
 import numpy as np
 import pytest
-from halation.app.document import dumps, loads
-from halation.app.graph import Graph, Port
-from halation.app.graph.values import coerced, value_fault
+from halation.document import dumps, loads
+from halation.graph import Graph, Port
+from halation.graph.values import coerced, value_fault
 from halation.nodes import Curve, Filter, Image, Points, Stops, curve_at, ramp_at
 from hypothesis import given
 from hypothesis import strategies as st

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import graph_of
-from halation.app.graph import Port
-from halation.app.renderer import Wanted
+from halation.graph import Port
 from halation.nodes.color.dither import Dither
+from halation.renderer import Wanted
 
 PATTERNS = Dither.values["pattern"].choices
 SIZE = 64

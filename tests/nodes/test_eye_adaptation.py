@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from halation.app.graph import Input, Port
+from halation.graph import Input, Port
 from halation.nodes import Kind
 from halation.nodes.time.eye_adaptation import EyeAdaptation
 from sequences import flat, played, shot_graph

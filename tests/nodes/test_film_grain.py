@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from conftest import graph_of
-from halation.app.graph import Port
-from halation.app.renderer import Wanted
+from halation.graph import Port
 from halation.nodes.stylize.film_grain import FilmGrain
+from halation.renderer import Wanted
 from hashes import normal3, pcg3d
 from scipy.interpolate import BSpline
 from scipy.stats import kstest

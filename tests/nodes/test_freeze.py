@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.app.renderer import Wanted
 from halation.nodes.time.freeze import Freeze
+from halation.renderer import Wanted
 from sequences import node_at, noise_at, noise_graph
 
 

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 import pytest
-from halation.app.graph import Graph, Input, Output, Port
-from halation.app.renderer import Wanted
+from halation.graph import Graph, Input, Output, Port
 from halation.nodes import Kind
 from halation.nodes.blur.gaussian_blur import GaussianBlur
+from halation.renderer import Wanted
 from scipy.ndimage import correlate1d, gaussian_filter
 
 LARGE = (7.0, 8.0, 11.3, 20.0, 50.0, 100.0)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from conftest import graph_of
-from halation.app.graph import Port
-from halation.app.renderer import Wanted
+from halation.graph import Port
 from halation.nodes.distort.heat_haze import HeatHaze
+from halation.renderer import Wanted
 from noises import gradient_noise, places
 from warps import looked_up, waves
 

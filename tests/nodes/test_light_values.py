@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.document import dumps, loads
-from halation.app.graph import Graph
-from halation.app.graph.values import coerced, value_fault
+from halation.document import dumps, loads
+from halation.graph import Graph
+from halation.graph.values import coerced, value_fault
 from halation.nodes import Filter, Image, Light, LightKind, LightList, lights_of, numbers_of
 
 TWO = (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.app.graph import Graph, Input, Output, Port
+from halation.graph import Graph, Input, Output, Port
 from halation.nodes import Kind
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.measure.luminance_statistics import LuminanceStatistics

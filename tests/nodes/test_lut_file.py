@@ -8,11 +8,11 @@ import numpy as np
 import PyOpenColorIO as ocio
 import pytest
 from conftest import graph_of
-from halation.app.errors import InputError
-from halation.app.graph import Port
-from halation.app.renderer import Wanted
+from halation.errors import InputError
+from halation.graph import Port
 from halation.nodes.color._spaces import SPACES
 from halation.nodes.color.lut_file import LutFile
+from halation.renderer import Wanted
 
 
 def twisted(rgb: np.ndarray) -> np.ndarray:

@@ -12,14 +12,14 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from exr_files import write_exr
-from halation.app import document, media
-from halation.app.cli.specimen import drawn, over
-from halation.app.compiler import installed
-from halation.app.editor.preview.data import data_range
-from halation.app.media.color import decode_srgb
-from halation.app.renderer import Renderer, Wanted, open_device
+from halation import document, media
+from halation.authoring.preview.data import data_range
+from halation.cli.specimen import drawn, over
+from halation.color.transforms import decode_srgb
+from halation.compiler import installed
 from halation.nodes import Kind, Node, Pointwise, catalogue
 from halation.presets import sample
+from halation.renderer import Renderer, Wanted, open_device
 
 Array = np.ndarray
 

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from halation.app.errors import InputError
-from halation.app.graph import Graph, Output, Port
-from halation.app.renderer import Wanted
+from halation.errors import InputError
+from halation.graph import Graph, Output, Port
 from halation.nodes import Kind
 from halation.nodes.input.read_image import ReadImage
+from halation.renderer import Wanted
 
 KINDS = {"out": Kind.IMAGE, "field": Kind.FIELD, "vector": Kind.VECTOR}
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from halation.app.errors import GraphError, InputError
-from halation.app.graph import Graph, Output, Port
-from halation.app.renderer import Wanted
+from halation.errors import GraphError, InputError
+from halation.graph import Graph, Output, Port
 from halation.nodes import Kind, look_at
 from halation.nodes.geometry.position_from_depth import PositionFromDepth
 from halation.nodes.input.read_render import ReadRender
 from halation.nodes.input.solve_camera import SolveCamera
+from halation.renderer import Wanted
 
 SIZE = (64, 36)
 CAMERA = look_at((1.0, -6.0, 2.5), (0.2, 0.3, 0.4), (1.1, 1.1 * 64 / 36))

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import trimesh
-from halation.app.errors import InputError
-from halation.app.graph import Graph, Output, Port
-from halation.app.media.meshes import load_mesh
-from halation.app.renderer import Wanted
+from halation.errors import InputError
+from halation.graph import Graph, Output, Port
+from halation.media.meshes import load_mesh
 from halation.nodes import BuiltInScene, Kind
 from halation.nodes.input.scene import Scene
+from halation.renderer import Wanted
 from scipy.stats import qmc
 
 SIZE = (96, 54)

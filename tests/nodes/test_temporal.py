@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from halation.app.graph import Graph
-from halation.app.renderer import Wanted
+from halation.graph import Graph
 from halation.nodes import Kind, Node, Temporal, catalogue
+from halation.renderer import Wanted
 from sequences import Array, Shot, played, shot_graph
 
 NODES = [node for node in catalogue().values() if issubclass(node, Temporal)]

@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from halation.app.graph import Graph, Input, Key, Keys, Output, Port, Settings
-from halation.app.renderer import Reel, Wanted
+from halation.graph import Graph, Input, Key, Keys, Output, Port, Settings
 from halation.nodes import Kind
 from halation.nodes.aa.temporal_aa import TemporalAa
 from halation.nodes.channel.separate import Separate
 from halation.nodes.input.constant import Constant
 from halation.nodes.input.scene import Scene
+from halation.renderer import Reel, Wanted
 from scipy.ndimage import maximum_filter, minimum_filter
 from sequences import flat, played, shot_graph
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.app.graph import Port
-from halation.app.renderer import Wanted
+from halation.graph import Port
 from halation.nodes.time.time_offset import TimeOffset
+from halation.renderer import Wanted
 from sequences import node_at, noise_at, noise_graph
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from exr_files import write_exr
-from halation.app.graph import Graph, Key, Keys, Output, Port, Settings
-from halation.app.renderer import Wanted
+from halation.graph import Graph, Key, Keys, Output, Port, Settings
 from halation.nodes.input.read_image import ReadImage
 from halation.nodes.time.time_speed import TimeSpeed
+from halation.renderer import Wanted
 from sequences import node_at, noise_at, noise_graph
 
 

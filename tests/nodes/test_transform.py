@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from halation.app.compiler import explain
-from halation.app.graph import Graph, Input, Output, Port
-from halation.app.renderer import Wanted
+from halation.compiler import explain
+from halation.graph import Graph, Input, Output, Port
 from halation.nodes import Kind
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.distort.transform import Transform
+from halation.renderer import Wanted
 from oiio_pictures import buffer
 from scipy.ndimage import map_coordinates
 

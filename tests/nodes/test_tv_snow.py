@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from conftest import graph_of
-from halation.app.graph import Port
-from halation.app.renderer import Wanted
+from halation.graph import Port
 from halation.nodes.stylize.tv_snow import TvSnow
+from halation.renderer import Wanted
 from hashes import hash3, pcg3d
 
 FRAME = 1

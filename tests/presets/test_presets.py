@@ -15,14 +15,14 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from halation.app import document, media
-from halation.app.graph import Control, Graph, Group, problems, signature
-from halation.app.media.sheet import sheet, shown
-from halation.app.renderer import Reel, Renderer, Wanted
-from halation.app.renderer.jobs.job import Writing, run_job
+from halation import document, media
+from halation.graph import Control, Graph, Group, problems, signature
+from halation.media.sheet import sheet, shown
 from halation.nodes import Kind
 from halation.presets import paths
 from halation.presets import picture as thumbnail
+from halation.renderer import Reel, Renderer, Wanted
+from halation.renderer.jobs.job import Writing, run_job
 
 Array = np.ndarray
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from halation.app.errors import OutputError, UsageError
-from halation.app.media.sheet import (
+from halation.errors import OutputError, UsageError
+from halation.media.sheet import (
     captioned,
     data_shown,
     grouped_sheet,

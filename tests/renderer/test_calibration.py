@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 
 import pytest
-from halation.app.compiler.devices import Measured
-from halation.app.errors import ShaderError
-from halation.app.resources.sandbox import fenced
-from halation.app.renderer import calibration, open_device
-from halation.app.renderer.calibration import kept_or_measured, measured
-from halation.app.renderer.running.runner import Runner
+from halation.compiler.devices import Measured
+from halation.errors import ShaderError
+from halation.renderer import calibration, open_device
+from halation.renderer.calibration import kept_or_measured, measured
+from halation.renderer.execution.runner import Runner
+from halation.resources.sandbox import fenced
 from msgspec.structs import replace
 
 SMALL = (64, 48)

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from halation.app.compiler.lowering import fourier
+from halation.compiler.lowering import fourier
 from halation.nodes import Draw, Drawn, Filter, Image
 from scipy.signal import fftconvolve
 

@@ -7,10 +7,10 @@ import time
 import numpy as np
 import pytest
 from conftest import graph_of
-from halation.app.renderer import Renderer, Wanted
-from halation.app.renderer.running.costs import Costs
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
+from halation.renderer import Renderer, Wanted
+from halation.renderer.execution.costs import Costs
 
 
 def planned(renderer: Renderer, node, side: int = 32):

@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 import moderngl
 import numpy as np
 import pytest
-from halation.app.errors import UsageError
-from halation.app.media import displays, to_display, views
-from halation.app.renderer import Display, Look, Renderer, fitted, to_panel, to_picture
+from halation.color.transforms import displays, to_display, views
+from halation.errors import UsageError
+from halation.renderer import Display, Look, Renderer, fitted, to_panel, to_picture
 
 NUMBERS = itertools.count()
 RAW = {"view": "Raw", "surround": (0.25, 0.25, 0.25), "checker": False}

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.app.compiler import Form
-from halation.app.renderer import Renderer, Wanted, open_device
+from halation.compiler import Form
+from halation.renderer import Renderer, Wanted, open_device
 from random_graphs import pictures, random_graph
 
 SEEDS = range(150)
@@ -69,7 +69,7 @@ def test_measured_peak_is_the_planned_one(seed):
 @pytest.mark.parametrize("pixels", [100, 300])
 def test_bands_equal_one_dispatch(renderer, monkeypatch, seed, pixels):
     """Large passes are dispatched in bands, between which an interrupt is heard."""
-    from halation.app.renderer.running import executor
+    from halation.renderer.execution import executor
 
     graph, wanted = random_graph(seed), Wanted(pictures(seed), precision="float")
     whole = renderer.render(graph, wanted)

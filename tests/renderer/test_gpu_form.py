@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.app.renderer import Device, Renderer, Wanted, open_device
+from halation.renderer import Device, Renderer, Wanted, open_device
 from msgspec.structs import replace
 from random_graphs import pictures, random_graph
 

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from halation.app import document
-from halation.app.graph import Graph
-from halation.app.media.finite import as_half
-from halation.app.renderer import Renderer, Wanted, open_device
-from halation.app.renderer.jobs.destinations import Writing, destinations, halves
-from halation.app.renderer.jobs.job import run_job
+from halation import document
+from halation.graph import Graph
+from halation.media.finite import as_half
+from halation.renderer import Renderer, Wanted, open_device
+from halation.renderer.jobs.destinations import Writing, destinations, halves
+from halation.renderer.jobs.job import run_job
 
 ONLY = frozenset({"image"})
 
@@ -91,7 +91,7 @@ def test_files_are_the_same_to_the_byte(engine, tmp_path, monkeypatch, code):
     for folder in folders:
         folder.mkdir()
         run_job(engine, through(code), given, Writing((("", folder / "out.exr"),), compression="none"))
-        monkeypatch.setattr("halation.app.renderer.jobs.job.halves", lambda *_: frozenset())
+        monkeypatch.setattr("halation.renderer.jobs.job.halves", lambda *_: frozenset())
     one, other = (_pixels(folder / "out.exr") for folder in folders)
     assert one.dtype == np.float16 and one.tobytes() == other.tobytes()
 

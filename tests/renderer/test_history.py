@@ -8,14 +8,14 @@ from typing import Annotated
 
 import numpy as np
 import pytest
-from halation.app.compiler import Library, installed
-from halation.app.compiler.library import parse
-from halation.app.errors import GraphError
-from halation.app.graph import Graph, Input, Output, Port, Settings
-from halation.app.renderer import Reel, Renderer, Wanted, open_device
+from halation.compiler import Library, installed
+from halation.compiler.library import parse
+from halation.errors import GraphError
+from halation.graph import Graph, Input, Output, Port, Settings
 from halation.nodes import Draw, Drawn, Image, Kind, Slider, Temporal
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.time.time_offset import TimeOffset
+from halation.renderer import Reel, Renderer, Wanted, open_device
 
 
 class Trail(Temporal):

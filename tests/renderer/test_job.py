@@ -8,18 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 from exr_files import read, write_exr
-from halation.app import media
-from halation.app.compiler import Surface
-from halation.app.errors import InputError
-from halation.app.graph import Graph, Input, Output, Port
-from halation.app.renderer import Renderer, Wanted, open_device
-from halation.app.renderer.jobs.behind import BEHIND, BEHIND_BYTES, Behind
-from halation.app.renderer.jobs.job import Writing, run_job
-from halation.app.renderer.running.arrays import Arrays
-from halation.app.renderer.running.decoding import AHEAD, AHEAD_BYTES, within_reach
+from halation import media
+from halation.compiler import Surface
+from halation.errors import InputError
+from halation.graph import Graph, Input, Output, Port
 from halation.nodes import catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
+from halation.renderer import Renderer, Wanted, open_device
+from halation.renderer.execution.arrays import Arrays
+from halation.renderer.execution.decoding import AHEAD, AHEAD_BYTES, within_reach
+from halation.renderer.jobs.behind import BEHIND, BEHIND_BYTES, Behind
+from halation.renderer.jobs.job import Writing, run_job
 
 FRAMES = range(1, 13)
 PATIENCE = 20.0

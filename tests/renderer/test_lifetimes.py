@@ -9,14 +9,14 @@ from itertools import zip_longest
 import numpy as np
 import pytest
 from conftest import graph_of
-from halation.app.errors import DeviceError, InputError, UsageError
-from halation.app.graph import Graph, Input, Output, Port, Settings
-from halation.app.renderer import Renderer, Wanted, open_device
-from halation.app.renderer.running.decoding import AHEAD
+from halation.errors import DeviceError, InputError, UsageError
+from halation.graph import Graph, Input, Output, Port, Settings
 from halation.nodes import Kind, catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.saturation import Saturation
+from halation.renderer import Renderer, Wanted, open_device
+from halation.renderer.execution.decoding import AHEAD
 
 PICTURE = np.random.default_rng(5).random((23, 37, 4), np.float32)
 
@@ -209,7 +209,7 @@ def test_a_picture_that_changed_its_size_spoils_nothing(engine):
 
 
 def test_an_upload_that_is_interrupted_spoils_nothing(engine, monkeypatch):
-    from halation.app.renderer.running import executor
+    from halation.renderer.execution import executor
 
     def interrupt(*_):
         raise KeyboardInterrupt
@@ -321,7 +321,7 @@ def test_a_picture_that_was_begun_for_a_dropped_run_is_not_decoded_again(forgetf
 
 
 def test_programs_that_were_not_used_for_long_go(renderer, engine, monkeypatch):
-    from halation.app.renderer.opengl import programs
+    from halation.renderer.opengl import programs
 
     monkeypatch.setattr(programs, "MAX_PROGRAMS", 2)
     for _ in range(2):

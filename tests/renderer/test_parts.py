@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from halation.app import document
-from halation.app.compiler import Region
-from halation.app.graph import Graph, Port, signature
-from halation.app.renderer import Renderer, Wanted
+from halation import document
+from halation.compiler import Region
+from halation.graph import Graph, Port, signature
 from halation.presets import paths
+from halation.renderer import Renderer, Wanted
 from random_graphs import pictures, random_graph, random_node
 
 

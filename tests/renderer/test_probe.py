@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.app.compiler import Library, installed
-from halation.app.compiler.library import parse
-from halation.app.errors import UsageError
-from halation.app.graph import Graph, Group, Input, Output, Port
-from halation.app.renderer import Nonfinite, Probe, Renderer, Wanted, first_nonfinite, open_device
+from halation.compiler import Library, installed
+from halation.compiler.library import parse
+from halation.errors import UsageError
+from halation.graph import Graph, Group, Input, Output, Port
 from halation.nodes import Kind, catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
+from halation.renderer import Nonfinite, Probe, Renderer, Wanted, first_nonfinite, open_device
 
 NODES = catalogue()
 IMAGE = Port("outputs", "image")

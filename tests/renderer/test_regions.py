@@ -11,16 +11,16 @@ from random import Random
 import numpy as np
 import pytest
 from conftest import graph_of
-from halation.app.compiler import Request, graph_library
-from halation.app.compiler.areas import Region
-from halation.app.compiler.fusion.fuse import fuse
-from halation.app.compiler.fusion.rewrites import rewritten
-from halation.app.compiler.ir import Read
-from halation.app.compiler.lowering.lower import lower
-from halation.app.compiler.parts.regions import needed
-from halation.app.media.pictures import Pictures
-from halation.app.renderer import Renderer, Wanted
+from halation.compiler import Request, graph_library
+from halation.compiler.areas import Region
+from halation.compiler.fusion.fuse import fuse
+from halation.compiler.fusion.rewrites import rewritten
+from halation.compiler.ir import Read
+from halation.compiler.lowering.lower import lower
+from halation.compiler.tiling.regions import needed
+from halation.inputs.provider import Pictures
 from halation.nodes import Kind, Node, Source, Temporal, catalogue, look_at
+from halation.renderer import Renderer, Wanted
 from random_graphs import random_node
 
 Array = np.ndarray

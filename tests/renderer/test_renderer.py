@@ -7,16 +7,16 @@ import signal
 import numpy as np
 import pytest
 from conftest import graph_of
-from halation.app.compiler import Library, Region, installed
-from halation.app.compiler.library import parse
-from halation.app.errors import DeviceError, ShaderError, UsageError
-from halation.app.graph import Graph, Input, Output, Port
-from halation.app.renderer import Renderer, Wanted, open_device
-from halation.app.renderer.opengl.programs import Programs
+from halation.compiler import Library, Region, installed
+from halation.compiler.library import parse
+from halation.errors import DeviceError, ShaderError, UsageError
+from halation.graph import Graph, Input, Output, Port
 from halation.nodes import Kind
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.saturation import Saturation
+from halation.renderer import Renderer, Wanted, open_device
+from halation.renderer.opengl.programs import Programs
 from msgspec.structs import replace
 
 PICTURE = np.random.default_rng(1).random((23, 37, 4), np.float32)
@@ -121,7 +121,7 @@ def test_a_broken_shader_names_node_file_and_line():
 
 
 def test_a_failed_allocation_is_one_sentence_with_numbers(engine, monkeypatch):
-    from halation.app.renderer.opengl.textures import Textures
+    from halation.renderer.opengl.textures import Textures
 
     monkeypatch.setattr(Textures, "_try", lambda *_: None)
     with pytest.raises(DeviceError, match=r"no room for .* MiB more .*--scale"):

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from conftest import graph_of
-from halation.app.graph import Graph, Input, Output, Port, Settings
-from halation.app.renderer import Wanted
+from halation.graph import Graph, Input, Output, Port, Settings
 from halation.nodes import Kind, catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
+from halation.renderer import Wanted
 from scipy.ndimage import gaussian_filter
 
 NODES = catalogue()

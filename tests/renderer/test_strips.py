@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from halation.app.errors import HalationError, OutputError
-from halation.app.graph import Graph, Input, Output, Port
-from halation.app.media import row_file
-from halation.app.renderer import Renderer, Wanted, open_device
-from halation.app.renderer.jobs.job import Writing, run_job
+from halation.errors import HalationError, OutputError
+from halation.graph import Graph, Input, Output, Port
+from halation.media import row_file
 from halation.nodes import Kind, catalogue
+from halation.renderer import Renderer, Wanted, open_device
+from halation.renderer.jobs.job import Writing, run_job
 from oiio_pictures import stored
 
 NODES = catalogue()

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from halation.app.compiler import Surface
-from halation.app.renderer.opengl.textures import Lease, Textures
+from halation.compiler import Surface
+from halation.renderer.opengl.textures import Lease, Textures
 from hypothesis import given
 from hypothesis import strategies as st
 

@@ -10,15 +10,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import graph_of
-from halation.app import document
-from halation.app.compiler import Region, Request, examine, explain
-from halation.app.compiler.parts import tiling
-from halation.app.errors import DeviceError
-from halation.app.graph import Graph, Input, Output, Port
-from halation.app.media.pictures import Pictures
-from halation.app.renderer import Reel, Renderer, Wanted, open_device
+from halation import document
+from halation.compiler import Region, Request, examine, explain
+from halation.compiler.tiling import tiling
+from halation.errors import DeviceError
+from halation.graph import Graph, Input, Output, Port
+from halation.inputs.provider import Pictures
 from halation.nodes import Camera, Filter, Kind, Reader, Temporal, catalogue, look_at
 from halation.presets import paths
+from halation.renderer import Reel, Renderer, Wanted, open_device
 from msgspec.structs import replace
 from random_graphs import pictures, random_graph
 

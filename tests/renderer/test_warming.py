@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import threading
 
-from halation.app.renderer import Renderer, open_device
-from halation.app.renderer.opengl.warming import warm
+from halation.renderer import Renderer, open_device
+from halation.renderer.opengl.warming import warm
 
 
 def test_a_device_is_the_same_while_and_after_its_driver_is_loaded(renderer: Renderer) -> None:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.app.graph import Graph, Input, Output, Port, Settings
-from halation.app.renderer import Wanted
+from halation.graph import Graph, Input, Output, Port, Settings
 from halation.nodes import Kind, catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
+from halation.renderer import Wanted
 
 RNG = np.random.default_rng(11)
 PICTURE = RNG.random((20, 30, 4), np.float32)
@@ -112,7 +112,7 @@ def test_data_of_another_size_is_never_mixed(renderer):
 
 def test_half_intermediates_stay_within_half_rounding(renderer):
     """Fused, one rounding at the end; unfused, one per pass: both within half an ulp for each."""
-    from halation.app.renderer import Renderer, open_device
+    from halation.renderer import Renderer, open_device
 
     graph = Graph(inputs={"image": Input(Kind.IMAGE)}, outputs={"image": Output()})
     last = Port("inputs", "image")

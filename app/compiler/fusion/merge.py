@@ -10,9 +10,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import islice
 
+from halation.nodes import Size
 from msgspec import Struct
 
-from ....nodes import Size
 from ..ir import Call, Gather, Program, Ref
 from ..library import Library
 from ..target import Target

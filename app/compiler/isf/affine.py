@@ -10,12 +10,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, cast
 
+from halation.nodes import Size
 from msgspec import Struct
 
-from ....nodes import Size
+from ...resources.record import Record
 from ..areas import Around
 from ..ir import Constant, Program, Shape
-from ...resources.record import Record
 
 TOLERANCE = 1e-5
 MAX_FACTOR = 4096

@@ -7,7 +7,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ....nodes import Plain, Value
+from halation.nodes import Plain, Value
+
 from ...graph import Graph, signature
 from .affine import Knob
 

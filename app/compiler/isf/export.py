@@ -6,18 +6,20 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ....nodes import ColorChange, ColorSettings, Kind, Missing, Render, Scene, Size
+from halation.nodes import ColorChange, ColorSettings, Kind, Missing, Render, Scene, Size
+
 from ...graph import Graph, Port
+from ...resources.color_program import ColorProgram
+from ...resources.mesh import Mesh
+from ...resources.picture import Picture
+from ...resources.provider import Frame, Outside, Probed
+from ...resources.working_space import Working
 from .. import graph_library
 from ..fusion.fuse import fuse
-from ..ir import Picture, Program, Read, Ref
+from ..ir import Program, Read, Ref
 from ..lowering.lower import lower
-from ...resources.provider import Frame, Outside, Probed
-from ...resources.mesh import Mesh
-from ...resources.color_program import ColorProgram
 from ..request import Request
 from ..target import NULL
-from ...resources.working_space import Working
 from .affine import Knob, Point
 from .controls import Section, controlled, identifier
 from .model import FRAME, HEIGHT, WIDTH, Modelled, Modelling

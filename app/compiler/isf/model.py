@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from ....nodes import Size
+from halation.nodes import Size
+
 from ...errors import HalationError
 from ..ir import Constant, Program
 from .affine import Anatomy, Knob, Model, Point, alike, anatomy, fitted, length_text

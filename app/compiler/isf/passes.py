@@ -5,15 +5,15 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping
 
+from halation.nodes import Uniform
 from msgspec import field
 
-from ....nodes import Uniform
 from ...glsl import Text, words
+from ..codegen.emit import Parts, around, macros_of, parts_of, texts_of
+from ..codegen.names import Names, convert
 from ..fusion.fuse import Fused
 from ..ir import Constant, Convolve, Foreign, Op, Program, Raster, Read, Ref
 from ..library import Library
-from ..shading.emit import Parts, around, macros_of, parts_of, texts_of
-from ..shading.names import Names, convert
 from .affine import literal
 
 _DEFINED = re.compile(r"\bstruct\s+(\w+)|^[ \t]*#[ \t]*define[ \t]+(\w+)", re.MULTILINE)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from ....nodes import Size, Uniform
+from halation.nodes import Size, Uniform
+
 from ..fusion.fuse import Fused, fuse
 from ..ir import Ref
 from ..library import Library

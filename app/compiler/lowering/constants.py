@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from ....nodes import Node, Socket, Value
+from halation.nodes import Node, Socket, Value
+
 from ...errors import GraphError
 from ...graph import Input, Port
 from ...graph.values import value_fault

@@ -8,9 +8,7 @@ from hashlib import blake2b
 from types import MappingProxyType
 from typing import Literal
 
-from msgspec import Struct, field
-
-from ....nodes import (
+from halation.nodes import (
     Affine,
     Argument,
     Camera,
@@ -36,8 +34,13 @@ from ....nodes import (
     Viewpoint,
     glsl_type,
 )
+from msgspec import Struct, field
+
 from ...errors import ShaderError
 from ...glsl import Function
+from ...resources.color_program import ColorProgram
+from ...resources.mesh import Mesh
+from ...resources.picture import Picture
 from ..areas import Around
 from ..ir import (
     BLOCK,
@@ -54,7 +57,6 @@ from ..ir import (
     Memory,
     Operand,
     Parameter,
-    Picture,
     Raster,
     Read,
     Reduce,
@@ -63,8 +65,6 @@ from ..ir import (
 )
 from ..library import Library
 from ..raster import CHANNELS
-from ...resources.mesh import Mesh
-from ...resources.color_program import ColorProgram
 from . import fourier, gaussian, transforms
 
 

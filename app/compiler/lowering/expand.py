@@ -6,13 +6,13 @@ from collections.abc import Iterator, Mapping
 from itertools import chain
 from typing import Any
 
+from halation.nodes import Node, Socket
 from msgspec import Struct, field
 
-from ....nodes import Node, Socket
+from ...custom_nodes import Written
 from ...errors import GraphError
 from ...glsl import Text
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Input, Port, Unknown, conversion
-from ...written import Written
 
 MAX_DEPTH = 32
 

@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import math
 
+from halation.nodes import Edge
 from msgspec import Struct
-
-from ....nodes import Edge
 
 DIRECT_BELOW = 7.0
 """Up to this sigma the direct convolution is both exact and no slower."""

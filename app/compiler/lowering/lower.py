@@ -11,9 +11,7 @@ from collections.abc import Mapping
 from itertools import chain
 from types import MappingProxyType
 
-from msgspec.structs import replace
-
-from ....nodes import (
+from halation.nodes import (
     Camera,
     Filter,
     Image,
@@ -30,11 +28,13 @@ from ....nodes import (
     ramp_knots,
     working_factor,
 )
+from msgspec.structs import replace
+
 from ...errors import GraphError, HalationError, ShaderError
 from ...graph import INPUTS, OUTPUTS, Graph, Port, did_you_mean
+from ...resources.provider import Outside
 from ..ir import Builder, Call, Choice, Constant, Memory, Operand, Parameter, Program, Ref, Shape
 from ..library import Library
-from ...resources.provider import Outside
 from ..request import Request
 from . import constants
 from .draws import Fed, Made, Recorder, choices

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Set
 
+from halation.nodes import Node
 from msgspec.structs import replace
 
-from ....nodes import Node
 from ...errors import GraphError
 from ...graph import Graph, Port, is_animated, still
 from .expand import Flat, changed_nodes, expand

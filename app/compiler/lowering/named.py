@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from pathlib import PurePath
 
+from halation.nodes import Kind, Missing, Reader, Source
 from msgspec.structs import replace
 
-from ....nodes import Kind, Missing, Reader, Source
 from ...graph import INPUTS, Graph, Input, Port, color_settings
 from ...graph.color import BUILT_IN
-from ..ir import Picture
+from ...resources.picture import Picture
 from .expand import Flat, expand
 
 CONFIG = "settings.config"

@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property
 
+from halation.nodes import ColorChange, Kind, LookupFile, Missing, Render, Scene, SceneFile, Size, Socket
 from msgspec.structs import replace
 
-from ....nodes import ColorChange, Kind, LookupFile, Missing, Render, Scene, SceneFile, Size, Socket
 from ...errors import HalationError
 from ...graph import Graph, color_settings, make_socket
-from ..areas import Around, scaled
-from ..ir import Accessor, Builder, Call, Constant, Gather, Operand, Parameter, Picture, Read, Ref, Shape
-from ...resources.provider import Outside, Probed
-from ...resources.mesh import Mesh
 from ...resources.color_program import ColorProgram
+from ...resources.mesh import Mesh
+from ...resources.picture import Picture
+from ...resources.provider import Outside, Probed
+from ..areas import Around, scaled
+from ..ir import Accessor, Builder, Call, Constant, Gather, Operand, Parameter, Read, Ref, Shape
 from ..request import Request
 from .draws import Fed, Files
 from .expand import Flat, nothing

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from halation.nodes import Camera, ColorChange, ColorSettings, Missing, Render, Scene, Size
 from msgspec import Struct, field
 
-from ....nodes import Camera, ColorChange, ColorSettings, Missing, Render, Scene, Size
 from ...graph import Port
-from ..ir import Builder, Operand, Picture, Program, Ref
-from ..library import Library
-from ...resources.provider import Frame, Outside, Probed
-from ...resources.mesh import Mesh
 from ...resources.color_program import ColorProgram
+from ...resources.mesh import Mesh
+from ...resources.picture import Picture
+from ...resources.provider import Frame, Outside, Probed
 from ...resources.working_space import Working
+from ..ir import Builder, Operand, Program, Ref
+from ..library import Library
 from .moments import Moments
 
 Shown = tuple[Port, int]

@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 from typing import ClassVar, get_args
 
-from ....nodes import Affine, Edge, Kernel
+from halation.nodes import Affine, Edge, Kernel
+
 from ..areas import Around
 from ..ir import Accessor, Builder, Choice, Constant, Gather, Parameter, Ref, Shape
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from hashlib import blake2b
 
+from halation.nodes import Node
 from msgspec.structs import replace
 
-from ....nodes import Node
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Port, is_animated
 from .expand import Flat, changed_nodes

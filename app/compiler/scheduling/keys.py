@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence, Set
 from hashlib import blake2b
 
+from ..codegen.emit import EDGES, Emitted
 from ..fusion.fuse import Fused
 from ..fusion.rewrites import alone
 from ..ir import (
@@ -24,7 +25,6 @@ from ..ir import (
     Ref,
 )
 from ..library import Library
-from ..shading.emit import EDGES, Emitted
 from ..target import Target
 
 Mark = tuple[Fused, str]

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
+from halation.nodes import Size
 from msgspec import Struct
 from msgspec.structs import replace
 
-from ....nodes import Size
 from ...errors import DeviceError
 from ...graph import Port
+from ..codegen.emit import Emitted, emit
 from ..fusion.fuse import Fused, kept_refs
 from ..ir import Call, Foreign, Gather, Held, History, Memory, Op, Program, Raster, Read, Ref, Shape
 from ..library import Library
 from ..plan import Depth, Pass, Plan, Surface, Upload, texel, texture_bytes
-from ..shading.emit import Emitted, emit
 from ..target import Precision, Target
 from .keys import Mark, Marks, keys_of, update
 from .numbers import differing

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...written import Code
+from ...custom_nodes import Code
 from ..action import Action
 from ..dialogs import Browse, Question
 

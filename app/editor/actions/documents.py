@@ -11,8 +11,8 @@ from ..dialogs import Browse, Question
 from .code import save_drafts
 
 if TYPE_CHECKING:
+    from ...authoring.services.recovery import Recovered
     from ..editor import Editor
-    from ..services.recovery import Recovered
 
 
 def _unless_unsaved(editor: Editor, then: Callable[[], object], verb: str) -> None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...authoring.services.flipbook import Flipbook, Strip
 from ..action import Action
 from ..dialogs import Browse
-from ..services.flipbook import Flipbook, Strip
 
 if TYPE_CHECKING:
     from ..editor import Editor

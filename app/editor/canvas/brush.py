@@ -6,9 +6,9 @@ from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Any
 
+from halation.nodes import Kind
 from imgui_bundle import imgui
 
-from ....nodes import Kind
 from ..theme.fonts import Fonts
 from ..theme.palette import PALETTES, RGB, Palette
 from ..theme.style import mix, u32

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from imgui_bundle import imgui
 
+from ...authoring.edits.elements import entry
 from ...graph import Graph, Port
 from ..editor import Editor
-from ..edits.elements import entry
 from ..theme.style import ui_scale
 from .brush import DETAILS_FROM, Brush, Texts, ink
 from .crumbs import draw_crumbs

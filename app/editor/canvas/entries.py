@@ -6,10 +6,11 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ....nodes import Kind, Node
-from ..edits.coding import CODE, starter
+from halation.nodes import Kind, Node
+
+from ...authoring.edits.coding import CODE, starter
+from ...authoring.services.shader_files import ShaderFile
 from ..panels.fuzzy import match
-from ..services.shader_files import ShaderFile
 from .layout import words
 
 GROUP, GRAPH, SHADER = "group", "graph", "code"

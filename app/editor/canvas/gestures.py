@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 
+from ...authoring.edits import routes
+from ...authoring.edits.wiring import spliced
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Port
-from ..edits import routes
-from ..edits.wiring import spliced
 from .geometry import Point, Rect, overlap, snapped, spanned
 from .scene import Scene
 

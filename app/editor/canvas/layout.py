@@ -7,11 +7,12 @@ from dataclasses import dataclass, field
 from pathlib import PurePath
 from typing import Literal
 
-from ....nodes import Kind, Node, Plain, Socket, Value
+from halation.nodes import Kind, Node, Plain, Socket, Value
+
+from ...authoring.edits.coding import LANGUAGES
+from ...custom_nodes import Written
 from ...errors import GraphError
 from ...graph import Graph, Group, Item, Port, Unknown, signature
-from ...written import Written
-from ..edits.coding import LANGUAGES
 from ..inspector.lights import counted
 from ..inspector.numbers import SUFFIX, bar, shown
 from .geometry import Rect

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from halation.nodes import Kind
 from imgui_bundle import imgui
 
-from ....nodes import Kind
 from ..editor import Editor
 from ..theme.style import u32, ui_scale, vec4
 from .brush import Brush

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from halation.nodes import Plain, Value
 from imgui_bundle import imgui
 
-from ....nodes import Plain, Value
+from ...authoring.session import Session
 from ...graph import Port
 from ..editor import Editor
 from ..inspector.choice_field import toggle_field
@@ -16,7 +17,6 @@ from ..inspector.fields import Edit, Fields
 from ..inspector.file_field import browse
 from ..inspector.number_field import number_field, row_of_numbers
 from ..inspector.text_field import text_field
-from ..session import Session
 from .brush import TEXT, Brush, on_nodes
 from .geometry import Rect
 from .layout import FIELD_HEIGHT, Row

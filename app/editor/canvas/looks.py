@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from imgui_bundle import imgui
 
+from ...authoring.edits.elements import owner
 from ...graph import Problem
 from ..editor import Editor
-from ..edits.elements import owner
 from .brush import Ink
 from .gestures import Gesture, Link
 from .paint_node import Look

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from imgui_bundle import imgui
 
+from ...authoring.edits.elements import end_port, entry
 from ..editor import Editor
-from ..edits.elements import end_port, entry
 from .brush import TEXT, Brush
 from .geometry import Rect
 from .scene import Scene

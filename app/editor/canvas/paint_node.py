@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from halation.nodes import Kind
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ....nodes import Kind
 from .brush import DETAILS_FROM, SMALL, TITLE, Brush
 from .geometry import Rect
 from .layout import HEADER, ROW, WIDTH, Layout, Pin, Row, words

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ...authoring.edits.elements import Sizes
 from ..editor import Editor
-from ..edits.elements import Sizes
 from .layout import HEADER, PAD, PICTURE
 
 

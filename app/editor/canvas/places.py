@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from ..editor import Editor
 from .brush import DETAILS_FROM, Brush
 from .geometry import Rect, Transform, overlap
-from .net import Net, Wire
+from .link_index import Net, Wire
 from .scene import Box, Scene
 
 _PIN = 5.0

@@ -10,7 +10,7 @@ from typing import Literal
 from ...graph import Port
 from .geometry import Curve, Point, Rect, curve, holds
 from .layout import HEADER, ROW, Layout, Pin
-from .net import Net, Wire
+from .link_index import Net, Wire
 
 DOT = 7.0
 """Radius of a dot."""

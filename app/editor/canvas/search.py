@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from functools import cached_property
 
+from halation import presets
+from halation.nodes import Kind
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from .... import presets
-from ....nodes import Kind
 from ...graph import Port
 from ...graph.names import fresh_name
 from ..editor import Editor

@@ -8,13 +8,14 @@ from functools import lru_cache
 from textwrap import wrap
 from typing import Any
 
-from ....nodes import Node
+from halation.nodes import Node
+
+from ...authoring.edits.elements import entries, entry, owner
+from ...authoring.edits.routes import routes
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Item, Port
-from ..edits.elements import entries, entry, owner
-from ..edits.routes import routes
 from .geometry import Point
 from .layout import Facts, Layout, end_layout, node_layout
-from .net import Net, Wire
+from .link_index import Net, Wire
 from .scene import DOT, Box, Scene, routed
 
 _LETTER = 6.6, 17.0

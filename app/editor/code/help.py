@@ -10,8 +10,8 @@ from imgui_bundle import imgui
 from imgui_bundle.imgui_color_text_edit import TextEditor
 
 from ...compiler import installed
-from ...written import Code
-from ...written.notes import EDGES, UNITS
+from ...custom_nodes import Code
+from ...custom_nodes.notes import EDGES, UNITS
 from ..theme.style import ui_scale, vec4
 from ..toolkit.buttons import quiet
 from ..toolkit.places import record

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 from imgui_bundle import ImVec2
 from imgui_bundle.imgui_color_text_edit import TextEditor
 
+from ...custom_nodes import Code, CodeFault, Written, node_type
 from ...errors import ShaderError
 from ...graph import Unknown
-from ...written import Code, CodeFault, Written, node_type
 from ..theme.style import mix, u32
 
 if TYPE_CHECKING:

@@ -8,10 +8,10 @@ from pathlib import PurePath
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ...written import Code
+from ...authoring.edits import paths
+from ...custom_nodes import Code
 from ..actions.code import save_code
 from ..editor import Editor
-from ..edits import paths
 from ..keys import chord
 from ..theme.style import EM, ui_scale, vec4
 from ..toolkit.buttons import quiet, right_aligned

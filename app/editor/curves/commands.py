@@ -5,23 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
+from ...authoring.session.animating import values_of
 from ...errors import UsageError
 from ...graph import Graph, Interpolation, Keys, Outside, Port, Settings
-from ..session.animating import values_of
 from .copying import copied, pasted, read
-from .editing import (
-    Ease,
-    automatic,
-    chosen,
-    eased,
-    extent,
-    fixed,
-    going_on,
-    interpolated,
-    moved,
-    removed,
-    straightened,
-)
+from .editing import Ease, automatic, chosen, eased, extent, fixed, going_on, interpolated, moved, removed, straightened
 from .plane import View
 from .rows import Row, Spot, limits, spots_of, width
 from .shapes import Samples, heights

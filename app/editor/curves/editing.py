@@ -10,7 +10,8 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
-from ....nodes import Plain
+from halation.nodes import Plain
+
 from ...graph import Animation, Interpolation, Key, Keys, Outside, Port
 from ...graph.keys import rounded
 from .rows import Spot

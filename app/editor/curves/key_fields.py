@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from halation.nodes import Value
 from imgui_bundle import imgui
 from msgspec import structs
 
-from ....nodes import Value
 from ...graph import Keys, Port
 from ...graph.graph import declared
 from ..editor import Editor

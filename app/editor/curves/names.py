@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from halation.nodes import Plain
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ....nodes import Plain
 from ...errors import HalationError
 from ...graph import Keys, Port
 from ..editor import Editor

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 
+from ...authoring.edits.naming import called
 from ...errors import GraphError
 from ...graph import Animation, Graph, Keys, Port
 from ...graph.graph import declared
-from ..edits.naming import called
 
 Spot = tuple[Port, float, int]
 """A channel of a key: the value, its frame, and which number of it."""

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...authoring.edits.naming import called
 from ...graph import Interpolation
 from ..editor import Editor
-from ..edits.naming import called
 from ..theme.style import u32, ui_scale, vec4
 from ..toolkit.buttons import dropdown, entry, quiet, room_for, tip_of, tool
 from ..toolkit.words import tip

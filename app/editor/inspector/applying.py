@@ -5,14 +5,15 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING
 
-from ....nodes import Plain, Value
+from halation.nodes import Plain, Value
+
 from ...errors import GraphError, UsageError
 from ...graph import Graph, Port, Unknown, signature
 from .fields import Edit
 from .numbers import typed
 
 if TYPE_CHECKING:
-    from ..session import Session
+    from ...authoring.session import Session
 
 Ports = tuple[Port, ...]
 

@@ -7,7 +7,8 @@ import re
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
-from ....nodes import Unit
+from halation.nodes import Unit
+
 from ...errors import UsageError
 
 LONGEST = 200

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from halation.nodes import Plain, Value
 from imgui_bundle import imgui
 
-from ....nodes import Plain, Value
 from ..theme.style import mix, u32
 from ..toolkit.fields import background, draw_arrow
 from ..toolkit.places import place

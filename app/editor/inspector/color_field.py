@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from halation.nodes import Plain, Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ....nodes import Plain, Value
 from ...errors import UsageError
 from ..theme.palette import RGB
 from ..theme.style import u32

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from functools import lru_cache
 
+from halation.nodes import ColorSettings, Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ....nodes import ColorSettings, Value
-from ...media import color_mark
-from ...media.managed import builtin_configs, managed, ocio
+from ...color.management import builtin_configs, color_mark, managed, ocio
 from ..dialogs import Browse
 from ..viewer.coloring import coloring
 from .choice_field import choose

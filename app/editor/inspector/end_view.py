@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, get_args
 
+from halation.nodes import Kind, Missing, Plain, Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ....nodes import Kind, Missing, Plain, Value
+from ...color.transforms import views
 from ...graph import INPUTS, Input, Output, Port
 from ...graph.frames import Pattern
-from ...media import views
 from ..toolkit.words import tip
 from ..viewer.coloring import coloring
 from .choice_field import choose
@@ -25,7 +25,7 @@ from .text_field import text_field
 from .value_rows import link_chip
 
 if TYPE_CHECKING:
-    from ..session import Session
+    from ...authoring.session import Session
     from .rows import Rows
 
 Then = Callable[[str], object]

@@ -6,7 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from ....nodes import Plain, Value
+from halation.nodes import Plain, Value
+
 from ...errors import UsageError
 from ..theme.palette import Palette
 from .numbers import Drag, typed

@@ -6,15 +6,15 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from halation.nodes import Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ....nodes import Value
 from ...errors import HalationError
 from ...media import ImageInfo
 from ...media.sequences import find_sequence
+from ...watch.sequence_files import standing
 from ..dialogs import Browse
-from ..services.sequences import standing
 from ..toolkit.fields import draw_arrow
 from ..toolkit.places import item_rect, place, union
 from ..toolkit.textures import Textures
@@ -112,7 +112,7 @@ class FileField:
     def layer(
         self, rows: Rows, key: str, file: str, value: str, width: float, first: str = FIRST, fault: bool = False
     ) -> Edit | None:
-        """The layer: a list of those in the file, or plain text while it cannot be read; `first` is what "" stands for."""
+        """The layer: a list of those in the file, or plain text while that is unknown; `first`: what "" stands for."""
         path = self._file(rows, file)
         header = self.known.header(path) if file else "no file"
         if not isinstance(header, ImageInfo):

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from pathlib import PurePath
 
+from halation.nodes import Kind, Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ....nodes import Kind, Value
+from ...authoring.edits.elements import entry
+from ...authoring.edits.naming import called
 from ...graph import Port, Unknown, signature
 from ...graph.names import fresh_name
-from ..edits.elements import entry
-from ..edits.naming import called
 from ..theme.palette import RGB
 from ..theme.style import ui_scale
 from ..toolkit.places import item_rect

@@ -6,13 +6,13 @@ import inspect
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from halation.nodes import Node, Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ....nodes import Node, Value
+from ...authoring.edits.coding import LANGUAGES
+from ...custom_nodes import Written
 from ...graph import Group, Item
-from ...written import Written
-from ..edits.coding import LANGUAGES
 from ..theme.palette import RGB
 from ..theme.style import EM, u32, ui_scale
 from ..toolkit.places import item_rect, place

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
-from ..edits.elements import end_port
+from ...authoring.edits.elements import end_port
 from ..theme.palette import DARK
 from .end_view import EndView
 from .fields import Fields

@@ -6,10 +6,10 @@ import json
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Literal
 
+from halation.nodes import Plain
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ....nodes import Plain
 from ...document.animation import read_animation, written_animation
 from ...errors import GraphError, UsageError
 from ...graph import Animation, Expression, Keys, Port
@@ -22,7 +22,7 @@ from .fields import Fields
 from .text_entry import text_entry
 
 if TYPE_CHECKING:
-    from ..session import Session
+    from ...authoring.session import Session
     from .applying import Ports
     from .rows import Rows
 

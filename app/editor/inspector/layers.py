@@ -6,15 +6,16 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+from halation.nodes import ColorSettings, Kind
 
-from ....nodes import ColorSettings, Kind
+from ...authoring.services.background import Background
+from ...color.file_space import FileSpace
+from ...color.management import color_mark
+from ...color.transforms import NO_VIEW, Array, to_display
 from ...errors import HalationError
-from ...media import ImageInfo, color_mark, find_layer, info, read, to_display
-from ...media.color import NO_VIEW, Array
-from ...media.file_space import FileSpace
+from ...media import ImageInfo, find_layer, info, read
 from ...media.spaces import layer_spaces
-from ..services.background import Background
-from ..services.versions import Versions
+from ...watch.versions import Versions
 
 WIDTH, HEIGHT = 96, 54
 _KEPT = 300

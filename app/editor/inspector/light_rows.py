@@ -6,10 +6,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from halation.nodes import Light, LightKind, Plain, Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ....nodes import Light, LightKind, Plain, Value
 from ...errors import UsageError
 from ...graph.values import value_fault
 from ..theme.style import u32, ui_scale

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cache
 
+from halation.nodes import LIGHT_NUMBERS, MAX_LIGHTS, Light, LightKind, Plain, Value, lights_of
 from msgspec import structs
-
-from ....nodes import LIGHT_NUMBERS, MAX_LIGHTS, Light, LightKind, Plain, Value, lights_of
 
 Numbers = tuple[float, ...]
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from halation.nodes import MAX_LIGHTS, Light, LightKind, Plain, Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 from msgspec import structs
 
-from ....nodes import MAX_LIGHTS, Light, LightKind, Plain, Value
 from ..theme.style import mix, u32, ui_scale, vec4
 from ..toolkit.buttons import dropdown, quiet
 from ..toolkit.places import Rect, item_rect, place

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from halation.nodes import Matte, picked_names, toggled
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ....nodes import Matte, picked_names, toggled
 from ...graph import Port
 from ..theme.style import mix, u32, ui_scale, vec4
 from ..toolkit.places import item_rect, place

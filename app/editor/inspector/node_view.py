@@ -5,14 +5,14 @@ from __future__ import annotations
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
+from halation.nodes import Node, Socket
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ....nodes import Node, Socket
+from ...authoring.edits import paths
+from ...authoring.edits.coding import LANGUAGES
+from ...custom_nodes import Code
 from ...graph import Group, Item, Port, Unknown, signature
-from ...written import Code
-from ..edits import paths
-from ..edits.coding import LANGUAGES
 from ..toolkit.places import item_rect
 from ..toolkit.words import tip
 from .applying import common

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from halation.nodes import Plain, Value
 from imgui_bundle import imgui
 from msgspec import structs
 
-from ....nodes import Plain, Value
 from ..theme.style import mix, u32, ui_scale
 from ..toolkit.fields import background
 from ..toolkit.places import Rect, place

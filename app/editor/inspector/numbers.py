@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from decimal import Decimal
 from types import MappingProxyType
 
-from ....nodes import Unit, Value
+from halation.nodes import Unit, Value
+
 from ...errors import UsageError
 from .arithmetic import evaluate
 

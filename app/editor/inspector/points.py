@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from ....nodes import MAX_POINTS, curve_at, ramp_at
+from halation.nodes import MAX_POINTS, curve_at, ramp_at
 
 Numbers = tuple[float, ...]
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from itertools import pairwise
 
+from halation.nodes import Plain, Value
 from imgui_bundle import imgui
 
-from ....nodes import Plain, Value
 from ..theme.style import u32, ui_scale
 from ..toolkit.places import Rect, place
 from .color_field import color_field

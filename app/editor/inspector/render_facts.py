@@ -6,12 +6,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ....nodes import Matte, Node, Value, matte_of
+from halation.nodes import Matte, Node, Value, matte_of
+
 from ...graph import Graph, Port
-from ...media.conventions import Convention
-from ...media.naming import Role
-from ...media.overview import Overview, Use
-from ...media.report import certainty
+from ...render_layers.conventions import Convention
+from ...render_layers.naming import Role
+from ...render_layers.overview import Overview, Use
+from ...render_layers.report import certainty
 
 if TYPE_CHECKING:
     from ..editor import Editor

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from halation.nodes import Kind, Node, Socket, Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ....nodes import Kind, Node, Socket, Value
 from ...graph import Port
-from ...media.naming import Role
-from ...media.overview import Overview, Use
-from ...media.passes import Pass
-from ...media.report import camera_rows, either
+from ...render_layers.naming import Role
+from ...render_layers.overview import Overview, Use
+from ...render_layers.recognition import Pass
+from ...render_layers.report import camera_rows, either
 from ..theme.palette import RGB
 from ..toolkit.buttons import dropdown
 from ..toolkit.places import item_rect, place

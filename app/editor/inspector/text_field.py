@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from halation.nodes import Plain, Value
 from imgui_bundle import imgui
 
-from ....nodes import Plain, Value
 from ..toolkit.fields import background
 from ..toolkit.places import place
 from ..toolkit.words import write

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from halation.nodes import Plain, Value
 from imgui_bundle import imgui
 
-from ....nodes import Plain, Value
 from .choice_field import choice_field, toggle_field
 from .color_field import color_field
 from .curve_field import HEIGHT, curve_field

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from halation.nodes import Node, Plain, Value
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ....nodes import Node, Plain, Value
 from ...graph import INPUTS, Graph, Port, signature
 from ..theme.palette import RGB
 from ..theme.style import ui_scale

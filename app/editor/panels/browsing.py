@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from time import localtime, strftime
 
+from ...color.gpu_programs import table_endings
 from ...graph.frames import VIDEO_ENDINGS
 from ...media.meshes import MESH_ENDINGS
-from ...media.recolor import table_endings
 from ...media.thumbnail import readable
 from ..dialogs import Browse
 from ..editor import Editor

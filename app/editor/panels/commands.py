@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from ....presets import paths
+from halation.presets import paths
+
 from ...graph import Group
 from ..action import Action
 from ..actions.documents import open_preset

@@ -9,8 +9,8 @@ from pathlib import Path
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...color.transforms import views
 from ...graph.frames import format_frames
-from ...media import views
 from ..dialogs import Browse
 from ..editor import Editor
 from ..theme.style import ui_scale, vec4

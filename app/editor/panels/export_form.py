@@ -9,13 +9,14 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Literal
 
-from ....nodes import Kind
+from halation.nodes import Kind
+
+from ...authoring.services.exporting import Export, Options
 from ...errors import HalationError, UsageError
 from ...graph.frames import Pattern, check_numbered, format_frames, is_video, numbered, parse_frames, unnumbered
 from ...media.sequences import find_sequence
 from ...media.video.library import library
 from ..editor import Editor
-from ..services.exporting import Export, Options
 
 Sizing = Literal["as it is", "scale", "size"]
 Extent = Literal["this frame", "all frames", "what is played", "some frames"]

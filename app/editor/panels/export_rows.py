@@ -12,10 +12,10 @@ from typing import NamedTuple
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from ...authoring.services.exporting import Export, State
+from ...authoring.services.flipbook import Strip
 from ..actions.flipbook import choose_flipbook, open_flipbook
 from ..editor import Editor
-from ..services.exporting import Export, State
-from ..services.flipbook import Strip
 from ..theme.style import u32, ui_scale, vec4
 from ..toolkit.buttons import quiet, right_aligned, room_for
 from ..toolkit.places import record

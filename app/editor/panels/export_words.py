@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ..services.exporting import Export
+from ...authoring.services.exporting import Export
 from .export_form import Aim
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
+from ...authoring.log import Level
 from ..editor import Editor
-from ..log import Level
 
 
 @dataclass(frozen=True)

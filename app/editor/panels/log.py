@@ -7,8 +7,8 @@ from time import localtime, strftime
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from ...authoring.log import Entry, Level
 from ..editor import Editor
-from ..log import Entry, Level
 from ..theme.style import ui_scale, vec4
 from ..toolkit.buttons import quiet, right_aligned
 from ..toolkit.places import record

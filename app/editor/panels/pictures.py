@@ -8,11 +8,11 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...authoring.services.background import Background
 from ...errors import HalationError
-from ..services.background import Background
 
 if TYPE_CHECKING:
-    from ...media.color import Array
+    from ...color.transforms import Array
 
 WIDTH, HEIGHT = 192, 108
 _IN_MEMORY, _ON_DISK, _WAITING = 400, 2000, 48

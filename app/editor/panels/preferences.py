@@ -9,10 +9,10 @@ from typing import Any
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
+from ...authoring.services.preferences import MAX_SCALE, MIN_SCALE, Preferences
+from ...authoring.services.recovery import LONGEST
+from ...authoring.services.shader_files import CUSTOMARY
 from ..editor import Editor
-from ..services.preferences import MAX_SCALE, MIN_SCALE, Preferences
-from ..services.recovery import LONGEST
-from ..services.shader_files import CUSTOMARY
 from ..theme.style import ui_scale, vec4
 from ..toolkit.buttons import close_button, quiet
 from ..toolkit.dialogs import backdrop, dialog, escaped

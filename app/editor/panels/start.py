@@ -5,16 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 from time import localtime, strftime
 
+from halation.presets import paths, picture
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from ....presets import paths, picture
+from ...authoring.services.preferences import Recent
+from ...authoring.services.recovery import Recovered
 from ...media.thumbnail import load_thumbnail
 from ..actions.documents import open_graph, open_preset, recover
 from ..editor import Editor
 from ..keys import chord
-from ..services.preferences import Recent
-from ..services.recovery import Recovered
 from ..theme.style import mix, u32, ui_scale, vec4
 from ..toolkit.buttons import main_button, outline, quiet
 from ..toolkit.dialogs import backdrop, dialog, escaped

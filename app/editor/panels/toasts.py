@@ -6,8 +6,8 @@ from time import time
 
 from imgui_bundle import ImVec2, imgui
 
+from ...authoring.log import TOAST_SECONDS, Entry
 from ..editor import Editor
-from ..log import TOAST_SECONDS, Entry
 from ..theme.style import ui_scale, vec4
 from ..toolkit.dialogs import FIXED
 from ..toolkit.words import ICONS, level_color, wrapped

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from ....nodes import Kind
+from halation.nodes import Kind
 
 RGB = tuple[float, float, float]
 

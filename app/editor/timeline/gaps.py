@@ -8,12 +8,12 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ...authoring.session import Session
 from ...compiler import named_files
 from ...errors import HalationError
 from ...graph import Graph
 from ...media.layers import split_layer
 from ...media.sequences import find_sequence
-from ..session import Session
 
 EVERY = 1.0
 """Seconds between two looks at most, while the graph changes."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from .playback import LOOPS, Course, Loop, Playback
 
 if TYPE_CHECKING:
-    from ..session import Session
+    from ...authoring.session import Session
 
 LEAST_VIEW = 4.0
 """Frames that are seen at least."""

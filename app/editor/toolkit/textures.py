@@ -8,7 +8,7 @@ from collections.abc import Callable, Hashable
 import numpy as np
 from imgui_bundle import hello_imgui, imgui
 
-from ...media.color import Array
+from ...color.transforms import Array
 
 _MOST = 300
 

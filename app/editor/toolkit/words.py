@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ..log import Level
+from ...authoring.log import Level
 from ..theme.palette import RGB, Palette
 from ..theme.style import EM, mix, u32, ui_scale, vec4
 from .places import Rect, Surface

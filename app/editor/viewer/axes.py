@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from halation.nodes import Camera
 from imgui_bundle import imgui
 
-from ....nodes import Camera
 from ..theme.palette import RGB
 from ..theme.style import mix, u32, ui_scale
 from .geometry import Point, Sight

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ....nodes import ColorSettings
+from halation.nodes import ColorSettings
+
 from ...graph import color_settings
 
 if TYPE_CHECKING:

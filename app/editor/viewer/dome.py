@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import math
 
-from ....nodes import Camera
+from halation.nodes import Camera
+
 from .geometry import Point, Sight
 from .perspective import Place, dot, moved, unit
 

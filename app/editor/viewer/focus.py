@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ....nodes import Node
+from halation.nodes import Node
+
 from ...graph import Port
 
 if TYPE_CHECKING:
+    from ...authoring.session import Session
     from ..editor import Editor
-    from ..session import Session
 
 _CHOICE, _POINT, _DISTANCE = "focus", "focus_point", "focus_distance"
 

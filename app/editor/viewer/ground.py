@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from ....nodes import Camera, Node
+from halation.nodes import Camera, Node
+
 from ...graph import Port
 from .focus import focuses
 from .geometry import Point

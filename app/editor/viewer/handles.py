@@ -10,7 +10,7 @@ from .focus import is_idle
 from .geometry import Point
 
 if TYPE_CHECKING:
-    from ..session import Session
+    from ...authoring.session import Session
     from .state import ViewerState
 
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from halation.nodes import Kind
 from imgui_bundle import imgui
 
-from ....nodes import Kind
 from ...renderer.viewing.look import Look
 from ..theme.palette import RGB
 from ..theme.style import mix, u32, ui_scale
@@ -19,8 +19,8 @@ from .measuring import hsv, written
 from .scopes import LUMINANCE
 
 if TYPE_CHECKING:
+    from ...authoring.preview import Shown
     from ..editor import Editor
-    from ..preview import Shown
 
 _LETTERS = "RGBA"
 _CHANNEL_COLORS: tuple[RGB, ...] = ((0.93, 0.36, 0.36), (0.30, 0.72, 0.36), (0.36, 0.54, 0.98))

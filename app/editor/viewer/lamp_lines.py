@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from halation.nodes import Light, LightKind
 from imgui_bundle import imgui
 
-from ....nodes import Light, LightKind
 from ..inspector.colors import swatch
 from ..inspector.lights import title
 from ..theme.palette import RGB

@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from halation.nodes import Camera, Kind, Light, LightKind, lights_of
 from msgspec import structs
 
-from ....nodes import Camera, Kind, Light, LightKind, lights_of
 from ...graph import Port, Unknown, signature
 from ..inspector.lights import added, changed, count_of, fresh, light_at, removed
 from .geometry import Point

@@ -8,13 +8,13 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
+from halation.nodes import ColorSettings, Kind
 
-from ....nodes import ColorSettings, Kind
+from ...authoring.preview.data import Array, are_normals, balanced, data_range
+from ...color.management import DEFAULT_COLOR
+from ...color.transforms import to_display
 from ...graph import OUTPUTS, Graph, Port
-from ...media import to_display
-from ...media.managed import DEFAULT_COLOR
 from ...renderer.viewing.look import Look
-from ..preview.data import Array, are_normals, balanced, data_range
 from .geometry import Sight, ordered
 from .scopes import rgb_of
 from .state import Background, Meaning, ViewerState

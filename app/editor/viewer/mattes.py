@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from halation.nodes import Matte, float_bits, picked, toggled
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ....nodes import Matte, float_bits, picked, toggled
 from ...graph import Port
-from ...media.mattes import IdMap
+from ...render_layers.mattes import IdMap
 from ..inspector.render_facts import matte_at, pick_value, render_file
 from ..theme.style import u32, ui_scale
 

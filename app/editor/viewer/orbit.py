@@ -8,16 +8,16 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
+from halation.nodes import BuiltInScene, Camera, Node, SceneFile, orbit_camera
 
-from ....nodes import BuiltInScene, Camera, Node, SceneFile, orbit_camera
-from ...compiler import ATTRIBUTES
 from ...graph import Graph, Item, Port
 from ...media.meshes import load_mesh
+from ...resources.mesh import ATTRIBUTES
 from .perspective import Place, neat
 
 if TYPE_CHECKING:
+    from ...authoring.session import Session
     from ..editor import Editor
-    from ..session import Session
 
 SENSOR = 36.0
 """Width in mm of what the focal length is measured against."""

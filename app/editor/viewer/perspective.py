@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from ....nodes import Camera
+from halation.nodes import Camera
 
 Place = tuple[float, float, float]
 Seen = tuple[float, float, float]

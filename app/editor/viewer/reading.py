@@ -11,8 +11,8 @@ from .geometry import Box, Pixels, texel, texels
 from .measuring import Array, Statistics, statistics
 
 if TYPE_CHECKING:
+    from ...authoring.preview import Shown
     from ...renderer.viewing.probe import Probe
-    from ..preview import Shown
 
 T = TypeVar("T")
 

@@ -6,17 +6,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from halation.nodes import Kind
 
-from ....nodes import Kind
+from ...color.transforms import decode_srgb
 from ...media import write
-from ...media.color import decode_srgb
 from ..dialogs import Browse
 from .looking import picture_only
 
 if TYPE_CHECKING:
+    from ...authoring.preview import Shown
     from ...renderer.viewing.look import Look
     from ..editor import Editor
-    from ..preview import Shown
 
 
 def ask_to_save(editor: Editor, a: Shown, b: Shown | None, look: Look) -> None:

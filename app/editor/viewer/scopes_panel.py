@@ -6,10 +6,10 @@ import time
 from typing import TYPE_CHECKING
 
 import numpy as np
+from halation.nodes import Kind
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ....nodes import Kind
 from ...renderer.viewing.plates import Plate
 from ..theme.style import u32, ui_scale
 from ..toolkit.buttons import quiet, room_for, tool
@@ -24,8 +24,8 @@ from .state import SCOPES
 from .wanted import A
 
 if TYPE_CHECKING:
+    from ...authoring.preview import Shown
     from ..editor import Editor
-    from ..preview import Shown
 
 SECONDS = 0.2
 """Between refreshes."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
-from ..services.coloring import Coloring
+from ...authoring.services.coloring import Coloring
 from .pacing import Pace
 from .reading import Reader
 
 if TYPE_CHECKING:
-    from ..services.flipbook import Flipbook
+    from ...authoring.services.flipbook import Flipbook
 
 Channels = Literal["color", "red", "green", "blue", "alpha", "luminance", "false color"]
 Compare = Literal["off", "wipe", "beside", "difference", "toggle"]

@@ -16,8 +16,8 @@ from .reading import Reader
 from .wanted import layer
 
 if TYPE_CHECKING:
+    from ...authoring.preview import Shown
     from ..editor import Editor
-    from ..preview import Shown
 
 _FLAGS = (
     int(imgui.TableFlags_.row_bg)

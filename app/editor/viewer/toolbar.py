@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ...media import displays, looks, views
-from ...media.color import NO_LOOK
+from ...color.transforms import NO_LOOK, displays, looks, views
 from ..theme.style import ui_scale
 from ..toolkit.buttons import dropdown, entries, entry, room_for, tool
 from ..toolkit.fields import number

@@ -6,9 +6,9 @@ import time
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from halation.nodes import Kind, Plain
 from imgui_bundle import imgui
 
-from ....nodes import Kind, Plain
 from ...graph import OUTPUTS, Port
 from ...renderer.viewing.look import Look
 from ..theme.style import u32, ui_scale
@@ -35,8 +35,8 @@ from .toolbar import context_menu, draw_toolbar
 from .wanted import A, B
 
 if TYPE_CHECKING:
+    from ...authoring.preview import Shown
     from ..editor import Editor
-    from ..preview import Shown
 
 TABLE_LINES = 7
 """Always the same, whatever it holds: else the picture would move under the pointer."""

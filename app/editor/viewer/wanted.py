@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ...authoring.preview import Glimpse
 from ...graph import INPUTS, Port
-from ..preview import Glimpse
 from .geometry import Sight
 from .ground import depths
 from .looking import measures

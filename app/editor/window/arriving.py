@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from ...authoring.edits.coding import ENDINGS
 from ...errors import HalationError
 from ...media.sequences import find_sequence
-from ...renderer.reproducing.recipe import has_recipe
+from ...renderer.provenance.recipe import has_recipe
+from ...watch.sequence_files import patterns
 from ..actions.documents import open_graph, open_made
 from ..dialogs import Question
 from ..editor import Editor
-from ..edits.coding import ENDINGS
-from ..services.sequences import patterns
 
 
 def arrived(editor: Editor, paths: Sequence[Path]) -> None:

@@ -7,21 +7,21 @@ from pathlib import Path
 
 from imgui_bundle import imgui
 
+from ...authoring.preview import Preview
+from ...authoring.services.exporting import Exports
+from ...authoring.services.preferences import Store, state_folder
+from ...authoring.services.recovery import Recovery
+from ...authoring.services.renders import Renders
+from ...authoring.session import Session
 from ...graph import Graph
-from ...media.pictures import Pictures
+from ...inputs.provider import Pictures
 from ...renderer import Device, Renderer
 from ...renderer.viewing.display import Display
 from ...renderer.viewing.probe import Probe
+from ...watch.watching import Watcher
 from ..action import Actions
 from ..actions import table
 from ..editor import Editor
-from ..preview import Preview
-from ..services.exporting import Exports
-from ..services.preferences import Store, state_folder
-from ..services.recovery import Recovery
-from ..services.renders import Renders
-from ..services.watching import Watcher
-from ..session import Session
 
 
 class SystemClipboard:

@@ -8,14 +8,14 @@ from pathlib import Path
 
 from ...compiler import installed
 from ...graph import Port
+from ...watch.code_files import code_files
+from ...watch.reloading import NodeFiles, migrated, shader_folder
+from ...watch.sequence_files import all_files
+from ...watch.watching import Change, groups_of, pictures_of
 from ..actions.code import code_changed
 from ..actions.flipbook import follow_flipbook
 from ..dialogs import Question
 from ..editor import Editor
-from ..edits import coding
-from ..services.reloading import NodeFiles, migrated, shader_folder
-from ..services.sequences import all_files
-from ..services.watching import Change, groups_of, pictures_of
 from ..viewer.wanted import glimpse, wanted
 
 FRAME_BUDGET = 0.012
@@ -98,7 +98,7 @@ class Heartbeat:
             all_files(pictures_of(session.root, session.bindings)),
             [shader_folder()],
             [self.nodes.folder],
-            coding.files(session.root),
+            code_files(session.root),
         )
         session.note_code_files()
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+from halation.nodes import Kind
 
-from ....nodes import Kind
 from ... import media
-from ...media.color import NO_VIEW, decode_srgb
+from ...color.transforms import NO_VIEW, decode_srgb
 
 
 def save_screenshot(path: Path, pixels: np.ndarray) -> None:

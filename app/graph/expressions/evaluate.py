@@ -8,7 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
 from typing import NamedTuple
 
-from ....nodes import Plain
+from halation.nodes import Plain
+
 from ...errors import GraphError
 from .fault import ExpressionError
 from .functions import OPERATORS, Function, Made, NoValueError, applied

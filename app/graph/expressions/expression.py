@@ -6,9 +6,9 @@ from collections.abc import Callable
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from halation.nodes import Plain
 from msgspec import Struct
 
-from ....nodes import Plain
 from .fault import ExpressionError
 
 if TYPE_CHECKING:

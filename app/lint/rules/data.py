@@ -6,13 +6,14 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, cast
 
-from ....nodes import Kind
+from halation.nodes import Kind
+
 from ...graph import INPUTS, Port, Problem
 from ...graph.rules import Rule
 from ..sheet import Check, Sheet, is_one_of
 
 if TYPE_CHECKING:
-    from ....nodes.input.read_image import ReadImage
+    from halation.nodes.input.read_image import ReadImage
 
 DATA_AS_COLOR = Rule(
     "data-as-color",

@@ -6,15 +6,16 @@ from collections.abc import Iterator
 from math import hypot
 from typing import TYPE_CHECKING
 
-from ....nodes import Pointwise
+from halation.nodes import Pointwise
+
+from ...custom_nodes import Written
 from ...graph import Port, Problem
 from ...graph.rules import Rule
-from ...written import Written
 from ..sheet import Check, Sheet, is_one_of
 
 if TYPE_CHECKING:
-    from ....nodes.distort.resize import Resize
-    from ....nodes.distort.transform import Transform
+    from halation.nodes.distort.resize import Resize
+    from halation.nodes.distort.transform import Transform
 
 FILTERING_TWICE = Rule(
     "filtering-twice",
@@ -63,9 +64,9 @@ def _picture(sheet: Sheet, id: str, item: Pointwise) -> str:
 
 def _way_out(sheet: Sheet, before: str, between: list[str], id: str) -> str:
     """What to do about two nodes that filter, or nothing where both are needed."""
-    from ....nodes.blur.gaussian_blur import GaussianBlur
-    from ....nodes.distort.resize import Resize
-    from ....nodes.distort.transform import Transform
+    from halation.nodes.blur.gaussian_blur import GaussianBlur
+    from halation.nodes.distort.resize import Resize
+    from halation.nodes.distort.transform import Transform
 
     first, second = sheet.graph.nodes[before], sheet.graph.nodes[id]
     still = sheet.moving.isdisjoint((before, id))

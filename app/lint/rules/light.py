@@ -6,14 +6,15 @@ from collections.abc import Iterator
 from pathlib import PurePath
 from typing import TYPE_CHECKING, cast
 
-from ....nodes import Kind
+from halation.nodes import Kind
+
+from ...custom_nodes import Written
 from ...graph import INPUTS, Group, Port, Problem, signature
 from ...graph.rules import Rule
-from ...written import Written
 from ..sheet import Check, Sheet, is_one_of
 
 if TYPE_CHECKING:
-    from ....nodes.input.read_image import ReadImage
+    from halation.nodes.input.read_image import ReadImage
 
 DISPLAY_LIGHT = Rule(
     "display-light",

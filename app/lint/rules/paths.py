@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import PurePosixPath, PureWindowsPath
 
+from ...custom_nodes import Written
 from ...graph import INPUTS, Graph, Group, Problem, signature
 from ...graph.color import BUILT_IN
 from ...graph.rules import Rule
-from ...written import Written
 from ..sheet import Check, Sheet
 
 ABSOLUTE_PATH = Rule(

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping
 from typing import Any, cast
 
 from ...graph import INPUTS, OUTPUTS, Expression, Problem
+from ...graph.evaluate_at_frame import named
 from ...graph.rules import Rule
-from ...graph.still import named
 from ..sheet import Check, Sheet
 
 UNUSED_BRANCH = Rule(

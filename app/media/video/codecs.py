@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
-from ....nodes import Size
+from halation.nodes import Size
+
 from ...errors import UsageError
 from .library import HOW_TO_INSTALL, library
 

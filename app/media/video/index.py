@@ -18,7 +18,8 @@ from itertools import islice
 from types import MappingProxyType
 from typing import Any
 
-from ....nodes import Size
+from halation.nodes import Size
+
 from ...errors import InputError
 from .library import HOW_TO_INSTALL, library
 

@@ -11,8 +11,8 @@ from types import MappingProxyType
 
 import numpy as np
 
+from ...color.transforms import decode_srgb
 from ...errors import InputError
-from ..color import decode_srgb
 
 Array = np.ndarray
 

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Generic, TypeVar
 
-from ..running.arrays import Arrays
-from ..running.decoding import Array
+from ..execution.arrays import Arrays
+from ..execution.decoding import Array
 
 BEHIND = 2
 """Frames whose results may wait to be written."""

@@ -6,15 +6,17 @@ import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from halation.nodes import Kind, Socket
 from msgspec import Struct
 from msgspec.structs import replace
 
-from ....nodes import Kind, Socket
 from ... import media
-from ...compiler import Picture, Plan, Precision
+from ...color.encoding import Encoding
+from ...compiler import Plan, Precision
 from ...errors import UsageError
 from ...graph import OUTPUTS, Graph, Port, color_settings, did_you_mean
 from ...graph.frames import Pattern, check_numbered, is_video
+from ...resources.picture import Picture
 from ..engine import Wanted
 
 
@@ -22,7 +24,7 @@ class Writing(Struct, frozen=True):
     """Where and how results are written. `files` are pairs of an output's name and a file; "" stands for all outputs.
 
     Without a `view`, outputs are shown as they ask for themselves. `display`, `look` and `space` are those of
-    `media.Encoding`.
+    `Encoding`.
     """
 
     files: Sequence[tuple[str, Path]]
@@ -47,7 +49,7 @@ class Destination(Struct, frozen=True):
     path: Path
     layers: Mapping[str, str]
     kinds: Mapping[str, Kind]
-    encoding: media.Encoding
+    encoding: Encoding
 
     @property
     def view(self) -> str:
@@ -135,9 +137,7 @@ def _destination(graph: Graph, wanted: Wanted, writing: Writing, path: Path, nam
         layers[layer], kinds[layer] = name, _kind(graph, _port(wanted, name))
     first = _port(wanted, names[0]) if names else Port("", "")
     asked = graph.outputs[first.socket].view if first.node == OUTPUTS and not writing.space else ""
-    encoding = media.Encoding(
-        writing.view or asked, writing.display, writing.look, writing.space, color_settings(graph)
-    )
+    encoding = Encoding(writing.view or asked, writing.display, writing.look, writing.space, color_settings(graph))
     return Destination(path, layers, kinds, encoding)
 
 

@@ -11,6 +11,7 @@ from hashlib import blake2b
 from typing import Any
 
 from ... import document, media
+from ...color.management import color_digest
 from ...compiler import Pass, Plan, Target
 from ...errors import HalationError
 from ...graph import Graph
@@ -52,7 +53,7 @@ def header(
     found["halation:version"] = VERSION
     found["halation:renderer"] = target.renderer
     found["halation:settings"] = settings(wanted, target, writing, file, frames if plan.memories else None)
-    if color := media.color_digest(file.encoding.color):
+    if color := color_digest(file.encoding.color):
         found["halation:color"] = color
     for source in sources:
         found |= said(source, hashes)
@@ -101,7 +102,7 @@ def frame_key(
         before = _digest(graph, led, wanted.scale, wanted.size, plan.target.form)
     keys = _content_keys(plan, contents, before)
     pixels = {layer: keys[plan.outputs[name]] for layer, name in file.layers.items()}
-    seen = (file.view, writing.display, writing.look, writing.space, media.color_digest(file.encoding.color))
+    seen = (file.view, writing.display, writing.look, writing.space, color_digest(file.encoding.color))
     how = (file.path.suffix, *seen, writing.compression, writing.precision)
     return _digest(VERSION, sorted(pixels.items()), sorted(file.kinds.items()), how)
 

@@ -19,10 +19,11 @@ from ... import media
 from ...compiler import Pass, Plan
 from ...errors import HalationError, UsageError
 from ...graph import Graph
+from ...resources.atomic_write import sweep
 from ..engine import Renderer, Wanted
+from ..execution.decoding import Array
+from ..frame_renderer import Reel
 from ..opengl.textures import Lease
-from ..reel import Reel
-from ..running.decoding import Array
 from .behind import Behind
 from .destinations import Destination, Writing, check, destinations, halves
 from .header import frame_key, header, is_marked, is_written, whole
@@ -156,7 +157,7 @@ class _Job:
             )
         if self._resume:
             for folder in {file.path.parent for files in self._files.values() for file in files}:
-                media.sweep(folder)
+                sweep(folder)
         todo = deque(self._frames)
         task = self._next(todo)
         if task is not None:

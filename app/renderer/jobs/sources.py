@@ -13,15 +13,18 @@ from typing import TYPE_CHECKING
 from msgspec import Struct, field
 
 from ... import media
-from ...compiler import Picture, Plan, named_files
+from ...compiler import Plan, named_files
 from ...compiler.lowering.named import CONFIG, path_texts
 from ...errors import HalationError
 from ...graph import INPUTS, OUTPUTS, Graph
 from ...graph.frames import format_frames
+from ...resources.input_files import content_hash, fingerprint
+from ...resources.picture import Picture
 
 if TYPE_CHECKING:
-    from ....nodes import Missing
-    from ...media.pictures import Pictures
+    from halation.nodes import Missing
+
+    from ...inputs.provider import Pictures
 
 
 class Source(Struct, frozen=True):
@@ -76,9 +79,9 @@ class Hashes:
         self._pool.shutdown(wait=False, cancel_futures=True)
 
     def _begun(self, path: str) -> Future[str]:
-        key = (path, media.fingerprint(path))
+        key = (path, fingerprint(path))
         if key not in self._found:
-            self._found[key] = self._pool.submit(media.content_hash, path)
+            self._found[key] = self._pool.submit(content_hash, path)
         return self._found[key]
 
 

@@ -10,15 +10,15 @@ from math import ceil
 from pathlib import Path
 
 import numpy as np
+from halation.nodes import Kind, Socket
 from msgspec import structs
 
-from ....nodes import Kind, Socket
 from ...errors import UsageError
 from ...graph import OUTPUTS, Graph, Port
 from ...media.sheet import data_shown, grid_sheet, grouped_sheet, shown_over_checker
 from ..engine import Renderer, Wanted
-from ..reel import Reel
-from ..running.decoding import Array
+from ..execution.decoding import Array
+from ..frame_renderer import Reel
 from .destinations import Writing
 from .job import run_job
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ... import media
-from ..running.decoding import Array
+from ..execution.decoding import Array
 from .destinations import Destination, Writing
 
 if TYPE_CHECKING:

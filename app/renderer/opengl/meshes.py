@@ -6,7 +6,7 @@ import moderngl
 import numpy as np
 from msgspec import Struct
 
-from ...compiler import ATTRIBUTES, Mesh
+from ...resources.mesh import ATTRIBUTES, Mesh
 
 MAX_MESHES = 16
 

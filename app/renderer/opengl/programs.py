@@ -13,8 +13,8 @@ import numpy as np
 from msgspec import Struct, field
 
 from ...compiler import FIRST_TABLE, Pass, Shader
+from ...custom_nodes import unprefixed
 from ...errors import ShaderError
-from ...written import unprefixed
 
 # Mesa: "2:14(5): error: ...", NVIDIA: "2(14) : error ...", Apple and AMD: "ERROR: 2:14: ..."
 _FAULT = re.compile(r"(?:ERROR:\s*)?(\d+)(?::(\d+)(?:\(\d+\))?|\((\d+)\))\s*:\s*(.*)")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import moderngl
 import numpy as np
 
-from ...compiler import Table
+from ...resources.color_program import Table
 
 MAX_TABLES = 64
 

@@ -8,7 +8,7 @@ from typing import Protocol, get_args
 
 import moderngl
 
-from ...media import color_mark
+from ...color.management import color_mark
 from ..opengl.device import Device
 from .look import Channels, Look, Meaning, Point, Size, origin
 from .view_programs import Seen, ViewProgram, ViewPrograms

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
-from ....nodes import ColorSettings
+from halation.nodes import ColorSettings
 
 Channels = Literal["color", "red", "green", "blue", "alpha", "luminance", "false color"]
 Meaning = Literal["image", "field", "vector", "normal"]

@@ -13,9 +13,9 @@ from ...compiler import installed
 from ...errors import UsageError
 from ...graph import INPUTS, Graph, Port
 from ..engine import Renderer, Wanted
+from ..execution.decoding import Array
 from ..opengl.device import Device
 from ..opengl.programs import VERTEX, undisturbed
-from ..running.decoding import Array
 
 Rect = tuple[int, int, int, int]
 """x, y, width, height in pixels of the texture, row 0 on top."""

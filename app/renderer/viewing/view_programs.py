@@ -6,11 +6,14 @@ from dataclasses import dataclass
 from typing import cast, get_args
 
 import moderngl
+from halation.nodes import ColorSettings
 
-from ....nodes import ColorSettings
-from ...compiler import ColorProgram, Library, installed, library_for
+from ...color.gpu_programs import gpu_view
+from ...color.management import color_mark
+from ...color.primaries import working_of
+from ...compiler import Library, installed, library_for
 from ...errors import DeviceError
-from ...media import color_mark, gpu_view, working_of
+from ...resources.color_program import ColorProgram
 from ..opengl.programs import VERTEX, undisturbed
 from ..opengl.tables import table_texture
 from .look import Channels, Compare, Meaning

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.app.editor.canvas.geometry import (
+from halation.editor.canvas.geometry import (
     bounds,
     crossed,
     crossing,

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.editor.canvas.entries import GROUP, found, graph_entries, narrowed, node_entries
-from halation.app.editor.canvas.gestures import (
+from halation.authoring.edits.decor import add_frame
+from halation.authoring.edits.layout import pinned, positions
+from halation.editor.canvas.entries import GROUP, found, graph_entries, narrowed, node_entries
+from halation.editor.canvas.gestures import (
     Link,
     Move,
     Resize,
@@ -18,11 +20,9 @@ from halation.app.editor.canvas.gestures import (
     shown,
     touched,
 )
-from halation.app.editor.canvas.scene import Scene
-from halation.app.editor.canvas.staging import Stage, comment_height
-from halation.app.editor.edits.decor import add_frame
-from halation.app.editor.edits.layout import pinned, positions
-from halation.app.graph import Graph, Input, Output, Port, Unknown
+from halation.editor.canvas.scene import Scene
+from halation.editor.canvas.staging import Stage, comment_height
+from halation.graph import Graph, Input, Output, Port, Unknown
 from halation.nodes import catalogue
 
 from gui_canvas import chain  # isort: skip

@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 
 import pytest
-from halation.app.editor.curves import editing
-from halation.app.editor.curves.copying import copied, pasted, read
-from halation.app.editor.curves.gestures import Bend, Move, Scale
-from halation.app.editor.curves.rows import limits, rows, spots_of
-from halation.app.editor.curves.state import CurvesState
-from halation.app.errors import UsageError
-from halation.app.graph import Expression, Graph, Key, Keys, Port
+from halation.editor.curves import editing
+from halation.editor.curves.copying import copied, pasted, read
+from halation.editor.curves.gestures import Bend, Move, Scale
+from halation.editor.curves.rows import limits, rows, spots_of
+from halation.editor.curves.state import CurvesState
+from halation.errors import UsageError
+from halation.graph import Expression, Graph, Key, Keys, Port
 from toy_nodes import Gain, Soften
 
 GAIN, TINT, STEPS, CLAMP = (Port("gain", name) for name in ("gain", "tint", "steps", "clamp"))

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from halation.app.editor.curves.bundle import Bundles
-from halation.app.editor.curves.hits import Entries, boxed, line_at, nearest, sheet_marks, tips
-from halation.app.editor.curves.plane import Plane, View
-from halation.app.editor.curves.rows import rows
-from halation.app.graph import Graph, Key, Keys, Port
+from halation.editor.curves.bundle import Bundles
+from halation.editor.curves.hits import Entries, boxed, line_at, nearest, sheet_marks, tips
+from halation.editor.curves.plane import Plane, View
+from halation.editor.curves.rows import rows
+from halation.graph import Graph, Key, Keys, Port
 from toy_nodes import Gain
 
 GAIN, TINT = Port("gain", "gain"), Port("gain", "tint")

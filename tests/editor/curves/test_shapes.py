@@ -6,9 +6,9 @@ import itertools
 
 import numpy as np
 import pytest
-from halation.app.editor.curves.plane import Plane, View, ticks
-from halation.app.editor.curves.shapes import Samples, dashes, heights, outside, pieces, points
-from halation.app.graph import Expression, Graph, Key, Keys, Port, Settings
+from halation.editor.curves.plane import Plane, View, ticks
+from halation.editor.curves.shapes import Samples, dashes, heights, outside, pieces, points
+from halation.graph import Expression, Graph, Key, Keys, Port, Settings
 from toy_nodes import Gain
 
 HOW = ("constant", "linear", "smooth", "bezier")

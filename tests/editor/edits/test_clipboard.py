@@ -6,14 +6,14 @@ import json
 from dataclasses import replace
 
 import pytest
-from halation.app.document import dumps
-from halation.app.editor.edits.clipboard import copied, part, pasted, read
-from halation.app.editor.edits.decor import add_comment, add_frame
-from halation.app.editor.edits.layout import pinned, positions
-from halation.app.editor.edits.naming import copy_of
-from halation.app.editor.edits.routes import add_dot, routes
-from halation.app.errors import DocumentError, GraphError
-from halation.app.graph import Control, Graph, Input, Output, Port
+from halation.authoring.edits.clipboard import copied, part, pasted, read
+from halation.authoring.edits.decor import add_comment, add_frame
+from halation.authoring.edits.layout import pinned, positions
+from halation.authoring.edits.naming import copy_of
+from halation.authoring.edits.routes import add_dot, routes
+from halation.document import dumps
+from halation.errors import DocumentError, GraphError
+from halation.graph import Control, Graph, Input, Output, Port
 from halation.nodes import Kind
 from toy_nodes import TOYS, Gain, Photo, chain
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from halation.app.editor.edits.elements import entry
-from halation.app.editor.edits.folding import borrowed, check_depth, folded, inside, reread
-from halation.app.editor.edits.grouping import grouped
-from halation.app.editor.edits.layout import pinned
-from halation.app.editor.edits.routes import add_dot, routes
-from halation.app.editor.edits.ungrouping import ungrouped
-from halation.app.errors import GraphError
-from halation.app.graph import Control, Graph, Group, Input, Output, Port, Unknown
+from halation.authoring.edits.elements import entry
+from halation.authoring.edits.folding import borrowed, check_depth, folded, inside, reread
+from halation.authoring.edits.grouping import grouped
+from halation.authoring.edits.layout import pinned
+from halation.authoring.edits.routes import add_dot, routes
+from halation.authoring.edits.ungrouping import ungrouped
+from halation.errors import GraphError
+from halation.graph import Control, Graph, Group, Input, Output, Port, Unknown
 from halation.nodes import Kind
 from toy_nodes import Blend, Flow, Gain, Meter, Photo, Slope, Soften, Split, chain
 

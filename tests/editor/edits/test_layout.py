@@ -5,16 +5,16 @@ from __future__ import annotations
 from itertools import combinations
 
 import pytest
-from halation.app.editor.edits.align import aligned
-from halation.app.editor.edits.arranging import arranged
-from halation.app.editor.edits.decor import add_frame, frame_members
-from halation.app.editor.edits.elements import keys, with_places
-from halation.app.editor.edits.layers import drawn, layer_numbers
-from halation.app.editor.edits.layout import element_links, pinned, positions, uncovered
-from halation.app.editor.edits.routes import add_dot
-from halation.app.editor.edits.sizes import size
-from halation.app.errors import GraphError
-from halation.app.graph import Graph, Port
+from halation.authoring.edits.align import aligned
+from halation.authoring.edits.arranging import arranged
+from halation.authoring.edits.decor import add_frame, frame_members
+from halation.authoring.edits.elements import keys, with_places
+from halation.authoring.edits.layers import drawn, layer_numbers
+from halation.authoring.edits.layout import element_links, pinned, positions, uncovered
+from halation.authoring.edits.routes import add_dot
+from halation.authoring.edits.sizes import size
+from halation.errors import GraphError
+from halation.graph import Graph, Port
 from random_graphs import random_graph
 from toy_nodes import Blend, Gain, Meter, chain
 

@@ -5,16 +5,17 @@ from __future__ import annotations
 from random import Random
 
 import pytest
-from halation.app.compiler import Picture, Request, compile_graph
-from halation.app.document import dumps, loads
-from halation.app.editor.edits import clipboard, paths, wiring
-from halation.app.editor.edits.grouping import grouped
-from halation.app.editor.edits.layout import pinned, positions
-from halation.app.editor.edits.room import roomy
-from halation.app.editor.edits.ungrouping import ungrouped
-from halation.app.errors import GraphError
-from halation.app.graph import Control, Graph, Group, Port, signature
+from halation.authoring.edits import clipboard, paths, wiring
+from halation.authoring.edits.grouping import grouped
+from halation.authoring.edits.layout import pinned, positions
+from halation.authoring.edits.room import roomy
+from halation.authoring.edits.ungrouping import ungrouped
+from halation.compiler import Request, compile_graph
+from halation.document import dumps, loads
+from halation.errors import GraphError
+from halation.graph import Control, Graph, Group, Port, signature
 from halation.nodes import catalogue
+from halation.resources.picture import Picture
 from headers import Headers
 from random_graphs import SIZE, random_graph
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.document import dumps, loads
-from halation.app.editor.edits import timing
-from halation.app.editor.edits.clipboard import copied
-from halation.app.editor.session import Session
-from halation.app.errors import GraphError
-from halation.app.graph import Control, Expression, Graph, Keys, Output, Port, problems, still
+from halation.authoring.edits import timing
+from halation.authoring.edits.clipboard import copied
+from halation.authoring.session import Session
+from halation.document import dumps, loads
+from halation.errors import GraphError
+from halation.graph import Control, Expression, Graph, Keys, Output, Port, problems, still
 from toy_nodes import TOYS, Gain
 
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.editor.edits import routes, wiring
-from halation.app.editor.edits.decor import add_frame
-from halation.app.editor.edits.elements import keys, with_places
-from halation.app.editor.edits.layout import pinned, positions
-from halation.app.editor.edits.room import MARGIN, roomy
-from halation.app.errors import GraphError
-from halation.app.graph import Graph, Input, Output, Port, Unknown
+from halation.authoring.edits import routes, wiring
+from halation.authoring.edits.decor import add_frame
+from halation.authoring.edits.elements import keys, with_places
+from halation.authoring.edits.layout import pinned, positions
+from halation.authoring.edits.room import MARGIN, roomy
+from halation.errors import GraphError
+from halation.graph import Graph, Input, Output, Port, Unknown
 from halation.nodes import Kind
 from toy_nodes import Blend, Flow, Gain, Meter, Photo, Slope, Soften, Split, chain
 

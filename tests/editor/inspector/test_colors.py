@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.app.editor.inspector.colors import (
+from halation.color.transforms import decode_srgb
+from halation.editor.inspector.colors import (
     brightened,
     decode,
     dimmed,
@@ -15,8 +16,7 @@ from halation.app.editor.inspector.colors import (
     picked,
     swatch,
 )
-from halation.app.errors import UsageError
-from halation.app.media.color import decode_srgb
+from halation.errors import UsageError
 from hypothesis import given
 from hypothesis import strategies as st
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.editor.inspector.applying import apply, as_text, common, from_text, reset
-from halation.app.editor.inspector.fields import Edit, Fields
-from halation.app.editor.session import Session
-from halation.app.editor.theme.palette import DARK
-from halation.app.errors import HalationError, UsageError
-from halation.app.graph import Graph, Port, Unknown
+from halation.authoring.session import Session
+from halation.editor.inspector.applying import apply, as_text, common, from_text, reset
+from halation.editor.inspector.fields import Edit, Fields
+from halation.editor.theme.palette import DARK
+from halation.errors import HalationError, UsageError
+from halation.graph import Graph, Port, Unknown
 from toy_nodes import TOYS, Blend, Gain, Soften
 
 GAIN = Gain.values["gain"]

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from halation.app.editor.inspector.layers import Layers, described, small_picture
-from halation.app.media import ImageInfo, info, write
+from halation.editor.inspector.layers import Layers, described, small_picture
+from halation.media import ImageInfo, info, write
 from halation.nodes import Kind
 
 
@@ -64,7 +64,7 @@ def test_a_damaged_file_is_a_sentence(layers, tmp_path):
 
 
 def test_another_file_under_the_same_name_is_read_again(layers, picture, monkeypatch):
-    monkeypatch.setattr("halation.app.editor.services.versions.LOOK_AGAIN", 0.0)
+    monkeypatch.setattr("halation.watch.versions.LOOK_AGAIN", 0.0)
     before = waited(lambda: layers.header(picture))
     write(picture, {"new": np.zeros((2, 3, 4), np.float32)}, kinds={"new": Kind.IMAGE})
     after = waited(lambda: layers.header(picture))

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.editor.inspector.fields import Fields
-from halation.app.editor.inspector.lights import (
+from halation.editor.inspector.fields import Fields
+from halation.editor.inspector.lights import (
     PARTS,
     added,
     changed,
@@ -19,9 +19,9 @@ from halation.app.editor.inspector.lights import (
     title,
     turned,
 )
-from halation.app.editor.inspector.lights_field import selected
-from halation.app.editor.theme.palette import DARK
-from halation.app.graph.values import value_fault
+from halation.editor.inspector.lights_field import selected
+from halation.editor.theme.palette import DARK
+from halation.graph.values import value_fault
 from halation.nodes import MAX_LIGHTS, Light, LightKind, lights_of, numbers_of
 from hypothesis import given
 from hypothesis import strategies as st

@@ -5,9 +5,9 @@ from __future__ import annotations
 import ast
 
 import pytest
-from halation.app.editor.inspector.arithmetic import evaluate
-from halation.app.editor.inspector.numbers import Drag, bar, described, editable, shortened, shown, step, stepped, typed
-from halation.app.errors import UsageError
+from halation.editor.inspector.arithmetic import evaluate
+from halation.editor.inspector.numbers import Drag, bar, described, editable, shortened, shown, step, stepped, typed
+from halation.errors import UsageError
 from halation.nodes import Value
 from hypothesis import given
 from hypothesis import strategies as st

@@ -3,17 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.editor.inspector.points import (
-    CURVES,
-    RAMPS,
-    added,
-    changed,
-    inverted,
-    nearest,
-    removed,
-    scaled,
-)
-from halation.app.graph.values import value_fault
+from halation.editor.inspector.points import CURVES, RAMPS, added, changed, inverted, nearest, removed, scaled
+from halation.graph.values import value_fault
 from hypothesis import given
 from hypothesis import strategies as st
 from toy_nodes import Tint

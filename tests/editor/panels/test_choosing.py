@@ -7,16 +7,16 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from halation.app.editor.dialogs import Browse
-from halation.app.editor.panels.browsing import Browsing, begun, size_text
-from halation.app.editor.panels.export_form import Form
-from halation.app.editor.panels.export_words import title
-from halation.app.editor.panels.opening_folders import command, show_folder
-from halation.app.editor.services.exporting import Exports, Options
-from halation.app.editor.services.preferences import Store
-from halation.app.editor.session import Session
-from halation.app.editor.timeline.state import TimelineState
-from halation.app.errors import UsageError
+from halation.authoring.services.exporting import Exports, Options
+from halation.authoring.services.preferences import Store
+from halation.authoring.session import Session
+from halation.editor.dialogs import Browse
+from halation.editor.panels.browsing import Browsing, begun, size_text
+from halation.editor.panels.export_form import Form
+from halation.editor.panels.export_words import title
+from halation.editor.panels.opening_folders import command, show_folder
+from halation.editor.timeline.state import TimelineState
+from halation.errors import UsageError
 from halation.presets import paths
 
 PRESET = next(path for path in paths() if path.stem == "soft_bloom")

@@ -6,13 +6,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
-from halation.app.editor.panels.export_form import Form
-from halation.app.editor.panels.export_words import aim_text, exist_text, time_text
-from halation.app.editor.services.exporting import Exports
-from halation.app.editor.services.preferences import Store
-from halation.app.editor.session import Session
-from halation.app.editor.timeline.state import TimelineState
-from halation.app.errors import UsageError
+from halation.authoring.services.exporting import Exports
+from halation.authoring.services.preferences import Store
+from halation.authoring.session import Session
+from halation.editor.panels.export_form import Form
+from halation.editor.panels.export_words import aim_text, exist_text, time_text
+from halation.editor.timeline.state import TimelineState
+from halation.errors import UsageError
 from halation.presets import paths
 
 PRESET = next(path for path in paths() if path.stem == "soft_bloom")

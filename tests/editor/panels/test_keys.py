@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.editor.keys import chord, shown, text
-from halation.app.errors import UsageError
+from halation.editor.keys import chord, shown, text
+from halation.errors import UsageError
 from imgui_bundle import imgui
 
 

@@ -6,9 +6,9 @@ import os
 from pathlib import Path
 
 import pytest
-from halation.app.editor.panels.listing import Item, Listing, arranged, make_folder, read_folder
-from halation.app.editor.panels.places import completed, drives, places
-from halation.app.errors import InputError
+from halation.editor.panels.listing import Item, Listing, arranged, make_folder, read_folder
+from halation.editor.panels.places import completed, drives, places
+from halation.errors import InputError
 
 
 def item(name: str, is_folder: bool = False, size: int = 0, time: float = 0.0) -> Item:

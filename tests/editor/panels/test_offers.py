@@ -7,17 +7,17 @@ from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
-from halation.app.editor.action import Action, Actions
-from halation.app.editor.actions import table
-from halation.app.editor.editor import Editor
-from halation.app.editor.keys import chord, text
-from halation.app.editor.panels.commands import commands, ranked
-from halation.app.editor.panels.findings import findings, show
-from halation.app.editor.panels.shortcut_groups import columns, condensed, groups
-from halation.app.editor.panels.taking_over import assigned, reset, taken_over
-from halation.app.editor.services.preferences import Store
-from halation.app.editor.session import Session
-from halation.app.graph import Port
+from halation.authoring.services.preferences import Store
+from halation.authoring.session import Session
+from halation.editor.action import Action, Actions
+from halation.editor.actions import table
+from halation.editor.editor import Editor
+from halation.editor.keys import chord, text
+from halation.editor.panels.commands import commands, ranked
+from halation.editor.panels.findings import findings, show
+from halation.editor.panels.shortcut_groups import columns, condensed, groups
+from halation.editor.panels.taking_over import assigned, reset, taken_over
+from halation.graph import Port
 from halation.presets import paths
 
 PRESET = next(path for path in paths() if path.stem == "soft_bloom")

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from halation.app.editor.panels.pictures import Pictures
-from halation.app.errors import InputError
-from halation.app.media import write
-from halation.app.media.thumbnail import load_thumbnail, readable, save_thumbnail, thumbnail
+from halation.editor.panels.pictures import Pictures
+from halation.errors import InputError
+from halation.media import write
+from halation.media.thumbnail import load_thumbnail, readable, save_thumbnail, thumbnail
 from halation.nodes import Kind
 
 

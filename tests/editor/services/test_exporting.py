@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from exr_files import write_exr
-from halation.app.editor.services.exporting import Exports, Options
-from halation.app.errors import UsageError
-from halation.app.graph import Expression, Graph, Group, Input, Output, Port, Settings
-from halation.app.media import read
+from halation.authoring.services.exporting import Exports, Options
+from halation.errors import UsageError
+from halation.graph import Expression, Graph, Group, Input, Output, Port, Settings
+from halation.media import read
 from halation.nodes import Kind, catalogue
 
 LEVEL = 0.5
@@ -123,7 +123,8 @@ def test_cancelling_leaves_nothing(exports, folder, tmp_path, passes):
 def test_one_that_does_not_listen_is_killed_and_its_part_removed(exports, folder, tmp_path, monkeypatch):
     """A render that is stuck while it writes."""
     code = (
-        "import os, signal, sys, time; from pathlib import Path; from halation.app.resources.atomic_write import part_prefix;"
+        "import os, signal, sys, time; from pathlib import Path; from halation.resources.atomic_write import "
+        "part_prefix;"
         "signal.signal(signal.SIGINT, signal.SIG_IGN); Path(part_prefix(os.getpid()) + 'x.exr').touch();"
         "print('ready', file=sys.stderr, flush=True); time.sleep(60)"
     )

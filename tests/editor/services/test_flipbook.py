@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from halation.app.editor.services.export import Export, Job
-from halation.app.editor.services.flipbook import Flipbook, Strip
-from halation.app.errors import InputError
-from halation.app.graph import OUTPUTS, Graph, Output, Port
+from halation.authoring.services.export import Export, Job
+from halation.authoring.services.flipbook import Flipbook, Strip
+from halation.errors import InputError
+from halation.graph import OUTPUTS, Graph, Output, Port
 
 
 @pytest.fixture

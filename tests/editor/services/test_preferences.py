@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 
 import pytest
-from halation.app.editor.services.preferences import Preferences, Store, state_folder
-from halation.app.errors import UsageError
+from halation.authoring.services.preferences import Preferences, Store, state_folder
+from halation.errors import UsageError
 
 
 @pytest.fixture

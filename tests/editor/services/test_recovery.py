@@ -10,10 +10,10 @@ import time
 from pathlib import Path
 
 import pytest
-from halation.app import document
-from halation.app.editor.services.recovery import Recovery
-from halation.app.errors import DocumentError
-from halation.app.graph import Graph, Group, Input
+from halation import document
+from halation.authoring.services.recovery import Recovery
+from halation.errors import DocumentError
+from halation.graph import Graph, Group, Input
 from halation.nodes import catalogue
 
 FAST = 0.02
@@ -209,9 +209,9 @@ def test_leftovers_of_ended_editors_are_tidied(editor, tmp_path):
 SCRIPT = """
 import itertools, sys, time
 from pathlib import Path
-from halation.app import document
-from halation.app.editor.services.recovery import Recovery
-from halation.app.graph import Graph
+from halation import document
+from halation.authoring.services.recovery import Recovery
+from halation.graph import Graph
 from halation.nodes import catalogue
 
 folder, path = Path(sys.argv[1]), Path(sys.argv[2])

@@ -10,17 +10,17 @@ from pathlib import Path
 from typing import Annotated
 
 import pytest
-from halation.app.editor.services.reloading import migrated, shader_folder
-from halation.app.graph import Graph, Group, Port, Unknown
+from halation.graph import Graph, Group, Port, Unknown
 from halation.nodes import Image, Pointwise, Slider, catalogue
+from halation.watch.reloading import migrated, shader_folder
 
 ROOT = Path(__file__).parents[3]
 
 BEGIN = """
 from pathlib import Path
-from halation.app import document
-from halation.app.editor.services.reloading import NodeFiles, migrated
-from halation.app.graph import Graph, Unknown
+from halation import document
+from halation.watch.reloading import NodeFiles, migrated
+from halation.graph import Graph, Unknown
 from halation.nodes import Node, catalogue
 
 files, before = NodeFiles(), catalogue()

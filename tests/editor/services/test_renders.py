@@ -6,13 +6,13 @@ import time
 from pathlib import Path
 
 import pytest
-from halation.app.editor.services.renders import Pending, Renders
-from halation.app.errors import InputError
-from halation.app.media.mattes import IdMap
-from halation.app.media.naming import Role
-from halation.app.media.overview import Overview
+from halation.authoring.services.renders import Pending, Renders
+from halation.errors import InputError
 from halation.nodes import Render
 from halation.presets import sample
+from halation.render_layers.mattes import IdMap
+from halation.render_layers.naming import Role
+from halation.render_layers.overview import Overview
 
 NEON = Path(str(sample()))
 

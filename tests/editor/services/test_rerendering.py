@@ -10,12 +10,12 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from halation.app.compiler import installed
-from halation.app.editor.services import rerendering
-from halation.app.editor.services.rerendering import Rerendering
-from halation.app.errors import GraphError, RenderError
-from halation.app.graph import Graph, Input
-from halation.app.renderer.jobs.job import Report
+from halation.compiler import installed
+from halation.errors import GraphError, RenderError
+from halation.graph import Graph, Input
+from halation.renderer.jobs.job import Report
+from halation.watch import rerendering
+from halation.watch.rerendering import Rerendering
 
 FAULT = "nodes/blur/some.py, line 3: it is broken; all nodes stay as they were"
 DONE = Report((), 1, 0, 0, {})

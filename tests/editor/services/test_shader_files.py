@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from halation.app.editor.canvas.entries import shader_entries
-from halation.app.editor.services.shader_files import ShaderFile, ShaderFiles
+from halation.authoring.services.shader_files import ShaderFile, ShaderFiles
+from halation.editor.canvas.entries import shader_entries
 
 
 def put(path: Path, **head: object) -> None:

@@ -8,11 +8,11 @@ import time
 from pathlib import Path
 
 import pytest
-from halation.app import document
-from halation.app.editor.services import watching
-from halation.app.editor.services.watching import Change, Watcher, pictures_of
-from halation.app.graph import Graph, Group, Input, Port
+from halation import document
+from halation.graph import Graph, Group, Input, Port
 from halation.nodes import catalogue
+from halation.watch import watching
+from halation.watch.watching import Change, Watcher, pictures_of
 
 
 @pytest.fixture(params=["told", "compared"])

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.editor.session import Session
-from halation.app.errors import GraphError
-from halation.app.graph import Expression, Keys, Port
+from halation.authoring.session import Session
+from halation.errors import GraphError
+from halation.graph import Expression, Keys, Port
 from toy_nodes import TOYS, Gain, chain
 
 

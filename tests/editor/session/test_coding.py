@@ -5,14 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from halation.app.document import dumps, loads
-from halation.app.editor.edits import coding
-from halation.app.editor.edits.coding import Broken
-from halation.app.editor.session import Session
-from halation.app.errors import GraphError
-from halation.app.graph import Graph, Input, Keys, Output, Port, Unknown
-from halation.app.graph.paths import rebased
-from halation.app.written import Written
+from halation.authoring.edits import coding
+from halation.authoring.edits.coding import Broken
+from halation.authoring.session import Session
+from halation.custom_nodes import Written
+from halation.document import dumps, loads
+from halation.errors import GraphError
+from halation.graph import Graph, Input, Keys, Output, Port, Unknown
+from halation.graph.paths import rebased
 
 GAIN = 'vec4 gain(vec4 image, float k // = 2, 0..4, "How Much"\n) { return image * k; }'
 HEAD = '/*{"ISFVSN": "2", "INPUTS": [{"NAME": "inputImage", "TYPE": "image"}]}*/'

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 from halation import presets
-from halation.app.document import dumps, load
-from halation.app.editor.session import Session
-from halation.app.errors import DocumentError, GraphError, HalationError, OutputError, UsageError
-from halation.app.graph import Graph, Group, Input, Output, Port
+from halation.authoring.session import Session
+from halation.document import dumps, load
+from halation.errors import DocumentError, GraphError, HalationError, OutputError, UsageError
+from halation.graph import Graph, Group, Input, Output, Port
 from halation.presets import sample
 from toy_nodes import TOYS, Gain, Photo, Soften, chain
 

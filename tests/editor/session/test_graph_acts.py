@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 from halation import presets
-from halation.app.document import load
-from halation.app.editor.session import Session
-from halation.app.errors import GraphError
-from halation.app.graph import Control, Graph, Group, Input, Port
+from halation.authoring.session import Session
+from halation.document import load
+from halation.errors import GraphError
+from halation.graph import Control, Graph, Group, Input, Port
 from halation.nodes import Kind
 from toy_nodes import TOYS, Gain, chain
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from halation.app.editor.session import Session, history
-from halation.app.errors import GraphError
-from halation.app.graph import Graph, Port
+from halation.authoring.session import Session, history
+from halation.errors import GraphError
+from halation.graph import Graph, Port
 from toy_nodes import TOYS, chain
 
 

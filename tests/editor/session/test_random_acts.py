@@ -8,12 +8,12 @@ from pathlib import Path
 from random import Random
 
 import pytest
-from halation.app.document import dumps, loads
-from halation.app.editor.edits.align import Side
-from halation.app.editor.edits.elements import keys, place
-from halation.app.editor.session import Session
-from halation.app.errors import HalationError
-from halation.app.graph import Graph, Group, Keys, Port, problems, signature
+from halation.authoring.edits.align import Side
+from halation.authoring.edits.elements import keys, place
+from halation.authoring.session import Session
+from halation.document import dumps, loads
+from halation.errors import HalationError
+from halation.graph import Graph, Group, Keys, Port, problems, signature
 from halation.nodes import Kind
 from toy_nodes import TOYS, random_graph, random_value
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.compiler import Picture, Request, compile_graph
-from halation.app.editor.session import Session
-from halation.app.errors import GraphError
-from halation.app.graph import Graph, Input, Output, Port
+from halation.authoring.session import Session
+from halation.compiler import Request, compile_graph
+from halation.errors import GraphError
+from halation.graph import Graph, Input, Output, Port
 from halation.nodes import catalogue
+from halation.resources.picture import Picture
 from headers import Headers
 from toy_nodes import TOYS, chain
 

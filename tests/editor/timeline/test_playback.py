@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import pytest
-from halation.app.editor.session import Session
-from halation.app.editor.timeline.playback import Course, Playback
-from halation.app.editor.timeline.state import TimelineState
+from halation.authoring.session import Session
+from halation.editor.timeline.playback import Course, Playback
+from halation.editor.timeline.state import TimelineState
 from toy_nodes import TOYS
 
 

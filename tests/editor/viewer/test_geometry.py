@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from halation.app.editor.viewer.geometry import (
+from halation.editor.viewer.geometry import (
     Sight,
     box_dragged,
     box_grip,

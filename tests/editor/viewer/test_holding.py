@@ -4,14 +4,14 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from halation.app.editor.session import Session
-from halation.app.editor.viewer.geometry import Sight
-from halation.app.editor.viewer.handles import handles
-from halation.app.editor.viewer.holding import ARM, Hold, aim
-from halation.app.editor.viewer.lights import MOST, lamps
-from halation.app.editor.viewer.perspective import project, unproject
-from halation.app.editor.viewer.state import ViewerState
-from halation.app.graph import Port
+from halation.authoring.session import Session
+from halation.editor.viewer.geometry import Sight
+from halation.editor.viewer.handles import handles
+from halation.editor.viewer.holding import ARM, Hold, aim
+from halation.editor.viewer.lights import MOST, lamps
+from halation.editor.viewer.perspective import project, unproject
+from halation.editor.viewer.state import ViewerState
+from halation.graph import Port
 from halation.nodes import (
     Filter,
     Image,

@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from halation.app.editor.session import Session
-from halation.app.editor.viewer.dome import direction_at, direction_of, flat, knob_of, middle_of
-from halation.app.editor.viewer.geometry import Sight
-from halation.app.editor.viewer.holding import Hold, aim
-from halation.app.editor.viewer.lamp_lines import cone, sides
-from halation.app.editor.viewer.lights import Lamp, add, can_add, can_remove, lamps, put, remove, suns
-from halation.app.editor.viewer.perspective import project
-from halation.app.editor.viewer.state import ViewerState
-from halation.app.graph import Port
+from halation.authoring.session import Session
+from halation.editor.viewer.dome import direction_at, direction_of, flat, knob_of, middle_of
+from halation.editor.viewer.geometry import Sight
+from halation.editor.viewer.holding import Hold, aim
+from halation.editor.viewer.lamp_lines import cone, sides
+from halation.editor.viewer.lights import Lamp, add, can_add, can_remove, lamps, put, remove, suns
+from halation.editor.viewer.perspective import project
+from halation.editor.viewer.state import ViewerState
+from halation.graph import Port
 from halation.nodes import (
     MAX_LIGHTS,
     Field,

@@ -5,17 +5,17 @@ from typing import Any
 
 import numpy as np
 import pytest
-from halation.app.editor.session import Session
-from halation.app.editor.viewer.geometry import Sight
-from halation.app.editor.viewer.looking import asked_view, displayed, look_of, meaning_of, picture_only, range_of
-from halation.app.editor.viewer.measuring import picked_color
-from halation.app.editor.viewer.picking import ports_of, title
-from halation.app.editor.viewer.state import ViewerState
-from halation.app.editor.viewer.wanted import wanted
-from halation.app.graph import Graph, Output, Port
-from halation.app.media import to_display
-from halation.app.renderer.viewing.look import Look
+from halation.authoring.session import Session
+from halation.color.transforms import to_display
+from halation.editor.viewer.geometry import Sight
+from halation.editor.viewer.looking import asked_view, displayed, look_of, meaning_of, picture_only, range_of
+from halation.editor.viewer.measuring import picked_color
+from halation.editor.viewer.picking import ports_of, title
+from halation.editor.viewer.state import ViewerState
+from halation.editor.viewer.wanted import wanted
+from halation.graph import Graph, Output, Port
 from halation.nodes import Kind
+from halation.renderer.viewing.look import Look
 
 SIGHT = Sight((0.0, 0.0), (800, 400), (400, 200), zoom=2.0, pan=(3.0, 4.0))
 

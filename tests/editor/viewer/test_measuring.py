@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from halation.app.editor.viewer import measuring
+from halation.editor.viewer import measuring
 
 
 def test_statistics_leave_out_what_is_not_finite() -> None:

@@ -9,15 +9,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-from halation.app.editor.session import Session
-from halation.app.editor.viewer.axes import axes
-from halation.app.editor.viewer.geometry import Sight
-from halation.app.editor.viewer.holding import Aim, Hold, aim
-from halation.app.editor.viewer.orbit import Orbit, frame_scene, orbited, without_surroundings
-from halation.app.editor.viewer.perspective import project, unproject
-from halation.app.editor.viewer.state import ViewerState
-from halation.app.graph import INPUTS, Input, Port
-from halation.app.media.meshes import load_mesh
+from halation.authoring.session import Session
+from halation.editor.viewer.axes import axes
+from halation.editor.viewer.geometry import Sight
+from halation.editor.viewer.holding import Aim, Hold, aim
+from halation.editor.viewer.orbit import Orbit, frame_scene, orbited, without_surroundings
+from halation.editor.viewer.perspective import project, unproject
+from halation.editor.viewer.state import ViewerState
+from halation.graph import INPUTS, Input, Port
+from halation.media.meshes import load_mesh
 from halation.nodes import BuiltInScene, Kind, catalogue, look_at
 
 SIGHT = Sight((0.0, 0.0), (800, 400), (400, 200), zoom=2.0)

@@ -1,7 +1,7 @@
 """Pictures get coarser while a value is dragged, if they are too slow."""
 
 import pytest
-from halation.app.editor.viewer.pacing import Pace, Stopwatch, coarse, starting
+from halation.editor.viewer.pacing import Pace, Stopwatch, coarse, starting
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from halation.app.editor.viewer import scopes
+from halation.editor.viewer import scopes
 
 
 def test_histogram_counts_as_numpy_does() -> None:

@@ -1,0 +1,186 @@
+"""Nodes made of code: another text for a node, texts of files, code moved between the graph and a file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, cast, get_args
+
+from halation.nodes import Node, Plain
+from msgspec import structs
+
+from ...custom_nodes import Code, CodeFault, Language, Written, node_type
+from ...document.code import read_code, written_code
+from ...graph import Graph, Group, Item, Unknown
+from ...graph.values import coerced, value_fault
+from ...watch.code_files import code_file, code_items
+
+CODE = "glsl"
+"""The type of nodes whose code is GLSL, in documents and in the list of what can be added."""
+
+LANGUAGES: Mapping[str, str] = {"glsl": "GLSL", "isf": "ISF"}
+"""What the types of nodes that are made of code are called."""
+
+ENDINGS: Mapping[str, Language] = {".glsl": "glsl", ".fs": "isf"}
+"""Files of code by the ending of their name."""
+
+STARTER = """\
+// Mixes a color into the picture.
+vec4 tint(
+    vec4 image,
+    float amount,  // = 0.5, 0..1: How much of it.
+    vec3 shade     // = (1, 0.5, 0.2), color: What is mixed in.
+) {
+    return vec4(mix(image.rgb, image.rgb * shade, amount), image.a);
+}
+"""
+
+
+@dataclass(frozen=True)
+class Broken(Unknown):
+    """A node whose code says no node, with the `code` as it is here: that in the file may be another one."""
+
+    code: Code | None = None
+
+
+def starter() -> Node:
+    """A new node of code."""
+    return node_type(Code(CODE, STARTER))()
+
+
+def code_of(item: Item | None, folder: str) -> Code | None:
+    """The code of a node, even of one whose code says no node; None for all other nodes."""
+    if isinstance(item, Written):
+        return item.code
+    if not isinstance(item, Unknown) or item.type not in get_args(Language):
+        return None
+    language, file, lines = cast("Language", item.type), item.raw.get("file"), item.raw.get("code")
+    if isinstance(item, Broken) and item.code is not None:
+        return structs.replace(item.code, file=file or "")
+    if isinstance(file, str):
+        try:
+            return read_code(language, None, file, folder)
+        except CodeFault:
+            return Code(language, "", file)
+    return Code(language, "\n".join(map(str, lines or ())))
+
+
+def item_of(code: Code, values: Mapping[str, Any] | None = None) -> Item:
+    """A node of that code, with those of the values that fit; if the code says none, what is to be mended."""
+    try:
+        kind = node_type(code)
+    except CodeFault as fault:
+        return _broken(code, fault, values or {})
+    return kind(**_fitting(kind, values or {}))
+
+
+def file_item(file: str, folder: str) -> Item:
+    """A node whose code is in a file."""
+    language = ENDINGS[Path(file).suffix.lower()]
+    try:
+        return item_of(read_code(language, None, file, folder))
+    except CodeFault as fault:
+        return _broken(Code(language, "", file), fault, {})
+
+
+def coded(graph: Graph, id: str, code: Code) -> Graph:
+    """A graph where a node has that code. Links, values and what animates them stay where names and types agree."""
+    return _replaced(graph, id, item_of(code, _values(graph.node(id))))
+
+
+def texts(graph: Graph) -> dict[Path, str]:
+    """The text of every file of code as nodes of the graph have it, and of groups that are part of it."""
+    found: dict[Path, str] = {}
+    for body, item in code_items(graph, borrowed=False):
+        file = code_file(item, body.folder)
+        if file is not None and (isinstance(item, Written | Broken)):
+            code = code_of(item, body.folder)
+            found[file] = code.text if code else ""
+    return found
+
+
+def refiled(graph: Graph, file: Path, text: str) -> Graph:
+    """The graph with another text in a file of code; the very same one if no node has its code in it."""
+    return _changed(
+        graph,
+        lambda body, id, item, code: (
+            coded(body, id, structs.replace(code, text=text))
+            if code_file(item, body.folder) == file and code.text != text
+            else body
+        ),
+    )
+
+
+def reread(graph: Graph, file: Path) -> Graph:
+    """The graph with the code of a file as it is on the disk now; the very same one if nothing differs."""
+
+    def change(body: Graph, id: str, item: Item, code: Code) -> Graph:
+        if file not in (path := code_file(item, body.folder), path and path.with_suffix(".vs")):
+            return body
+        try:
+            now = read_code(code.language, None, code.file, body.folder)
+        except CodeFault as fault:
+            return _replaced(body, id, _broken(code, fault, _values(item)))
+        return body if now == code and isinstance(item, Written | Broken) else coded(body, id, now)
+
+    return _changed(graph, change, borrowed=True)
+
+
+def kept(graph: Graph, drafts: Mapping[Path, str]) -> Graph:
+    """The graph with code in it that differs from the file it belongs to, so that it is not lost with the graph."""
+    return _changed(
+        graph,
+        lambda body, id, item, code: (
+            coded(body, id, structs.replace(code, file="")) if code_file(item, body.folder) in drafts else body
+        ),
+    )
+
+
+# --- inside ----------------------------------------------------------------------------------------------------------
+
+
+def _changed(graph: Graph, change: Callable[[Graph, str, Item, Code], Graph], borrowed: bool = False) -> Graph:
+    """The graph with nodes of code changed, those of groups included; if `borrowed`, of groups from files too."""
+    after = graph
+    for id, item in graph.nodes.items():
+        if isinstance(item, Group):
+            inner = _changed(item.graph, change, borrowed) if borrowed or not item.path else item.graph
+            if inner is not item.graph:
+                after = replace(after, nodes={**after.nodes, id: replace(item, graph=inner)})
+        elif code := code_of(item, graph.folder):
+            after = change(after, id, item, code)
+    return after
+
+
+def _values(item: Item) -> Mapping[str, Any]:
+    """What is set of a node: the values that are not at their default."""
+    if isinstance(item, Unknown):
+        raw = item.raw.get("values")
+        return cast("Mapping[str, Any]", raw) if isinstance(raw, Mapping) else {}
+    if isinstance(item, Group):
+        return {}
+    now = {name: (getattr(item, name), value.default) for name, value in item.values.items()}
+    return {name: plain for name, (plain, default) in now.items() if plain != default}
+
+
+def _fitting(kind: type[Node], values: Mapping[str, Any]) -> dict[str, Plain]:
+    found: dict[str, Plain] = {}
+    for name, value in kind.values.items():
+        plain = coerced(value, values[name]) if name in values else None
+        if plain is not None and value_fault(value, plain) is None:
+            found[name] = plain
+    return found
+
+
+def _broken(code: Code, fault: CodeFault, values: Mapping[str, Any]) -> Broken:
+    said = f"{code.name}, {fault}" if fault.line else str(fault)
+    raw = {**written_code(code), **({"values": dict(values)} if values else {})}
+    return Broken(code.language, raw, said, code)
+
+
+def _replaced(graph: Graph, id: str, item: Item) -> Graph:
+    """The graph with another node in that place; keys of the document that mean nothing here stay with it."""
+    extra = {key: kept for key, kept in graph.extra.items() if key == f"nodes.{id}"}
+    after = graph.replace(id, item)
+    return replace(after, extra={**after.extra, **extra}) if extra and extra.keys() - after.extra.keys() else after

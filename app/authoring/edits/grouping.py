@@ -1,0 +1,198 @@
+"""Nodes become a group: a graph of their own with ends where links crossed its border."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
+
+from halation.nodes import Kind, Socket, Value
+
+from ...errors import GraphError
+from ...graph import INPUTS, OUTPUTS, Control, Graph, Group, Input, Output, Port
+from ...graph.names import check_name, fresh_name
+from . import timing
+from .elements import Place, entry, is_note, keys, place, with_entries, with_places, with_sections, without_entries
+from .layout import GAP, bounds, positions
+from .routes import routes, tidied
+from .sizes import WIDTH, size
+
+_KINDS = {"float": Kind.FIELD, "int": Kind.FIELD, "bool": Kind.FIELD, "color": Kind.IMAGE, "vector": Kind.VECTOR}
+"""What an input is that feeds a value of that type."""
+
+
+def grouped(graph: Graph, chosen: Collection[str], name: str = "") -> tuple[Graph, str]:
+    """A graph where the chosen nodes and decor are a group, and its id.
+
+    Every source outside that feeds chosen nodes becomes an input, every output of theirs that is read outside an
+    output, named after the sockets. Controls go on working. Raises GraphError where the group would feed itself.
+    """
+    ids = [id for id in graph.nodes if id in chosen]
+    if not ids:
+        raise GraphError("no node is selected: select the nodes to group")
+    _check_no_way_back(graph, set(ids))
+    rest = {id: item for id, item in graph.nodes.items() if id not in chosen}
+    id = fresh_name(name or "group", {*rest, INPUTS, OUTPUTS})
+    check_name(id, "node")
+    crossing = _crossing(graph, set(ids))
+    spots = positions(graph)
+    body = _body(graph, ids, chosen, crossing, spots)
+    inner, around = timing.split(graph, ids, id)
+    body = replace(body, animation=inner)
+    outer = replace(
+        graph,
+        nodes={**rest, id: Group(body)},
+        links={end: start for end, start in graph.links.items() if end.node not in ids and start.node not in ids}
+        | {Port(id, socket): source for socket, source in crossing.sources.items()}
+        | {
+            end: Port(id, crossing.leaving[start])
+            for end, start in graph.links.items()
+            if start.node in ids and end.node not in ids
+        },
+        controls={
+            name: replace(item, target=Port(id, name)) if item.target.node in ids else item
+            for name, item in graph.controls.items()
+        },
+        muted=graph.muted - set(ids),
+        animation=around,
+        extra=_extra(graph, ids, inside=False),
+        ui=_outer_ui(graph, id, ids, crossing),
+    )
+    timing.check_names(graph, body, inner)
+    timing.check_names(graph, outer, around)
+    notes = [key for key in keys(graph) if key in chosen and is_note(key)]
+    return tidied(with_places(without_entries(outer, notes), {id: corner(graph, ids, spots)})), id
+
+
+def corner(graph: Graph, ids: Collection[str], spots: Mapping[str, Place]) -> Place:
+    """Where a group goes that stands for some nodes: their center, less half a node."""
+    left, top, right, bottom = bounds(graph, ids, spots)
+    return round((left + right - WIDTH) / 2.0, 2), round((top + bottom) / 2.0 - GAP[1], 2)
+
+
+@dataclass
+class _Crossing:
+    """The ends of a group: names by what crosses its border."""
+
+    inputs: dict[str, Input] = field(default_factory=dict[str, Input])
+    outputs: dict[str, Output] = field(default_factory=dict[str, Output])
+    sources: dict[str, Port] = field(default_factory=dict[str, Port])
+    """What feeds each input from outside."""
+    entering: dict[Port, str] = field(default_factory=dict[Port, str])
+    """The input that each target inside is fed by."""
+    leaving: dict[Port, str] = field(default_factory=dict[Port, str])
+    """The output that shows each source inside."""
+
+
+def _crossing(graph: Graph, ids: set[str]) -> _Crossing:
+    found = _Crossing()
+    known: dict[tuple[Port, Kind, int], str] = {}
+    taken = {name for name, item in graph.controls.items() if item.target.node in ids}
+    for target, source in sorted(graph.links.items(), key=lambda link: _reading_order(graph, link[0])):
+        if target.node in ids and source.node not in ids:
+            kind, width = _kind(graph, source, target)
+            name = known.get((source, kind, width))
+            if name is None:
+                name = fresh_name(target.socket, {*found.inputs, *taken})
+                known[source, kind, width] = name
+                found.inputs[name], found.sources[name] = Input(kind, width), source
+            found.entering[target] = name
+        elif source.node in ids and target.node not in ids and source not in found.leaving:
+            name = fresh_name(source.socket, found.outputs)
+            found.outputs[name] = Output(*_kind(graph, source, target))
+            found.leaving[source] = name
+    return found
+
+
+def _reading_order(graph: Graph, target: Port) -> tuple[float, float, Port]:
+    """Targets from top to bottom, so that the sockets of a group lie as its links did."""
+    spot = place(graph, target.node) or (0.0, 0.0)
+    return spot[1], spot[0], target
+
+
+def _kind(graph: Graph, source: Port, target: Port) -> tuple[Kind, int]:
+    """The type of an end in a link: that of the source, else whatever the target takes."""
+    for ask, port in ((graph.source, source), (graph.target, target)):
+        try:
+            socket: Socket | Value | None = ask(port)
+        except GraphError:
+            continue
+        if isinstance(socket, Socket):
+            return socket.kind, socket.channels
+        if isinstance(socket, Value):
+            return _KINDS.get(socket.type, Kind.IMAGE), max(socket.length, 2)
+    return Kind.IMAGE, 4
+
+
+def _body(
+    graph: Graph, ids: list[str], chosen: Collection[str], crossing: _Crossing, spots: Mapping[str, Place]
+) -> Graph:
+    links = {end: start for end, start in graph.links.items() if end.node in ids and start.node in ids}
+    links |= {end: Port(INPUTS, name) for end, name in crossing.entering.items()}
+    links |= {Port(OUTPUTS, name): start for start, name in crossing.leaving.items()}
+    body = Graph(
+        nodes={id: graph.nodes[id] for id in ids},
+        links=links,
+        inputs=crossing.inputs,
+        outputs=crossing.outputs,
+        controls={
+            name: Control(item.target, item.label, item.doc)
+            for name, item in graph.controls.items()
+            if item.target.node in ids
+        },
+        muted=graph.muted & set(ids),
+        extra=_extra(graph, ids, inside=True),
+        folder=graph.folder,
+    )
+    inner = {str(end) for end in graph.links if end.node in ids and graph.links[end].node in ids}
+    passed = {target: dots for target, dots in routes(graph).items() if target in inner}
+    dots = {f"dots.{dot}" for route in passed.values() for dot in route}
+    moved = [key for key in keys(graph) if key in ids or key in dots or (key in chosen and is_note(key))]
+    body = with_entries(body, {key: entry(graph, key) for key in moved})
+    return tidied(with_places(with_sections(body, {"routes": passed}), _spots(body, graph, ids, spots)))
+
+
+def _spots(body: Graph, graph: Graph, ids: list[str], spots: Mapping[str, Place]) -> dict[str, Place]:
+    """Nodes where they were, inputs left of them, outputs right of them."""
+    left, top, right, _ = bounds(graph, ids, spots)
+    found = {id: spots[id] for id in ids}
+    for ends, side, x in ((body.inputs, INPUTS, left - WIDTH - GAP[0]), (body.outputs, OUTPUTS, right + GAP[0])):
+        y = top
+        for name in ends:
+            found[f"{side}.{name}"] = (x, y)
+            y += size(body, f"{side}.{name}")[1] + GAP[1]
+    return found
+
+
+def _outer_ui(graph: Graph, id: str, ids: list[str], crossing: _Crossing) -> Mapping[str, object]:
+    """`ui` where routes and viewers of crossing links belong to the group."""
+    known = routes(graph)
+    kept = {target: dots for target, dots in known.items() if target.partition(".")[0] not in ids}
+    for target, name in crossing.entering.items():
+        if str(target) in known:
+            kept.setdefault(f"{id}.{name}", known[str(target)])
+    viewers = graph.ui.get("viewers")
+    leaving = {str(start): f"{id}.{name}" for start, name in crossing.leaving.items()}
+    shown = {
+        number: leaving.get(str(port), port)
+        for number, port in (viewers.items() if isinstance(viewers, Mapping) else ())
+        if str(port) in leaving or str(port).partition(".")[0] not in ids
+    }
+    after = with_sections(graph, {"routes": kept, "viewers": shown})
+    return without_entries(after, ids).ui
+
+
+def _extra(graph: Graph, ids: Collection[str], inside: bool) -> dict[str, Mapping[str, object]]:
+    """Unknown keys of some nodes, or all others."""
+    mine = {path for path in graph.extra for id in ids if path == f"nodes.{id}" or path.startswith(f"nodes.{id}.")}
+    return {path: found for path, found in graph.extra.items() if (path in mine) == inside}
+
+
+def _check_no_way_back(graph: Graph, ids: set[str]) -> None:
+    """Raise GraphError if a path leaves the nodes and comes back."""
+    after = set[str]().union(*(graph.downstream(id) for id in ids)) - ids
+    before = set[str]().union(*(graph.upstream(id) for id in ids)) - ids
+    if between := sorted(after & before):
+        raise GraphError(
+            f"these nodes cannot be a group, which would feed itself: '{between[0]}' lies between them; "
+            "select it too, or leave out what it feeds"
+        )

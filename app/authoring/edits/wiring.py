@@ -1,0 +1,220 @@
+"""Links: which sockets fit, nodes put into links and taken out of them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import replace
+
+from halation.nodes import Kind, Node, Pointwise, Socket, Value
+
+from ...errors import GraphError
+from ...graph import Graph, Item, Port, conversion, make_socket, signature
+from ...graph.values import coerced, value_fault
+from ...graph.walk import loop_sentence, route
+from .elements import place
+from .routes import route as dots_of
+from .routes import split, with_routes
+
+Types = Mapping[str, type[Node]]
+
+
+def refusal(graph: Graph, source: Port, target: Port) -> str | None:
+    """Why a link cannot be, loops included; None if it can."""
+    if fault := graph.link_fault(source, target):
+        return fault
+    loop = route(target.node, source.node, graph.fed)
+    return loop_sentence((*loop, target.node)) if loop else None
+
+
+def targets(item: Item, id: str) -> tuple[Port, ...]:
+    """What can be linked into a node: inputs, then values that take a link."""
+    face = signature(item)
+    taken = face.values if face.pointwise or not isinstance(item, Node) else {}
+    values = [name for name, value in taken.items() if value.wireable]
+    return tuple(Port(id, name) for name in (*face.inputs, *values))
+
+
+def first_target(graph: Graph, source: Port, id: str, values: bool = True) -> Port:
+    """The first input of a node, or with `values` any socket, that `source` can feed; free ones come first.
+
+    Raises GraphError.
+    """
+    names = signature(graph.node(id)).inputs
+    ports = [port for port in targets(graph.node(id), id) if values or port.socket in names]
+    free = [port for port in ports if port not in graph.links]
+    fitting = [port for port in (*free, *ports) if refusal(graph, source, port) is None]
+    if not fitting:
+        raise GraphError(f"'{source}' fits no input of node '{id}'{_why(graph, source, ports)}")
+    return fitting[0]
+
+
+def first_source(graph: Graph, id: str, target: Port) -> Port:
+    """The first output of a node that can feed `target`. Raises GraphError."""
+    ports = [Port(id, name) for name in signature(graph.node(id)).outputs]
+    fitting = [port for port in ports if refusal(graph, port, target) is None]
+    if not fitting:
+        why = f": {refusal(graph, ports[0], target)}" if ports else ": it has no outputs"
+        raise GraphError(f"no output of node '{id}' fits '{target}'{why}")
+    return fitting[0]
+
+
+def linked(graph: Graph, id: str, port: Port, output: bool) -> Graph:
+    """A graph where a node is linked with `port`, a source if `output`, by the first socket that fits."""
+    if output:
+        return graph.connect(port, first_target(graph, port, id))
+    return graph.connect(first_source(graph, id, port), port)
+
+
+def fitting(graph: Graph, port: Port, output: bool, types: Types) -> tuple[str, ...]:
+    """Ids of node types that could be linked with `port`, a source if `output`, in the order of `types`."""
+    if output:
+        start = graph.source(port)
+        return tuple(
+            id
+            for id, kind in types.items()
+            if any(start is None or conversion(start, end) is None for end in _ends(kind))
+        )
+    end = graph.target(port)
+    return tuple(
+        id
+        for id, kind in types.items()
+        if any(end is None or conversion(output.socket, end) is None for output in kind.outputs.values())
+    )
+
+
+def fits(graph: Graph, port: Port, output: bool, item: Item) -> bool:
+    """True if a node or group could be linked with `port`, a source if `output`."""
+    id = graph.fresh_id("new")
+    try:
+        linked(graph.add(id, item), id, port, output)
+    except GraphError:
+        return False
+    return True
+
+
+def fits_picture(graph: Graph, port: Port, output: bool) -> bool:
+    """True if a port could be linked with a picture, as a source if `output`."""
+    if output:
+        start = graph.source(port)
+        return start is None or conversion(start, make_socket(Kind.IMAGE)) is None
+    end = graph.target(port)
+    return end is None or conversion(make_socket(Kind.IMAGE), end) is None
+
+
+def inserted(graph: Graph, id: str, target: Port) -> Graph:
+    """A graph where node `id` stands in the link that feeds `target`; dots left of it stay before it."""
+    return _put_between(graph, id, id, target)
+
+
+def spliced(graph: Graph, ids: Collection[str], target: Port) -> Graph:
+    """A graph where a chain of nodes stands in the link that feeds `target`. Raises GraphError if they are no chain."""
+    for end, start in graph.links.items():
+        if (end.node in ids) != (start.node in ids):
+            inner = end.node if end.node in ids else start.node
+            raise GraphError(f"node '{inner}' is linked with others: extract the selection to put it into a link")
+    inner = [(start.node, end.node) for end, start in graph.links.items() if end.node in ids]
+    fed, feeding = {end for _, end in inner}, {start for start, _ in inner}
+    last = [id for id in graph.nodes if id in ids and id not in feeding]
+    first = [id for id in graph.nodes if id in ids and id not in fed and targets(graph.nodes[id], id)]
+    if len(last) != 1 or len(first) != 1:
+        raise GraphError("these nodes are no chain: only one that begins and ends with one node fits into a link")
+    return _put_between(graph, first[0], last[0], target)
+
+
+def _put_between(graph: Graph, first: str, last: str, target: Port) -> Graph:
+    """A graph where a chain from node `first` to node `last` stands in the link that feeds `target`."""
+    source = graph.links.get(target)
+    if source is None:
+        raise GraphError(f"nothing is linked to '{target}': a node can only be put into a link")
+    for id in (first, last):
+        if id in (source.node, target.node):
+            raise GraphError(f"node '{id}' is an end of that link already")
+    dots = dots_of(graph, target)
+    entrance = first_target(graph.disconnect(target), source, first, values=False)
+    after = graph.disconnect(target).connect(source, entrance)
+    after = after.connect(first_source(after, last, target), target)
+    spot = place(graph, first)
+    left, right = split(graph, dots, spot[0]) if spot else (dots, ())
+    return with_routes(after, {entrance: left, target: right})
+
+
+def removed(graph: Graph, id: str, heal: bool = True) -> Graph:
+    """A graph without a node. With `heal` its links are joined where they fit, and so are their dots."""
+    after = graph.remove(id, heal)
+    into = {graph.links[Port(id, name)]: Port(id, name) for name in reversed(_entrances(graph, id))}
+    joined: dict[Port, tuple[str, ...]] = {}
+    for target, source in graph.links.items():
+        if source.node == id and (came := after.links.get(target)) in into:
+            joined[target] = (*dots_of(graph, into[came]), *dots_of(graph, target))
+    return with_routes(after, joined) if any(joined.values()) else after
+
+
+def extracted(graph: Graph, ids: Collection[str]) -> Graph:
+    """A graph where nodes left their chains: they keep the links among themselves, the others are joined."""
+    after = graph
+    for id in ids:
+        after = removed(after, id)
+    inner = {end: start for end, start in graph.links.items() if end.node in ids and start.node in ids}
+    if inner.keys() | after.links.keys() == graph.links.keys() and {**after.links, **inner} == graph.links:
+        raise GraphError("nothing to take out of a chain: the nodes have no links to others")
+    routes = {end: dots_of(after, end) for end in after.links} | {end: dots_of(graph, end) for end in inner}
+    return with_routes(
+        replace(graph, links={**after.links, **inner}), routes | {end: () for end in graph.links if end not in routes}
+    )
+
+
+def cut(graph: Graph, ends: Iterable[Port]) -> Graph:
+    """A graph without the links to `ends`."""
+    for target in sorted(set(ends)):
+        graph = graph.disconnect(target)
+    return graph
+
+
+def moved(graph: Graph, old: Port, new: Port) -> Graph:
+    """A graph where a link feeds another socket."""
+    source = graph.links.get(old)
+    if source is None:
+        raise GraphError(f"nothing is linked to '{old}'")
+    dots = dots_of(graph, old)
+    return graph if old == new else with_routes(graph.disconnect(old).connect(source, new), {new: dots})
+
+
+def swapped(graph: Graph, id: str) -> Graph:
+    """A graph where the sources of a node's first two inputs changed places."""
+    names = tuple(signature(graph.node(id)).inputs)[:2]
+    ports = [Port(id, name) for name in names]
+    sources = [graph.links.get(port) for port in ports]
+    if len(ports) < 2 or sources == [None, None]:
+        raise GraphError(f"node '{id}' has no two inputs to swap" if len(ports) < 2 else f"nothing is linked to '{id}'")
+    routes = [dots_of(graph, port) for port in ports]
+    after = cut(graph, [port for port in ports if port in graph.links])
+    for port, source in zip(ports, reversed(sources), strict=True):
+        after = after.connect(source, port) if source else after
+    return with_routes(after, dict(zip(ports, reversed(routes), strict=True)))
+
+
+def replaced(graph: Graph, id: str, kind: type[Node]) -> Graph:
+    """A graph where a node has another type; links stay where they fit, values where name and type agree."""
+    before = signature(graph.node(id)).values
+    values = {}
+    for name, value in kind.values.items():
+        if name in before and before[name].type == value.type:
+            now = coerced(value, graph.value(Port(id, name)))
+            if now is not None and value_fault(value, now) is None:
+                values[name] = now
+    return graph.replace(id, kind(**values))
+
+
+def _ends(kind: type[Node]) -> list[Socket | Value]:
+    wires = [value for value in kind.values.values() if value.wireable] if issubclass(kind, Pointwise) else []
+    return [*kind.inputs.values(), *wires]
+
+
+def _entrances(graph: Graph, id: str) -> list[str]:
+    face = signature(graph.node(id))
+    names = face.inputs or sorted(port.socket for port in graph.links if port.node == id)
+    return [name for name in names if Port(id, name) in graph.links]
+
+
+def _why(graph: Graph, source: Port, ports: list[Port]) -> str:
+    return f": {refusal(graph, source, ports[0])}" if ports else ": it has none"

@@ -1,0 +1,407 @@
+"""Pictures for panels: compiled, run step by step, kept until better ones are ready."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from halation.nodes import Camera, Size
+
+from ...compiler import Library, Plan
+from ...errors import HalationError
+from ...graph import Graph, Port, color_settings
+from ...renderer import Display, Handle, Renderer
+from ..services.renders import Pending
+from .glimpses import Glimpse
+from .jobs import Job, peek
+from .rounds import Round
+from .shown import Shelf, Shown
+from .takes import Face, Take
+from .thumbnails import Thumbnails, subjects_of
+from .timing import Stopwatch, Timing
+from .wishes import Wish
+
+if TYPE_CHECKING:
+    from ...inputs.provider import Binding
+
+PATIENCE = 0.3
+"""Seconds that a run may go on after the graph has changed: during a long drag, pictures would never come otherwise."""
+
+
+class Preview:
+    """Computes what is wanted, keeps what is shown.
+
+    `timed` measures passes as they run. While `paused` nothing is computed; wants are remembered. `thumbnailing` draws
+    small pictures of nodes whose results happen to be there. While it `skims`, frames that are there are only shown.
+    `ahead` is a frame that is wanted soon: it is computed when nothing else is to be done. What a `glimpse` shows of
+    pictures is computed before the rest of them, which follows when the graph has stayed as it is for a moment.
+    """
+
+    def __init__(self, renderer: Renderer, display: Display) -> None:
+        self.renderer, self._runner = renderer, renderer.runner
+        self._thumbnails = Thumbnails(renderer, display)
+        self._wish: Wish | None = None
+        self._round: Round | None = None
+        self._job: Job | None = None
+        self._shelf = Shelf(renderer.runner)
+        self._seen: Graph | None = None
+        """The last graph that was wanted: it may differ from the wish in its layout."""
+        self._stopwatch = Stopwatch()
+        self._timings: dict[str, Timing] = {}
+        self._cameras: dict[Port, Camera] = {}
+        self.faults: Mapping[str, str] = MappingProxyType({})
+        """What is wrong, by path of the node or input (`glow/bloom`, `inputs.beauty`); "" where no node is at fault."""
+        self.errors: Mapping[str, HalationError] = MappingProxyType({})
+        """The same as it was raised: a ShaderError knows the line."""
+        self.paused = False
+        self.timed = False
+        self.thumbnailing = True
+        self.skims = False
+        self.ahead: int | None = None
+        self.glimpse: Glimpse | None = None
+        self.patience = PATIENCE
+        self.seconds = 0.0
+        """How long the frame took that was finished last."""
+        self._takes: list[Take] = []
+
+    # --- what the editor says ----------------------------------------------------------------------------------------
+
+    def want(
+        self,
+        graph: Graph,
+        ports: Mapping[str, Port],
+        *,
+        bindings: Mapping[str, Binding] | None = None,
+        scale: float = 1.0,
+        frame: int = 1,
+        size: Size | None = None,
+    ) -> None:
+        """What panels want to show, by their names. Costs nothing when it is the same as before."""
+        before = self._wish
+        wish = Wish(graph, dict(ports), dict(bindings or {}), scale, frame, size)
+        if before is not None:
+            if graph is self._seen and before.equals(replace(wish, graph=before.graph)):
+                return
+            self._seen = graph
+            if before.equals(wish):
+                return
+            wish.world = before.world + (not before.same_world(wish))
+            wish.known = before.known
+            wish.take = before.take if wish.follows(before) else wish.take
+        self._wish, self._seen = wish, graph
+        if wish.take not in self._takes:
+            self._takes.append(wish.take)
+        self._shelf.keep(wish.ports)
+
+    def work(self, seconds: float) -> bool:
+        """Compute for about so long, one pass at least; True while there is more to do.
+
+        Returns early where a file is still being decoded. A user's mistake becomes one of `faults`.
+        """
+        if self.paused:
+            return False
+        deadline, worked = time.perf_counter() + seconds, False
+        while self._advance():
+            worked = True
+            if time.perf_counter() >= deadline:
+                return self._has_more
+        while self._draws and not self.busy and not (worked and time.perf_counter() >= deadline):
+            self._thumbnails.draw_next()
+            worked = True
+        return self._has_more
+
+    def refresh(self) -> None:
+        """Look again at all files: what has changed on disk is computed anew."""
+        if self._wish is not None:
+            self._wish = replace(self._wish, world=self._wish.world + 1)
+        self._forget()
+
+    def reload(self, library: Library) -> None:
+        """Use these shaders from now on. What a broken one would draw stays as it is."""
+        self.renderer.library = library
+        self._forget()
+
+    def clear(self) -> None:
+        """Forget every result, picture and thumbnail; all is computed anew."""
+        self._forget()
+        self._shelf.keep(())
+        self._thumbnails.clear()
+        self._stopwatch.clear()
+        self._timings = {}
+        self._cameras.clear()
+        self._runner.forget()
+
+    def close(self) -> None:
+        """Give back all that is kept. The renderer stays open."""
+        self.clear()
+        self._wish = None
+        self._thumbnails.close()
+
+    # --- what the editor asks ----------------------------------------------------------------------------------------
+
+    def shown(self, name: str) -> Shown | None:
+        """The last good picture for a panel, until the new one is ready. It is whole."""
+        return self._shelf.find(name)
+
+    def seen(self, name: str) -> Shown | None:
+        """The same, or the part of a newer one that can be seen."""
+        return self._shelf.find_part(name) or self._shelf.find(name)
+
+    def fault(self, name: str) -> str | None:
+        """Why a panel cannot show what it wants."""
+        return self._round.broken.get(name) if self._round else None
+
+    def thumbnail(self, path: str) -> tuple[Handle, bool] | None:
+        """The last small picture of a node, and whether it is what the node shows now."""
+        return self._thumbnails.find(path, self._wish.mark) if self._wish else None
+
+    def camera(self, port: Port) -> Camera | None:
+        """The camera that an input of a node was given when pictures were computed last, by the node's path."""
+        return self._cameras.get(port)
+
+    @property
+    def thumbnails(self) -> frozenset[str]:
+        """Paths of all nodes and inputs that have a small picture; the same object until that changes."""
+        return self._thumbnails.paths
+
+    @property
+    def busy(self) -> bool:
+        """True while a wanted picture is not ready."""
+        working = self._job is not None and not self._job.ahead
+        return self._is_behind() or working or bool(self._round and self._round.queue)
+
+    @property
+    def completing(self) -> bool:
+        """True while all that can be seen is ready, but not the rest."""
+        now, peeks = self._round, self._job is not None and self._job.part is not None
+        return now is not None and now.part is not None and self.busy and not (peeks or self._is_behind())
+
+    @property
+    def remembers(self) -> bool:
+        """True if frames are known to need the ones before."""
+        return self._wish is not None and self._wish.take.remembers
+
+    @property
+    def under_way(self) -> int | None:
+        """The frame that is being computed, for now or for later."""
+        return self._job.frame if self._job else None
+
+    @property
+    def frames(self) -> tuple[int, ...]:
+        """The frames that can be shown at once, of the graph as it is."""
+        return self._wish.take.frames(self._wish.ports, self.renderer) if self._wish else ()
+
+    @property
+    def frames_bytes(self) -> int:
+        """What these take on the device, as far as they are kept."""
+        return self._wish.take.nbytes if self._wish else 0
+
+    @property
+    def progress(self) -> tuple[int, int]:
+        """Passes done, and passes to do in all, as far as they are known."""
+        before = self._round.passes if self._round else 0
+        job = self._job
+        if job is None or job.run is None or job.ahead:
+            return before, before
+        return before + job.passes + job.run.done, before + job.passes + job.run.total
+
+    @property
+    def lead(self) -> tuple[str, int, int] | None:
+        """What of the history is under way for a frame: "plan" or "pre-roll", how many frames are done, and of all."""
+        job = self._job
+        if job is None or job.ahead:
+            return None
+        if job.run is None and job.planned[0] < job.planned[1]:
+            return "plan", job.planned[0], job.planned[1]
+        done, total = job.lead
+        return ("pre-roll", done, total) if total and done < total else None
+
+    @property
+    def timings(self) -> Mapping[str, Timing]:
+        """What the nodes of the pictures that are shown took when they ran last, by path."""
+        return self._timings
+
+    @property
+    def memory(self) -> tuple[int, int]:
+        """Bytes of textures on the device, and how many of results may stay there."""
+        return self._runner.textures.allocated, self._runner.textures.budget
+
+    # --- one step after the other ------------------------------------------------------------------------------------
+
+    @property
+    def _has_more(self) -> bool:
+        skimmed = self._round is not None and self._round.skimmed and not self.skims
+        return self.busy or self._draws or skimmed or self._job is not None or self._looks_ahead
+
+    @property
+    def _draws(self) -> bool:
+        """True while there are thumbnails to be drawn, and time for it."""
+        return self.thumbnailing and self._thumbnails.waiting and not self.skims
+
+    def _is_behind(self) -> bool:
+        return self._wish is not None and (self._round is None or self._round.wish is not self._wish)
+
+    def _restart(self) -> None:
+        if self._job is not None:
+            self._job.close()
+        self._job = self._round = None
+
+    def _forget(self) -> None:
+        """Begin anew, with nothing that is known of any frame."""
+        self._restart()
+        for take in self._takes:
+            take.close()
+        self._takes = []
+        if self._wish is not None:
+            self._wish = replace(self._wish, take=Take())
+            self._takes.append(self._wish.take)
+
+    @property
+    def _looks_ahead(self) -> bool:
+        """True if there is a frame to be computed for later."""
+        now, frame = self._round, self.ahead
+        if frame is None or now is None or self._job is not None or now.queue or now.broken or not now.wish.ports:
+            return False
+        take = now.wish.take
+        return frame not in take.hopeless and take.find(frame, now.wish.ports, self.renderer) is None
+
+    def _advance(self) -> bool:
+        """Do the next thing; False if there is nothing to do now."""
+        if self._wish is not None and self._is_behind() and self._may_restart(self._wish):
+            self._begin(self._wish)
+        if self._round is None:
+            return False
+        if self._round.skimmed and not self.skims and self._job is None:
+            self._round.skimmed, self._round.queue = False, [self._round.wish.ports]
+        if self._round.may_peek(self.glimpse) and not self.skims and self._peek(self._round):
+            return True
+        if self._job is None:
+            return self._compile(self._round)
+        if not self._job.ready:
+            return False
+        self._step(self._round, self._job)
+        return True
+
+    def _begin(self, wish: Wish) -> None:
+        """Work on a wish, from what is there of it already."""
+        job, ports = self._job, wish.ports
+        if job is not None and job.ahead and job.frame == wish.frame and job.wish.take is wish.take:
+            job.ahead, job.wish = False, wish
+            self._round = Round(wish, [], time.perf_counter())
+            self._settle(self._round)
+            return
+        self._restart()
+        for take in self._takes:
+            if take is not wish.take:
+                take.close()
+        self._takes = [wish.take]
+        known = wish.take.find(wish.frame, ports, self.renderer) if ports else None
+        for name, face in known.items() if known else ():
+            if name in ports:
+                self._shelf.show(name, ports[name], wish, face)
+        skimmed = bool(known and self.skims)
+        self._round = Round(wish, [ports] if ports and not skimmed else [], time.perf_counter(), skimmed=skimmed)
+        self._settle(self._round)
+
+    def _may_restart(self, wish: Wish) -> bool:
+        """Let a run that was begun for the same panels come to its end if that is soon."""
+        now, job = self._round, self._job
+        if now is None or job is None or now.wish.ports != wish.ports or now.wish.scale != wish.scale or job.ahead:
+            return True
+        if now.part is not None and job.part is None:
+            return True
+        return time.perf_counter() - now.began > self.patience
+
+    def _peek(self, now: Round) -> bool:
+        """Begin with what can be seen, where that is a part of what is still to be done."""
+        job, glimpse = self._job, self.glimpse
+        if glimpse is None or (job is not None and (job.ahead or job.part is not None)) or not (job or now.queue):
+            return False
+        now.tried, found = glimpse, peek(self.renderer, now.wish, glimpse)
+        if found is None or found.plan is None:
+            return False
+        if job is not None:
+            job.close()
+            now.queue.insert(0, job.ports)
+        self._job = found
+        self._cameras |= found.plan.cameras
+        return True
+
+    def _compile(self, now: Round) -> bool:
+        """Begin with the next ports; False if there are none."""
+        if self._looks_ahead and self.ahead is not None:
+            ports, frame, ahead = now.wish.ports, self.ahead, True
+        elif not now.queue or now.waits:
+            return False
+        else:
+            ports, frame, ahead = now.queue.pop(0), now.wish.frame, False
+        now.pending = None
+        try:
+            self._job = Job(self.renderer, now.wish, ports, frame, self.timed, ahead)
+        except HalationError as error:
+            return self._ended(now, ports, frame if ahead else None, error)
+        if self._job.plan is not None and not ahead:
+            self._cameras |= self._job.plan.cameras
+        return True
+
+    def _step(self, now: Round, job: Job) -> None:
+        try:
+            done = job.step()
+            if job.run is not None:
+                with self.renderer.device.current():
+                    self.renderer.device.context.finish()
+        except HalationError as error:
+            job.close()
+            self._job = None
+            self._ended(now, job.ports, job.frame if job.ahead else None, error)
+            return
+        if done and job.plan is not None:
+            self._job = None
+            now.passes += 0 if job.ahead else job.passes
+            if job.part is not None:
+                self._shelf.show_part(job.wish, job.ports, job.plan, job.part)
+                now.part = job.part
+                job.kept.close()
+                return
+            self.seconds = time.perf_counter() - job.began
+            self._finished(now, job, job.plan)
+            self._settle(now)
+
+    def _ended(self, now: Round, ports: Mapping[str, Port], ahead: int | None, error: HalationError) -> bool:
+        """What could not be done: it must wait, or be tried otherwise, or is wrong. False if it must wait."""
+        if ahead is not None:
+            now.wish.take.hopeless.add(ahead)
+        elif isinstance(error, Pending):
+            now.queue.insert(0, ports)
+            now.pending = error
+            return False
+        else:
+            now.failed(ports, error)
+            self._settle(now)
+        return True
+
+    def _settle(self, now: Round) -> None:
+        """What was wrong before is known to be over only when all has been tried."""
+        self.errors = MappingProxyType({**(self.errors if now.queue else {}), **now.faults})
+        self.faults = MappingProxyType({path: str(error) for path, error in self.errors.items()})
+
+    def _finished(self, now: Round, job: Job, plan: Plan) -> None:
+        wish, faces = job.wish, dict[str, Face]()
+        for name, port in job.ports.items():
+            surface = plan.surfaces[plan.outputs[name]]
+            faces[name] = Face(surface, self._shelf.full_size(port, wish, plan, surface.size))
+            if not job.ahead:
+                self._shelf.show(name, port, wish, faces[name])
+        wish.take.put(job.frame, faces, self.renderer, now.wish.frame)
+        job.kept.close()
+        if job.ahead:
+            return
+        self._cameras |= plan.cameras
+        if job.timings is not None:
+            now.timings |= self._stopwatch.note(plan, job.timings)
+            self._timings = now.timings
+        subjects = subjects_of(now.wish, plan) if self.thumbnailing and not self.skims else {}
+        self._thumbnails.offer(subjects, color_settings(now.wish.graph))

@@ -1,0 +1,146 @@
+"""What is known of all frames of one graph: which are there, and the histories on the way to others."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from halation.nodes import Size
+
+from ...compiler import Surface
+from ...graph import Port
+from ...renderer import Lease, Reel, Renderer
+
+SHARE = 0.5
+"""The part of the memory budget that frames may take which were shown."""
+
+LOOK_AGAIN = 0.2
+"""Seconds after which it is looked up anew which frames are there."""
+
+MOST_FRAMES = 5000
+"""Frames that are remembered at all."""
+
+
+@dataclass(frozen=True)
+class Face:
+    """What a panel shows of a frame."""
+
+    surface: Surface
+    full_size: Size
+
+
+Faces = Mapping[str, Face]
+"""By the panels' names."""
+
+
+class Take:
+    """The frames of one graph as it is wanted, whatever the frame: it ends with any other change.
+
+    Frames that were shown stay on the device within a share of the memory budget; when that is spent, those go that
+    would be wanted last if the range was played on and on.
+    """
+
+    def __init__(self) -> None:
+        self._faces: dict[int, Faces] = {}
+        self._leases: dict[int, Lease] = {}
+        self._seen: tuple[tuple[str, ...], float, tuple[int, ...]] = ((), 0.0, ())
+        """For whom it was looked up which frames are there, when, and which."""
+        self._reels: dict[tuple[tuple[str, Port], ...], Reel] = {}
+        self.closed = False
+        self.hopeless: set[int] = set()
+        """Frames that cannot be made."""
+
+    # --- frames ------------------------------------------------------------------------------------------------------
+
+    def put(self, frame: int, faces: Faces, renderer: Renderer, now: int) -> None:
+        """A frame has been made; `now` is the one that is looked at."""
+        if self.closed:
+            return
+        self._seen = (), 0.0, ()
+        faces = {**self._faces.get(frame, {}), **faces}
+        self._drop(frame)
+        self._faces[frame] = faces
+        lease = renderer.runner.lease()
+        for face in faces.values():
+            if face.surface.key in renderer.runner.textures:
+                lease.take(face.surface.key)
+        self._leases[frame] = lease
+        self._make_room(int(renderer.runner.textures.budget * SHARE), now)
+        while len(self._faces) > MOST_FRAMES:
+            self._forget(next(iter(self._faces)))
+
+    def find(self, frame: int, names: Mapping[str, Port], renderer: Renderer) -> Faces | None:
+        """What panels of these names show at a frame, if all of it is on the device."""
+        faces = self._faces.get(frame)
+        return faces if faces is not None and _is_there(faces, names, renderer) else None
+
+    def frames(self, names: Mapping[str, Port], renderer: Renderer) -> tuple[int, ...]:
+        """The frames that are on the device, in order; what had to make room is noticed a moment later."""
+        now = time.monotonic()
+        asked, at, found = self._seen
+        if asked != tuple(names) or now - at > LOOK_AGAIN:
+            found = tuple(sorted(frame for frame, faces in self._faces.items() if _is_there(faces, names, renderer)))
+            self._seen = tuple(names), now, found
+        return found
+
+    @property
+    def nbytes(self) -> int:
+        """What frames that are kept take on the device."""
+        return sum(self._sizes().values())
+
+    # --- histories ---------------------------------------------------------------------------------------------------
+
+    def reel(self, ports: Mapping[str, Port]) -> Reel | None:
+        """The history of these ports, if they are known to have one."""
+        return self._reels.get(tuple(ports.items()))
+
+    @property
+    def remembers(self) -> bool:
+        """True if frames are known to need the ones before."""
+        return bool(self._reels)
+
+    def begin(self, ports: Mapping[str, Port], reel: Reel) -> Reel:
+        """They have one."""
+        self._reels[tuple(ports.items())] = reel
+        return reel
+
+    def close(self) -> None:
+        """Let go of everything."""
+        self.closed = True
+        for lease in (*self._leases.values(), *self._reels.values()):
+            lease.close()
+        self._faces.clear()
+        self._leases.clear()
+        self._reels.clear()
+
+    # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _sizes(self) -> dict[str, int]:
+        return {face.surface.key: face.surface.nbytes for frame in self._leases for face in self._faces[frame].values()}
+
+    def _make_room(self, most: int, now: int) -> None:
+        """Let frames go that are wanted last, until the others fit."""
+        sizes = self._sizes()
+        total, first, last = sum(sizes.values()), min(self._leases), max(self._leases)
+        if total <= most:
+            return
+        span = last - first + 1
+        for frame in sorted(self._leases, key=lambda frame: (frame - now) % span, reverse=True):
+            self._drop(frame)
+            if sum(self._sizes().values()) <= most:
+                return
+
+    def _drop(self, frame: int) -> None:
+        """No longer keep a frame; it may stay for a while."""
+        if lease := self._leases.pop(frame, None):
+            lease.close()
+
+    def _forget(self, frame: int) -> None:
+        self._drop(frame)
+        del self._faces[frame]
+
+
+def _is_there(faces: Faces, names: Mapping[str, Port], renderer: Renderer) -> bool:
+    textures = renderer.runner.textures
+    return all(name in faces and faces[name].surface.key in textures for name in names)

@@ -1,0 +1,138 @@
+"""Small pictures of nodes, drawn from results that are on the device anyway."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from halation.nodes import ColorSettings, Kind
+
+from ...color.management import DEFAULT_COLOR
+from ...compiler import Plan, scaled
+from ...renderer import Display, Handle, Look, Probe, Renderer
+from ..services.coloring import Coloring
+from .data import are_normals, balanced, data_range
+from .wishes import Wish, kind_of, path_of
+
+LARGEST = (160, 90)
+RANGE_WIDTH = 64
+"""The range of a field is measured on so many columns."""
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A result that a node shows. `mark` changes when anything upstream of the node does."""
+
+    path: str
+    key: str
+    kind: Kind
+    channels: int
+    mark: object
+
+
+@dataclass(frozen=True)
+class _Source:
+    """What the display is handed."""
+
+    texture: Handle
+    full_size: tuple[int, int]
+    channels: int
+    key: str
+    start: tuple[int, int] = (0, 0)
+
+    @property
+    def size(self) -> tuple[int, int]:
+        return self.texture.size
+
+
+@dataclass(frozen=True)
+class _Drawn:
+    texture: Handle
+    key: str
+    mark: object
+
+
+def subjects_of(wish: Wish, plan: Plan) -> dict[str, Subject]:
+    """What the nodes of a wish show when its plan has run, by path: of several outputs the first."""
+    found: dict[str, Subject] = {}
+    for port, number in plan.results.items():
+        path, surface = path_of(port), plan.surfaces[number]
+        kind = kind_of(wish.graph, port, surface.channels)
+        found.setdefault(path, Subject(path, surface.key, kind, surface.channels, wish.mark(path)))
+    return found
+
+
+class Thumbnails:
+    """The last small picture of every node. Nothing is ever computed for them but themselves."""
+
+    def __init__(self, renderer: Renderer, display: Display) -> None:
+        self._renderer, self._display = renderer, display
+        self._probe = Probe(renderer.device)
+        self._drawn: dict[str, _Drawn] = {}
+        self._waiting: dict[str, Subject] = {}
+        self._coloring, self._color = Coloring(), DEFAULT_COLOR
+        self.paths: frozenset[str] = frozenset()
+        """Who has a picture; the same object until that changes."""
+
+    @property
+    def waiting(self) -> bool:
+        """True while there are some to be drawn."""
+        return bool(self._waiting)
+
+    def offer(self, subjects: Mapping[str, Subject], color: ColorSettings = DEFAULT_COLOR) -> None:
+        """These results are there now, by path; their colors are managed that way."""
+        self._color = self._coloring.of(color)
+        for path, subject in subjects.items():
+            drawn = self._drawn.get(path)
+            self._waiting.pop(path, None)
+            if drawn is not None and drawn.key == subject.key:
+                self._drawn[path] = _Drawn(drawn.texture, drawn.key, subject.mark)
+            else:
+                self._waiting[path] = subject
+
+    def draw_next(self) -> None:
+        """Draw one, unless its result had to make room for others."""
+        subject = self._waiting.pop(next(iter(self._waiting)))
+        texture = self._renderer.runner.texture(subject.key)
+        if texture is None:
+            return
+        source = _Source(texture.handle, texture.handle.size, subject.channels, subject.key)
+        width, height = source.full_size
+        zoom = min(LARGEST[0] / width, LARGEST[1] / height, 1.0)
+        size = scaled(source.full_size, zoom)
+        look = self._look(subject, source.texture, max(size[0] / width, size[1] / height))
+        drawn = self._display.draw(f"thumbnail {subject.path}", size, source, None, look)
+        self._drawn[subject.path] = _Drawn(drawn, subject.key, subject.mark)
+        if subject.path not in self.paths:
+            self.paths |= {subject.path}
+
+    def find(self, path: str, mark: Callable[[str], object]) -> tuple[Handle, bool] | None:
+        """The last picture of a node, and whether it is what the node shows now, which its `mark` says."""
+        drawn = self._drawn.get(path)
+        return drawn and (drawn.texture, drawn.mark == mark(path))
+
+    def clear(self) -> None:
+        """Forget all of them."""
+        for path in self._drawn:
+            self._display.drop(f"thumbnail {path}")
+        self._drawn.clear()
+        self._waiting.clear()
+        self.paths = frozenset()
+
+    def close(self) -> None:
+        """Give everything back."""
+        self.clear()
+        self._probe.close()
+
+    def _look(self, subject: Subject, texture: Handle, zoom: float) -> Look:
+        if subject.kind is Kind.IMAGE:
+            return Look(zoom=zoom, view="none", color=self._color)
+        pixels = self._probe.small(texture, RANGE_WIDTH)[..., : subject.channels]
+        if are_normals(pixels):
+            return Look(zoom=zoom, meaning="normal")
+        low, high = data_range(pixels)
+        if subject.channels > 1:
+            low, high = balanced(low, high)
+        elif low >= 0.0 and high <= 1.0:  # a mask, say: black and white mean something
+            low, high = 0.0, 1.0
+        return Look(zoom=zoom, meaning="field" if subject.channels == 1 else "vector", low=low, high=high)

@@ -1,0 +1,57 @@
+"""What is wrong with how a graph manages color, before anything is read."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from halation.nodes import Kind
+
+from ..errors import HalationError
+from ..graph import OUTPUTS, Graph, color_settings
+from .file_space import check_wanted
+from .management import managed
+from .transforms import NO_VIEW, find_view
+
+
+@dataclass(frozen=True)
+class ColorFault:
+    """A fault, the end of the graph that has it, if any, and where the file of the graph says so."""
+
+    error: HalationError
+    node: str
+    name: str
+    at: str
+
+
+def color_faults(graph: Graph) -> Iterator[ColorFault]:
+    """A config that cannot be read, a working space, views of outputs and color spaces of inputs that nobody knows."""
+    color = color_settings(graph)
+    manager = managed(color)
+    views = {name: end.view for name, end in graph.outputs.items() if end.view not in ("", NO_VIEW)}
+    spaces = {
+        name: end.color_space
+        for name, end in graph.inputs.items()
+        if end.color_space and end.kind in (Kind.IMAGE, Kind.COLOR)
+    }
+    if manager.plain and not views and not spaces:
+        return
+    asked = color.config or color.working or views or spaces
+    try:
+        if asked:
+            _ = manager.config, manager.working
+    except HalationError as error:
+        yield ColorFault(error, "", "", "settings.color")
+        return
+    for name, view in views.items():
+        try:
+            find_view(view, "", color)
+        except HalationError as error:
+            said = type(error)(f"output '{name}': {error}")
+            yield ColorFault(said, OUTPUTS, name, f"outputs.{name}.view")
+    for name, space in spaces.items():
+        try:
+            check_wanted(space, manager)
+        except HalationError as error:
+            said = type(error)(f"input '{name}': {error}")
+            yield ColorFault(said, f"inputs.{name}", "", f"inputs.{name}.color_space")

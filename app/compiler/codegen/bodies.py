@@ -1,0 +1,173 @@
+"""The texts of passes that read more than their own pixel: accessors, convolutions, reductions."""
+
+from __future__ import annotations
+
+from halation.nodes import Edge, glsl_type
+
+from ..ir import BLOCK, MAX_WEIGHTS, Accessor, Convolve, Reduce, Ref
+from .names import Names
+
+OUTPUTS = 8
+"""Pixels that one invocation of a long convolution makes: each pixel read is used for all of them."""
+
+FEWER = 4
+"""Those of a short one. Eight would be hardly faster, and take the driver long to compile."""
+
+SHORT = (9, 17, 25, 33)
+"""Classes of taps of convolutions that are written out: longer ones would take the driver long to compile."""
+
+SMALL = 2**18
+"""Pixels of pictures that are convolved in loops: writing taps out takes the driver longer than is ever saved."""
+
+
+def accessor(names: Names, item: Accessor, edge: Edge) -> list[str]:
+    """`<name>_size`, `<name>_raw`, `<name>_at` and `<name>_near` for one picture."""
+    name, glsl = item.name, item.glsl
+    if isinstance(item.operand, Ref):
+        size = names.shape(item.operand).size
+        names.uniform("ivec2", size, f"{name}_size")
+        if edge == "black":
+            value = names.converted(item.operand, f"edge_clamp(p, {name}_size)", glsl)
+            value = f"inside(p, {name}_size) ? {value} : {glsl}(0.0)"
+        else:
+            value = names.converted(item.operand, f"edge_{edge}(p, {name}_size)", glsl)
+    else:
+        names.uniform("ivec2", (1, 1), f"{name}_size")
+        value = names.constant(item.operand, glsl)
+    return [
+        f"{glsl} {name}_raw(ivec2 p) {{ return {value}; }}",
+        f"{glsl} {name}_at(ivec2 p) {{ {glsl} c = {name}_raw(p); return is_hole(c) ? {glsl}(0.0) : c; }}",
+        f"{glsl} {name}_near(vec2 p) {{",
+        "    p = clamp(p, -16777216.0, 16777216.0) - 0.5;",
+        "    vec2 corner = floor(p), t = p - corner;",
+        "    ivec2 q = ivec2(corner);",
+        f"    {glsl} above = mix({name}_at(q), {name}_at(q + ivec2(1, 0)), t.x);",
+        f"    {glsl} below = mix({name}_at(q + ivec2(0, 1)), {name}_at(q + ivec2(1, 1)), t.x);",
+        "    return mix(above, below, t.y);",
+        "}",
+    ]
+
+
+def convolution_accessor(names: Names, op: Convolve) -> list[str]:
+    """The accessor, the weights and the uniforms that all forms of a convolution share."""
+    names.uniform("ivec2", (1, 0) if op.axis == 0 else (0, 1), "along")
+    names.uniform("int", op.origin, "origin")
+    if names.form == "fragment" or not is_written(op):
+        names.uniform("int", len(op.weights), "taps")
+    glsl = glsl_type(names.shape(op.image).channels)
+    block = f"layout(std140) uniform Weights {{ vec4 weights[{MAX_WEIGHTS // 4}]; }};"
+    return [block, *accessor(names, Accessor("image", glsl, op.image), op.edge)]
+
+
+def convolution(names: Names, op: Convolve) -> list[str]:
+    """`convolution`, one pixel of it, for fragment passes."""
+    glsl = glsl_type(names.shape(op.image).channels)
+    stride = names.uniform("int", op.stride, "stride")
+    return [
+        f"{glsl} convolution() {{",
+        f"    ivec2 p = pixel + along * (pixel * ({stride} - 1) + origin);",
+        f"    {glsl} sum = {glsl}(0.0);",
+        "    for (int j = 0; j < taps; ++j, p += along) sum += weights[j >> 2][j & 3] * image_at(p);",
+        "    return sum;",
+        "}",
+    ]
+
+
+def is_written(op: Convolve) -> bool:
+    """Whether all taps are written out."""
+    width, height = op.size
+    return op.stride > 1 or (len(op.weights) <= SHORT[-1] and width * height > SMALL)
+
+
+def count_of(op: Convolve) -> int:
+    """How many pixels one invocation makes. Those of a decimation by four have little in common."""
+    return OUTPUTS if len(op.weights) > SHORT[-1] else max(2 * FEWER // max(op.stride, 2), 1)
+
+
+def strip(names: Names, op: Convolve, count: int) -> list[str]:
+    """Statements that make `s0`, `s1`..., the convolution at `count` pixels from `first` on.
+
+    Every pixel is read once. Terms are added in the order of a plain loop, so all forms give the same bits.
+    """
+    glsl = glsl_type(names.shape(op.image).channels)
+    lines = [
+        f"ivec2 p = first + along * (first * {op.stride - 1} + origin);",
+        f"{glsl} t, {', '.join(f's{k} = {glsl}(0.0)' for k in range(count))};",
+    ]
+    return lines + (_written_out(op, count) if is_written(op) else _sliding(count))
+
+
+def _written_out(op: Convolve, count: int) -> list[str]:
+    """No loop, and every weight is where it is needed."""
+    taps, lines = _class(op), list[str]()
+    for tap in range((count - 1) * op.stride + taps):
+        sums = [
+            f"s{k} += weights[{number // 4}].{'xyzw'[number % 4]} * t;"
+            for k in range(count)
+            if 0 <= (number := tap - k * op.stride) < taps
+        ]
+        lines.append(f"t = image_at(p); p += along; {' '.join(sums)}")
+    return lines
+
+
+def _sliding(count: int) -> list[str]:
+    """A loop. Tap j adds weight j - k to pixel k; the last weights stay in registers, used in turn."""
+    lines = [
+        f"float {', '.join(f'w{k} = 0.0' for k in range(count))};",
+        "vec4 four;",
+        f"for (int j = 0; j < taps + {count - 1}; j += {count}) {{",
+    ]
+    for tap in range(count):
+        if tap % 4 == 0:
+            lines.append(f"    four = weights[(j >> 2) + {tap // 4}];")
+        lines.append(f"    w{tap} = four.{'xyzw'[tap % 4]}; t = image_at(p); p += along;")
+        lines.append("    " + " ".join(f"s{k} += w{(tap - k) % count} * t;" for k in range(count)))
+    return [*lines, "}"]
+
+
+def _class(op: Convolve) -> int:
+    """How many taps are written out: those of a class of lengths, so that lengths share programs."""
+    if op.stride > 1:
+        return len(op.weights)
+    return next(size for size in SHORT if size >= len(op.weights))
+
+
+def padded_weights(op: Convolve, form: str) -> tuple[float, ...]:
+    """The uniform block's contents: strips run past the last weight, where zeros must lie."""
+    count = len(op.weights)
+    if form == "compute":
+        count = _class(op) if is_written(op) else -(-(count + OUTPUTS - 1) // OUTPUTS) * OUTPUTS
+    return op.weights + (0.0,) * (-(-count // 4) * 4 - len(op.weights))
+
+
+def source(names: Names, root: Reduce, body: list[str], value: str) -> list[str]:
+    """`source_at`: a pixel of what is reduced, computed on the spot where its producers joined the pass."""
+    shape = names.shape(root.image)
+    names.uniform("ivec2", shape.size, "source_size")
+    return [
+        f"{glsl_type(shape.channels)} source_at(ivec2 p) {{",
+        "pixel = p; extent = source_size;",
+        *body,
+        f"return {value};",
+        "}",
+    ]
+
+
+def reduction(names: Names, root: Reduce) -> list[str]:
+    """Every invocation folds one block; the blocks at the far edges are smaller."""
+    glsl = glsl_type(names.shape(root.image).channels)
+    fold = "result + c" if root.operation == "sum" else "max(result, c)"
+    return [
+        f"{glsl} reduced(ivec2 block) {{",
+        f"    ivec2 first = block * {BLOCK}, end = min(first + {BLOCK}, source_size);",
+        f"    {glsl} result = source_at(first);",
+        "    for (int y = first.y; y < end.y; ++y)",
+        "        for (int x = first.x; x < end.x; ++x) {",
+        "            if (x == first.x && y == first.y) continue;",
+        f"            {glsl} c = source_at(ivec2(x, y));",
+        f"            result = {fold};",
+        "        }",
+        "    pixel = block; extent = grid;",
+        "    return result;",
+        "}",
+    ]

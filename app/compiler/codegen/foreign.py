@@ -1,0 +1,47 @@
+"""The pass of a program that is no function of ours."""
+
+from __future__ import annotations
+
+from halation.nodes import Stage, Uniform
+
+from ..fusion.fuse import Fused
+from ..ir import Foreign
+from ..plan import LINES_PER_FILE, Shader
+from .names import held
+
+
+def foreign(root: Foreign, fused: Fused, rounding: list[str]) -> tuple[Shader, tuple[tuple[str, Uniform], ...]]:
+    """Its program, and what its uniforms are set to: samplers to the places of their pictures among those read.
+
+    `rounding` is the function `as_half`, where the result is stored in half floats.
+    """
+    fragment, vertex = root.text.fragment, root.text.vertex
+    made = "halation_half(halation_pixel())" if rounding else "halation_pixel()"
+    rounding = [line.replace("as_half", "halation_half") for line in rounding]
+    end = [
+        "layout(location = 0) out vec4 halation_target;",
+        *rounding,
+        f"void main() {{ halation_target = {made}; }}",
+    ]
+    shader = Shader(
+        "\n".join([_text(fragment, 1), *end]) + "\n",
+        "fragment",
+        ("generated", fragment.file, *([vertex.file] if vertex else [])),
+        False,
+        _text(vertex, 2) if vertex else "",
+        foreign=True,
+    )
+    units = {ref: unit for unit, ref in enumerate(fused.reads)}
+    values = tuple((name, held(item)) for name, item in root.uniforms)
+    return shader, (*values, *((name, units[ref]) for name, ref in root.pictures))
+
+
+def _text(stage: Stage, file: int) -> str:
+    # The second extension lets functions return whole numbers as floats, which older GLSL did everywhere.
+    top = (
+        "#version 410 core",
+        "#extension GL_ARB_shading_language_packing : enable",
+        "#extension GL_ARB_shading_language_420pack : enable",
+        stage.head,
+    )
+    return "\n".join([*top, f"#line {LINES_PER_FILE * file + 1}", stage.text.rstrip("\n"), "#line 1", stage.tail])

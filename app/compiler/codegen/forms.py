@@ -1,0 +1,105 @@
+"""What one invocation of a compute pass makes: a pixel, or several in a row that share what they read.
+
+Loads are what a pass costs. Several pixels of a function that looks around are written one after another: neighbors
+want the same texels, at places that the driver's compiler can tell are the same, and it reads them once. A convolution
+is written so that each texel is read once and goes to all pixels at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from halation.nodes import Size, glsl_type
+
+from ..fusion.fuse import Fused
+from ..ir import Call, Convolve, Gather, Op, Program
+from ..library import Library
+from . import bodies
+from .names import Names
+
+LOCAL_SIZE = 64
+"""Invocations of a work group: neighbors across the row of pixels that each makes."""
+
+ROWS = 2
+"""Pixels of a column that one invocation makes. Four would be a tenth faster, and take the driver long to compile."""
+
+BLOCK = 8
+"""Work groups side by side whose columns are convolved before those of the next block: what a strip reads again of the
+rows that the one above it has read is then still in the nearest cache.
+"""
+
+
+def count_of(program: Program, fused: Fused, library: Library) -> int:
+    """How many pixels an invocation of a compute pass should make. Functions with loops share nothing.
+
+    Where several functions look around, what two rows share is lost again, since so much does not fit into registers.
+    """
+    ops = [program.ops[index] for index in fused.members]
+    if isinstance(root := ops[-1], Convolve):
+        return bodies.count_of(root)
+    looking = sum(isinstance(op, Gather) for op in ops)
+    return ROWS if looking < 2 and all(_is_straight(op, library) for op in ops) else 1
+
+
+def _is_straight(op: Op, library: Library) -> bool:
+    if isinstance(op, Call):
+        return not op.program and library.straight(op.shader, op.function, op.owner)
+    return isinstance(op, Gather) and op.light
+
+
+def groups(convolve: Convolve | None, count: int, size: Size) -> tuple[int, int, int]:
+    """Work groups that cover a picture: side by side across the rows of pixels, along them, and blocks of those."""
+    axis = convolve.axis if convolve else 1
+    along, across = -(-size[axis] // count), -(-size[1 - axis] // LOCAL_SIZE)
+    block = across if convolve is None else min(across, BLOCK) if axis == 1 else 1
+    return (block, along, -(-across // block))
+
+
+def main(names: Names, count: int, convolve: Convolve | None, body: Sequence[str], texels: Sequence[str]) -> list[str]:
+    """The entry point of a compute pass.
+
+    What is made beyond the edges is stored nowhere. To leave before it is made would have the software rasterizer mask
+    everything, which is a tenth slower and takes a sixth longer to compile.
+
+    `body` are the statements that make one pixel, `texels` what is stored of it. With a convolution, its value of that
+    pixel is called `convolved`, and pixels are made `along` its axis.
+    """
+    lines = [
+        "void main() {",
+        "uint across = (gl_WorkGroupID.z * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x"
+        " + gl_LocalInvocationID.x;",
+        f"ivec2 first = {_place(f'int(gl_WorkGroupID.y + first_row) * {count}', 'int(across)', convolve)};",
+        *([f"first += {names.start};"] if names.start else []),
+        "pixel = first; extent = grid;",
+    ]
+    at, start = (f"{name} - {names.start}" if names.start else name for name in ("pixel", "first"))
+    there = f"if (all(lessThan({start}, {names.room}))) {{"
+    if count == 1:
+        stores = (f"imageStore(o{number}, {at}, {texel});" for number, texel in enumerate(texels))
+        return [*lines, *body, there, *stores, "}", "}"]
+    results = [f"texel{number}" for number in range(len(texels))]
+    step = "pixel += along;" if convolve else "++pixel.y;"
+    of = [f"{glsl_type(names.shape(convolve.image).channels)} convolved"] if convolve else []
+    made = [
+        f"void made({', '.join([*of, *(f'out vec4 {name}' for name in results)])}) {{",
+        *body,
+        *(f"{name} = {texel};" for name, texel in zip(results, texels, strict=True)),
+        "}",
+    ]
+    if convolve:
+        lines += bodies.strip(names, convolve, count)
+    for k in range(count):
+        own = [f"{name}_{k}" for name in results]
+        given = [f"s{k}"] if convolve else []
+        lines.append(f"vec4 {', '.join(own)}; made({', '.join([*given, *own])}); {step}")
+    lines += ["pixel = first;", there]
+    # All reads before all writes: only then are they known to read the same.
+    for k in range(count):
+        stores = (f"imageStore(o{number}, {at}, {name}_{k});" for number, name in enumerate(results))
+        lines.append(f"{' '.join(stores)} {step}")
+    return [*made, *lines, "}", "}"]
+
+
+def _place(along: str, across: str, convolve: Convolve | None) -> str:
+    """A pixel by where it is along its row of pixels, and across; both axes of a convolution share a program."""
+    return f"along * ({along}) + along.yx * {across}" if convolve else f"ivec2({across}, {along})"

@@ -1,0 +1,130 @@
+"""Expressions of a pass: textures and uniforms are named as its text asks for them."""
+
+from __future__ import annotations
+
+import math
+
+from halation.nodes import Uniform, glsl_type
+from msgspec import Struct, field
+
+from ..areas import Region
+from ..ir import Choice, Constant, Parameter, Program, Ref, Shape
+from ..target import Form
+
+_FLOAT32 = 3.4e38
+_INT32 = 2**31
+"""Numbers that GLSL can hold. A float this large is infinite for every purpose."""
+
+
+class Names(Struct):
+    """Hands out textures and uniforms as the text of a pass asks for them."""
+
+    program: Program
+    textures: dict[Ref, int]
+    form: Form
+    by_image: bool
+    uniforms: list[tuple[str, str, Uniform]] = field(default_factory=list[tuple[str, str, Uniform]])
+    seams: bool = True
+    """Whether fused functions are kept apart: see primitive/settled.glsl."""
+
+    start: str = ""
+    """The first pixel that is written, where that is not the first one of the picture."""
+    room: str = "grid"
+    """How many pixels are written, across and down."""
+
+    def window(self, region: Region) -> None:
+        """Only a region is written, and of some pictures only parts are there."""
+        self.start = self.uniform("ivec2", region.start, "window_start")
+        self.room = self.uniform("ivec2", region.size, "window_size")
+
+    def uniform(self, glsl: str, value: Uniform, name: str = "") -> str:
+        """A uniform of this type set to `value`; booleans travel as integers."""
+        name = name or f"u{len(self.uniforms)}"
+        self.uniforms.append((name, "int" if glsl == "bool" else glsl, value))
+        return f"({name} != 0)" if glsl == "bool" else name
+
+    def shape(self, ref: Ref) -> Shape:
+        return self.program.ops[ref.op].shapes[ref.output]
+
+    def load(self, ref: Ref, where: str) -> str:
+        """Read one pixel; a single pixel stands for every position."""
+        shape = self.shape(ref)
+        where = "ivec2(0)" if shape.size == (1, 1) else where
+        name = f"t{self.textures[ref]}"
+        if ref in self.program.windows:
+            where = f"{where} - {name}_start"
+        call = f"imageLoad({name}, {where})" if self.by_image else f"texelFetch({name}, {where}, 0)"
+        return call + ("", ".r", ".rg", ".rgb", "")[shape.channels]
+
+    def converted(self, ref: Ref, where: str, glsl: str) -> str:
+        """Read one pixel as another type."""
+        return convert(self.load(ref, where), self.shape(ref).channels, glsl)
+
+    def constant(self, item: Constant, glsl: str) -> str:
+        """A uniform within the range of its type; one of another type is converted like a picture would be."""
+        if isinstance(item.value, tuple):
+            value = tuple(_float32(part) for part in item.value)
+            if glsl.endswith("]"):
+                return self.uniform(glsl, value)
+            if item.channels == 9:
+                return self.uniform("mat3", value)
+            return convert(self.uniform(glsl_type(item.channels), value), item.channels, glsl)
+        if glsl == "bool":
+            return self.uniform(glsl, item.value > 0.5)
+        if glsl == "int":
+            return self.uniform(glsl, math.floor(_int32(item.value) + 0.5))
+        return convert(self.uniform("float", _float32(item.value)), 1, glsl)
+
+    def argument(self, item: Parameter, values: dict[Ref, str]) -> str:
+        """A parameter as an expression; `values` names what the pass has computed or loaded already."""
+        if isinstance(item.operand, Choice):
+            return str(item.operand.index)
+        if isinstance(item.operand, Constant):
+            return self.constant(item.operand, item.glsl)
+        text = values[item.operand]
+        channels = self.shape(item.operand).channels
+        if item.low != float("-inf") or item.high != float("inf"):
+            text = f"clamp({text}, {_bound(item.low)}, {_bound(item.high)})"
+        if item.factor != 1.0:
+            text = f"{text} * {self.uniform('float', item.factor)}"
+        return convert(text, channels, item.glsl)
+
+
+def held(item: Constant) -> Uniform:
+    """A constant as a uniform of its own type can hold it."""
+    if isinstance(item.value, tuple):
+        return tuple(_float32(part) for part in item.value)
+    return _float32(item.value) if isinstance(item.value, float) else int(_int32(item.value))
+
+
+def convert(text: str, channels: int, glsl: str) -> str:
+    """An expression with this many channels as another GLSL type: the lossless conversions between sockets."""
+    if glsl == glsl_type(channels):
+        return text
+    if channels == 1:
+        return {
+            "int": f"int(floor({text} + 0.5))",
+            "bool": f"({text} > 0.5)",
+            "vec4": f"vec4(vec3({text}), 1.0)",
+        }.get(glsl, f"{glsl}({text})")
+    wanted = glsl_channels(glsl)
+    if channels > wanted:
+        return f"({text}).{'rgba'[:wanted]}"
+    return f"{glsl}({text}, {', '.join(['0.0'] * (wanted - channels))})"
+
+
+def glsl_channels(glsl: str) -> int:
+    """How many floats a GLSL type holds."""
+    return {"vec2": 2, "vec3": 3, "vec4": 4}.get(glsl, 1)
+
+
+def _bound(limit: float) -> str:
+    return repr(_float32(limit))
+
+
+def _int32(value: float) -> float:
+    return min(max(value, -_INT32), _INT32 - 1)
+
+
+def _float32(value: float) -> float:
+    return float(min(max(value, -_FLOAT32), _FLOAT32))

@@ -1,0 +1,358 @@
+"""Pictures that the device, or the memory that may be used, cannot hold are made tile by tile.
+
+A tile needs the parts of what it reads that lie around it, and no more: see `regions`. What is read anywhere must be
+whole: it is made before, tile by tile as well, and put together. So the plan of a large picture is a row of stages,
+each with many small plans, which share their programs.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import product
+from types import MappingProxyType
+
+from halation.nodes import Size
+from msgspec.structs import replace
+
+from ...errors import DeviceError
+from ..areas import Region
+from ..explain import size_text
+from ..fusion.fuse import Fused
+from ..ir import Held, History, Op, Program, Read, Reduce, Ref
+from ..library import Library
+from ..plan import Plan, texture_bytes
+from ..scheduling.schedule import peak, schedule
+from ..target import Precision, Target
+from .regions import made_whole, needed, reads_all
+from .tiles import Stage, Tiling
+
+LEAST = 8
+"""Pixels across a tile, at least: smaller ones would be all overlap."""
+
+SMALL = 16
+"""What has so many times fewer pixels than the largest picture is made whole, even if it need not be: blurs and glows
+look far around in small pictures, and tiles of the large ones then need little around them."""
+
+USUAL = 2**31
+"""Bytes of textures for a tile where nobody says how much memory may be used; more, where much of it is needed for a
+single pixel."""
+
+MOST_TILES = 2**16
+"""Of a picture: more are so small that they would be mostly overlap."""
+
+MOST_PIXELS = 2**32
+"""Of a picture. It is put together in memory: a larger one is a mistake."""
+
+
+def tile(
+    program: Program,
+    passes: tuple[Fused, ...],
+    texels: Mapping[Ref, str],
+    library: Library,
+    target: Target,
+    precision: Precision,
+    halves: frozenset[str],
+    keys: Mapping[Ref, str] = MappingProxyType({}),
+    by_rows: frozenset[str] = frozenset(),
+) -> Tiling | None:
+    """How to run passes tile by tile, None where they fit as they are.
+
+    `texels` and `keys` are the formats and the keys of all pictures. The outputs `by_rows` need not be put together.
+
+    Raises DeviceError where they do not fit that way either.
+    """
+    why = _too_much(program, passes, texels, target)
+    if not why:
+        return None
+    if program.windows:
+        raise DeviceError(f"{why}: choose a smaller region")
+    for ref in texels:
+        if _area(program.shape(ref).size) > MOST_PIXELS:
+            raise DeviceError(
+                f"{why}, and too many to be made in parts; render smaller with --scale or --size",
+                node=program.ops[ref.op].owner,
+            )
+    _check(program, passes, target)
+    work = _Work(program, passes, texels, target, by_rows)
+    before, last = work.before(), work.last()
+    # What an output was rounded to as a part of the whole, it is rounded to in a tile.
+    rounded = frozenset(name for name in halves if texels[program.outputs[name]].endswith("16f"))
+    return Tiling(program, library, target, precision, rounded, keys, before, last, work.nbytes, why, work.by_rows)
+
+
+def tile_plan(tiling: Tiling, stage: Stage, number: int, made: Mapping[int, Held]) -> Plan:
+    """How a tile of a stage is made; `made` is what the stages before made, by operation."""
+    ops = tuple(made.get(index, op) for index, op in enumerate(tiling.program.ops))
+    program = replace(
+        tiling.program,
+        ops=ops,
+        outputs=stage.outputs,
+        memories=MappingProxyType({}),
+        results=MappingProxyType({}),
+        windows=stage.windows[number],
+    )
+    return schedule(program, stage.passes, tiling.library, tiling.target, tiling.precision, tiling.halves).plan
+
+
+def _too_much(program: Program, passes: Sequence[Fused], texels: Mapping[Ref, str], target: Target) -> str:
+    """What cannot be held, in a sentence; "" if all can."""
+    for ref in texels:
+        size, owner = program.held(ref), program.ops[ref.op].owner
+        if max(size) > target.max_size:
+            return (
+                f"node '{owner}': {_sized(size)} pixels is more than the {target.max_size} that {target.renderer} can "
+                "hold on a side"
+            )
+    if not target.memory:
+        return ""
+    nbytes = peak(program, passes, texels) + sum(_nbytes(program, texels, ref) for ref in _outside(program, passes))
+    nbytes += _remembered(program, texels)
+    if nbytes <= target.memory:
+        return ""
+    return f"{size_text(nbytes)} of textures and pictures is more than the {size_text(target.memory)} that may be used"
+
+
+def _remembered(program: Program, texels: Mapping[Ref, str]) -> int:
+    """What nodes remember is there twice: of this frame, and of the one before, which may not be read."""
+    kept = sum(_nbytes(program, texels, ref) for ref in program.memories.values())
+    read = sum(_nbytes(program, texels, ref) for ref in texels if isinstance(program.ops[ref.op], History))
+    return max(kept - read, 0)
+
+
+def _outside(program: Program, passes: Sequence[Fused]) -> set[Ref]:
+    """What is not only on the device: pictures that are read from files, and outputs."""
+    reads = {ref for fused in passes for ref in fused.reads if isinstance(program.ops[ref.op], Read)}
+    return reads | set(program.outputs.values())
+
+
+def _nbytes(program: Program, texels: Mapping[Ref, str], ref: Ref) -> int:
+    """What a whole picture takes."""
+    return texture_bytes(program.shape(ref).size, texels[ref])
+
+
+def _check(program: Program, passes: Sequence[Fused], target: Target) -> None:
+    """Raise DeviceError for what must be whole and does not fit, and for what remembers frames."""
+    for fused in passes:
+        for op in (program.ops[index] for index in fused.members):
+            refs = [ref for ref in fused.reads if ref in set(op.reads()) and reads_all(program, op, ref)]
+            sizes = [program.shape(ref).size for ref in refs] + ([op.size] if made_whole(op) else [])
+            for size in sizes:
+                if max(size) > target.max_size:
+                    raise DeviceError(
+                        f"node '{op.owner}': it may need all {_sized(size)} pixels of a picture for one of its own, "
+                        f"so they cannot be made in parts, and {target.renderer} holds {target.max_size} on a side; "
+                        "render smaller with --scale or --size",
+                        node=op.owner,
+                    )
+    for port in program.memories:
+        raise DeviceError(
+            f"node '{port.node}': what it remembers of a frame must fit into memory as a whole; render smaller with "
+            "--scale or --size, or give more with --memory",
+            node=port.node,
+        )
+
+
+def _sized(size: Size) -> str:
+    return f"{size[0]}x{size[1]}"
+
+
+class _Work:
+    """Finds the stages of a program."""
+
+    def __init__(
+        self,
+        program: Program,
+        passes: tuple[Fused, ...],
+        texels: Mapping[Ref, str],
+        target: Target,
+        by_rows: frozenset[str],
+    ) -> None:
+        self.program, self.passes, self.texels, self.target = program, passes, texels, target
+        self.makers = {ref: fused for fused in passes for ref in fused.writes}
+        self.largest = max(_area(program.shape(ref).size) for ref in texels)
+        self.cuts = tuple(fused for fused in passes if self._is_cut(fused))
+        self.held = {ref for fused in self.cuts for ref in fused.writes}
+        self.by_rows = frozenset(name for name in by_rows if program.outputs[name] not in self.held)
+        self.nbytes = 0
+
+    def before(self) -> tuple[Stage, ...]:
+        """What is made whole before it is read."""
+        return tuple(self._stage({f"{ref.op}.{ref.output}": ref for ref in fused.writes}, fused) for fused in self.cuts)
+
+    def last(self) -> tuple[Stage, ...]:
+        """The outputs that are not made by then, by size."""
+        sizes: dict[Size, dict[str, Ref]] = {}
+        for name, ref in self.program.outputs.items():
+            if ref not in self.held:
+                sizes.setdefault(self.program.shape(ref).size, {})[name] = ref
+        return tuple(self._stage(outputs, None) for outputs in sizes.values())
+
+    # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _is_cut(self, fused: Fused) -> bool:
+        """True for a pass whose pictures are made as a whole before others read them."""
+        if any(isinstance(op, Reduce) or made_whole(op) for op in self._ops(fused)):
+            return True
+        if self._is_small(fused.writes[0]) and self._is_light(fused) and not self._stays_small(fused):
+            return True
+        return any(
+            reads_all(self.program, op, ref) and self.program.shape(ref).size != (1, 1)
+            for other in self.passes
+            for op in self._ops(other)
+            for ref in op.reads()
+            if ref in fused.writes
+        )
+
+    def _is_small(self, ref: Ref) -> bool:
+        return SMALL * _area(self.program.shape(ref).size) <= self.largest
+
+    def _is_light(self, fused: Fused) -> bool:
+        """True for a pass whose pictures leave room for much else."""
+        nbytes = sum(_nbytes(self.program, self.texels, ref) for ref in fused.writes)
+        return not self.target.memory or 8 * nbytes <= self.target.memory
+
+    def _stays_small(self, fused: Fused) -> bool:
+        """True for a pass between small pictures: it is made together with those that shrink or enlarge."""
+        readers = [other for other in self.passes if not set(fused.writes).isdisjoint(other.reads)]
+        return all(map(self._is_small, (*fused.reads, *(other.writes[0] for other in readers))))
+
+    def _ops(self, fused: Fused) -> list[Op]:
+        return [self.program.ops[index] for index in fused.members]
+
+    def _stage(self, outputs: dict[str, Ref], own: Fused | None) -> Stage:
+        """A stage with the fewest tiles that fit."""
+        passes = self._needed(outputs.values(), own)
+        size = self.program.shape(next(iter(outputs.values()))).size
+        whole = any(made_whole(op) for fused in passes for op in self._ops(fused))
+        tile = size
+        usual = max(USUAL, 2 * self._textures(passes, outputs, size, (LEAST, LEAST))[1])
+        while True:
+            found, textures = self._textures(passes, outputs, size, tile)
+            nbytes = self._pictures(passes, outputs, found, tile) + textures
+            fits = self._fits(found, textures, nbytes, usual)
+            if fits or whole or max(tile) <= LEAST:
+                break
+            tile = _smaller(tile, self._too_wide(found))
+        if not fits and (self.target.memory or any(self._too_wide(found))):
+            self._refuse(found, nbytes)
+        self.nbytes = max(self.nbytes, nbytes)
+        if math.prod(-(-side // one) for side, one in zip(size, tile, strict=True)) > MOST_TILES:
+            owner, memory = self.program.ops[next(iter(outputs.values())).op].owner, self.target.memory
+            within = f"within {size_text(memory)} its" if memory else "its"
+            more = "give more with --memory, or render" if memory else "render"
+            raise DeviceError(
+                f"node '{owner}': {within} {_sized(size)} pixels can only be made in tiles of {_sized(tile)}, which "
+                f"takes too long; {more} smaller with --scale or --size",
+                node=owner,
+            )
+        tiles = _grid(size, tile)
+        all_ = [self._windows(passes, outputs.values(), region) for region in tiles]
+        return Stage(MappingProxyType(outputs), passes, tiles, _parts(self.program, all_))
+
+    def _textures(
+        self, passes: Sequence[Fused], outputs: dict[str, Ref], size: Size, tile: Size
+    ) -> tuple[list[dict[Ref, Region]], int]:
+        """The windows of tiles of this size, and what textures take at most."""
+        found = [self._windows(passes, outputs.values(), region) for region in _sample(size, tile)]
+        programs = (replace(self.program, windows=one, outputs=outputs, memories={}) for one in found)
+        return found, max(peak(program, passes, self.texels) for program in programs)
+
+    def _needed(self, refs: Iterable[Ref], own: Fused | None) -> tuple[Fused, ...]:
+        """The passes that make pictures of what stages before made; `own` is the stage's own one."""
+        found: set[int] = set()
+        todo = list(refs)
+        numbers = {id(fused): number for number, fused in enumerate(self.passes)}
+        while todo:
+            ref = todo.pop()
+            fused = self.makers.get(ref)
+            if fused is None or numbers[id(fused)] in found or (ref in self.held and fused is not own):
+                continue
+            found.add(numbers[id(fused)])
+            todo.extend(fused.reads)
+        return tuple(self.passes[number] for number in sorted(found))
+
+    def _windows(self, passes: Sequence[Fused], refs: Iterable[Ref], region: Region) -> dict[Ref, Region]:
+        return needed(self.program, passes, dict.fromkeys(refs, region))
+
+    def _pictures(
+        self, passes: Sequence[Fused], outputs: Mapping[str, Ref], found: Sequence[Mapping[Ref, Region]], tile: Size
+    ) -> int:
+        """Bytes of the pictures that are held meanwhile: what was read or made before, and what is made.
+
+        Of files that are read by rows, and outputs that are handed over by rows, those of a tile: of outputs twice,
+        since they are encoded.
+        """
+        held = {ref for fused in passes for ref in fused.reads if ref not in self.makers or ref in self.held}
+        rows = {
+            ref: max(windows[ref].height for windows in found if ref in windows)
+            for ref in held
+            if self.target.memory and isinstance(op := self.program.ops[ref.op], Read) and op.picture.by_rows
+        }
+        rows |= {ref: 2 * tile[1] for name, ref in outputs.items() if name in self.by_rows}
+        total = 0
+        for ref in held | set(outputs.values()):
+            height = self.program.shape(ref).size[1]
+            total += _nbytes(self.program, self.texels, ref) * min(rows.get(ref, height), height) // height
+        return total
+
+    def _fits(self, found: Sequence[Mapping[Ref, Region]], textures: int, nbytes: int, usual: int) -> bool:
+        """Whether tiles of so many bytes of textures, and of so many in all, can be made one after another."""
+        fits = nbytes <= self.target.memory if self.target.memory else textures <= usual
+        return fits and self._too_wide(found) == (False, False)
+
+    def _too_wide(self, found: Sequence[Mapping[Ref, Region]]) -> tuple[bool, bool]:
+        """Whether a window is wider, or higher, than the device can hold."""
+        most = self.target.max_size
+        regions = [region for windows in found for region in windows.values()]
+        return any(region.width > most for region in regions), any(region.height > most for region in regions)
+
+    def _refuse(self, found: Sequence[Mapping[Ref, Region]], nbytes: int) -> None:
+        """Raise DeviceError: even the smallest tiles are too large."""
+        sizes = {ref: region.width * region.height for windows in found for ref, region in windows.items()}
+        largest = max(sizes, key=lambda ref: sizes[ref])
+        owner, memory = self.program.ops[largest.op].owner, self.target.memory
+        if memory and nbytes > memory:
+            said = f"{size_text(nbytes)} of pictures must be held at once, but only {size_text(memory)} may be used"
+            raise DeviceError(
+                f"node '{owner}': {said}; give more with --memory, or render smaller with --scale or --size", node=owner
+            )
+        raise DeviceError(
+            f"node '{owner}': for a few pixels it needs more than the {self.target.max_size} that "
+            f"{self.target.renderer} can hold on a side; render smaller with --scale or --size",
+            node=owner,
+        )
+
+
+def _area(size: Size) -> int:
+    return size[0] * size[1]
+
+
+def _grid(size: Size, tile: Size) -> tuple[Region, ...]:
+    """Tiles that cover a picture, row by row."""
+    return tuple(
+        Region(x, y, min(tile[0], size[0] - x), min(tile[1], size[1] - y))
+        for y, x in product(range(0, size[1], tile[1]), range(0, size[0], tile[0]))
+    )
+
+
+def _sample(size: Size, tile: Size) -> tuple[Region, ...]:
+    """Of the tiles of a grid, those in corners, along edges and in the middle: all others are like one of these."""
+    across, down = (
+        sorted({0, (length - 1) // one // 2 * one, (length - 1) // one * one})
+        for length, one in zip(size, tile, strict=True)
+    )
+    return tuple(Region(x, y, min(tile[0], size[0] - x), min(tile[1], size[1] - y)) for y, x in product(down, across))
+
+
+def _smaller(tile: Size, too_wide: tuple[bool, bool]) -> Size:
+    """Half as many pixels: of what is too long for the device, else of the longer side."""
+    width, height = tile
+    across = too_wide[0] if any(too_wide) and min(tile) > LEAST else width > height
+    return (max(-(-width // 2), LEAST), height) if across else (width, max(-(-height // 2), LEAST))
+
+
+def _parts(program: Program, found: Sequence[Mapping[Ref, Region]]) -> tuple[Mapping[Ref, Region], ...]:
+    """The regions of what is not whole for every tile."""
+    parts = {ref for windows in found for ref, region in windows.items() if region.size != program.shape(ref).size}
+    return tuple(MappingProxyType({ref: windows[ref] for ref in windows if ref in parts}) for windows in found)

@@ -1,0 +1,226 @@
+"""A node made of GLSL: the last function of the text is the node, its signature declares sockets and values."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from hashlib import blake2b
+from keyword import iskeyword
+from types import new_class
+from typing import Any, Literal, cast
+
+from halation.nodes import Draw, Drawn, Edge, Field, Filter, Image, Output, Pointwise, Socket, Value, Vector
+from msgspec import Struct
+
+from ..glsl import COMMENT, Function, Text, blanked, parse, unified
+from ..glsl.loops import guarded
+from .code import Code, CodeFault, Written
+from .ending import ended
+from .notes import Note, read_note
+from .passes import drawn
+from .values import value_of
+
+_FORBIDDEN = re.compile(
+    r"\b(main|uniform|layout|buffer|shared|discard|barrier|imageLoad|imageStore|texelFetch|texture\w*|gl_\w+)\b"
+    r"|^[ \t]*#[ \t]*(version|extension|pragma|line)\b",
+    re.MULTILINE,
+)
+_DEFINED = re.compile(r"\bstruct\s+(\w+)|^[ \t]*#[ \t]*define[ \t]+(\w+)|^[ \t]*const\s+\w+\s+(\w+)", re.MULTILINE)
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+_RESERVED = frozenset({"out", "pixel", "extent", "frame", "proxy", "grid", "node", "muted", "code", "text", "title"})
+KEPT = 512
+
+
+class _Parameter(Struct, frozen=True):
+    """One parameter of the function: its type, its name, the line it stands in and what is said of it."""
+
+    glsl: str
+    name: str
+    out: bool
+    line: int
+    note: Note
+
+
+@lru_cache(KEPT)
+def glsl_node(code: Code) -> type[Written]:
+    """The class of the nodes that this code describes. Raises CodeFault."""
+    source = unified(code.text)
+    plain = blanked(source)
+    text = parse("written", source, code.name)
+    if found := _FORBIDDEN.search(plain):
+        said = found[1] or f"#{found[2]}"
+        line = plain.count("\n", 0, found.start()) + 1
+        raise CodeFault(line, f"'{said}' has no place here: pictures are parameters, read as image or image_at(pixel)")
+    if not text.all_functions:
+        raise CodeFault(1, "there is no function in it: write one, such as vec4 tint(vec4 image) { return image; }")
+    entry = text.all_functions[-1]
+    parameters = tuple(_parameters(source, plain, entry))
+    _check(entry, parameters)
+    inputs = {one.name: _socket(one) for one in parameters if not one.out and not one.note.default}
+    values = {
+        one.name: value_of(one.glsl, one.name, one.note, one.line)
+        for one in parameters
+        if not one.out and one.note.default
+    }
+    outputs = {one.name: Output(_socket(one)) for one in parameters if one.out}
+    if not outputs:
+        outputs = {"out": Output(_picture(entry.result, Note(), entry.line, "the result"))}
+    looks = {name for name in inputs if text.words & {f"{name}_{way}" for way in ("at", "near", "size")}}
+    return _class(code, source, text, entry, parameters, inputs, values, outputs, bool(looks))
+
+
+def _class(
+    code: Code,
+    source: str,
+    text: Text,
+    entry: Function,
+    parameters: tuple[_Parameter, ...],
+    inputs: Mapping[str, Socket],
+    values: Mapping[str, Value],
+    outputs: Mapping[str, Output],
+    looks: bool,
+) -> type[Written]:
+    digest = blake2b(f"{code.language}\0{source}".encode(), digest_size=4).hexdigest()
+    prefix = f"w{digest}_"
+    function = prefix + entry.name
+    edges = {one.note.edge for one in parameters if one.note.edge}
+    if len(edges) > 1:
+        raise CodeFault(entry.line, f"pictures end in different ways ({', '.join(sorted(edges))}): choose one edge")
+    renamed = _renamed(source, text, prefix)
+    if (safe := guarded(renamed)) != renamed:
+        renamed = ended(safe, entry, prefix)
+    body: dict[str, Any] = {"__module__": __name__, "__doc__": _doc(source, entry), "__annotations__": {}}
+    for one in parameters:
+        if one.name in inputs:
+            body[one.name] = inputs[one.name]
+        elif one.name in values:
+            body[one.name] = values[one.name].default
+            body["__annotations__"][one.name] = _hint(values[one.name])
+    body |= outputs
+    if looks:
+        renamed += _entries(function, parameters, inputs, values, outputs)
+        edge = cast("Edge", next(iter(edges), "clamp"))
+
+        def passes(self: Filter, draw: Draw) -> Mapping[str, Drawn]:
+            return drawn(self, draw, function, edge)
+
+        body["passes"] = passes
+    base = Filter if looks else Pointwise
+    made = cast("type[Written]", new_class(entry.name, (Written, base), {}, lambda space: space.update(body)))
+    name = f"written/{digest}"
+    made.id, made.category = "glsl", "code"
+    made.values = dict(values)
+    made.function, made.shader = function, name
+    made.code, made.title = code, entry.name.replace("_", " ")
+    made.text = parse(name, renamed, code.file or f"the code of '{entry.name}'")
+    return made
+
+
+def _parameters(source: str, plain: str, entry: Function) -> Iterator[_Parameter]:
+    """The parameters of the function in order, each with the comments that stand beside it."""
+    opened = plain.index("(", entry.start)
+    closed = plain.index(")", opened)
+    begins = [opened + 1, *(at + 1 for at in range(opened, closed) if plain[at] == ",")]
+    if not plain[opened + 1 : closed].strip() or plain[opened + 1 : closed].strip() == "void":
+        return
+    for number, begin in enumerate(begins):
+        last = number + 1 == len(begins)
+        end = closed if last else begins[number + 1] - 1
+        said = plain[begin:end].split()
+        line = plain.count("\n", 0, begin + len(plain[begin:end]) - len(plain[begin:end].lstrip())) + 1
+        words = [word for word in said if word not in ("in", "const", "highp", "mediump", "lowp")]
+        out = bool(words) and words[0] == "out"
+        words = words[1:] if out else words
+        if len(words) != 2 or not _NAME.fullmatch(words[1]):
+            raise CodeFault(line, f"'{' '.join(said)}' is no parameter that a node can have: write a type and a name")
+        stop = source.find("\n", end)
+        beside = COMMENT.search(source, end, len(source) if stop < 0 else stop)
+        within = COMMENT.search(source, begin + len(plain[begin:end]) - len(plain[begin:end].lstrip()), end)
+        comment = within or (beside if beside and not plain[end + 1 : beside.start()].strip(" \t){") else None)
+        yield _Parameter(words[0], words[1], out, line, read_note(comment[0], line) if comment else Note())
+
+
+def _check(entry: Function, parameters: tuple[_Parameter, ...]) -> None:
+    seen = set[str]()
+    for one in parameters:
+        if one.name in seen or one.name in _RESERVED or iskeyword(one.name) or hasattr(Filter, one.name):
+            why = "is there twice" if one.name in seen else "means something else here"
+            raise CodeFault(one.line, f"the name '{one.name}' {why}: choose another")
+        seen.add(one.name)
+    given = [one for one in parameters if one.out]
+    if given and entry.result != "void":
+        raise CodeFault(entry.line, f"'{entry.name}' returns a {entry.result} and has out parameters: keep one of both")
+    if given and parameters[-len(given) :] != tuple(given):
+        raise CodeFault(given[0].line, "out parameters come last")
+    if not given and entry.result == "void":
+        raise CodeFault(entry.line, f"'{entry.name}' makes nothing: return a vec4, or write an out parameter")
+
+
+def _socket(one: _Parameter) -> Socket:
+    return _picture(one.glsl, one.note, one.line, f"'{one.name}'")
+
+
+def _picture(glsl: str, note: Note, line: int, what: str) -> Socket:
+    """What a picture of this GLSL type is to links."""
+    if glsl == "vec4" and not note.vector:
+        return Image(note.optional, doc=note.doc)
+    if glsl == "float":
+        return Field(note.optional, doc=note.doc)
+    if glsl in ("vec2", "vec3", "vec4"):
+        return Vector(note.optional, width=int(glsl[-1]), doc=note.doc)
+    if glsl in ("int", "bool"):
+        raise CodeFault(line, f"{what} is a {glsl}, which no picture holds: give it a default, such as // = 1")
+    raise CodeFault(line, f"{what} has the type {glsl}: pictures are vec4, vec3, vec2 or float")
+
+
+def _hint(value: Value) -> Any:
+    """The Python type of a value."""
+    if value.type == "choice":
+        return Literal[value.choices]
+    if value.type in ("color", "vector"):
+        return tuple[(float,) * value.length]
+    return {"float": float, "int": int, "bool": bool}[value.type]
+
+
+def _doc(source: str, entry: Function) -> str:
+    """The comment right above the function, else a sentence."""
+    lines = source.split("\n")[: entry.line - 1]
+    found: list[str] = []
+    while lines and lines[-1].strip().startswith("//"):
+        found.insert(0, lines.pop().strip().lstrip("/").strip())
+    if not found and lines and lines[-1].strip().endswith("*/"):
+        block = "\n".join(lines)
+        start = block.rfind("/*")
+        found = [line.strip(" *\t") for line in block[start + 2 : -2].split("\n")] if start >= 0 else []
+    return "\n".join(found).strip() or "Code of this graph."
+
+
+def _renamed(source: str, text: Text, prefix: str) -> str:
+    """The text with names of its own for all that it defines: what it is fused with may use the same ones."""
+    plain = blanked(source)
+    names = {one.name for one in text.all_functions}
+    names |= {name for found in _DEFINED.finditer(plain) for name in found.groups() if name}
+    known = re.compile(rf"\b({'|'.join(sorted(map(re.escape, names), key=len, reverse=True))})\b")
+    return known.sub(lambda found: prefix + found[1], plain)
+
+
+def _entries(
+    function: str,
+    parameters: tuple[_Parameter, ...],
+    inputs: Mapping[str, Socket],
+    values: Mapping[str, Value],
+    outputs: Mapping[str, Output],
+) -> str:
+    """For each output a function that is drawn: it reads its own pixel of every picture and calls the user's."""
+    taken = ", ".join(f"{values[one.name].glsl} {one.name}" for one in parameters if one.name in values)
+    given = [f"{one.name}_at(pixel)" if one.name in inputs else one.name for one in parameters if not one.out]
+    if "out" in outputs:
+        glsl = outputs["out"].socket.glsl
+        return f"\n{glsl} {function}_out({taken}) {{ return {function}({', '.join(given)}); }}\n"
+    made = [one for one in parameters if one.out]
+    declared = " ".join(f"{one.glsl} {one.name};" for one in made)
+    call = f"{function}({', '.join([*given, *(one.name for one in made)])});"
+    return "".join(
+        f"\n{one.glsl} {function}_{one.name}({taken}) {{ {declared} {call} return {one.name}; }}\n" for one in made
+    )

@@ -1,0 +1,255 @@
+"""From a shader of the Interactive Shader Format to GLSL 4.10.
+
+Rows of the format run from the bottom, ours from the top. No picture is turned over for that: positions are, where
+pictures are read and where a pixel asks which one it is.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType
+
+from halation.nodes import ShaderText, Stage
+
+from ...glsl import blanked, words
+from ...glsl.loops import COUNTER, MOST_ROUNDS, guarded
+from ..code import Code, CodeFault
+from .header import PICTURES, Header
+
+_TOKEN = re.compile(r"\.?\d[\w.]*|(?P<word>[A-Za-z_]\w*)")
+_DIRECTIVE = re.compile(r"^[ \t]*#[ \t]*(?:version|extension|line)\b[^\n]*", re.MULTILINE)
+_QUALIFIED = re.compile(r"\s+(?:in|out|varying|uniform)\b")
+_CALLED = re.compile(r"\s*\(")
+
+WORDS: Mapping[str, str] = MappingProxyType(
+    {
+        "main": "isf_main",
+        "gl_FragColor": "isf_FragColor",
+        "gl_FragCoord": "isf_FragCoord",
+        "vv_FragNormCoord": "isf_FragNormCoord",
+        "vv_vertShaderInit": "isf_vertShaderInit",
+    }
+)
+CALLS: Mapping[str, str] = MappingProxyType(
+    {
+        "texture": "isf_texture",
+        "texture2D": "isf_texture",
+        "texture2DRect": "IMG_PIXEL",
+        "textureLod": "isf_textureLod",
+        "texture2DLod": "isf_textureLod",
+        "texelFetch": "isf_texelFetch",
+        "dFdy": "isf_dFdy",
+    }
+)
+"""Functions that see where rows begin."""
+
+LATER = frozenset(
+    {
+        "active",
+        "asm",
+        "buffer",
+        "cast",
+        "class",
+        "coherent",
+        "common",
+        "enum",
+        "extern",
+        "external",
+        "filter",
+        "fixed",
+        "goto",
+        "half",
+        "inline",
+        "input",
+        "interface",
+        "long",
+        "namespace",
+        "noinline",
+        "output",
+        "partition",
+        "patch",
+        "precise",
+        "public",
+        "readonly",
+        "resource",
+        "restrict",
+        "sample",
+        "shared",
+        "short",
+        "sizeof",
+        "static",
+        "subroutine",
+        "superp",
+        "template",
+        "this",
+        "typedef",
+        "union",
+        "unsigned",
+        "using",
+        "writeonly",
+    }
+)
+"""Words that became keywords after the GLSL that shaders are written in."""
+
+QUALIFIERS = frozenset({"smooth", "flat", "noperspective", "centroid"})
+"""Names, unless a declaration follows."""
+
+_READING = """vec2 IMG_SIZE(sampler2D image) { return vec2(textureSize(image, 0)); }
+vec4 IMG_NORM_PIXEL(sampler2D image, vec2 at) { return textureLod(image, vec2(at.x, 1.0 - at.y), 0.0); }
+vec4 IMG_PIXEL(sampler2D image, vec2 at) {
+    vec2 size = IMG_SIZE(image);
+    return textureLod(image, vec2(at.x, size.y - at.y) / size, 0.0);
+}
+vec4 IMG_THIS_PIXEL(sampler2D image) { return IMG_NORM_PIXEL(image, isf_FragNormCoord); }
+vec4 IMG_THIS_NORM_PIXEL(sampler2D image) { return IMG_NORM_PIXEL(image, isf_FragNormCoord); }
+vec4 IMG_NORM_THIS_PIXEL(sampler2D image) { return IMG_NORM_PIXEL(image, isf_FragNormCoord); }
+vec4 isf_texture(sampler2D image, vec2 at) { return IMG_NORM_PIXEL(image, at); }
+vec4 isf_texture(sampler2D image, vec2 at, float bias) { return IMG_NORM_PIXEL(image, at); }
+vec4 isf_textureLod(sampler2D image, vec2 at, float level) { return IMG_NORM_PIXEL(image, at); }
+vec4 isf_texelFetch(sampler2D image, ivec2 at, int level) {
+    return texelFetch(image, ivec2(at.x, textureSize(image, 0).y - 1 - at.y), 0);
+}
+"""
+_DERIVATIVES = """float isf_dFdy(float x) { return -dFdy(x); }
+vec2 isf_dFdy(vec2 x) { return -dFdy(x); }
+vec3 isf_dFdy(vec3 x) { return -dFdy(x); }
+vec4 isf_dFdy(vec4 x) { return -dFdy(x); }
+"""
+_FRAGMENT_END = """
+bool isf_is_finite(float x) { return (floatBitsToUint(x) & 0x7f800000u) != 0x7f800000u; }
+float isf_held(float x) { return isf_is_finite(x) ? clamp(x, isf_range.x, isf_range.y) : 0.0; }
+vec4 halation_pixel() {
+    isf_main();
+    vec4 c = isf_FragColor;
+    return %s vec4(isf_held(c.r), isf_held(c.g), isf_held(c.b), isf_held(c.a));
+}"""
+_SPOILT = f"{COUNTER} > {MOST_ROUNDS} ? vec4(uintBitsToFloat(0x7fc00000u)) :"
+"""What a pixel is whose loops had to be left: a wrong number would be taken for a right one."""
+
+_VERTEX_START = """out vec2 isf_FragNormCoord;
+void isf_vertShaderInit() {
+    isf_FragNormCoord = vec2(gl_VertexID & 1, gl_VertexID >> 1);
+    gl_Position = vec4(isf_FragNormCoord * 2.0 - 1.0, 0.0, 1.0);
+}
+"""
+_VERTEX_END = """
+void main() {
+    isf_vertShaderInit();
+    isf_main();
+    gl_Position.y = -gl_Position.y;
+}"""
+
+UNIFORMS: Mapping[str, str] = MappingProxyType(
+    {
+        "PASSINDEX": "int",
+        "RENDERSIZE": "vec2",
+        "TIME": "float",
+        "TIMEDELTA": "float",
+        "DATE": "vec4",
+        "FRAMEINDEX": "int",
+    }
+)
+_TYPES: Mapping[str, str] = MappingProxyType(
+    {
+        "event": "bool",
+        "bool": "bool",
+        "long": "int",
+        "float": "float",
+        "point2D": "vec2",
+        "color": "vec4",
+    }
+)
+
+
+def shader_text(code: Code, header: Header) -> ShaderText:
+    """The program of a shader. Raises CodeFault."""
+    fragment, vertex = (guarded(_translated(text, way)) for text, way in ((code.text, "in"), (code.vertex, "out")))
+    for text, file in ((fragment, code.name), (vertex, "its vertex shader")):
+        if text.strip() and "isf_main" not in words(text):
+            raise CodeFault(0, f"there is no void main() in {file}")
+    if not fragment.strip():
+        raise CodeFault(0, "there is no GLSL after the head: write a void main() that sets gl_FragColor")
+    used = words(fragment, vertex)
+    declared = [*_uniforms(header, used), *(f"uniform sampler2D {renamed(name)};" for name in samplers(header, used))]
+    declared += [*_rectangles(header, used), f"int {COUNTER} = 0;"]
+    where = "#define isf_FragNormCoord (isf_FragCoord.xy / RENDERSIZE)"
+    where = "in vec2 isf_FragNormCoord;" if vertex.strip() else where
+    top = [
+        *declared,
+        "uniform vec2 isf_range;",
+        "vec4 isf_FragColor = vec4(0.0);",
+        "#define isf_FragCoord vec4(gl_FragCoord.x, RENDERSIZE.y - gl_FragCoord.y, gl_FragCoord.zw)",
+        where,
+        _READING + (_DERIVATIVES if "isf_dFdy" in used else ""),
+    ]
+    painted = Stage(
+        "\n".join(top), fragment, _FRAGMENT_END % (_SPOILT if COUNTER in used else ""), code.file or "its code"
+    )
+    if not vertex.strip():
+        return ShaderText(painted)
+    file = code.file.rpartition(".")[0] + ".vs"
+    return ShaderText(painted, Stage("\n".join([*declared, _VERTEX_START, _READING]), vertex, _VERTEX_END, file))
+
+
+def samplers(header: Header, used: frozenset[str]) -> tuple[str, ...]:
+    """The pictures that the text reads, by the names that the head gives them."""
+    pictures = (one.name for one in header.inputs if one.type in PICTURES)
+    return tuple(
+        name for name in (*pictures, *header.buffers, *header.imported) if {renamed(name), *_around(name)} & used
+    )
+
+
+def values(header: Header, used: frozenset[str]) -> tuple[str, ...]:
+    """The other inputs that the text reads, by the names that the head gives them."""
+    return tuple(one.name for one in header.inputs if one.type not in PICTURES and renamed(one.name) in used)
+
+
+def renamed(name: str) -> str:
+    """What a name of the head is called in the program."""
+    return f"isf_{name}" if name in LATER or name in QUALIFIERS else name
+
+
+def _translated(text: str, varying: str) -> str:
+    """The text with the words of today, line by line; comments are blank."""
+    plain = _DIRECTIVE.sub(lambda found: " " * len(found[0]), blanked(text))
+
+    def word(found: re.Match[str]) -> str:
+        name = found["word"]
+        if name is None:
+            return found[0]
+        if name == "varying":
+            return varying
+        if name in WORDS:
+            return WORDS[name]
+        if name in CALLS and _CALLED.match(plain, found.end()):
+            return CALLS[name]
+        if name in LATER or (name in QUALIFIERS and not _QUALIFIED.match(plain, found.end())):
+            return f"isf_{name}"
+        return name
+
+    return _TOKEN.sub(word, plain)
+
+
+def _uniforms(header: Header, used: frozenset[str]) -> Iterator[str]:
+    # The macros of the top read the size, whatever the text does.
+    for name, glsl in UNIFORMS.items():
+        if name in used or name == "RENDERSIZE":
+            yield f"uniform {glsl} {name};"
+    types = {one.name: _TYPES[one.type] for one in header.inputs if one.type not in PICTURES}
+    for name in values(header, used):
+        yield f"uniform {types[name]} {renamed(name)};"
+
+
+def _around(name: str) -> tuple[str, str, str]:
+    return f"_{name}_imgRect", f"_{name}_imgSize", f"_{name}_flip"
+
+
+def _rectangles(header: Header, used: frozenset[str]) -> Iterator[str]:
+    """What hosts know of pictures besides; no document says so, but shaders use it."""
+    for name in samplers(header, used):
+        size = f"vec2(textureSize({renamed(name)}, 0))"
+        texts = (f"vec4(0.0, 0.0, {size})", size, "false")
+        for word, text in zip(_around(name), texts, strict=True):
+            if word in used:
+                yield f"#define {word} {text}"

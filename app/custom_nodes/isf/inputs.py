@@ -1,0 +1,138 @@
+"""Sockets and values from the inputs that a head declares."""
+
+from __future__ import annotations
+
+import keyword
+from collections.abc import Iterable, Mapping
+from typing import Any, Literal
+
+from halation.nodes import Field, Image, Plain, Socket, Temporal, Uniform, Value
+
+from .header import Entry
+
+LIGHT = "light"
+"""The name of the value that every node has: what numbers the shader is given."""
+
+REQUIRED = ("inputImage", "startImage", "endImage")
+"""Pictures without which a filter or a transition has nothing to do. All others may stay unlinked."""
+
+_TAKEN = frozenset({*dir(Temporal), LIGHT, "code", "title", "text", "inputs", "outputs", "values", "order", "out"})
+
+
+def attributes(entries: Iterable[Entry]) -> dict[str, str]:
+    """What the node calls each input: its name, with a `_` where that is taken."""
+    names = [entry.name for entry in entries]
+    found: dict[str, str] = {}
+    for name in names:
+        called = name.lstrip("_") or name
+        while (
+            called in _TAKEN
+            or keyword.iskeyword(called)
+            or called in found.values()
+            or (called != name and called in names)
+        ):
+            called += "_"
+        found[name] = called
+    return found
+
+
+def socket_of(entry: Entry) -> Socket:
+    """The socket of a picture or of sound."""
+    if entry.type != "image":
+        wanted = "its spectrum" if entry.type == "audioFFT" else "its samples"
+        doc = f"{entry.label or 'Sound'} as a picture, a row for each channel: {wanted}. Silent if unlinked."
+        return Field(0.0, own_size=True, doc=doc)
+    if entry.name in REQUIRED:
+        return Image(doc=entry.label)
+    return Image(0.0, own_size=True, doc=entry.label)
+
+
+def value_of(entry: Entry, name: str) -> tuple[Value, Any]:
+    """The value that an input is, and its Python type."""
+    label = entry.label or entry.name.replace("_", " ")
+    if entry.choices:
+        labels = tuple(label for _, label in entry.choices)
+        by_number = dict(reversed(entry.choices))
+        default = by_number.get(int(entry.default[0]) if entry.default else entry.choices[0][0], labels[0])
+        return Value(name, "choice", default, choices=labels, label=label), Literal[labels]
+    first = _default(entry)
+    if entry.type in ("bool", "event"):
+        doc = "True for as long as it is on: key it for single frames." if entry.type == "event" else ""
+        return Value(name, "bool", first[0] > 0.5, doc=doc, label=label), bool
+    if entry.type == "color":
+        rgba = (*(_decoded(part) for part in first[:3]), first[3])
+        return Value(name, "color", rgba, length=4, label=label), tuple[float, float, float, float]
+    if entry.type == "point2D":
+        if is_position(entry):
+            place = (first[0], 1.0 - first[1])
+            return (
+                Value(name, "vector", place, length=2, low=0.0, high=1.0, handle=True, label=label),
+                tuple[float, float],
+            )
+        low, high = min(entry.low or (-1.0,)), max(entry.high or (1.0,))
+        return Value(name, "vector", first, length=2, low=low, high=high, label=label), tuple[float, float]
+    low, high = (entry.low or (min(0.0, first[0]),))[0], (entry.high or (max(1.0, first[0]),))[0]
+    if entry.type == "long":
+        return Value(name, "int", int(first[0]), low=low, high=max(high, low + 1), unit="count", label=label), int
+    return Value(name, "float", first[0], low=low, high=high, unit="ratio", label=label), float
+
+
+def uniform_of(entry: Entry, plain: Plain, display: bool) -> Uniform:
+    """What the shader is given for a value of the node."""
+    if entry.choices:
+        return next(number for number, label in entry.choices if label == plain)
+    if isinstance(plain, str):
+        return 0
+    if isinstance(plain, tuple):
+        if entry.type == "color":
+            return (*(_encoded(part) if display else part for part in plain[:3]), plain[3])
+        return (plain[0], 1.0 - plain[1]) if is_position(entry) else plain
+    return bool(plain) if entry.type in ("bool", "event") else plain
+
+
+def number_of(uniform: Uniform) -> float:
+    """What a formula of a size reads."""
+    return 0.0 if isinstance(uniform, tuple) else float(uniform)
+
+
+def is_position(entry: Entry) -> bool:
+    """True for a point that lies in the picture, as fractions of it: rows run from the bottom."""
+    return (
+        entry.type == "point2D"
+        and len(entry.low) == 2
+        and len(entry.high) == 2
+        and min(entry.low) >= 0.0
+        and max(entry.high) <= 1.0
+    )
+
+
+def doc_of(doc: str, called: Mapping[str, str]) -> str:
+    """What the node says of itself."""
+    others = [f"{name} is called {now}" for name, now in called.items() if name != now]
+    return "\n".join([doc, *(f"{', '.join(others)}." for _ in others[:1])])
+
+
+def _default(entry: Entry) -> tuple[float, ...]:
+    """As the head says, else the middle of what is allowed for points, black, or the least."""
+    if entry.default:
+        return entry.default
+    if entry.type == "point2D":
+        return tuple(0.5 * (a + b) for a, b in zip(entry.low, entry.high, strict=True)) or (0.0, 0.0)
+    if entry.type == "color":
+        return (0.0, 0.0, 0.0, 1.0)
+    low, high = (entry.low or (0.0,))[0], (entry.high or (float("inf"),))[0]
+    return (min(max(0.0, low), high),)
+
+
+def _decoded(code: float) -> float:
+    """A display value of sRGB as light (IEC 61966-2-1)."""
+    size = abs(code)
+    light = size / 12.92 if size <= 0.04045 else ((size + 0.055) / 1.055) ** 2.4
+    return light if code >= 0.0 else -light
+
+
+def _encoded(light: float) -> float:
+    """The inverse of `_decoded`."""
+    size = abs(light)
+    code = 12.92 * size if size <= 0.0031308 else 1.055 * size ** (1.0 / 2.4) - 0.055
+    return code if light >= 0.0 else -code

@@ -1,0 +1,98 @@
+"""Parts of a document as a person writes them: numbers with their units, keys with their frames."""
+
+from __future__ import annotations
+
+import json
+from typing import Any, Final
+
+from halation.nodes import Value
+
+from ...graph import Graph, Group, signature
+from .parts import ABSENT, At, Tree, is_list, is_tree, plain
+
+_PLAIN: Final = ("ratio", "count")
+"""Units that a number needs not be followed by."""
+
+_LONG = 8
+"""Numbers of a list that are still written out."""
+
+_WIDE = 60
+"""Columns that anything else may take."""
+
+
+def item_text(node: Tree) -> str:
+    """What a node is: its type and the values that are not at their default are said by others."""
+    muted = ", muted" if node.get("muted") else ""
+    if node.get("type") != "group":
+        return f"{node.get('type')}{muted}"
+    if "path" in node:
+        return f"group {node['path']}{muted}"
+    count = len(node["graph"].get("nodes", {})) if is_tree(node.get("graph")) else 0
+    return f"group of {count} node{'' if count == 1 else 's'}{muted}"
+
+
+def end_text(end: Tree, exact: bool = False) -> str:
+    """An input, output or control: its type or target, and what else is set."""
+    rest = [f"{name} {text(part, None, exact)}" for name, part in sorted(end.items()) if name not in ("type", "target")]
+    return ", ".join([str(end.get("type") or end.get("target")), *rest])
+
+
+def animation_text(item: Tree, value: Value | None, exact: bool = False) -> str:
+    """Keys as `value at frame`, or an expression."""
+    if "expression" in item:
+        return f"= {item['expression']}"
+    keys = [f"{key_text(key, value, exact)} at {frame:g}" for frame, key in sorted(item.get("keys", {}).items())]
+    outside = [f"outside {item['outside']}"] if "outside" in item else []
+    return _cut(", ".join([*keys, *outside]), exact)
+
+
+def key_text(key: Tree, value: Value | None, exact: bool = False) -> str:
+    """The value of a key and how it goes on."""
+    way = key.get("interpolation", "smooth")
+    handles = [f" {side} {text(key[side], None, exact)}" for side in ("left", "right") if side in key]
+    return text(key.get("value"), value, exact) + ("" if way == "smooth" else f" {way}") + "".join(handles)
+
+
+def pair(before: Any, after: Any, value: Value | None = None, exact: bool = False) -> str:
+    """`old -> new`, with as many digits as it takes to see the difference."""
+    one, other = text(before, value, exact), text(after, value, exact)
+    return f"{one} -> {other}" if one != other or exact else pair(before, after, value, True)
+
+
+def text(part: Any, value: Value | None = None, exact: bool = False) -> str:
+    """A value with its unit; one that is absent is the default."""
+    if part is ABSENT:
+        return "none" if value is None else f"{text(value.default, value, exact)} (default)"
+    unit = f" {value.unit}" if value and value.unit and value.unit not in _PLAIN else ""
+    if isinstance(part, bool) or part is None:
+        return json.dumps(part)
+    if isinstance(part, int | float):
+        return (repr(part).removesuffix(".0") if exact else f"{part:.6g}") + unit
+    if isinstance(part, tuple):
+        return text(list(part), value, exact)  # pyright: ignore[reportUnknownArgumentType]
+    if is_list(part) and all(isinstance(one, int | float) and not isinstance(one, bool) for one in part):
+        if len(part) > _LONG and not exact:
+            return f"{len(part)} numbers"
+        return f"({', '.join(text(one, None, exact) for one in part)}){unit}"
+    return _cut(json.dumps(plain(part), ensure_ascii=False), exact)
+
+
+def value_at(graph: Graph, at: At) -> Value | None:
+    """What is declared of the value that an address leads to, through groups; None for what is no value."""
+    while len(at) > 3 and at[0] == "nodes" and at[2] == "graph":
+        item = graph.nodes.get(str(at[1]))
+        if not isinstance(item, Group):
+            return None
+        graph, at = item.graph, at[3:]
+    if len(at) >= 4 and at[0] == "nodes" and at[2] == "values":
+        node, name = str(at[1]), str(at[3])
+    elif len(at) >= 2 and at[0] == "animation":
+        node, _, name = str(at[1]).partition(".")
+    else:
+        return None
+    item = graph.nodes.get(node)
+    return None if item is None else signature(item).values.get(name)
+
+
+def _cut(words: str, whole: bool = False) -> str:
+    return words if whole or len(words) <= _WIDE else f"{words[: _WIDE - 1]}…"

@@ -1,0 +1,81 @@
+"""The links of a graph as they are drawn, and which of them is near a point or crossed by a line. Canvas units."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from halation.nodes import Kind
+from numpy.typing import NDArray
+
+from ...graph import Port
+from .geometry import SAMPLES, Curve, Point, crossed, crossing, distances, midpoint, sampled
+
+
+@dataclass(frozen=True, slots=True)
+class Wire:
+    """A link as drawn: one curve from pin to dot to pin. `fault` says why it cannot work."""
+
+    target: Port
+    source: Port
+    stops: tuple[str, ...]
+    """Keys of the elements that it joins, from the source on."""
+    kind: Kind | None
+    curves: tuple[Curve, ...]
+    fault: str = ""
+    muted: bool = False
+
+    def leaves(self, keys: Collection[str]) -> bool:
+        """True if it joins what is among `keys` with what is not."""
+        return (self.stops[0] in keys) != (self.stops[-1] in keys)
+
+    @property
+    def middle(self) -> Point:
+        """A point on it, about half way."""
+        return midpoint(self.curves[len(self.curves) // 2])
+
+
+@dataclass(frozen=True)
+class Net:
+    """All links. What is costly to find out about them is kept while elements look different but stay in place."""
+
+    wires: tuple[Wire, ...] = ()
+
+    @cached_property
+    def lines(self) -> NDArray[np.float64]:
+        """All curves of all links as polylines."""
+        shapes = [shape for wire in self.wires for shape in wire.curves]
+        return sampled(np.array(shapes, float)) if shapes else np.zeros((0, SAMPLES + 1, 2))
+
+    @cached_property
+    def by_target(self) -> Mapping[Port, Wire]:
+        """Links by what they feed."""
+        return {wire.target: wire for wire in self.wires}
+
+    @cached_property
+    def _owners(self) -> list[Wire]:
+        """The link that each of `lines` belongs to."""
+        return [wire for wire in self.wires for _ in wire.curves]
+
+    def at(self, x: float, y: float, reach: float, skip: Collection[str] = ()) -> Wire | None:
+        """The link nearest to a point within reach, leaving out those that join one of `skip`."""
+        if not len(self.lines):
+            return None
+        gaps = distances(self.lines, (x, y))
+        near = np.flatnonzero(gaps <= reach)
+        for index in near[np.argsort(gaps[near])]:
+            wire = self._owners[index]
+            if not any(stop in skip for stop in wire.stops):
+                return wire
+        return None
+
+    def crossed(self, start: Point, end: Point) -> dict[Port, Point]:
+        """The links that a straight line crosses, and where."""
+        if not len(self.lines):
+            return {}
+        return {
+            self._owners[index].target: crossing(self.lines[index], start, end)
+            for index in np.flatnonzero(crossed(self.lines, start, end))
+        }

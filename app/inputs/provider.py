@@ -1,0 +1,292 @@
+"""What a graph's inputs are filled with: files and arrays, probed while compiling and read while rendering."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from hashlib import blake2b
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from halation.nodes import Kind
+
+from ..compiler import named_files
+from ..errors import InputError, UsageError
+from ..graph import INPUTS, OUTPUTS, Graph, Input, keyed_range
+from ..graph.frames import is_video
+from ..media.layers import split_layer
+from ..resources.picture import Picture
+from ..resources.provider import Probed
+
+if TYPE_CHECKING:
+    from fractions import Fraction
+
+    import numpy as np
+    from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene
+
+    from ..media.info import ImageInfo
+    from ..resources.color_program import ColorProgram
+    from ..resources.mesh import Mesh
+    from ..resources.provider import Frame
+    from ..resources.working_space import Working
+    from .prefetch import Ahead
+
+    Array = np.ndarray
+    Binding = str | Path | Array | float | tuple[float, ...]
+    """What fills a graph input: a path, `path:layer`, an array [h, w] or [h, w, c], the value of a Number or Color."""
+
+
+class Pictures:
+    """Probes and loads what the pictures of one graph stand for. `ahead` reads some of them already."""
+
+    def __init__(self, ahead: Ahead | None = None) -> None:
+        self.ahead = ahead
+        self.repaired: dict[str, int] = {}
+        """Broken pixels by path."""
+        self.look: Callable[[str, Mapping[str, str]], Render] | None = None
+        """Finds out what a render holds, where that is not to be waited for."""
+        self._infos: dict[str, ImageInfo] = {}
+        self._marks: dict[str, str] = {}
+
+    def bind(self, graph: Graph, inputs: Mapping[str, Binding]) -> dict[str, Picture]:
+        """Pictures for graph inputs by name. Raises UsageError for a name that the graph does not have."""
+        self._marks = {}
+        self._infos.clear()
+        bound = {name: self._bind(_input(graph, name), name, item) for name, item in inputs.items()}
+        return bound | self._siblings(graph, bound)
+
+    def frames(self, graph: Graph, bound: Mapping[str, Picture]) -> tuple[int, int]:
+        """The first and last frame of a graph: as it says, else those of the first sequence it reads, else of keys.
+
+        Raises InputError, UsageError for a sequence that cannot be looked at.
+        """
+        from ..media.sequences import find_sequence
+
+        if graph.settings.frames is not None:
+            return graph.settings.frames
+        for path, _, _ in named_files(graph, bound):
+            if (found := find_sequence(path)) and found.frames:
+                return found.frames[0], found.frames[-1]
+        return keyed_range(graph)
+
+    def rate(self, graph: Graph, bound: Mapping[str, Picture]) -> Fraction | float:
+        """Frames per second: as the graph says, else those of the first video it reads, else the usual ones."""
+        from ..media.sequences import find_sequence
+
+        usual = type(graph.settings)().rate
+        for path, _, _ in named_files(graph, bound) if graph.settings.rate == usual else ():
+            if is_video(path) and (found := find_sequence(path)) and found.rate:
+                return found.rate
+        return graph.settings.rate
+
+    def check_frames(self, graph: Graph, frames: range) -> None:
+        """Raise InputError for the first file that is missing in a sequence which the graph's outputs need."""
+        needed = graph.upstream(OUTPUTS)
+        for path, owner, missing in named_files(graph, {}):
+            used = owner.partition("/")[0] in needed or owner.startswith(f"{INPUTS}.")
+            for frame in frames if used and missing == "error" else ():
+                self.at(path, frame, missing)
+
+    def at(self, path: str, frame: int, missing: Missing) -> Frame:
+        """The file of a frame. Raises InputError for a frame that has none."""
+        from ..media.sequences import frame_file
+
+        return frame_file(path, frame, missing)
+
+    def probe(self, picture: Picture) -> Probed:
+        """Size and precision of a picture. Raises InputError for what cannot be read."""
+        if picture.in_memory:
+            array = cast("Array", picture.pixels)
+            height, width = array.shape[:2]
+            return Probed((width, height), array.dtype.name == "float16", self._marks[picture.path])
+        from ..media.info import find_layer
+
+        if picture.within:
+            _check_within(picture.path, picture.within)
+        header = self.info(picture.path)
+        layer = find_layer(header, picture.layer)
+        color = picture.kind in (Kind.IMAGE, Kind.COLOR) and not layer.data
+        mark = _converted(picture) if color else ""
+        half = layer.half and not (mark and _changes(picture, layer.full))
+        return Probed(header.size, half, header.fingerprint + mark, header.by_rows)
+
+    def load(self, picture: Picture) -> Array:
+        """Its pixels as [height, width, channels] of float16 or float32."""
+        if picture.in_memory:
+            import numpy as np
+
+            pixels: Any = picture.pixels
+            array = np.array(pixels, np.float32) if isinstance(pixels, tuple) else pixels
+            return widened(array, picture.kind, picture.width)
+        if picture.rows is not None:
+            return self._load_rows(picture, *picture.rows)
+        from ..media.read import read
+
+        what = (picture.path, picture.layer, picture.kind, picture.width)
+        pixels = self.ahead and self.ahead.take((*what, picture.space, picture.color))
+        pixels = pixels or read(*what, picture.frame, space=picture.space, color=picture.color)
+        if pixels.repaired:
+            self.repaired[picture.path] = pixels.repaired
+        return pixels.array
+
+    def recolor(self, change: ColorChange) -> ColorProgram:
+        """The program of a change of color. Raises InputError for a file that cannot be read."""
+        from ..color.gpu_programs import recolor
+
+        return recolor(change)
+
+    def working(self, color: ColorSettings) -> Working | None:
+        """What shaders know of the working space. Raises GraphError for one that nobody knows."""
+        from ..color.primaries import working_of
+
+        return working_of(color)
+
+    def render(self, path: str, named: Mapping[str, str]) -> Render:
+        """What the file of a render holds. Raises InputError for one that cannot be read."""
+        from ..render_layers.render import find_render
+
+        return (self.look or find_render)(path, named)
+
+    def mesh(self, scene: Scene) -> Mesh:
+        """The triangles of a scene. Raises InputError for a file that cannot be read."""
+        from ..media.meshes import load_mesh
+
+        return load_mesh(scene)
+
+    def info(self, path: str) -> ImageInfo:
+        """A file's header, read once."""
+        if path not in self._infos:
+            from ..media.info import info
+
+            self._infos[path] = info(path)
+        return self._infos[path]
+
+    def _load_rows(self, picture: Picture, first: int, end: int) -> Array:
+        """Rows of a file; what is repaired counts as often as it is read."""
+        from ..media.bands import read_rows
+        from ..media.read import Want
+
+        want = Want(picture.layer, picture.kind, picture.width, picture.space, picture.color)
+        pixels = read_rows(picture.path, want, first, end)
+        if pixels.repaired:
+            self.repaired[picture.path] = self.repaired.get(picture.path, 0) + pixels.repaired
+        return pixels.array
+
+    def _siblings(self, graph: Graph, bound: Mapping[str, Picture]) -> dict[str, Picture]:
+        """Inputs whose default is another layer of a file that was replaced follow it to the new file.
+
+        Otherwise a new picture would quietly be mixed with the depth of the sample.
+        """
+        replaced = {graph.inputs[name].file: picture for name, picture in bound.items() if graph.inputs[name].file}
+        found: dict[str, Picture] = {}
+        for name, socket in graph.inputs.items():
+            new = replaced.get(socket.file)
+            if name in bound or new is None:
+                continue
+            if new.in_memory:
+                raise UsageError(
+                    f"input '{name}' is a layer of {socket.file}, which input '{new.path}' no longer comes from: "
+                    f"bind '{name}' too"
+                )
+            found[name] = Picture(new.path, self._hinted(new.path, socket), socket.kind, socket.socket().channels)
+        return found
+
+    def _bind(self, socket: Input, name: str, item: Binding) -> Picture:
+        if socket.kind is Kind.CAMERA:
+            raise UsageError(f"input '{name}' is a camera, which no file or number stands for: link one in the graph")
+        if not isinstance(item, str | Path):
+            array = _array(item, socket.socket().single)
+            if array.ndim not in (2, 3) or not array.size or array.dtype.kind not in "fiub":
+                said = f"{array.dtype} {list(array.shape)}"
+                raise UsageError(f"input '{name}': the array is {said}; give numbers as [height, width, channels]")
+            if array.dtype.kind == "u" and array.dtype.itemsize < 4:
+                raise UsageError(
+                    f"input '{name}': {array.dtype} pixels are those of a file and encoded for a display; give "
+                    "scene-linear floats, or the path of the file"
+                )
+            self._marks[name] = _content(array)
+            return Picture(name, "", socket.kind, socket.socket().channels, in_memory=True, pixels=array)
+        path, layer = split_layer(str(item))
+        return Picture(path, layer or self._hinted(path, socket), socket.kind, socket.socket().channels)
+
+    def _hinted(self, path: str, socket: Input) -> str:
+        """The layer that the input asks for, if this file has it."""
+        from ..media.info import layer_or_first
+
+        if socket.layer and socket.kind is Kind.IMAGE:
+            return layer_or_first(self.info(self.at(path, 1, "nearest").path), socket)
+        return socket.layer
+
+
+def _array(item: Array | float | tuple[float, ...], single: bool) -> Array:
+    """An array that is bound to an input; one number, or one per channel, will do where the input takes one value."""
+    import numpy as np
+
+    array = np.asarray(item)
+    return array.reshape(1, 1, -1) if single and array.ndim < 2 else array
+
+
+def _converted(picture: Picture) -> str:
+    """A mark that changes with what color in a file is taken for, and with what it becomes."""
+    from ..color.file_space import check_wanted
+    from ..color.management import color_mark, managed
+
+    manager = managed(picture.color)
+    check_wanted(picture.space, manager)
+    if not manager.plain:
+        _ = manager.config, manager.working  # what is wrong with them is to be said before anything is read
+    return "" if manager.plain and not picture.space else f" {picture.space} {color_mark(picture.color)}"
+
+
+def _changes(picture: Picture, layer: str) -> bool:
+    """True if the numbers of a layer do not stay as they are in the file: half floats are not enough for others."""
+    from ..color.management import managed
+    from ..color.transforms import is_working
+    from ..media.spaces import layer_spaces
+
+    try:
+        found = layer_spaces(picture.path, picture.color, picture.space).get(layer)
+    except InputError:  # said again when it is read
+        return True
+    return found is not None and not is_working(found, managed(picture.color))
+
+
+def _content(array: Array) -> str:
+    """A mark that changes with the pixels: the same array may be filled anew between two renders."""
+    import numpy as np
+
+    digest = blake2b(np.ascontiguousarray(array).data, digest_size=16).hexdigest()
+    return f"array {array.shape} {array.dtype} {digest}"
+
+
+def _check_within(path: str, folder: str) -> None:
+    """Raise InputError for a file that lies elsewhere once links are followed."""
+    try:
+        inside = Path(path).resolve().is_relative_to(Path(folder).resolve())
+    except (OSError, RuntimeError, ValueError):
+        inside = False
+    if not inside:
+        raise InputError(f"{path}: it does not lie in the folder '{folder}', which it may not leave")
+
+
+def widened(array: Array, kind: Kind, width: int) -> Array:
+    """An array with this many channels: missing alpha is 1, a single channel is grey, other missing ones are 0."""
+    import numpy as np
+
+    if array.ndim == 2:
+        array = array[..., None]
+    have = array.shape[2]
+    if have >= width:
+        return array[..., :width]
+    if kind is Kind.IMAGE and have == 1:
+        array, have = np.repeat(array, 3, axis=2), 3
+    fill = np.zeros((*array.shape[:2], width - have), array.dtype)
+    if kind is Kind.IMAGE:
+        fill[..., -1] = 1.0
+    return np.concatenate([array, fill], axis=2)
+
+
+def _input(graph: Graph, name: str) -> Input:
+    if name not in graph.inputs:
+        known = ", ".join(graph.inputs) or "none"
+        raise UsageError(f"the graph has no input '{name}': its inputs are {known}")
+    return graph.inputs[name]

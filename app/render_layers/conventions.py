@@ -1,0 +1,163 @@
+"""How the numbers in the data of a render are meant: which depth, whose axes, which way motion points.
+
+This is what is known of renderers; `evidence` finds it in pixels, which counts more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from types import MappingProxyType
+
+from ..media.layers import plain
+from .naming import Renderer, Role
+
+
+class DepthKind(StrEnum):
+    """What a depth layer holds. `Convention.scale` and `offset` make all of it planar but what is radial or inverse."""
+
+    PLANAR = "planar"
+    """The distance along the axis of the camera."""
+    RADIAL = "radial"
+    """The distance from the eye."""
+    INVERSE = "inverse"
+    """1 / planar."""
+    NEGATIVE = "negative"
+    """Minus planar: the camera looks along -z."""
+    NORMALIZED = "normalized"
+    """Planar, brought between 0 and 1."""
+
+
+class Space(StrEnum):
+    """Whose axes vectors refer to."""
+
+    WORLD = "world"
+    CAMERA = "camera"
+    """x right, y up, z towards the viewer."""
+    CAMERA_AHEAD = "camera_ahead"
+    """x right, y up, z away from the viewer."""
+
+
+class Motion(StrEnum):
+    """Which two frames motion is between, once `Convention.scale` has made it pixels, x right and y down."""
+
+    FROM_PREVIOUS = "from_previous"
+    """Where a surface is, minus where it was one frame before."""
+    TO_NEXT = "to_next"
+    """Where it will be one frame later, minus where it is."""
+
+
+@dataclass(frozen=True)
+class Convention:
+    """How a layer is meant: its kind, and the `scale` and then `offset` that its channels need to be usual numbers.
+
+    Those are distances ahead (planar), from the eye (radial) or their inverse; unit vectors; pixels, x right, y down.
+    One number stands for all channels. `measured` says that the pixels prove it. A kind that nothing tells is "".
+    """
+
+    kind: str
+    reason: str
+    measured: bool = False
+    scale: tuple[float, ...] = (1.0,)
+    offset: tuple[float, ...] = (0.0,)
+
+    @property
+    def words(self) -> str:
+        """As a person reads it."""
+        return self.kind.replace("_", " ") or "not known"
+
+
+@dataclass(frozen=True)
+class _Habit:
+    """What one renderer writes under one of some names, as long as nothing proves otherwise."""
+
+    renderer: Renderer
+    role: Role
+    names: str
+    convention: Convention
+
+
+def _habit(
+    renderer: Renderer, role: Role, names: str, kind: str, reason: str, scale: tuple[float, ...] = (1.0,)
+) -> _Habit:
+    return _Habit(renderer, role, names, Convention(kind, reason, scale=scale))
+
+
+_UP = "in pixels, y up"
+_HABITS: Sequence[_Habit] = (
+    _habit(Renderer.BLENDER, Role.DEPTH, "depth z", DepthKind.PLANAR, "Blender writes planar depth"),
+    _habit(Renderer.ARNOLD, Role.DEPTH, "z depth", DepthKind.PLANAR, "Arnold's Z is not its ray length"),
+    _habit(Renderer.KARMA, Role.DEPTH, "depth hitpz", DepthKind.PLANAR, "Karma's hitPz is planar"),
+    _habit(Renderer.KARMA, Role.DEPTH, "hitdist", DepthKind.RADIAL, "Karma's hitdist is the length of the ray"),
+    _habit(Renderer.KARMA, Role.DEPTH, "pz", DepthKind.NEGATIVE, "Mantra's Pz is z in camera space", (-1.0,)),
+    _habit(Renderer.RENDERMAN, Role.DEPTH, "z zfiltered depth", DepthKind.PLANAR, "RenderMan's z is its camera's"),
+    _habit(Renderer.MITSUBA, Role.DEPTH, "depth dd", DepthKind.RADIAL, "Mitsuba's depth is the length of the ray"),
+    _habit(Renderer.NUKE, Role.DEPTH, "depth z", DepthKind.INVERSE, "Nuke's ScanlineRender writes 1 / z"),
+    _habit(
+        Renderer.VRAY,
+        Role.DEPTH,
+        "vrayzdepth zdepth z",
+        "",
+        "V-Ray scales, clamps and turns around its Z-depth as its settings say",
+    ),
+    _habit(Renderer.BLENDER, Role.NORMAL, "normal", Space.WORLD, "Blender writes normals of the world"),
+    _habit(Renderer.ARNOLD, Role.NORMAL, "n", Space.WORLD, "Arnold's N is in world space"),
+    _habit(Renderer.KARMA, Role.NORMAL, "ngcamera ncamera", Space.CAMERA, "its name says camera"),
+    _habit(Renderer.KARMA, Role.NORMAL, "n ng", Space.WORLD, "Karma's N is in world space"),
+    _habit(Renderer.RENDERMAN, Role.NORMAL, "nn normal", Space.CAMERA_AHEAD, "RenderMan shades in camera space"),
+    _habit(Renderer.RENDERMAN, Role.NORMAL, "nworld", Space.WORLD, "its name says world"),
+    _habit(Renderer.BLENDER, Role.POSITION, "position", Space.WORLD, "Blender writes places in the world"),
+    _habit(Renderer.ARNOLD, Role.POSITION, "p", Space.WORLD, "Arnold's P is in world space"),
+    _habit(Renderer.KARMA, Role.POSITION, "p", Space.WORLD, "Karma's P is in world space"),
+    _habit(Renderer.KARMA, Role.POSITION, "pcamera", Space.CAMERA, "its name says camera"),
+    _habit(Renderer.RENDERMAN, Role.POSITION, "p", Space.CAMERA_AHEAD, "RenderMan shades in camera space"),
+    _habit(Renderer.RENDERMAN, Role.POSITION, "pworld", Space.WORLD, "its name says world"),
+    _habit(
+        Renderer.BLENDER,
+        Role.VELOCITY,
+        "vector",
+        Motion.FROM_PREVIOUS,
+        f"Blender's X and Y are previous minus current, {_UP}; Z and W current minus next",
+        (-1.0, 1.0, -1.0, 1.0),
+    ),
+    _habit(
+        Renderer.NUKE,
+        Role.VELOCITY,
+        "backward",
+        Motion.FROM_PREVIOUS,
+        f"Nuke's backward vectors point to the previous frame, {_UP}",
+        (-1.0, 1.0),
+    ),
+    _habit(
+        Renderer.NUKE,
+        Role.VELOCITY,
+        "forward motion",
+        Motion.TO_NEXT,
+        f"Nuke's forward vectors point to the next frame, {_UP}",
+        (1.0, -1.0),
+    ),
+)
+_FALLBACKS: Mapping[Role, Convention] = MappingProxyType(
+    {
+        Role.DEPTH: Convention(DepthKind.PLANAR, "what most renderers write; nothing in the file proves it"),
+        Role.NORMAL: Convention(Space.WORLD, "what most renderers write; nothing in the file proves it"),
+        Role.POSITION: Convention(Space.WORLD, "what most renderers write; nothing in the file proves it"),
+        Role.VELOCITY: Convention("", "renderers differ in it; the frame before would tell"),
+    }
+)
+
+
+def habit(role: Role, name: str, renderer: Renderer | None) -> Convention | None:
+    """What the renderer is known to write under this name; of an unknown one, what all do that have it.
+
+    Else what most renderers do; None for roles that need no telling.
+    """
+    word = plain(name.rpartition(".")[2])
+    found = [
+        item.convention
+        for item in _HABITS
+        if item.role is role and renderer in (None, item.renderer) and word in item.names.split()
+    ]
+    agreed = len({(item.kind, item.scale) for item in found}) == 1
+    return found[0] if agreed else _FALLBACKS.get(role)

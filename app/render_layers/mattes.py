@@ -1,0 +1,101 @@
+"""The cryptomattes of a render: their layers by rank, and the names that their manifests give to ids.
+
+Friedman and Jones 2015, as specified by Psyop: the header says `cryptomatte/KEY/name`, and the manifest of that name in
+`cryptomatte/KEY/manifest`, or in a file beside the picture that `cryptomatte/KEY/manif_file` names.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import cast
+
+import numpy as np
+from halation.nodes import Kind, Matte, float_bits
+
+from ..color.transforms import Array
+from ..errors import InputError
+from ..media.layers import plain
+from ..media.read import read
+from ..resources.sandbox import outside
+from .naming import Role
+from .recognition import Pass
+from .survey import Survey, survey
+
+_NAME = re.compile(r"cryptomatte/(\w+)/name")
+_ROLES = MappingProxyType(
+    {
+        Role.CRYPTOMATTE_OBJECT: "object",
+        Role.CRYPTOMATTE_MATERIAL: "material",
+        Role.CRYPTOMATTE_ASSET: "asset",
+        Role.CRYPTOMATTE: "",
+    }
+)
+
+
+def mattes_of(found: Survey) -> tuple[Matte, ...]:
+    """All of them, in the order of the layers. A manifest that cannot be read has no names."""
+    groups: dict[str, list[Pass]] = {}
+    for item in found.passes:
+        if item.role in _ROLES:
+            groups.setdefault(item.layer.full[:-2], []).append(item)
+    said = found.header.attributes
+    keys = {plain(str(value)): match[1] for name, value in said.items() if (match := _NAME.fullmatch(name))}
+    made: list[Matte] = []
+    for name, items in groups.items():
+        items.sort(key=lambda item: item.rank)
+        key = keys.get(plain(name))
+        ids = _manifest(said, key, Path(found.header.info.path).parent) if key else {}
+        role = items[0].role
+        assert role is not None
+        made.append(Matte(_ROLES[role], tuple(item.layer.full for item in items), MappingProxyType(ids)))
+    return tuple(made)
+
+
+@dataclass(frozen=True)
+class IdMap:
+    """The id that covers most of each pixel, [h, w] of uint32, 0 where nothing does; and what ids are called."""
+
+    ids: Array
+    names: Mapping[int, str]
+
+    def at(self, u: float, v: float) -> int:
+        """The id at a point of the picture, given as fractions; 0 outside."""
+        height, width = self.ids.shape
+        x, y = math.floor(u * width), math.floor(v * height)
+        return int(self.ids[y, x]) if 0 <= x < width and 0 <= y < height else 0
+
+
+def id_map(path: str, first: str) -> IdMap:
+    """What is where, by the first layer of a cryptomatte.
+
+    Raises:
+        InputError: as `read`, also for a layer that is none of a cryptomatte.
+    """
+    matte = next((matte for matte in mattes_of(survey(path)) if matte.layers[0] == first), None)
+    if matte is None:
+        raise InputError(f"{path}: '{first}' is no cryptomatte")
+    ranks = read(path, first, Kind.VECTOR, 4).array.astype(np.float32, copy=False)
+    ids, covered = np.ascontiguousarray(ranks[..., 0::2]).view(np.uint32), ranks[..., 1::2]
+    found = np.where(covered[..., 1] > covered[..., 0], ids[..., 1], ids[..., 0])
+    found[~(covered.max(axis=2) > 0.0)] = 0
+    return IdMap(found, MappingProxyType({float_bits(bits): name for name, bits in matte.ids.items()}))
+
+
+def _manifest(attributes: Mapping[str, object], key: str, folder: Path) -> dict[str, int]:
+    """Ids by name."""
+    try:
+        said = attributes.get(f"cryptomatte/{key}/manifest")
+        beside = attributes.get(f"cryptomatte/{key}/manif_file")
+        file = folder / Path(str(beside)).name
+        text = file.read_text(encoding="utf-8") if said is None and beside and not outside(file) else str(said or "{}")
+        found = json.loads(text)
+        names = cast("dict[str, object]", found if isinstance(found, dict) else {})
+        return {name: int(str(number), 16) for name, number in names.items()}
+    except (OSError, ValueError):
+        return {}

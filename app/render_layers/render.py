@@ -1,0 +1,65 @@
+"""Renders as nodes ask for them: layers by role, what their numbers mean, the camera, and cryptomattes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from types import MappingProxyType
+
+from halation.nodes import Meaning, Render
+
+from ..errors import HalationError
+from .mattes import mattes_of
+from .naming import Role
+from .survey import survey
+
+_DATA = frozenset(
+    {
+        Role.DEPTH,
+        Role.NORMAL,
+        Role.POSITION,
+        Role.VELOCITY,
+        Role.UV,
+        Role.ALBEDO,
+        Role.EMISSION,
+        Role.OCCLUSION,
+        Role.OBJECT_ID,
+        Role.MATERIAL_ID,
+        Role.CRYPTOMATTE,
+        Role.CRYPTOMATTE_OBJECT,
+        Role.CRYPTOMATTE_MATERIAL,
+        Role.CRYPTOMATTE_ASSET,
+    }
+)
+"""What makes a picture a render: layers that effects work from."""
+
+
+def find_render(path: str, named: Mapping[str, str] = MappingProxyType({})) -> Render:
+    """What the file of a render holds; roles that several layers claim alike are left out.
+
+    `named` are layers that are to have a role, by that.
+
+    Raises:
+        InputError: the file cannot be read, or has no such layer.
+    """
+    found = survey(path, named={Role(role): layer for role, layer in named.items()})
+    layers = {role: layer for role in found.roles if (layer := found.layer(role))}
+    return Render(
+        MappingProxyType({role.value: layer.full for role, layer in layers.items()}),
+        MappingProxyType({role.value: len(layer.channels) for role, layer in layers.items()}),
+        MappingProxyType(
+            {role.value: Meaning(rule.kind, rule.scale, rule.offset) for role, rule in found.conventions.items()}
+        ),
+        found.camera.camera,
+        mattes_of(found),
+    )
+
+
+def is_render(path: str | Path) -> bool:
+    """True for a file of several layers of which one is, or may be, what effects work from; only its header is read."""
+    try:
+        found = survey(path)
+    except HalationError:
+        return False
+    told = {role for item in found.passes for role in (item.role, *item.candidates) if role is not None}
+    return len(found.passes) > 1 and bool(told & _DATA)

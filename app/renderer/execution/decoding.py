@@ -1,0 +1,116 @@
+"""Pictures are decoded on other threads while shaders compile and earlier passes run."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Executor, Future
+
+import numpy as np
+from msgspec import Struct
+
+from ...compiler import Surface, Upload
+from ...resources.picture import Picture
+
+Array = np.ndarray
+Loader = Callable[[Picture], Array]
+"""Reads a picture as [height, width, channels] of float16 or float32. Called on worker threads."""
+
+AHEAD = 4
+"""Pictures decoded before their turn: enough to keep the threads busy, few enough to fit into memory."""
+
+AHEAD_BYTES = 2**28
+"""What they may take together; one picture may be larger."""
+
+Wanted = tuple[Upload, Surface]
+"""What is to be decoded, and where it goes."""
+
+
+class Decoded(Struct, frozen=True):
+    """Pixels, and the seconds that it took to get them."""
+
+    pixels: Array
+    seconds: float
+
+
+def decode(load: Loader, picture: Picture) -> Decoded:
+    """Load a picture and say how long that took."""
+    started = time.perf_counter()
+    pixels = load(picture)
+    return Decoded(pixels, time.perf_counter() - started)
+
+
+def within_reach(wanted: Iterable[Wanted]) -> Iterator[Wanted]:
+    """As many of the first ones as may be decoded before their turn."""
+    nbytes = 0
+    for number, (upload, surface) in enumerate(wanted):
+        nbytes += surface.nbytes
+        if number and (number >= AHEAD or nbytes > AHEAD_BYTES):
+            return
+        yield upload, surface
+
+
+class Decoding:
+    """Decodes pictures in the order in which they are wanted, a few ahead of what is taken.
+
+    What was begun and is not wanted any more stays in `begun` for the next one, which may well want it.
+    """
+
+    def __init__(
+        self, threads: Executor, load: Loader, wanted: Iterable[Wanted], begun: dict[str, Future[Decoded]]
+    ) -> None:
+        self._threads, self._load, self._begun = threads, load, begun
+        self._uploads = {upload.surface: (upload, surface) for upload, surface in wanted}
+        self._started: dict[int, Future[Decoded]] = {}
+        self._go_ahead()
+
+    def __contains__(self, surface: int) -> bool:
+        return surface in self._uploads
+
+    def upload(self, surface: int) -> Upload:
+        """What is decoded for a surface."""
+        return self._uploads[surface][0]
+
+    def ready(self, surface: int) -> bool:
+        """True if `take` would not wait."""
+        return self._start(surface).done()
+
+    def take(self, surface: int) -> Decoded:
+        """The pixels for a surface, once. Raises what the loader raised."""
+        future = self._start(surface)
+        del self._uploads[surface], self._started[surface]
+        found = future.result()
+        self._go_ahead()
+        return found
+
+    def skip(self, surface: int) -> None:
+        """These pixels have come from elsewhere."""
+        del self._uploads[surface]
+        future = self._started.pop(surface, None)
+        if future is not None:
+            future.cancel()
+        self._go_ahead()
+
+    def cancel(self) -> None:
+        """Nothing more is wanted."""
+        left = {
+            self._uploads[surface][1].key: future
+            for surface, future in self._started.items()
+            if not future.cancel() and not (future.done() and future.exception())
+        }
+        self._begun.update(left)
+        while len(self._begun) > AHEAD:
+            self._begun.pop(next(iter(self._begun))).cancel()
+        self._uploads.clear()
+        self._started.clear()
+
+    def _start(self, number: int) -> Future[Decoded]:
+        if number not in self._started:
+            upload, surface = self._uploads[number]
+            begun = self._begun.pop(surface.key, None)
+            self._started[number] = begun or self._threads.submit(decode, self._load, upload.picture)
+        return self._started[number]
+
+    def _go_ahead(self) -> None:
+        for upload, _ in within_reach(self._uploads.values()):
+            self._start(upload.surface)

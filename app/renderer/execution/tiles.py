@@ -1,0 +1,239 @@
+"""A plan that does not fit, run tile by tile."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterable, Mapping, Set
+from typing import Protocol
+
+import numpy as np
+from halation.nodes import Kind, Size
+from msgspec.structs import replace
+
+from ...compiler import Held, Pass, Plan, Read, Ref, Region, Stage, Upload, tile_plan
+from ...compiler.areas import Span
+from ...compiler.explain import size_text
+from ...compiler.ir import Program
+from ...errors import DeviceError, HalationError
+from ...media.info import machine_memory
+from ...resources.picture import Picture
+from ..opengl.textures import Lease
+from .arrays import Arrays
+from .decoding import Array, Loader
+from .run import Run, carried
+
+
+class Runs(Protocol):
+    """Runs plans that fit: see `Runner`."""
+
+    def forget(self) -> None:
+        """Give back textures that nobody leases."""
+        ...
+
+    def steps(self, plan: Plan, kept: Lease, wanted: Iterable[int] | None = None) -> Run:
+        """Begin to run a plan."""
+        ...
+
+    def download(self, plan: Plan, arrays: Arrays | None = None) -> dict[str, Array]:
+        """The outputs of a plan that has run, in `arrays` that are lent."""
+        ...
+
+    def lease(self) -> Lease:
+        """Keeps pixels on the device."""
+        ...
+
+
+class TiledRun(Run):
+    """Executes a plan tile by tile, one pass per `next`. When it ends, `finished` is given the outputs by name.
+
+    What is read anywhere is put together in memory before; so are the outputs, unless their rows are taken.
+    """
+
+    def __init__(self, runner: Runs, load: Loader, plan: Plan, finished: Callable[[dict[str, Array]], None]) -> None:
+        assert plan.tiling is not None
+        super().__init__(plan)
+        self._tiling = plan.tiling
+        self._runner, self._finished = runner, finished
+        self._pictures, self._arrays = _Pictures(load, by_rows=plan.tiling.target.memory > 0), Arrays()
+        self._passes = self._run()
+
+    @property
+    def total(self) -> int:
+        return self._tiling.total
+
+    @property
+    def ready(self) -> bool:
+        """True: nothing is decoded before it is wanted."""
+        return True
+
+    def __next__(self) -> Pass:
+        try:
+            one = next(self._passes)
+        except BaseException:
+            self.ended = True
+            raise
+        self.done += 1
+        return one
+
+    def close(self) -> None:
+        self.ended = True
+        self._passes.close()
+
+    # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _run(self) -> Generator[Pass, None, None]:
+        tiling = self._tiling
+        taken = tiling.by_rows if self.rows else frozenset[str]()
+        _check_memory(tiling.program, taken)
+        made: dict[int, Held] = {}
+        for number, stage in enumerate(tiling.stages[: len(tiling.before)]):
+            arrays = yield from self._stage(stage, made)
+            made |= self._held(stage, arrays)
+            self._forget(made, tiling.stages[number + 1 :])
+        outputs = {
+            name: _pixels(made[ref.op], ref.output) for name, ref in tiling.program.outputs.items() if ref.op in made
+        }
+        for number, stage in enumerate(tiling.last, len(tiling.before)):
+            outputs |= yield from self._stage(stage, made)
+            self._forget(made, tiling.stages[number + 1 :])
+        self._finished({name: outputs[name] for name in tiling.program.outputs if name not in taken})
+
+    def _stage(self, stage: Stage, made: Mapping[int, Held]) -> Generator[Pass, None, dict[str, Array]]:
+        """Make the pictures of a stage: [height, width, channels] by name. What is taken by rows is not there."""
+        size = self._tiling.program.shape(next(iter(stage.outputs.values()))).size
+        taken = self._tiling.by_rows.intersection(stage.outputs) if self.rows else frozenset[str]()
+        whole: dict[str, Array] = {}
+        before, plan = self._runner.lease(), tile_plan(self._tiling, stage, 0, made)
+        try:
+            for number, tile in enumerate(stage.tiles):
+                # Each tile keeps what the next one would make again.
+                last = number + 1 == len(stage.tiles)
+                following = None if last else tile_plan(self._tiling, stage, number + 1, made)
+                shared = carried(plan, following) if following else ()
+                kept = self._runner.lease()
+                try:
+                    there = self._there(plan)
+                    with self._runner.steps(there, kept, (*plan.outputs.values(), *shared)) as run:
+                        before.close()
+                        yield from run
+                    del there
+                    made_here = self._runner.download(plan, self._arrays)
+                    for name, pixels in made_here.items():
+                        first = tile.y if name in taken else 0
+                        if name not in whole:
+                            height = tile.height if name in taken else size[1]
+                            whole[name] = np.empty((height, size[0], pixels.shape[2]), pixels.dtype)
+                        # Others may read more of an output than the tile.
+                        window = plan.surfaces[plan.outputs[name]].window or Region.whole(size)
+                        own = Region(tile.x - window.x, tile.y - window.y, *tile.size)
+                        whole[name][_slices(Region(tile.x, tile.y - first, *tile.size))] = pixels[_slices(own)]
+                        if name in taken and self.rows and tile.across[1] == size[0]:
+                            self.rows(name, first, whole.pop(name))
+                    self._arrays.give(made_here.values())
+                    for surface in plan.outputs.values():
+                        if surface not in shared:
+                            kept.give(plan.surfaces[surface].key)
+                finally:
+                    if following and _kinds(following) != _kinds(plan):
+                        self._runner.forget()  # else textures of other sizes would wait for their next use
+                    before, plan = kept, following or plan
+        finally:
+            before.close()
+        return whole
+
+    def _there(self, plan: Plan) -> Plan:
+        """The same plan with the pixels that it reads."""
+        found = tuple(self._pictures.read(item, plan.surfaces[item.surface].window) for item in plan.uploads)
+        return replace(plan, uploads=found)
+
+    def _held(self, stage: Stage, arrays: Mapping[str, Array]) -> dict[int, Held]:
+        """What a stage made, in place of the operations that would make it again."""
+        program, keys = self._tiling.program, self._tiling.keys
+        found: dict[int, Held] = {}
+        for index in dict.fromkeys(ref.op for ref in stage.outputs.values()):
+            op = program.ops[index]
+            refs = [Ref(index, output) for output in range(len(op.shapes))]
+            names = {ref: name for name, ref in stage.outputs.items()}
+            pixels = [arrays[names[ref]] if ref in names else None for ref in refs]
+            found[index] = Held(
+                op.shapes,
+                op.owner,
+                tuple(None if array is None else _picture(op.owner, array) for array in pixels),
+                tuple(array is not None and array.dtype == np.float16 for array in pixels),
+                tuple(keys.get(ref, "") for ref in refs),
+            )
+        return found
+
+    def _forget(self, made: dict[int, Held], later: Iterable[Stage]) -> None:
+        """Let go of what no later stage reads."""
+        read = {ref.op for stage in later for fused in stage.passes for ref in fused.reads}
+        read |= {ref.op for ref in self._tiling.program.outputs.values()}
+        for index in made.keys() - read:
+            del made[index]
+        ops = (self._tiling.program.ops[index] for index in read)
+        self._pictures.keep({op.picture for op in ops if isinstance(op, Read)})
+
+
+class _Pictures:
+    """The pixels of files, each decoded once; or `by_rows`, the last rows that were read of those that can be."""
+
+    def __init__(self, load: Loader, *, by_rows: bool) -> None:
+        self._load, self._by_rows = load, by_rows
+        self._decoded: dict[Picture, tuple[Span, Array]] = {}
+
+    def read(self, upload: Upload, window: Region | None) -> Upload:
+        """The same upload, of pixels that are in memory: all, or a window of them."""
+        picture = upload.picture
+        if picture.in_memory:
+            return upload
+        everything = Region.whole(upload.whole)
+        window = window or everything
+        rows = window.down if self._by_rows and picture.by_rows else everything.down
+        (first, end), pixels = self._decoded.get(picture, ((0, 0), None))
+        if pixels is None or not first <= rows[0] <= rows[1] <= end:
+            pixels = None
+            self._decoded.pop(picture, None)  # there may be no room for both
+            try:
+                pixels = self._load(replace(picture, rows=rows) if rows != everything.down else picture)
+            except HalationError as error:
+                error.node = error.node or upload.node
+                raise
+            first, _ = rows
+            self._decoded[picture] = rows, pixels
+        if rows != everything.down:
+            pixels = pixels[window.y - first : window.down[1] - first, slice(*window.across)]
+        return replace(upload, picture=replace(picture, in_memory=True, pixels=pixels))
+
+    def keep(self, pictures: Set[Picture]) -> None:
+        """Let go of all others."""
+        for picture in self._decoded.keys() - pictures:
+            del self._decoded[picture]
+
+
+def _check_memory(program: Program, taken: Set[str]) -> None:
+    """Raise DeviceError for outputs that this machine cannot hold: all but those `taken` are put together in memory."""
+    shapes = [program.shape(ref) for name, ref in program.outputs.items() if name not in taken]
+    nbytes = sum(shape.size[0] * shape.size[1] * shape.channels * 4 for shape in shapes)
+    if nbytes > (most := machine_memory()):
+        raise DeviceError(
+            f"the outputs take {size_text(nbytes)} of memory, and this machine has {size_text(int(most))}; "
+            "render smaller with --scale or --size"
+        )
+
+
+def _picture(owner: str, pixels: Array) -> Picture:
+    return Picture(owner, "", Kind.VECTOR, pixels.shape[2], in_memory=True, pixels=pixels)
+
+
+def _pixels(held: Held, output: int) -> Array:
+    picture = held.pictures[output]
+    assert picture is not None and isinstance(picture.pixels, np.ndarray)
+    return picture.pixels
+
+
+def _kinds(plan: Plan) -> set[tuple[Size, str]]:
+    """The sizes and formats of textures."""
+    return {(surface.size, surface.texel) for surface in plan.surfaces}
+
+
+def _slices(region: Region) -> tuple[slice, slice]:
+    return slice(*region.down), slice(*region.across)

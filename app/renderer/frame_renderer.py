@@ -1,0 +1,168 @@
+"""Frames of one graph: each with the history that it needs, whatever was rendered before."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from msgspec.structs import replace
+
+from ..compiler import Memory, Plan
+from ..graph import Graph, Port
+from .engine import Renderer, Wanted
+from .execution.decoding import Array
+from .execution.run import Run, Timings, carried
+from .opengl.textures import Lease
+
+KEPT_PLANS = 16
+
+CARRIED_BYTES = 2**29
+"""What may be kept of one frame for the next, beyond what nodes remember."""
+
+Memories = Mapping[Port, Memory]
+
+
+class Reel:
+    """Renders frames of a graph in any order; the pixels of a frame are always the same.
+
+    What nodes remember begins at the first frame of the graph's range, or `preroll` frames before the one that is
+    rendered where the graph says so; a frame before the range remembers nothing. What is remembered is known by key:
+    it is computed again only where it is no longer on the device. The frame of `wanted` does not matter.
+    """
+
+    def __init__(self, renderer: Renderer, graph: Graph, wanted: Wanted) -> None:
+        self.renderer, self.graph, self.wanted = renderer, graph, wanted
+        self.frames = renderer.frames(graph, wanted)
+        """The first and last frame of the range."""
+        self._memories: dict[tuple[int, int], Memories] = {}
+        """By the frame where history begins, and the frame that remembers."""
+        self._plans: dict[tuple[int, int], Plan] = {}
+        self._held: Lease = renderer.runner.lease()
+
+    def begin(self, frame: int) -> int:
+        """The frame at which the history of another one begins."""
+        first, preroll = self.frames[0], self.graph.settings.preroll
+        if frame <= first:
+            return frame
+        return first if preroll is None else max(first, frame - preroll)
+
+    def plan(self, frame: int) -> Plan:
+        """How a frame is made, of what was remembered before it. Raises the errors of `app.errors`."""
+        return self._plan(self.begin(frame), frame)
+
+    def lead(self, frame: int) -> range:
+        """The frames that must be gone through, for what they remember, before a frame can be made.
+
+        None where that is on the device, or the frame itself is.
+        """
+        begin, textures = self.begin(frame), self.renderer.runner.textures
+        if self._is_there(self._plan(begin, frame)):
+            return range(frame, frame)
+        start = frame
+        while start > begin and any(item.key not in textures for item in self._before(begin, start).values()):
+            start -= 1
+        return range(start, frame)
+
+    def plan_next(self, frame: int) -> tuple[int, int] | None:
+        """Compile one more of the plans that lead to a frame: how many of how many are known then; None when all were.
+
+        `plan` compiles all at once, which takes long far from where the history begins.
+        """
+        begin, at = self.begin(frame), frame - 1
+        while at >= begin and (begin, at) not in self._memories:
+            at -= 1
+        if frame > begin and at + 1 < frame and self._memories.get((begin, at), True):
+            self._plan(begin, at + 1)
+        elif (begin, frame) not in self._plans:
+            self._plan(begin, frame)
+        else:
+            return None
+        return at + 2 - begin, frame + 1 - begin
+
+    def steps(
+        self, frame: int, kept: Lease, timings: Timings | None = None, following: int | None = None
+    ) -> Iterator[Run]:
+        """What runs to make a frame, one after the other; the last one is the frame itself, its outputs `kept`.
+
+        What the frame `following` would make again stays on the device until that has been made.
+        """
+        runner, begin = self.renderer.runner, self.begin(frame)
+        for at in self.lead(frame):
+            plan, lease = self._plan(begin, at), runner.lease()
+            yield runner.steps(plan, lease, (*plan.remembered, *_carried(plan, self._plan(begin, at + 1))))
+            self._hold(lease)
+        plan, lease = self.plan(frame), runner.lease()
+        # Of a picture that is there, the history may have gone: whoever needs that is led up to it.
+        remembered = () if self._is_there(plan) else plan.remembered
+        on = () if following is None else _carried(plan, self.plan(following))
+        yield runner.steps(plan, kept, (*plan.outputs.values(), *remembered, *on), timings=timings)
+        for number in (*plan.remembered, *on):
+            if plan.surfaces[number].key in runner.textures:
+                lease.take(plan.surfaces[number].key)
+        self._hold(lease)
+
+    def render(self, frame: int) -> dict[str, Array]:
+        """Every output by name as [height, width, channels]. Raises the errors of `app.errors`."""
+        kept = self.renderer.runner.lease()
+        try:
+            for run in self.steps(frame, kept):
+                with run:
+                    for _ in run:
+                        pass
+            return self.renderer.runner.download(self.plan(frame))
+        finally:
+            kept.close()
+
+    def close(self) -> None:
+        """Let go of what was remembered."""
+        self._held.close()
+
+    # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _is_there(self, plan: Plan) -> bool:
+        """True if the outputs are on the device."""
+        textures = self.renderer.runner.textures
+        return all(plan.surfaces[number].key in textures for number in plan.outputs.values())
+
+    def _hold(self, lease: Lease) -> None:
+        """Keep what a frame remembered, and has in common with the next one, until that has been made."""
+        before, self._held = self._held, lease
+        before.close()
+
+    def _plan(self, begin: int, frame: int) -> Plan:
+        key = (begin, frame)
+        if key not in self._plans:
+            before = self._before(begin, frame)
+            plan = self.renderer.compile(self.graph, replace(self.wanted, frame=frame, memories=before))
+            self._memories[key] = plan.memories
+            self._plans[key] = plan
+            while len(self._plans) > KEPT_PLANS:
+                self._plans.pop(next(iter(self._plans)))
+        return self._plans[key]
+
+    def _before(self, begin: int, frame: int) -> Memories:
+        """What the frame before remembers."""
+        if frame <= begin:
+            return {}
+        start = frame - 1
+        while start > begin and (begin, start) not in self._memories:
+            start -= 1
+        for at in range(start, frame):
+            if (begin, at) not in self._memories:
+                self._plan(begin, at)
+            if not self._memories[begin, at]:
+                return {}
+        return self._memories[begin, frame - 1]
+
+
+def _carried(plan: Plan, following: Plan) -> tuple[int, ...]:
+    """The surfaces of a plan that stay for the next one: what that would make again, as far as there is room."""
+    found: list[int] = []
+    nbytes, most, memory = 0, CARRIED_BYTES, plan.target.memory
+    if memory:  # of the frame before there may be as much
+        most = min(most, (memory - max(plan.held_bytes, following.held_bytes)) // 2)
+    for number in carried(plan, following):
+        nbytes += plan.surfaces[number].nbytes
+        if nbytes > most:
+            break
+        found.append(number)
+    return tuple(found)

@@ -1,0 +1,163 @@
+"""How a picture was made, as its header says."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path, PurePath
+from typing import Any, cast
+
+from halation.nodes import Node, Size
+
+from ... import document, media
+from ...compiler import Form, Precision
+from ...errors import InputError
+from ...graph import Graph
+from ...graph.frames import parse_frames
+from ..jobs.header import PREFIX
+
+_DIGEST = re.compile(r"(?P<name>.+) sha256:(?P<digest>[0-9a-f]{64})")
+_LAYERED = re.compile(r"(?P<name>.*?\.\w{1,5}):(?P<layer>.+)")
+_HOLDS = "EXR and PNG hold what is needed, and so do TIFF and JPEG"
+
+
+@dataclass(frozen=True)
+class Used:
+    """A file that was read, by whom: see `Source`. Of a sequence, `frames` of `pattern` were, with hash `together`."""
+
+    owner: str
+    name: str
+    digest: str
+    layer: str = ""
+    pattern: str = ""
+    frames: tuple[int, ...] = ()
+    together: str = ""
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """What a header says. `range` are the first and last frame of the graph, where history matters."""
+
+    path: Path
+    graph: Graph
+    version: str
+    renderer: str
+    driver: str
+    used: tuple[Used, ...]
+    outputs: tuple[str, ...] = ()
+    node: str = ""
+    frame: int = 1
+    range: tuple[int, int] | None = None
+    scale: float = 1.0
+    size: Size | None = None
+    precision: Precision = "half"
+    intermediates: Precision | None = None
+    form: Form | None = None
+    view: str = ""
+    display: str = ""
+    look: str = ""
+    colorspace: str = ""
+    compression: str = "zip"
+    color: str = ""
+    """What tells one management of color from another, "" for the usual one."""
+
+
+def read_recipe(path: str | Path, catalogue: Mapping[str, type[Node]] | None = None) -> Recipe:
+    """Read it. Relative paths in the graph start at the picture's folder, for want of a better one.
+
+    `catalogue` are the node types by id, by default all that are installed.
+
+    Raises:
+        InputError: the file cannot be read, or says nothing of the kind.
+        DocumentError: a graph that this version does not understand.
+    """
+    said = {name: str(item) for name, item in media.read_metadata(path).items() if name.startswith(PREFIX)}
+    text = said.get("halation:graph")
+    if not text:
+        raise InputError(
+            f"{path}: its header holds no graph: Halation did not write it, its format cannot hold one ({_HOLDS}), or "
+            "another program saved it since"
+        )
+    graph = document.loads(text, f"{path}, halation:graph", str(Path(path).parent), catalogue)
+    try:
+        settings = _settings(said.get("halation:settings", ""))
+        used = _used(said)
+    except ValueError as fault:
+        raise InputError(f"{path}: its header is damaged ({fault}): render the picture again") from None
+    return Recipe(
+        Path(path),
+        graph,
+        said.get("halation:version", ""),
+        said.get("halation:renderer", ""),
+        said.get("halation:driver", ""),
+        used,
+        color=said.get("halation:color", ""),
+        **settings,
+    )
+
+
+def has_recipe(path: str | Path) -> bool:
+    """True for a picture whose header holds the graph that made it. Raises InputError for no picture."""
+    return bool(media.read_metadata(path).get("halation:graph"))
+
+
+def _settings(text: str) -> dict[str, Any]:
+    """The arguments of a recipe. Raises ValueError."""
+    words: dict[str, list[str]] = {}
+    for word in shlex.split(text):
+        name, _, value = word.partition("=")
+        words.setdefault(name, []).append(value)
+    found: dict[str, Any] = {"outputs": tuple(words.pop("output", ()))}
+    plain = {name: values[-1] for name, values in words.items()}
+    for name in ("node", "view", "display", "look", "colorspace", "compression"):
+        if name in plain:
+            found[name] = plain[name]
+    for name, known in (
+        ("precision", ("half", "float")),
+        ("intermediates", ("half", "float")),
+        ("form", ("fragment", "compute")),
+    ):
+        if plain.get(name) in known:
+            found[name] = plain[name]
+    if "frame" in plain:
+        found["frame"] = int(plain["frame"])
+    if "scale" in plain:
+        found["scale"] = float(plain["scale"])
+    if "size" in plain:
+        found["size"] = _pair(plain["size"], "x")
+    if "frames" in plain:
+        found["range"] = _pair(plain["frames"], "..")
+    return found
+
+
+def _pair(text: str, between: str) -> tuple[int, int]:
+    first, _, second = text.partition(between)
+    return int(first), int(second)
+
+
+def _used(said: Mapping[str, str]) -> tuple[Used, ...]:
+    """The files that a header names. Raises ValueError."""
+    found: list[Used] = []
+    for name, text in said.items():
+        if not name.startswith("halation:input:"):
+            continue
+        owner = name.removeprefix("halation:input:")
+        file, digest = _digested(text)
+        layered = _LAYERED.fullmatch(file)
+        file, layer = (layered["name"], layered["layer"]) if layered else (file, "")
+        pattern, frames, together = "", (), ""
+        if several := said.get(f"halation:frames:{owner}"):
+            rest, together = _digested(several)
+            pattern, _, listed = rest.rpartition(" ")
+            frames = parse_frames(listed)
+        found.append(Used(owner, PurePath(file).name, digest, layer, PurePath(pattern).name, frames, together))
+    return tuple(sorted(found, key=lambda one: one.owner))
+
+
+def _digested(text: str) -> tuple[str, str]:
+    match = _DIGEST.fullmatch(text)
+    if match is None:
+        raise ValueError(f"'{text[:60]}' is no file and its hash")
+    return cast("Sequence[str]", match.groups())[0], match["digest"]

@@ -1,0 +1,161 @@
+"""Making a picture again from what its header says, and seeing whether it is the same."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from ...color.management import color_digest
+from ...errors import DeviceError, UsageError
+from ...graph import Graph, color_settings, node_output
+from ...media.compare import CODE, Compared, compare
+from ...media.stored import stored
+from ...resources.sandbox import ROOT
+from ...version import VERSION
+from ..engine import Renderer, Wanted
+from ..execution.decoding import Array
+from ..jobs.destinations import Writing
+from ..jobs.job import run_job
+from ..opengl.device import Device
+from ..opening import open_device
+from ..pinned import open_pinned
+from .finding import Found, pointed
+from .recipe import Recipe
+
+ELSEWHERE = CODE
+"""How far pictures of different renderers may be apart: one step of 8 bits, of the light itself where it is over 1."""
+
+_PINNED = "128 bits)"
+"""How the software rasterizer calls itself where it is pinned."""
+_USUAL = "linear Rec.709, built in"
+
+
+@dataclass(frozen=True)
+class Difference:
+    """Something that is not what it was."""
+
+    what: str
+    then: str
+    now: str
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A part of a picture. `farthest` is the largest difference of a number, relative to it where it is over 1."""
+
+    name: str
+    farthest: float
+    compared: Compared
+
+
+@dataclass(frozen=True)
+class Reproduction:
+    """What came of making a picture again."""
+
+    differences: tuple[Difference, ...]
+    layers: tuple[Layer, ...]
+    tolerance: float
+    written: tuple[Path, ...]
+
+    @property
+    def same(self) -> bool:
+        """True if the pixels are the same, within the tolerance."""
+        return all(layer.farthest <= self.tolerance for layer in self.layers)
+
+
+def open_alike(recipe: Recipe) -> Device:
+    """A device that runs passes as they were run, if there is one. Raises DeviceError without usable OpenGL."""
+    if recipe.form == "fragment" and recipe.renderer.endswith(_PINNED):
+        return open_pinned()
+    try:
+        return open_device(recipe.form)
+    except DeviceError:
+        return open_device()
+
+
+def reproduce(
+    renderer: Renderer,
+    recipe: Recipe,
+    found: Sequence[Found],
+    files: Sequence[Path] = (),
+    tolerance: float | None = None,
+) -> Reproduction:
+    """Render what a recipe says with the files that were found, and compare; `files` keep what was rendered.
+
+    Without a tolerance, pictures of the same renderer must be equal, those of others within `ELSEWHERE`. Raises the
+    errors of `app.errors`.
+    """
+    graph, targets = _graph(recipe, found), {}
+    if recipe.node:
+        targets = {recipe.node: node_output(graph, recipe.node)}
+    names = recipe.outputs or (recipe.node,)  # "" is all of them
+    wanted = Wanted({}, targets, recipe.size, recipe.scale, recipe.frame, recipe.intermediates)
+    for file in files:
+        if file.resolve() == recipe.path.resolve():
+            raise UsageError(f"-o {file}: this is the picture to compare with; write to another file")
+    with tempfile.TemporaryDirectory(prefix="halation-", dir=os.environ.get(ROOT) or None) as folder:
+        again = Path(folder, recipe.path.name)
+        pairs = [(name, file) for file in (again, *files) for name in names]
+        writing = Writing(
+            pairs, recipe.view, recipe.compression, recipe.precision, recipe.display, recipe.look, recipe.colorspace
+        )
+        run_job(renderer, graph, wanted, writing, (recipe.frame,))
+        layers = compared(stored(again), stored(recipe.path))
+    differences = tuple(_differences(recipe, renderer.device, color_digest(color_settings(graph))))
+    elsewhere = any(item.what in ("renderer", "driver", "passes") for item in differences)
+    allowed = (ELSEWHERE if elsewhere else 0.0) if tolerance is None else tolerance
+    return Reproduction(differences, layers, allowed, tuple(files))
+
+
+def compared(actual: Mapping[str, Array], expected: Mapping[str, Array]) -> tuple[Layer, ...]:
+    """How far the parts of two files are apart, by name; one that only one of them has is as far as can be."""
+    layers: list[Layer] = []
+    for name in dict.fromkeys((*expected, *actual)):
+        if name not in actual or name not in expected:
+            gone = "it was not made again" if name in expected else "it was not there before"
+            layers.append(Layer(name, np.inf, Compared(fault=gone)))
+            continue
+        one, other = actual[name], expected[name]
+        if one.dtype != other.dtype:
+            layers.append(Layer(name, np.inf, Compared(fault=f"it is {one.dtype} now, and was {other.dtype}")))
+            continue
+        measured = compare(one, other, perceptual=False, threshold=0.0)
+        layers.append(Layer(name, np.inf if measured.fault else _farthest(one, other), measured))
+    return tuple(layers)
+
+
+def _farthest(one: Array, other: Array) -> float:
+    if one.dtype.kind in "ui":
+        one, other = (item / float(np.iinfo(item.dtype).max) for item in (one, other))
+    first, second = one.astype(np.float64), other.astype(np.float64)
+    same = (first == second) | (np.isnan(first) & np.isnan(second))
+    with np.errstate(invalid="ignore"):
+        apart = np.abs(first - second) / np.maximum(1.0, np.abs(second))
+    apart = np.where(same, 0.0, np.where(np.isfinite(apart), apart, np.inf))
+    return float(apart.max(initial=0.0))
+
+
+def _graph(recipe: Recipe, found: Sequence[Found]) -> Graph:
+    graph = pointed(recipe.graph, found)
+    if recipe.range:  # which frames a sequence has now may be others
+        return replace(graph, settings=replace(graph.settings, frames=recipe.range))
+    return graph
+
+
+def _differences(recipe: Recipe, device: Device, color: str) -> list[Difference]:
+    """What is not as it was, of what says so."""
+    now = {
+        "version": (recipe.version, VERSION),
+        "renderer": (recipe.renderer, device.target.renderer),
+        "driver": (recipe.driver, device.driver),
+        "passes": (recipe.form or "", device.target.form),
+    }
+    found = [Difference(what, then, here) for what, (then, here) in now.items() if then and then != here]
+    if color != recipe.color:
+        found.append(Difference("color", recipe.color or _USUAL, color or _USUAL))
+    return found

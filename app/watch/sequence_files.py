@@ -1,0 +1,52 @@
+"""Numbered pictures on disk: one that stands for all, all of them, and what a dropped one belongs to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from ..errors import HalationError
+from ..media.sequences import find_sequence, frame_file, suggest_pattern
+
+MOST = 400
+"""Files of one sequence that are watched."""
+
+AFTER = 24
+"""Frames after the last one that are waited for."""
+
+
+def standing(path: Path, frame: int = 1) -> Path:
+    """The picture itself; of a sequence the one at that frame, or the nearest one. A path that is wrong stays."""
+    try:
+        return Path(frame_file(str(path), frame, "nearest").path)
+    except HalationError:
+        return path
+
+
+def all_files(paths: Iterable[Path]) -> tuple[Path, ...]:
+    """Every file that is read for these paths, those included that a sequence lacks or may get soon."""
+    found: list[Path] = []
+    for path in paths:
+        try:
+            sequence = find_sequence(str(path))
+        except HalationError:
+            sequence = None
+        if sequence is None or not sequence.frames:
+            found.append(path)
+            continue
+        frames = range(sequence.frames[0], sequence.frames[-1] + AFTER + 1)[-MOST:]
+        known = sequence.names
+        found += [Path(sequence.path(frame) if frame in known else sequence.pattern.name(frame)) for frame in frames]
+    return tuple(dict.fromkeys(found))
+
+
+def patterns(paths: Sequence[Path]) -> tuple[tuple[Path, ...], dict[Path, Path]]:
+    """Dropped files with several of one sequence made one, and the sequence that each of the others is a frame of."""
+    suggested = {path: found for path in paths if (found := suggest_pattern(str(path)))}
+    counts = {found: [*suggested.values()].count(found) for found in suggested.values()}
+    made = tuple(
+        dict.fromkeys(
+            Path(suggested[path]) if path in suggested and counts[suggested[path]] > 1 else path for path in paths
+        )
+    )
+    return made, {path: Path(suggested[path]) for path in made if path in suggested}

@@ -1,0 +1,30 @@
+"""Versions of files, looked up about once a second."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from time import monotonic
+
+from ..errors import HalationError
+from ..resources.input_files import fingerprint
+
+LOOK_AGAIN = 1.0
+
+
+class Versions:
+    """What tells one version of a file from the next."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, tuple[float, str, str]] = {}
+
+    def of(self, path: Path) -> tuple[str, str]:
+        """The version, which changes when the file does, and why there is no such file, or ""."""
+        now = monotonic()
+        at, version, fault = self._known.get(str(path), (-LOOK_AGAIN, "", ""))
+        if now - at >= LOOK_AGAIN:
+            try:
+                version, fault = fingerprint(path), ""
+            except HalationError as error:
+                version, fault = "", str(error)
+            self._known[str(path)] = (now, version, fault)
+        return version, fault
