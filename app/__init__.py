@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .errors import HalationError, UsageError
+from .version import VERSION
 
 if TYPE_CHECKING:
     import numpy as np
@@ -27,7 +28,9 @@ if TYPE_CHECKING:
     from .inputs.provider import Binding
     from .renderer import Renderer
 
-__all__ = ["HalationError", "load", "render", "render_frames", "save", "write"]
+__all__ = ["Graph", "HalationError", "__version__", "load", "render", "render_frames", "save", "write"]
+
+__version__ = VERSION
 
 
 def load(path: str | Path) -> Graph:
@@ -133,3 +136,12 @@ def _renderer() -> Renderer:
     from .renderer import Renderer
 
     return Renderer()
+
+
+def __getattr__(name: str) -> Any:
+    # Loaded when asked for (PEP 562): every command imports this package first, and many need no graph.
+    if name == "Graph":
+        from .graph import Graph
+
+        return Graph
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

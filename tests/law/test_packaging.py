@@ -17,8 +17,11 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+FOLDERS = {"app": "halation", "nodes": "halation.nodes", "shaders": "halation.shaders", "presets": "halation.presets"}
+"""Top-level folder -> the package that it is."""
+
 SHIPPED = {
-    "app": ("**/*.py", "py.typed", "suite/report.html"),
+    "app": ("**/*.py", "py.typed", "regression/report.html"),
     "nodes": ("**/*.py", "py.typed"),
     "shaders": ("__init__.py", "**/*.glsl"),
     "presets": ("__init__.py", "*.json", "samples/*", "pictures/*"),
@@ -79,10 +82,16 @@ def shipped() -> set[str]:
     }
 
 
+def origin(name: str) -> str:
+    """The path in the tree of a file of the wheel."""
+    inside = name.removeprefix("halation/")
+    return inside if inside.split("/")[0] in FOLDERS else f"app/{inside}"
+
+
 def test_every_folder_with_code_is_listed() -> None:
     folders = {path.parent.relative_to(ROOT).parts for top in SHIPPED for path in (ROOT / top).rglob("*.py")}
     listed = PROJECT["tool"]["setuptools"]["packages"]
-    missing = sorted({".".join(("halation", *parts)) for parts in folders} ^ set(listed))
+    missing = sorted({".".join((FOLDERS[top], *inner)) for top, *inner in folders} ^ set(listed))
     assert not missing, f"add to or remove from `packages` in pyproject.toml: {missing}"
     assert len(listed) == len(set(listed))
 
@@ -98,8 +107,8 @@ def test_the_wheel_holds_the_tree_and_nothing_else(built: Built) -> None:
         names = {name for name in wheel.namelist() if ".dist-info/" not in name}
         notes = {name.partition("/")[2] for name in wheel.namelist()} - {name.partition("/")[2] for name in names}
         for name in names:
-            assert wheel.read(name) == (ROOT / name.removeprefix("halation/")).read_bytes(), name
-    assert names == {f"halation/{name}" for name in shipped()}
+            assert wheel.read(name) == (ROOT / origin(name)).read_bytes(), name
+    assert {origin(name) for name in names} == shipped()
     assert {"METADATA", "entry_points.txt", "licenses/LICENSE"} <= notes
 
 
