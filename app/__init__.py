@@ -86,7 +86,7 @@ def render_frames(
     An input may also be bound to a function that makes the picture of a frame. Whatever the order, a frame is always
     the same: nodes with a memory are led up to it from the first frame of the graph, or by its pre-roll.
     """
-    from .renderer import Reel, Wanted
+    from .renderer import FrameRenderer, RenderRequest
 
     if not 0.0 < scale <= 1.0:
         raise UsageError(f"scale {scale:g}: give a number above 0 and up to 1")
@@ -95,7 +95,7 @@ def render_frames(
     for name, value in (values or {}).items():
         graph = graph.override(name, value)
     targets = {node: _output(graph, node)} if node else {}
-    reel = Reel(_renderer(), graph, Wanted(inputs or {}, targets, size, scale, precision=precision))
+    reel = FrameRenderer(_renderer(), graph, RenderRequest(inputs or {}, targets, size, scale, precision=precision))
     first, last = reel.frames
     try:
         for frame in range(first, last + 1) if frames is None else frames:

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from halation.graph import Graph, Input, Output, Port
 from halation.nodes import Camera, Kind, Node
-from halation.renderer import Renderer, Wanted, open_device
+from halation.renderer import Renderer, RenderRequest, open_device
 
 Array = np.ndarray
 Run = Callable[..., Array]
@@ -74,7 +74,7 @@ def run(renderer: Renderer) -> Run:
             output = next(iter(graph.outputs))
         engine = engine or renderer
         targets = {output: Port("outputs", output)}
-        found = engine.render(graph, Wanted(arrays, targets, size, scale, precision=precision))
+        found = engine.render(graph, RenderRequest(arrays, targets, size, scale, precision=precision))
         return found[output].astype(np.float32)
 
     return rendered

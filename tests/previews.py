@@ -11,7 +11,7 @@ from halation.nodes import Kind
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.saturation import Saturation
-from halation.renderer import Renderer, Wanted
+from halation.renderer import Renderer, RenderRequest
 
 PICTURE = np.random.default_rng(8).random((23, 37, 4), np.float32)
 IMAGE = Port("outputs", "image")
@@ -50,7 +50,7 @@ def pixels(preview: Preview, engine: Renderer, name: str = "A") -> np.ndarray:
 
 
 def rendered(engine: Renderer, graph: Graph, port: Port = IMAGE, **rest) -> np.ndarray:
-    return engine.render(graph, Wanted({"image": PICTURE}, {"x": port}, **rest))["x"]
+    return engine.render(graph, RenderRequest({"image": PICTURE}, {"x": port}, **rest))["x"]
 
 
 def passes(engine: Renderer) -> int:

@@ -10,7 +10,7 @@ from conftest import graph_of
 from halation.graph import Expression, Graph, Output, Port, Settings
 from halation.nodes import Node
 from halation.nodes.input.noise import Noise
-from halation.renderer import Reel, Renderer, Wanted
+from halation.renderer import FrameRenderer, Renderer, RenderRequest
 
 Array = np.ndarray
 Shot = Mapping[str, Callable[[int], Array]]
@@ -33,14 +33,16 @@ def noise_graph(node: Node, frames: tuple[int, int] = (1, 8), size: tuple[int, i
 
 def noise_at(renderer: Renderer, graph: Graph, frame: int) -> Array:
     """What the noise of such a graph is at a frame, in 64 bits."""
-    found = renderer.render(graph, Wanted(frame=frame, precision="float", targets={"it": Port("outputs", "noise")}))
+    found = renderer.render(
+        graph, RenderRequest(frame=frame, precision="float", targets={"it": Port("outputs", "noise")})
+    )
     return found["it"].astype(np.float64)
 
 
 def node_at(renderer: Renderer, graph: Graph, frame: int, **wanted: object) -> Array:
     """What the node makes of it, in 64 bits."""
     options: dict[str, object] = {"precision": "float", "targets": {"it": Port("outputs", "out")}, **wanted}
-    return renderer.render(graph, Wanted(frame=frame, **options))["it"].astype(np.float64)  # type: ignore[arg-type]
+    return renderer.render(graph, RenderRequest(frame=frame, **options))["it"].astype(np.float64)  # type: ignore[arg-type]
 
 
 def played(
@@ -48,7 +50,7 @@ def played(
 ) -> list[Array]:
     """An output at frames, in the order in which they are asked for."""
     options: dict[str, object] = {"precision": "float", **wanted}
-    reel = Reel(renderer, graph, Wanted(dict(shot), **options))  # type: ignore[arg-type]
+    reel = FrameRenderer(renderer, graph, RenderRequest(dict(shot), **options))  # type: ignore[arg-type]
     try:
         return [reel.render(frame)[output].copy() for frame in frames]
     finally:

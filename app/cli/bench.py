@@ -11,7 +11,20 @@ import typer
 
 from . import parsing
 from .batch import shown
-from .options import AsJson, Form, GraphFile, Inputs, Lazy, Node, Scale, Sets, SizeText, bound, opened, report_problems
+from .options import (
+    AsJson,
+    Form,
+    GraphFile,
+    Inputs,
+    LazyResourceProvider,
+    Node,
+    Scale,
+    Sets,
+    SizeText,
+    bound,
+    opened,
+    report_problems,
+)
 from .outcome import print_json
 from .sharing import piped
 from .watchdog import PATIENCE, Timeout, watched
@@ -52,7 +65,7 @@ def bench(
     Nodes that were fused into one pass have one time together.
     """
     from ..errors import UsageError
-    from ..renderer import Renderer, Wanted, open_device
+    from ..renderer import Renderer, RenderRequest, open_device
     from ..renderer.baseline import against
     from ..renderer.bench import bench as measured
 
@@ -67,9 +80,9 @@ def bench(
     if (code := watched(context, whole, timeout, piped(graph, whole))) is not None:
         return code
     bindings, targets = bound(whole, inputs or ()), parsing.targets(whole, node)
-    at = chosen or (Lazy().frames(whole, inputs or ())[0],)
+    at = chosen or (LazyResourceProvider().frames(whole, inputs or ())[0],)
     renderer = Renderer(open_device(way), budget=0)
-    wanted = Wanted(bindings, targets, canvas, proxy, precision=depth)
+    wanted = RenderRequest(bindings, targets, canvas, proxy, precision=depth)
     with shown(renderer, len(at)) as work:
         found = measured(renderer, whole, wanted, at, repeats, warm_up, work.step)
     if not found.passes:

@@ -21,7 +21,7 @@ def demo(
     from halation.presets import paths
 
     from .. import document
-    from ..renderer import Wanted
+    from ..renderer import RenderRequest
     from ..renderer.jobs.job import Writing, run_job
 
     done: list[dict[str, object]] = []
@@ -32,7 +32,7 @@ def demo(
             graph = document.load(path)
             first = next(iter(graph.outputs))
             pictures = (("", output / f"{path.stem}.exr"), (first, output / f"{path.stem}.png"))
-            report = run_job(work.renderer, graph, Wanted(), Writing(pictures), (middle(work.renderer, graph),))
+            report = run_job(work.renderer, graph, RenderRequest(), Writing(pictures), (middle(work.renderer, graph),))
             spent = time.perf_counter() - started
             word = "pass  " if report.passes == 1 else "passes"
             work.say(f"{path.stem:<24} {report.passes:>3} {word}  {spent:5.2f} s  {pictures[1][1]}")

@@ -7,7 +7,19 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from . import parsing
-from .options import AsJson, GraphFile, Inputs, Lazy, Memory, Node, Scale, Sets, SizeText, opened, report_problems
+from .options import (
+    AsJson,
+    GraphFile,
+    Inputs,
+    LazyResourceProvider,
+    Memory,
+    Node,
+    Scale,
+    Sets,
+    SizeText,
+    opened,
+    report_problems,
+)
 from .outcome import print_json
 
 if TYPE_CHECKING:
@@ -51,7 +63,7 @@ def explain(
     depth = parsing.precision(precision) if precision is not None else None
     opened_graph = opened(graph, sets or ())
     report_problems(graph, opened_graph)
-    lazy = Lazy()
+    lazy = LazyResourceProvider()
     request = compiler.Request(
         parsing.targets(opened_graph, node),
         lazy.bind(opened_graph, inputs or ()),

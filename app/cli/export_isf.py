@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from . import parsing
-from .options import AsJson, GraphFile, Lazy, Node, Sets, SizeText, opened, report_problems
+from .options import AsJson, GraphFile, LazyResourceProvider, Node, Sets, SizeText, opened, report_problems
 from .outcome import note, print_json
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def export_isf(
         except GraphError as fault:
             raise UsageError(f"--select {selection}: {fault}") from None
     target = _target(opened_graph, node)
-    found = exported(opened_graph, target, Lazy(), size=parsing.size(size))
+    found = exported(opened_graph, target, LazyResourceProvider(), size=parsing.size(size))
     if found.reasons:
         said = [f"{_owner(owner)} {why}" for owner, why in found.reasons]
         for line in said[1:] if len(said) > 1 else ():

@@ -107,10 +107,10 @@ def moving() -> dict[str, Graph]:
 def frames_of(graph: Graph, renderer: Renderer, frames: Iterable[int]) -> dict[int, Array]:
     """What the first output of a graph is at frames, as light of the display."""
     from ..media.sheet import shown
-    from ..renderer import Reel, Wanted
+    from ..renderer import FrameRenderer, RenderRequest
 
     name, output = next(iter(graph.outputs.items()))
-    reel = Reel(renderer, graph, Wanted())
+    reel = FrameRenderer(renderer, graph, RenderRequest())
     try:
         return {frame: shown(reel.render(frame)[name], output.view) for frame in frames}
     finally:

@@ -164,7 +164,7 @@ def report_problems(path: Path, graph: Graph) -> None:
         note(f"{path}: {problem.sentence}")
 
 
-class Lazy:
+class LazyResourceProvider:
     """The world outside of graphs that may not need it: what reads files is loaded when the first is asked for."""
 
     @cached_property

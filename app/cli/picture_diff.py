@@ -76,9 +76,9 @@ def _rendered(
     frame: int | None,
 ) -> tuple[Pictures, int]:
     """The outputs of a graph, and which frame it was."""
-    from ..renderer import Reel, Wanted
+    from ..renderer import FrameRenderer, RenderRequest
 
-    reel = Reel(renderer, graph, Wanted(inputs, size=canvas[0], scale=canvas[1]))
+    reel = FrameRenderer(renderer, graph, RenderRequest(inputs, size=canvas[0], scale=canvas[1]))
     try:
         chosen = reel.frames[0] if frame is None else frame
         return reel.render(chosen), chosen

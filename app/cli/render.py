@@ -17,7 +17,7 @@ from .options import (
     Frames,
     GraphFile,
     Inputs,
-    Lazy,
+    LazyResourceProvider,
     Memory,
     Node,
     OneFrame,
@@ -113,11 +113,11 @@ def render(
 
     alone = jobs == 1 and not resume and not targets and not most
     ahead = Ahead(opened_graph, bindings) if alone else None  # it reads while all else is loaded
-    from ..renderer import DEFAULT_BUDGET, Renderer, Wanted, open_device, open_pinned
+    from ..renderer import DEFAULT_BUDGET, Renderer, RenderRequest, open_device, open_pinned
     from ..renderer.jobs.job import Writing, run_job
 
     if chosen is None:
-        first, last = Lazy().frames(opened_graph, inputs or ())
+        first, last = LazyResourceProvider().frames(opened_graph, inputs or ())
         chosen = tuple(range(first, last + 1)) if parsing.numbered(destinations) else (first,)
     videos = Writing(destinations).videos
     if codec and not videos:
@@ -142,7 +142,7 @@ def render(
     renderer = Renderer(device, budget=DEFAULT_BUDGET if led and not most else 0, ahead=ahead)
     note(renderer.device.description)
     ready = time.perf_counter()
-    wanted = Wanted(bindings, targets, canvas, proxy, precision="float" if deterministic else depth)
+    wanted = RenderRequest(bindings, targets, canvas, proxy, precision="float" if deterministic else depth)
     writing = Writing(destinations, view, compression, depth or "half", display, look, colorspace, codec)
     with told_to(told, len(chosen)) as hears:
         report = run_job(renderer, opened_graph, wanted, writing, chosen, resume=resume, progress=hears)

@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .options import Lazy
+from .options import LazyResourceProvider
 from .outcome import note
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ def independent(graph: Graph, targets: Mapping[str, Port], inputs: Sequence[str]
 
     if graph.settings.preroll is not None:
         return True
-    outside = Lazy()
+    outside = LazyResourceProvider()
     plan = compile_graph(graph, Request(targets, outside.bind(graph, inputs), frame=frame), outside)
     for node in plan.remembering:
         note(f"one process renders all frames: node '{node}' makes each of the one before")

@@ -13,7 +13,7 @@ from ..compiler import NULL, Plan, Request, Target, compile_graph
 from ..graph import Graph, Input, Output, Port, Settings
 from ..resources.picture import Picture
 from ..resources.provider import Frame, Probed
-from .options import Lazy
+from .options import LazyResourceProvider
 
 NODE = "node"
 """The id that the node has in these graphs."""
@@ -45,7 +45,7 @@ _ROLES = (
 """Layers that a render may have."""
 
 
-class _SameSize(Lazy):
+class _SameSize(LazyResourceProvider):
     """A world in which all pictures have the same size."""
 
     def __init__(self, size: Size) -> None:

@@ -10,7 +10,19 @@ import typer
 
 from . import parsing
 from .batch import batch
-from .options import AsJson, GraphFile, Inputs, Lazy, Node, Precision, Scale, SizeText, bound, opened, report_problems
+from .options import (
+    AsJson,
+    GraphFile,
+    Inputs,
+    LazyResourceProvider,
+    Node,
+    Precision,
+    Scale,
+    SizeText,
+    bound,
+    opened,
+    report_problems,
+)
 from .outcome import note, print_json
 from .sharing import piped
 from .sweeping import axes
@@ -62,7 +74,7 @@ def sweep(
 
     from .. import media
     from ..errors import UsageError
-    from ..renderer import DEFAULT_BUDGET, Wanted
+    from ..renderer import DEFAULT_BUDGET, RenderRequest
     from ..renderer.jobs import sweep as sweeping
     from ..renderer.jobs.job import Writing
 
@@ -75,7 +87,7 @@ def sweep(
     if (code := watched(context, whole, timeout, piped(graph, whole))) is not None:
         return code
     bindings, targets = bound(whole, inputs or ()), parsing.targets(whole, node)
-    at = chosen[0] if chosen else Lazy().frames(whole, inputs or ())[0]
+    at = chosen[0] if chosen else LazyResourceProvider().frames(whole, inputs or ())[0]
     name = _output(whole, show, node)
     look = view or ("" if node else whole.outputs[name].view)
     count = len(sweeping.cells(whole, swept, at))
@@ -83,7 +95,7 @@ def sweep(
     if output.suffix.casefold() in (".exr", ".hdr"):
         raise UsageError(f"{output}: a sheet is for eyes: write it as .png, .jpg, .tif or .webp")
     written = Writing((("", cells),), view, precision=depth or "half") if cells is not None else None
-    wanted = Wanted(bindings, targets, canvas, proxy, precision=depth)
+    wanted = RenderRequest(bindings, targets, canvas, proxy, precision=depth)
     title = f"{graph.stem if str(graph) != '-' else 'graph'}: {', '.join(axis.name for axis in swept)}"
     with batch(cells or output.parent, count, DEFAULT_BUDGET) as work:
         how = sweeping.Swept(wanted, name, look, cell, columns, written, _ending(ending), title)

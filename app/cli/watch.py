@@ -15,7 +15,7 @@ from .options import (
     Frames,
     GraphFile,
     Inputs,
-    Lazy,
+    LazyResourceProvider,
     Node,
     OneFrame,
     Precision,
@@ -57,7 +57,7 @@ def watch(
 
     What is broken is said in a sentence, and waited for.
     """
-    from ..renderer import Renderer, Wanted, open_device
+    from ..renderer import Renderer, RenderRequest, open_device
     from ..renderer.jobs.job import Writing, run_job
     from ..watch.rerendering import Rerendering
 
@@ -76,9 +76,9 @@ def watch(
 
     def render(found: Graph, progress: Progress) -> Report:
         bindings, targets = bound(found, inputs or ()), parsing.targets(found, node)
-        first, last = (0, 0) if chosen else Lazy().frames(found, inputs or ())
+        first, last = (0, 0) if chosen else LazyResourceProvider().frames(found, inputs or ())
         every = chosen or (tuple(range(first, last + 1)) if parsing.numbered(files) else (first,))
-        wanted = Wanted(bindings, targets, canvas, proxy, precision=depth)
+        wanted = RenderRequest(bindings, targets, canvas, proxy, precision=depth)
         return run_job(
             renderer, found, wanted, Writing(files, view, compression, depth or "half"), every, progress=progress
         )

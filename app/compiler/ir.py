@@ -94,7 +94,7 @@ class Op(Record, frozen=True):
     shapes: tuple[Shape, ...]
     owner: str
 
-    aside: ClassVar[frozenset[str]] = frozenset({"owner"})
+    compare_exclude: ClassVar[frozenset[str]] = frozenset({"owner"})
 
     def reads(self) -> Iterator[Ref]:
         """Every picture it reads, in order."""
@@ -218,7 +218,7 @@ class Reduce(Op, frozen=True):
         return iter((self.image,))
 
 
-class Foreign(Op, frozen=True):
+class ExternalProgram(Op, frozen=True):
     """A program that is no function of ours: its pictures by sampler, its uniforms by name."""
 
     text: ShaderText

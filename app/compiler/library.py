@@ -46,7 +46,7 @@ class Library(Record, frozen=True):
     _lines: dict[Hashable, Lines] = field(default_factory=dict[Hashable, Lines])
     _larger: dict[frozenset[str], Library] = field(default_factory=dict[frozenset[str], "Library"])
 
-    aside: ClassVar[frozenset[str]] = frozenset(
+    compare_exclude: ClassVar[frozenset[str]] = frozenset(
         {"_closures", "_light", "_used", "_asked", "_digests", "_lines", "_larger"}
     )
 

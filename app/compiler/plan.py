@@ -26,7 +26,7 @@ LINES_PER_FILE = 10_000
 """Line n of file f of a program is line f * LINES_PER_FILE + n: not all drivers report file numbers."""
 
 
-def texel(channels: int, half: bool) -> str:
+def texture_format(channels: int, half: bool) -> str:
     """The format of a texture with at least this many channels, as GLSL image layouts spell it."""
     return ("r", "rg", "rgba", "rgba")[channels - 1] + ("16f" if half else "32f")
 
@@ -66,7 +66,7 @@ class Surface(Struct, frozen=True):
     @property
     def texel(self) -> str:
         """Format as GLSL image layouts spell it."""
-        return texel(self.channels, self.depth == "f2")
+        return texture_format(self.channels, self.depth == "f2")
 
 
 class Shader(Struct, frozen=True):
@@ -117,7 +117,7 @@ class Pass(Record, frozen=True):
     writers: Mapping[str, str] = field(default_factory=dict[str, str])
     """The node behind each file of code that users wrote."""
 
-    aside: ClassVar[frozenset[str]] = frozenset({"writers"})
+    compare_exclude: ClassVar[frozenset[str]] = frozenset({"writers"})
 
 
 class Plan(Struct, frozen=True):

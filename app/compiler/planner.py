@@ -11,7 +11,7 @@ from msgspec.structs import replace
 
 from ..graph import Graph, color_settings
 from ..resources.picture import Picture
-from ..resources.provider import Outside
+from ..resources.provider import ResourceProvider
 from .fusion.fuse import fuse
 from .fusion.rewrites import rewritten
 from .ir import Read
@@ -70,7 +70,7 @@ class Planner:
         self,
         graph: Graph,
         request: Request,
-        outside: Outside,
+        outside: ResourceProvider,
         *,
         target: Target = NULL,
         precision: Precision | None = None,
@@ -137,7 +137,7 @@ class Planner:
 def compile_graph(
     graph: Graph,
     request: Request,
-    outside: Outside,
+    outside: ResourceProvider,
     *,
     target: Target = NULL,
     precision: Precision | None = None,
@@ -152,7 +152,7 @@ def compile_graph(
     return Planner().plan(graph, request, outside, target=target, precision=precision, library=library, fusion=fusion)
 
 
-def examine(graph: Graph, request: Request, outside: Outside, target: Target = NULL) -> None:
+def examine(graph: Graph, request: Request, outside: ResourceProvider, target: Target = NULL) -> None:
     """Raise what `compile_graph` would raise, in half of the time: no program is written."""
     library = graph_library(graph, outside)
     program = lower(graph, request, library, outside).program
@@ -161,7 +161,7 @@ def examine(graph: Graph, request: Request, outside: Outside, target: Target = N
     tile(program, passes, texels, library, target, precision, request.halves)
 
 
-def graph_library(graph: Graph, outside: Outside, library: Library | None = None) -> Library:
+def graph_library(graph: Graph, outside: ResourceProvider, library: Library | None = None) -> Library:
     """The shaders that a graph can use: the installed ones for its working space, and its own."""
     working = outside.working(color_settings(graph)) if graph.settings.color.working else None
     return library_for(library or installed(), working).including(written_texts(graph))

@@ -30,7 +30,7 @@ class Target(Record, frozen=True):
     """Bytes that textures and pictures may take at once; 0 for as many as there are."""
     why: str = ""
 
-    aside: ClassVar[frozenset[str]] = frozenset({"why"})
+    compare_exclude: ClassVar[frozenset[str]] = frozenset({"why"})
 
     @property
     def loads_images(self) -> bool:

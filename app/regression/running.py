@@ -18,7 +18,7 @@ from ..graph import Expression, Graph, Port, node_output, problems
 from ..graph.frames import Pattern
 from ..media.goldens import Stored, keep
 from ..media.layers import split_layer
-from ..renderer import Reel, Renderer, Wanted
+from ..renderer import FrameRenderer, Renderer, RenderRequest
 from ..renderer.jobs.job import Writing, run_job
 from .cases import Case, Golden
 from .judging import Parts, in_full, judged, unusable
@@ -120,7 +120,7 @@ def _render_only(case: Case, renderer: Renderer, how: How) -> Outcome:
     """A case without goldens: it must render, in finite numbers, and not only black."""
     graph = _graph(case)
     wanted = _wanted(case, graph, how)
-    reel = Reel(renderer, graph, wanted)
+    reel = FrameRenderer(renderer, graph, wanted)
     try:
         for frame in case.frames or (reel.frames[0],):
             pictures = reel.render(frame)
@@ -131,7 +131,7 @@ def _render_only(case: Case, renderer: Renderer, how: How) -> Outcome:
     return Outcome(case, "passed")
 
 
-def _fault_of(case: Case, graph: Graph, wanted: Wanted, pictures: Mapping[str, Any]) -> str:
+def _fault_of(case: Case, graph: Graph, wanted: RenderRequest, pictures: Mapping[str, Any]) -> str:
     letters = {1: ("Y",), 2: ("X", "Y"), 3: ("X", "Y", "Z"), 4: ("R", "G", "B", "A")}
     return unusable(
         case,
@@ -157,10 +157,10 @@ def _set(graph: Graph, setting: tuple[str, Any]) -> Graph:
         raise GraphError(f"set.{name}: {str(fault).removeprefix(f'{name}: ')}") from None
 
 
-def _wanted(case: Case, graph: Graph, how: How) -> Wanted:
+def _wanted(case: Case, graph: Graph, how: How) -> RenderRequest:
     targets: dict[str, Port] = {case.node: node_output(graph, case.node)} if case.node else {}
     precision = "float" if how.deterministic else None
-    return Wanted(case.inputs, targets, case.size, case.scale, precision=precision)
+    return RenderRequest(case.inputs, targets, case.size, case.scale, precision=precision)
 
 
 def _read_by(graph: Graph, case: Case, golden: Path) -> str:

@@ -10,11 +10,11 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .engine import DEFAULT_BUDGET, Renderer, Wanted
+    from .engine import DEFAULT_BUDGET, Renderer, RenderRequest
     from .execution.executor import Counters
     from .execution.run import Run
     from .execution.runner import Runner
-    from .frame_renderer import Reel
+    from .frame_renderer import FrameRenderer
     from .opengl.device import Device, describe
     from .opengl.textures import Lease
     from .opening import open_device
@@ -29,16 +29,16 @@ __all__ = [
     "Device",
     "Display",
     "Drawable",
+    "FrameRenderer",
     "Handle",
     "Lease",
     "Look",
     "Nonfinite",
     "Probe",
-    "Reel",
+    "RenderRequest",
     "Renderer",
     "Run",
     "Runner",
-    "Wanted",
     "describe",
     "first_nonfinite",
     "fitted",
@@ -60,11 +60,11 @@ _HOMES = MappingProxyType(
         "Look": "viewing.look",
         "Nonfinite": "viewing.probe",
         "Probe": "viewing.probe",
-        "Reel": "frame_renderer",
+        "FrameRenderer": "frame_renderer",
         "Renderer": "engine",
         "Run": "execution.run",
         "Runner": "execution.runner",
-        "Wanted": "engine",
+        "RenderRequest": "engine",
         "describe": "opengl.device",
         "first_nonfinite": "viewing.probe",
         "fitted": "viewing.look",

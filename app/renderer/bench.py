@@ -14,9 +14,9 @@ from statistics import median
 
 from ..compiler import Pass, Plan
 from ..graph import Graph
-from .engine import Renderer, Wanted
+from .engine import Renderer, RenderRequest
 from .execution.run import Timings
-from .frame_renderer import Reel
+from .frame_renderer import FrameRenderer
 from .opengl.textures import Lease
 
 Name = tuple[tuple[str, ...], tuple[str, ...], int]
@@ -88,7 +88,7 @@ class Share:
 def bench(
     renderer: Renderer,
     graph: Graph,
-    wanted: Wanted,
+    wanted: RenderRequest,
     frames: Sequence[int],
     repeats: int,
     warm_up: int,
@@ -100,7 +100,7 @@ def bench(
     """
     compiled = renderer.runner.programs.compiled
     started = time.perf_counter()
-    reels = {frame: Reel(renderer, graph, wanted) for frame in frames}
+    reels = {frame: FrameRenderer(renderer, graph, wanted) for frame in frames}
     plans = {frame: reel.plan(frame) for frame, reel in reels.items()}
     planning, started = time.perf_counter() - started, time.perf_counter()
     with renderer.device.current():
@@ -167,7 +167,7 @@ def names(passes: Iterable[Pass | Timed]) -> list[Name]:
     return found
 
 
-def held(renderer: Renderer, reel: Reel, frame: int) -> Lease:
+def held(renderer: Renderer, reel: FrameRenderer, frame: int) -> Lease:
     """What a frame is made of, on the device: pixels of files, and what was remembered before it."""
     plan, runner = reel.plan(frame), renderer.runner
     lease, kept = runner.lease(), runner.lease()

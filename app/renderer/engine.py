@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 DEFAULT_BUDGET = 512 * 2**20
 
 
-class Wanted(Struct, frozen=True):
+class RenderRequest(Struct, frozen=True):
     """What to render of a graph.
 
     `inputs` are bound to graph inputs by name, or what makes them for a frame; `targets` are node or graph outputs by
@@ -39,7 +39,7 @@ class Wanted(Struct, frozen=True):
     frame: int = 1
     precision: Precision | None = None
     memories: Mapping[Port, Memory] = field(default_factory=lambda: MappingProxyType({}))
-    """What nodes remember of the frame before: see `Reel`."""
+    """What nodes remember of the frame before: see `FrameRenderer`."""
     halves: frozenset[str] = frozenset()
     """Those that will be rounded to half floats: they may come back as that."""
 
@@ -54,7 +54,7 @@ class Wanted(Struct, frozen=True):
         return {name: item(self.frame) if callable(item) else item for name, item in self.inputs.items()}
 
 
-_ALL = Wanted()
+_ALL = RenderRequest()
 
 
 class Renderer:
@@ -82,7 +82,7 @@ class Renderer:
         self._fusion = fusion
         self._planner = Planner()
 
-    def compile(self, graph: Graph, wanted: Wanted = _ALL, *, fusion: bool = True) -> Plan:
+    def compile(self, graph: Graph, wanted: RenderRequest = _ALL, *, fusion: bool = True) -> Plan:
         """Plan the rendering of what is wanted of `graph`. Raises the errors of `app.errors`."""
         bindings = self.pictures.bind(graph, wanted.bound)
         request = Request(
@@ -107,15 +107,15 @@ class Renderer:
             there=self.runner.textures,
         )
 
-    def frames(self, graph: Graph, wanted: Wanted = _ALL) -> tuple[int, int]:
+    def frames(self, graph: Graph, wanted: RenderRequest = _ALL) -> tuple[int, int]:
         """The first and last frame of a graph: as it says, else those of the first sequence it reads, else of keys."""
         named = {name: item for name, item in wanted.inputs.items() if not callable(item)}
         return self.pictures.frames(graph, self.pictures.bind(graph, named))
 
-    def render(self, graph: Graph, wanted: Wanted = _ALL) -> dict[str, Array]:
+    def render(self, graph: Graph, wanted: RenderRequest = _ALL) -> dict[str, Array]:
         """Every wanted output by name as [height, width, channels], scene-linear. Raises the errors of `app.errors`.
 
-        One frame alone: nodes with a memory have none. See `Reel`.
+        One frame alone: nodes with a memory have none. See `FrameRenderer`.
         """
         return self.runner.run(self.compile(graph, wanted))
 

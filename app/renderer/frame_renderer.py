@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from ..compiler import Memory, Plan
 from ..graph import Graph, Port
-from .engine import Renderer, Wanted
+from .engine import Renderer, RenderRequest
 from .execution.decoding import Array
 from .execution.run import Run, Timings, carried
 from .opengl.textures import Lease
@@ -21,7 +21,7 @@ CARRIED_BYTES = 2**29
 Memories = Mapping[Port, Memory]
 
 
-class Reel:
+class FrameRenderer:
     """Renders frames of a graph in any order; the pixels of a frame are always the same.
 
     What nodes remember begins at the first frame of the graph's range, or `preroll` frames before the one that is
@@ -29,7 +29,7 @@ class Reel:
     it is computed again only where it is no longer on the device. The frame of `wanted` does not matter.
     """
 
-    def __init__(self, renderer: Renderer, graph: Graph, wanted: Wanted) -> None:
+    def __init__(self, renderer: Renderer, graph: Graph, wanted: RenderRequest) -> None:
         self.renderer, self.graph, self.wanted = renderer, graph, wanted
         self.frames = renderer.frames(graph, wanted)
         """The first and last frame of the range."""

@@ -19,7 +19,7 @@ class Table(Record, frozen=True):
     linear: bool
     values: object
 
-    aside: ClassVar[frozenset[str]] = frozenset({"values"})
+    compare_exclude: ClassVar[frozenset[str]] = frozenset({"values"})
 
 
 class ColorProgram(Record, frozen=True):
@@ -32,4 +32,4 @@ class ColorProgram(Record, frozen=True):
     text: Text
     tables: tuple[Table, ...]
 
-    aside: ClassVar[frozenset[str]] = frozenset({"text"})
+    compare_exclude: ClassVar[frozenset[str]] = frozenset({"text"})

@@ -26,4 +26,4 @@ class Mesh(Record, frozen=True):
     vertices: object
     indices: object
 
-    aside: ClassVar[frozenset[str]] = frozenset({"vertices", "indices"})
+    compare_exclude: ClassVar[frozenset[str]] = frozenset({"vertices", "indices"})

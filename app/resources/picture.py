@@ -33,4 +33,4 @@ class Picture(Record, frozen=True):
     by_rows: bool = False
     rows: tuple[int, int] | None = None
 
-    aside: ClassVar[frozenset[str]] = frozenset({"pixels"})
+    compare_exclude: ClassVar[frozenset[str]] = frozenset({"pixels"})

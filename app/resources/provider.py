@@ -35,7 +35,7 @@ class Frame(Struct, frozen=True):
     number: int = 1
 
 
-class Outside(Protocol):
+class ResourceProvider(Protocol):
     """Files, color libraries and meshes. Every method raises InputError for a file that cannot be read."""
 
     def at(self, path: str, frame: int, missing: Missing) -> Frame:

@@ -11,9 +11,9 @@ from msgspec import Struct
 
 
 class Record(Struct, frozen=True, eq=False):
-    """A frozen value. Fields that are named in `aside` take no part in comparisons."""
+    """A frozen value. Fields that are named in `compare_exclude` take no part in comparisons."""
 
-    aside: ClassVar[frozenset[str]] = frozenset()
+    compare_exclude: ClassVar[frozenset[str]] = frozenset()
 
     def __eq__(self, other: object) -> bool:
         if type(self) is not type(other):
@@ -28,4 +28,4 @@ class Record(Struct, frozen=True, eq=False):
 @cache
 def _told(kind: type[Record]) -> Callable[[Any], object]:
     """What takes from a record all that it is."""
-    return attrgetter(*(name for name in kind.__struct_fields__ if name not in kind.aside))
+    return attrgetter(*(name for name in kind.__struct_fields__ if name not in kind.compare_exclude))

@@ -21,7 +21,7 @@ sys.path.append(str(Path(__file__).parents[1]))
 from bench.exr import read
 from bench.tasks import TASKS, picture
 from halation import document
-from halation.renderer import Renderer, Wanted
+from halation.renderer import Renderer, RenderRequest
 
 
 def main() -> None:
@@ -44,7 +44,7 @@ def main() -> None:
         graph = graph.override(name, float(number))
     engine = Renderer(budget=0, fusion=not options.unfused)
     started = time.perf_counter()
-    plan = engine.compile(graph, Wanted(given))
+    plan = engine.compile(graph, RenderRequest(given))
     planned = time.perf_counter()
     engine.runner.run(plan)
     first, seconds = time.perf_counter() - planned, []

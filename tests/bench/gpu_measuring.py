@@ -23,7 +23,7 @@ from halation.compiler import Form
 from halation.errors import HalationError
 from halation.graph import Graph
 from halation.media.compare import flip
-from halation.renderer import Device, Reel, Renderer, Wanted
+from halation.renderer import Device, FrameRenderer, Renderer, RenderRequest
 from halation.renderer.bench import bench, held
 from msgspec import structs
 
@@ -56,7 +56,7 @@ def measure_work(results: Results, device: Device, given: argparse.Namespace, sa
             for precision in PRECISIONS:
                 for form, renderer in engines.items():
                     say(f"{name} {form} {precision}, {turn + 1} of {given.rounds}")
-                    wanted = Wanted(inputs, size=None if inputs else work.size, precision=precision)
+                    wanted = RenderRequest(inputs, size=None if inputs else work.size, precision=precision)
                     take(results, work, f"{form} {precision}", renderer, graph, wanted, given.repeat)
     for renderer in engines.values():
         renderer.close()
@@ -69,7 +69,7 @@ def engine(device: Device, form: Form) -> Renderer:
 
 
 def take(
-    results: Results, work: Work, program: str, renderer: Renderer, graph: Graph, wanted: Wanted, repeat: int
+    results: Results, work: Work, program: str, renderer: Renderer, graph: Graph, wanted: RenderRequest, repeat: int
 ) -> None:
     """One turn of a graph: pass by pass, then as whole frames that nobody waits for."""
     one = results.run("x".join(map(str, work.size)), work.name, program)
@@ -94,9 +94,9 @@ def take(
     results.extras.setdefault("bytes", {}).setdefault(work.name, {})[program] = known
 
 
-def frames(renderer: Renderer, graph: Graph, wanted: Wanted, repeat: int) -> list[float]:
+def frames(renderer: Renderer, graph: Graph, wanted: RenderRequest, repeat: int) -> list[float]:
     """Seconds of whole frames by the clock, from the first pass that is submitted to the last that is done."""
-    reel = Reel(renderer, graph, wanted)
+    reel = FrameRenderer(renderer, graph, wanted)
     plan, given, seconds = reel.plan(wanted.frame), held(renderer, reel, wanted.frame), list[float]()
     for _ in range(repeat + 1):
         kept = renderer.runner.lease()

@@ -16,7 +16,7 @@ import numpy as np
 from halation import document
 from halation.compiler import Precision
 from halation.presets import paths
-from halation.renderer import Reel, Renderer, Wanted, open_pinned
+from halation.renderer import FrameRenderer, Renderer, RenderRequest, open_pinned
 
 Array = np.ndarray
 PRESETS = tuple(path.stem for path in paths())
@@ -29,7 +29,7 @@ def rendered(
     graphs = {path.stem: path for path in paths()}
     for name in names:
         graph = document.load(graphs[name])
-        reel = Reel(renderer, graph, Wanted(scale=scale, precision=precision))
+        reel = FrameRenderer(renderer, graph, RenderRequest(scale=scale, precision=precision))
         try:
             yield name, reel.render(sum(reel.frames) // 2)[next(iter(graph.outputs))]
         finally:

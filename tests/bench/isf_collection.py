@@ -18,7 +18,7 @@ from halation.custom_nodes import Code, CodeFault, node_type
 from halation.errors import HalationError
 from halation.graph import Graph, Input, Output, Port, Settings
 from halation.nodes import Kind
-from halation.renderer import Reel, Renderer, Wanted
+from halation.renderer import FrameRenderer, Renderer, RenderRequest
 
 
 def picture(size: int) -> np.ndarray:
@@ -56,7 +56,7 @@ def verdict(engine: Renderer, graph: Graph, size: int, frames: int) -> tuple[str
     """What the last frame is, in a word or a sentence, and its pixels."""
     light = picture(size)
     given = {name: light if number == 0 else light[::-1, ::-1].copy() for number, name in enumerate(graph.inputs)}
-    reel = Reel(engine, graph, Wanted(given, precision="float"))
+    reel = FrameRenderer(engine, graph, RenderRequest(given, precision="float"))
     made = [reel.render(frame)["out"] for frame in range(1, frames + 1)]
     reel.close()
     if not all(np.isfinite(one).all() for one in made):

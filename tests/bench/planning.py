@@ -17,7 +17,7 @@ import numpy as np
 from halation.document import dumps, loads
 from halation.graph import Graph, Input, Output, Port
 from halation.nodes import Kind, catalogue
-from halation.renderer import Renderer, Wanted
+from halation.renderer import Renderer, RenderRequest
 
 TIMES = 7
 TYPES = (
@@ -64,7 +64,7 @@ def timed(work: Callable[[int], object]) -> list[float]:
 
 def measured(engine: Renderer, count: int) -> dict[str, object]:
     """All figures of one graph."""
-    graph, wanted = large(count), Wanted({"image": np.zeros((64, 64, 4), np.float32)})
+    graph, wanted = large(count), RenderRequest({"image": np.zeros((64, 64, 4), np.float32)})
     number = count // 2 // len(TYPES) * len(TYPES)
     changed = [graph.override(f"n{number}.stops", 0.001 * (turn + 1)) for turn in range(TIMES + 1)]
     text = dumps(graph)

@@ -16,7 +16,7 @@ from bench.results import Results
 from halation import document
 from halation.compiler import Request, Target, compile_graph
 from halation.inputs.provider import Pictures
-from halation.renderer import Wanted, open_device
+from halation.renderer import RenderRequest, open_device
 
 HALF, FLOAT = 8, 16
 """Bytes of a pixel."""
@@ -123,7 +123,7 @@ def test_plans_leave_room_for_what_is_wanted(name, limit):
 def test_the_chain_is_one_pass_that_moves_no_byte_too_many(device):
     results, renderer = Results(), engine(device, "compute")
     work = replace(WORK["chain"], size=DRY)
-    wanted = Wanted({"a": picture(DRY)}, precision="half")
+    wanted = RenderRequest({"a": picture(DRY)}, precision="half")
     take(results, work, "compute half", renderer, document.load(work.path), wanted, 2)
     known = results.extras["bytes"]["chain"]["compute half"]
     assert known["passes"] == 1 and known["moved"] == known["floor"] == 2 * HALF * DRY[0] * DRY[1]
@@ -134,7 +134,7 @@ def test_the_chain_is_one_pass_that_moves_no_byte_too_many(device):
 
 def test_bringing_the_sample_to_size_does_not_count(device):
     results, renderer, work = Results(), engine(device, "fragment"), replace(WORK["stack"], size=DRY)
-    graph, wanted = document.load(work.path), Wanted(size=DRY, precision="float")
+    graph, wanted = document.load(work.path), RenderRequest(size=DRY, precision="float")
     plan = renderer.compile(graph, wanted)
     take(results, work, "fragment float", renderer, graph, wanted, 1)
     known = results.extras["bytes"]["stack"]["fragment float"]

@@ -9,7 +9,7 @@ import pytest
 from bench import references, tasks
 from bench.inputs import pictures
 from halation import document
-from halation.renderer import Wanted
+from halation.renderer import RenderRequest
 
 WIDTH, HEIGHT = tasks.SIZES["tiny"]
 ALIKE = 3e-4
@@ -25,7 +25,7 @@ def rendered(renderer, task):
     graph = document.load(task.path)
     for name, value in task.values(WIDTH).items():
         graph = graph.override(name, value)
-    wanted = Wanted({name: given()[name] for name in task.inputs}, precision="float")
+    wanted = RenderRequest({name: given()[name] for name in task.inputs}, precision="float")
     return renderer.render(graph, wanted)["out"].astype(np.float16)
 
 

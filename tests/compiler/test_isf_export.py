@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from halation.cli.options import Lazy
+from halation.cli.options import LazyResourceProvider
 from halation.compiler.isf import Exported, export_isf
 from halation.compiler.isf.affine import length_text
 from halation.custom_nodes import Written
 from halation.graph import Control, Graph, Input, Output, Port, Settings
 from halation.nodes import Kind, Node, catalogue
-from halation.renderer import Renderer, Wanted
+from halation.renderer import Renderer, RenderRequest
 from hypothesis import given
 from hypothesis import strategies as some
 from isf_files import Array, alone, opaque, shader
@@ -42,7 +42,7 @@ def chain(*nodes: Node, pictures: int = 1) -> Graph:
 
 
 def exported(graph: Graph, size: tuple[int, int] = (64, 48)) -> Exported:
-    found = export_isf(graph, TARGET, Lazy(), size=size)
+    found = export_isf(graph, TARGET, LazyResourceProvider(), size=size)
     assert not found.reasons
     return found
 
@@ -56,10 +56,10 @@ def both(
         name: opaque(size[1], size[0], seed) * np.array([3, 3, 3, 1], np.float32)
         for seed, name in enumerate(graph.inputs)
     }
-    wanted = renderer.render(graph, Wanted(pictures, size=size, frame=frame, precision="float"))["out"]
+    wanted = renderer.render(graph, RenderRequest(pictures, size=size, frame=frame, precision="float"))["out"]
     given = dict(zip(kind.inputs, pictures.values(), strict=True))
     item = alone(kind(**values), size)
-    return wanted, renderer.render(item, Wanted(given, size=size, frame=frame, precision="float"))["out"]
+    return wanted, renderer.render(item, RenderRequest(given, size=size, frame=frame, precision="float"))["out"]
 
 
 def close(pair: tuple[Array, Array], far: float = 1e-4) -> bool:
@@ -133,7 +133,7 @@ def test_two_pictures(renderer: Renderer) -> None:
 
 def test_what_no_shader_can_do_is_listed_by_node() -> None:
     graph = chain(made("feedback"), made("exposure"))
-    assert export_isf(graph, TARGET, Lazy()).reasons == (("n0", "makes every frame of the one before"),)
+    assert export_isf(graph, TARGET, LazyResourceProvider()).reasons == (("n0", "makes every frame of the one before"),)
 
 
 @given(some.integers(1, 64), some.integers(0, 63), some.lists(some.integers(64, 4000), min_size=4, max_size=4))

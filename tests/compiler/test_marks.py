@@ -9,7 +9,7 @@ from halation.compiler import NULL, Library, Request, installed
 from halation.compiler.codegen.emit import emit
 from halation.compiler.fusion.fuse import fuse
 from halation.compiler.fusion.rewrites import rewritten
-from halation.compiler.ir import Foreign, Raster
+from halation.compiler.ir import ExternalProgram, Raster
 from halation.compiler.lowering.lower import lower
 from halation.compiler.scheduling.keys import Marks
 from halation.compiler.scheduling.schedule import formats
@@ -50,7 +50,9 @@ def told(graph: Graph, target=NULL, library: Library | None = None, frame: int =
         for one, mark in marks.of(fused, whole):
             root = program.ops[one.root]
             alone = whole if one is fused else emit(program, one, library, target, texels)
-            drawn = root.mesh.digest if isinstance(root, Raster) else root.text if isinstance(root, Foreign) else ""
+            drawn = (
+                root.mesh.digest if isinstance(root, Raster) else root.text if isinstance(root, ExternalProgram) else ""
+            )
             stored = tuple(texels[ref] for ref in (*one.reads, *one.writes))
             found.setdefault(mark, set()).add(repr((alone.shader, alone.uniforms, alone.weights, drawn, stored)))
     return found

@@ -13,7 +13,7 @@ from halation import document
 from halation.errors import InputError, ShaderError
 from halation.graph import Output, Port
 from halation.nodes import Kind
-from halation.renderer import Reel, Renderer, Wanted
+from halation.renderer import FrameRenderer, Renderer, RenderRequest
 from isf_files import IMAGE, alone, decoded, encoded, isf, node, opaque, shader
 
 H, W = 13, 21
@@ -110,7 +110,7 @@ def test_values_change_no_program(renderer: Renderer) -> None:
     level = {"NAME": "level", "TYPE": "float", "DEFAULT": 0.5}
     texts = set()
     for value, frame in ((0.1, 1), (0.9, 7)):
-        plan = renderer.compile(alone(node(body, level, values={"level": value}), (4, 4)), Wanted(frame=frame))
+        plan = renderer.compile(alone(node(body, level, values={"level": value}), (4, 4)), RenderRequest(frame=frame))
         texts.add(tuple(one.shader for one in plan.passes))
     assert len(texts) == 1
 
@@ -119,7 +119,7 @@ def test_what_a_shader_is_told_of_time(renderer: Renderer) -> None:
     body = """gl_FragColor = vec4(TIME, TIMEDELTA, float(FRAMEINDEX), 1.0);
     if (gl_FragCoord.x > 1.0) gl_FragColor = vec4(DATE.xyz / 1000.0, 1.0);
     if (gl_FragCoord.x > 2.0) gl_FragColor = vec4(DATE.w, float(PASSINDEX), 0.0, 1.0);"""
-    reel = Reel(renderer, alone(node(body), (3, 1), (5, 90), 20.0), Wanted(precision="float"))
+    reel = FrameRenderer(renderer, alone(node(body), (3, 1), (5, 90), 20.0), RenderRequest(precision="float"))
     first, later = reel.render(5)["out"][0], reel.render(15)["out"][0]
     assert close(first[0, :3], 0.0) and close(later[0, :3], [0.5, 0.05, 10.0])
     assert close(later[1, :3], [2.0, 0.001, 0.001]) and close(later[2, :3], [0.5, 0.0, 0.0])
@@ -127,7 +127,7 @@ def test_what_a_shader_is_told_of_time(renderer: Renderer) -> None:
 
 def test_what_does_not_ask_the_time_is_the_same_at_every_frame(renderer: Renderer) -> None:
     graph = alone(node("gl_FragColor = vec4(RENDERSIZE, 0.0, 1.0);"), (4, 4))
-    plans = [renderer.compile(graph, Wanted(frame=frame)) for frame in (1, 5)]
+    plans = [renderer.compile(graph, RenderRequest(frame=frame)) for frame in (1, 5)]
     assert len({plan.surfaces[plan.outputs["out"]].key for plan in plans}) == 1
 
 
@@ -240,7 +240,7 @@ def test_pictures_of_its_folder(renderer: Renderer, tmp_path: Path) -> None:
     )
     (tmp_path / "graph.json").write_text(raw)
     graph = document.load(tmp_path / "graph.json")
-    for wanted in (Wanted(), Wanted(size=(6, 4))):
+    for wanted in (RenderRequest(), RenderRequest(size=(6, 4))):
         made = renderer.render(graph, wanted)["out"][-2:, :3]
         assert close(made[..., :3] * 255.0, stored, 0.05)
     outside = tmp_path / "outside.png"

@@ -7,7 +7,7 @@ import pytest
 from conftest import Run
 from halation.errors import GraphError, HalationError
 from halation.nodes import Filter, Temporal
-from halation.renderer import Reel, Renderer, Wanted
+from halation.renderer import FrameRenderer, Renderer, RenderRequest
 from isf_files import IMAGE, alone, isf, node, opaque, shader
 
 H, W = 12, 20
@@ -17,8 +17,8 @@ else gl_FragColor = vec4(IMG_THIS_PIXEL(sum).rg, IMG_NORM_PIXEL(sum, vec2(0.5)).
 STEP = {"NAME": "step", "TYPE": "float", "DEFAULT": 0.3}
 
 
-def reel(renderer: Renderer, item: Filter, size: tuple[int, int] = (4, 3)) -> Reel:
-    return Reel(renderer, alone(item, size), Wanted(precision="float"))
+def reel(renderer: Renderer, item: Filter, size: tuple[int, int] = (4, 3)) -> FrameRenderer:
+    return FrameRenderer(renderer, alone(item, size), RenderRequest(precision="float"))
 
 
 @pytest.mark.parametrize("floating", [True, False])

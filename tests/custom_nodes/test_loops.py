@@ -11,7 +11,7 @@ from halation.custom_nodes import Code, node_type
 from halation.errors import ShaderError
 from halation.glsl import blanked
 from halation.glsl.loops import COUNTER, guarded
-from halation.renderer import Renderer, Wanted
+from halation.renderer import Renderer, RenderRequest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -179,5 +179,5 @@ def test_random_loops_make_what_python_makes(renderer: Renderer, parts: list[tup
     code = " ".join(glsl for glsl, _ in parts)
     kind = node_type(Code("glsl", f"vec4 f(vec4 image) {{ int n = 1; {code} return image * float(n); }}"))
     ones = {"image": np.ones_like(PICTURE)}
-    found = renderer.render(graph_of(kind(), ones), Wanted(ones))["out"]
+    found = renderer.render(graph_of(kind(), ones), RenderRequest(ones))["out"]
     assert (found == made["n"]).all(), code

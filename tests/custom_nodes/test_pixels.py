@@ -14,7 +14,7 @@ from halation import document
 from halation.custom_nodes import Code, node_type
 from halation.errors import GraphError, ShaderError
 from halation.graph import Graph, Input, Output, Port, Unknown
-from halation.renderer import Renderer, Wanted
+from halation.renderer import Renderer, RenderRequest
 
 PICTURE = np.random.default_rng(5).random((13, 21, 4)).astype(np.float32)
 OTHER = np.random.default_rng(6).random((13, 21, 4)).astype(np.float32)
@@ -120,7 +120,7 @@ def test_a_driver_names_the_node_and_the_users_own_line(renderer: Renderer) -> N
         "// one\nfloat twice(float x) { return x * 2.0; }\nvec4 b(vec4 image) {\n    return twice(image);\n}",
     )
     with pytest.raises(ShaderError) as caught:
-        renderer.render(graph, Wanted({"image": PICTURE}))
+        renderer.render(graph, RenderRequest({"image": PICTURE}))
     fault = caught.value
     assert (fault.node, fault.line) == ("n1", 4)
     assert not re.search(r"w[0-9a-f]{8}", str(fault)) and "code of 'b'" in str(fault)
@@ -130,7 +130,7 @@ def test_an_include_that_is_no_library_file_is_refused(renderer: Renderer) -> No
     for name in ("/etc/passwd", "../../secret.glsl", "color/none"):
         with pytest.raises(ShaderError, match="names no shader file"):
             renderer.render(
-                chain(f'#include "{name}"\nvec4 f(vec4 image) {{ return image; }}'), Wanted({"image": PICTURE})
+                chain(f'#include "{name}"\nvec4 f(vec4 image) {{ return image; }}'), RenderRequest({"image": PICTURE})
             )
 
 
@@ -142,7 +142,7 @@ def test_code_with_a_fault_stands_in_the_graph_and_says_why(renderer: Renderer) 
     graph = document.loads(text)
     assert isinstance(graph.nodes["x"], Unknown)
     with pytest.raises(GraphError, match="node 'x': its code, line 2: the name 'image' is there twice"):
-        renderer.render(graph, Wanted({"image": PICTURE}))
+        renderer.render(graph, RenderRequest({"image": PICTURE}))
     assert document.loads(document.dumps(graph)) == graph
 
 

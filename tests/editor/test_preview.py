@@ -15,7 +15,7 @@ from halation.compiler.library import parse
 from halation.graph import Graph, Group, Input, Output, Port, Settings
 from halation.nodes import Kind, catalogue
 from halation.nodes.color.exposure import Exposure
-from halation.renderer import Wanted
+from halation.renderer import RenderRequest
 from previews import OUT, PICTURE, chain, passes, pixels, rendered, settle, want
 
 NODES = catalogue()
@@ -32,7 +32,7 @@ def test_a_picture_comes_pass_by_pass(preview, engine):
         calls += 1
         done.append(passes(engine))
         time.sleep(0.0005)
-    total = len(engine.compile(chain(), Wanted({"image": PICTURE})).passes)
+    total = len(engine.compile(chain(), RenderRequest({"image": PICTURE})).passes)
     assert set(range(1, total + 1)) <= set(done), "one pass a call, when there is no time for more"
     assert not preview.busy and preview.progress == (total, total)
     shown = preview.shown("A")

@@ -9,7 +9,7 @@ import pytest
 from halation.graph import Expression, Graph, Keys, Port
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.time.light_trails import LightTrails
-from halation.renderer import Reel, Wanted
+from halation.renderer import FrameRenderer, RenderRequest
 from previews import pixels, settle
 from sequences import noise_graph
 
@@ -34,7 +34,7 @@ def look(preview, graph: Graph, frame: int) -> np.ndarray:
 
 
 def by_reel(engine, graph: Graph, frame: int) -> np.ndarray:
-    reel = Reel(engine, graph, Wanted(targets=PORTS))
+    reel = FrameRenderer(engine, graph, RenderRequest(targets=PORTS))
     try:
         return reel.render(frame)["A"].copy()
     finally:

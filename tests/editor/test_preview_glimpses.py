@@ -14,7 +14,7 @@ from halation.graph import Graph, Port
 from halation.nodes import catalogue
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.time.light_trails import LightTrails
-from halation.renderer import Renderer, Wanted
+from halation.renderer import Renderer, RenderRequest
 from previews import IMAGE, chain, pixels, settle, want
 
 WIDTH, HEIGHT = 1001, 701
@@ -64,7 +64,7 @@ def whole(engine: Renderer, graph: Graph, port: Port = IMAGE) -> np.ndarray:
     """By a renderer that has computed nothing else."""
     other = Renderer(engine.device)
     try:
-        return other.render(graph, Wanted(BINDINGS, {"x": port}))["x"]
+        return other.render(graph, RenderRequest(BINDINGS, {"x": port}))["x"]
     finally:
         other.close()
 

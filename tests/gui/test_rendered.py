@@ -12,7 +12,7 @@ from halation.color.transforms import to_display
 from halation.editor.window.arriving import arrived
 from halation.graph import Port
 from halation.presets import paths, sample
-from halation.renderer import Renderer, Wanted
+from halation.renderer import Renderer, RenderRequest
 from halation.renderer.jobs.job import Writing, run_job
 
 BLOOM = next(path for path in paths() if path.stem == "soft_bloom")
@@ -24,7 +24,7 @@ def rendered(folder: Path) -> Path:
     graph = document.load(BLOOM).set(Port("bloom", "intensity"), 0.625)
     renderer = Renderer()
     inputs = {"beauty": f"{folder / 'plate.exr'}:Combined"}
-    run_job(renderer, graph, Wanted(inputs, scale=0.5), Writing((("", folder / "night shot.png"),), view="none"))
+    run_job(renderer, graph, RenderRequest(inputs, scale=0.5), Writing((("", folder / "night shot.png"),), view="none"))
     renderer.close()
     return folder / "night shot.png"
 

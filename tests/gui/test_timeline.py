@@ -10,7 +10,7 @@ import OpenImageIO as oiio
 from halation.editor.window.arriving import arrived
 from halation.graph import Expression, Graph, Output, Port, Settings
 from halation.nodes import catalogue
-from halation.renderer import Reel, Wanted
+from halation.renderer import FrameRenderer, RenderRequest
 
 NODES = catalogue()
 OUT = Port("outputs", "image")
@@ -297,10 +297,10 @@ def test_a_far_frame_of_a_graph_with_a_memory_is_what_a_reel_renders(gui, tmp_pa
 
     def body(ui) -> None:
         start(ui, graph)
-        wanted = Wanted(targets={"A": OUT})
+        wanted = RenderRequest(targets={"A": OUT})
 
         def rendered(frame: int) -> np.ndarray:
-            reel = Reel(ui.editor.preview.renderer, graph, wanted)
+            reel = FrameRenderer(ui.editor.preview.renderer, graph, wanted)
             try:
                 return reel.render(frame)["A"].copy()
             finally:

@@ -10,7 +10,7 @@ import pytest
 from conftest import graph_of
 from halation.graph import Port
 from halation.nodes.input.blue_noise import BlueNoise
-from halation.renderer import Wanted
+from halation.renderer import RenderRequest
 from hashes import pcg3d
 
 SIZE = 64
@@ -56,7 +56,9 @@ def test_frames_differ_on_demand(renderer):
     for animate in (False, True):
         graph = graph_of(BlueNoise(animate=animate), {})
         one, again, other = (
-            renderer.render(graph, Wanted({}, {"value": Port("outputs", "value")}, (64, 64), frame=frame))["value"]
+            renderer.render(graph, RenderRequest({}, {"value": Port("outputs", "value")}, (64, 64), frame=frame))[
+                "value"
+            ]
             for frame in (3, 3, 4)
         )
         assert np.array_equal(one, again) and np.array_equal(one, other) != animate

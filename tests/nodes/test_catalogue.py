@@ -12,7 +12,7 @@ from conftest import graph_of
 from halation.compiler import installed
 from halation.graph import Graph, Port
 from halation.nodes import Filter, Kind, Node, Pointwise, Source, catalogue, look_at
-from halation.renderer import Wanted
+from halation.renderer import RenderRequest
 
 ROOT = Path(__file__).parents[2]
 NODES = list(catalogue().values())
@@ -248,7 +248,7 @@ def fed(node: Node, arrays: dict[str, np.ndarray]) -> Graph:
 
 def outputs_of(renderer, node: type[Node], arrays, **options):
     targets = {name: Port("node", name) for name in node.outputs}
-    return renderer.render(fed(node(), arrays), Wanted(arrays, targets, precision="float", **options))
+    return renderer.render(fed(node(), arrays), RenderRequest(arrays, targets, precision="float", **options))
 
 
 @rendered
@@ -291,7 +291,7 @@ def test_nothing_that_is_no_number_comes_out(renderer, node):
     changed = node(**neutral_off(node))
     graph = fed(changed, arrays)
     targets = {name: Port("node", name) for name in node.outputs}
-    found = renderer.render(graph, Wanted(arrays, targets, precision="float"))
+    found = renderer.render(graph, RenderRequest(arrays, targets, precision="float"))
     for name in node.outputs:
         assert np.isfinite(found[name]).all(), name
 
@@ -325,7 +325,7 @@ def test_its_choices_all_compile(renderer, node):
     for value in node.values.values():
         for choice in value.choices[1:]:
             graph = fed(node(**{value.name: choice}), arrays)
-            found = renderer.render(graph, Wanted(arrays, targets, (9, 7), precision="float"))
+            found = renderer.render(graph, RenderRequest(arrays, targets, (9, 7), precision="float"))
             for name, array in found.items():
                 assert np.isfinite(array).all(), (value.name, choice, name)
 

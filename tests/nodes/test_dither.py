@@ -10,7 +10,7 @@ import pytest
 from conftest import graph_of
 from halation.graph import Port
 from halation.nodes.color.dither import Dither
-from halation.renderer import Wanted
+from halation.renderer import RenderRequest
 
 PATTERNS = Dither.values["pattern"].choices
 SIZE = 64
@@ -165,7 +165,7 @@ def test_frames_differ_on_demand(renderer):
         graph = graph_of(node, {"image": picture})
         targets = {"out": Port("outputs", "out")}
         one, same, other = (
-            renderer.render(graph, Wanted({"image": picture}, targets, precision="float", frame=frame))["out"]
+            renderer.render(graph, RenderRequest({"image": picture}, targets, precision="float", frame=frame))["out"]
             for frame in (3, 3, 4)
         )
         assert np.array_equal(one, same) and np.array_equal(one, other) != animate

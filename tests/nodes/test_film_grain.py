@@ -7,7 +7,7 @@ import pytest
 from conftest import graph_of
 from halation.graph import Port
 from halation.nodes.stylize.film_grain import FilmGrain
-from halation.renderer import Wanted
+from halation.renderer import RenderRequest
 from hashes import normal3, pcg3d
 from scipy.interpolate import BSpline
 from scipy.stats import kstest
@@ -134,7 +134,9 @@ def test_frames_differ_on_demand(renderer):
     for animate in (False, True):
         graph = graph_of(FilmGrain(animate=animate), {"image": picture})
         one, again, other = (
-            renderer.render(graph, Wanted({"image": picture}, {"out": Port("outputs", "out")}, frame=frame))["out"]
+            renderer.render(graph, RenderRequest({"image": picture}, {"out": Port("outputs", "out")}, frame=frame))[
+                "out"
+            ]
             for frame in (3, 3, 4)
         )
         assert np.array_equal(one, again) and np.array_equal(one, other) != animate

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from halation.nodes.time.freeze import Freeze
-from halation.renderer import Wanted
+from halation.renderer import RenderRequest
 from sequences import node_at, noise_at, noise_graph
 
 
@@ -28,10 +28,10 @@ def test_which_frame_is_held(renderer, values, seen):
 
 def test_it_costs_no_pass(renderer):
     graph = noise_graph(Freeze()).remove_output("noise")
-    assert len(renderer.compile(graph, Wanted(frame=5)).passes) == 1
+    assert len(renderer.compile(graph, RenderRequest(frame=5)).passes) == 1
 
 
 def test_what_is_held_is_computed_once(renderer):
     graph = noise_graph(Freeze(every=2)).remove_output("noise")
-    keys = [renderer.compile(graph, Wanted(frame=frame)).surfaces[0].key for frame in range(1, 7)]
+    keys = [renderer.compile(graph, RenderRequest(frame=frame)).surfaces[0].key for frame in range(1, 7)]
     assert keys[0::2] == keys[1::2] and len(set(keys)) == 3

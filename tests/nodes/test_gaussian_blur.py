@@ -9,7 +9,7 @@ import pytest
 from halation.graph import Graph, Input, Output, Port
 from halation.nodes import Kind
 from halation.nodes.blur.gaussian_blur import GaussianBlur
-from halation.renderer import Wanted
+from halation.renderer import RenderRequest
 from scipy.ndimage import correlate1d, gaussian_filter
 
 LARGE = (7.0, 8.0, 11.3, 20.0, 50.0, 100.0)
@@ -177,7 +177,7 @@ def test_the_work_hardly_grows_with_sigma(renderer, edge):
         made = graph.add("blur", GaussianBlur(sigma=sigma, edge=edge.name))
         made = made.connect(Port("inputs", "image"), Port("blur", "image"))
         made = made.connect(Port("blur", "out"), Port("outputs", "out"))
-        plan = renderer.compile(made, Wanted({"image": picture}))
+        plan = renderer.compile(made, RenderRequest({"image": picture}))
         sizes = [plan.surfaces[one.targets[0]].size for one in plan.passes]
         return sum(w * h * (len(one.weights) or 4) for one, (w, h) in zip(plan.passes, sizes, strict=True))
 

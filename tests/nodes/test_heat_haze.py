@@ -7,7 +7,7 @@ import pytest
 from conftest import graph_of
 from halation.graph import Port
 from halation.nodes.distort.heat_haze import HeatHaze
-from halation.renderer import Wanted
+from halation.renderer import RenderRequest
 from noises import gradient_noise, places
 from warps import looked_up, waves
 
@@ -20,7 +20,7 @@ def ramp(width: int, height: int) -> np.ndarray:
 
 def at_frame(renderer, node: HeatHaze, picture: np.ndarray, frame: int, heat: np.ndarray | None = None) -> np.ndarray:
     arrays = {"image": picture} if heat is None else {"image": picture, "heat": heat}
-    wanted = Wanted(arrays, {"out": Port("outputs", "out")}, precision="float", frame=frame)
+    wanted = RenderRequest(arrays, {"out": Port("outputs", "out")}, precision="float", frame=frame)
     return renderer.render(graph_of(node, arrays), wanted)["out"]
 
 

@@ -12,7 +12,7 @@ from halation.errors import InputError
 from halation.graph import Port
 from halation.nodes.color._spaces import SPACES
 from halation.nodes.color.lut_file import LutFile
-from halation.renderer import Wanted
+from halation.renderer import RenderRequest
 
 
 def twisted(rgb: np.ndarray) -> np.ndarray:
@@ -106,7 +106,7 @@ def test_two_tables_share_a_pass(renderer, tmp_path, run, hdr):
     chain = graph_of(first, {"image": picture}).add("second", second)
     chain = chain.connect(Port("node", "out"), Port("second", "image"))
     chain = chain.connect(Port("second", "out"), Port("outputs", "out"))
-    assert len(renderer.compile(chain, Wanted({"image": picture}, precision="float")).passes) == 1
+    assert len(renderer.compile(chain, RenderRequest({"image": picture}, precision="float")).passes) == 1
     expected = run(second, {"image": run(first, {"image": picture})})
     np.testing.assert_array_equal(run(chain, {"image": picture}), expected)
 

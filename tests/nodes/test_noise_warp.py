@@ -7,7 +7,7 @@ import pytest
 from conftest import graph_of
 from halation.graph import Port
 from halation.nodes.distort.noise_warp import NoiseWarp
-from halation.renderer import Wanted
+from halation.renderer import RenderRequest
 from noises import places, simplex_noise, stream
 from warps import looked_up, waves
 
@@ -90,7 +90,7 @@ def test_frames_follow_the_speed(renderer):
 
     def at(frame: int, **values: float) -> np.ndarray:
         node = NoiseWarp(**values)
-        wanted = Wanted({"image": picture}, {"out": Port("outputs", "out")}, precision="float", frame=frame)
+        wanted = RenderRequest({"image": picture}, {"out": Port("outputs", "out")}, precision="float", frame=frame)
         return renderer.render(graph_of(node, {"image": picture}), wanted)["out"]
 
     still = {"speed": 0.0}

@@ -19,7 +19,7 @@ from halation.color.transforms import decode_srgb
 from halation.compiler import installed
 from halation.nodes import Kind, Node, Pointwise, catalogue
 from halation.presets import sample
-from halation.renderer import Renderer, Wanted, open_device
+from halation.renderer import Renderer, RenderRequest, open_device
 
 Array = np.ndarray
 
@@ -156,7 +156,7 @@ def another() -> Iterator[Renderer]:
 def rendered(engine: Renderer, node: type[Node], picture: Path, scale: float) -> dict[str, Array]:
     """All outputs of a node at its defaults, by way of a file."""
     graph = document.loads(document.dumps(over(node, picture)))
-    found = engine.render(graph, Wanted(scale=scale, frame=7))
+    found = engine.render(graph, RenderRequest(scale=scale, frame=7))
     return {name: array.astype(np.float32) for name, array in found.items()}
 
 

@@ -11,7 +11,7 @@ from halation.errors import InputError
 from halation.graph import Graph, Output, Port
 from halation.nodes import Kind
 from halation.nodes.input.read_image import ReadImage
-from halation.renderer import Wanted
+from halation.renderer import RenderRequest
 
 KINDS = {"out": Kind.IMAGE, "field": Kind.FIELD, "vector": Kind.VECTOR}
 
@@ -59,9 +59,9 @@ def test_every_kind_of_layer_arrives_exactly(run, passes, output, layer, expecte
 def test_only_what_is_wanted_is_read(renderer, passes):
     path, _ = passes
     graph = graph_of(path, "Combined", ("out", "field", "vector"))
-    plan = renderer.compile(graph, Wanted(targets={"field": Port("outputs", "field")}))
+    plan = renderer.compile(graph, RenderRequest(targets={"field": Port("outputs", "field")}))
     assert [upload.picture.kind for upload in plan.uploads] == [Kind.FIELD]
-    assert len(renderer.compile(graph, Wanted()).uploads) == 3
+    assert len(renderer.compile(graph, RenderRequest()).uploads) == 3
 
 
 def test_a_relative_path_starts_at_the_graph(run, passes):

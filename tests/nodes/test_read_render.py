@@ -11,7 +11,7 @@ from halation.nodes import Kind, look_at
 from halation.nodes.geometry.position_from_depth import PositionFromDepth
 from halation.nodes.input.read_render import ReadRender
 from halation.nodes.input.solve_camera import SolveCamera
-from halation.renderer import Wanted
+from halation.renderer import RenderRequest
 
 SIZE = (64, 36)
 CAMERA = look_at((1.0, -6.0, 2.5), (0.2, 0.3, 0.4), (1.1, 1.1 * 64 / 36))
@@ -67,7 +67,7 @@ def shown(renderer, node, *names: str) -> list[np.ndarray]:
         socket = type(node).outputs[name].socket
         graph = graph.add_output(name, Output(socket.kind, socket.channels))
         graph = graph.connect(Port("node", name), Port("outputs", name))
-    found = renderer.render(graph, Wanted(precision="float"))
+    found = renderer.render(graph, RenderRequest(precision="float"))
     return [found[name].astype(np.float64) for name in names]
 
 
@@ -162,7 +162,7 @@ def test_the_camera_goes_on(renderer, tmp_path):
         socket = PositionFromDepth.outputs["position"].socket
         graph = graph.add_output("p", Output(socket.kind, socket.channels))
         graph = graph.connect(Port("position", "position"), Port("outputs", "p"))
-        position = renderer.render(graph, Wanted(precision="float"))["p"]
+        position = renderer.render(graph, RenderRequest(precision="float"))["p"]
         assert np.abs(position - data["position"]).max() < 1e-4
 
 

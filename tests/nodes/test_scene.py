@@ -10,7 +10,7 @@ from halation.graph import Graph, Output, Port
 from halation.media.meshes import load_mesh
 from halation.nodes import BuiltInScene, Kind
 from halation.nodes.input.scene import Scene
-from halation.renderer import Wanted
+from halation.renderer import RenderRequest
 from scipy.stats import qmc
 
 SIZE = (96, 54)
@@ -34,7 +34,7 @@ def rendered(renderer, node, frame=1, size=SIZE, scale=1.0):
         socket = Scene.outputs[name].socket
         graph = graph.add_output(name, Output(socket.kind, socket.channels))
         graph = graph.connect(Port("scene", name), Port("outputs", name))
-    found = renderer.render(graph, Wanted({}, {}, size, scale, frame=frame, precision="float"))
+    found = renderer.render(graph, RenderRequest({}, {}, size, scale, frame=frame, precision="float"))
     return {name: array.astype(np.float64) for name, array in found.items()}
 
 
@@ -172,7 +172,7 @@ def test_files_that_are_none(renderer, tmp_path):
 def test_only_what_is_wanted_is_drawn(renderer):
     graph = Graph().add("scene", Scene()).add_output("depth", Output(Kind.FIELD))
     graph = graph.connect(Port("scene", "depth"), Port("outputs", "depth"))
-    plan = renderer.compile(graph, Wanted({}, {}, SIZE))
+    plan = renderer.compile(graph, RenderRequest({}, {}, SIZE))
     assert len(plan.passes[0].targets) == 1 and plan.passes[0].mesh is not None
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from halation.graph import Graph
 from halation.nodes import Kind, Node, Temporal, catalogue
-from halation.renderer import Wanted
+from halation.renderer import RenderRequest
 from sequences import Array, Shot, played, shot_graph
 
 NODES = [node for node in catalogue().values() if issubclass(node, Temporal)]
@@ -80,7 +80,7 @@ def test_what_is_no_number_is_never_remembered(renderer, node):
 @by_id
 def test_memory_has_32_bits(renderer, node):
     shot = shot_of(node)
-    plan = renderer.compile(shot_graph(node(), shot, FRAMES), Wanted(dict(shot), precision="half"))
+    plan = renderer.compile(shot_graph(node(), shot, FRAMES), RenderRequest(dict(shot), precision="half"))
     assert plan.memories and not any(memory.half for memory in plan.memories.values())
 
 

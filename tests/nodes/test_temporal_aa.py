@@ -12,7 +12,7 @@ from halation.nodes.aa.temporal_aa import TemporalAa
 from halation.nodes.channel.separate import Separate
 from halation.nodes.input.constant import Constant
 from halation.nodes.input.scene import Scene
-from halation.renderer import Reel, Wanted
+from halation.renderer import FrameRenderer, RenderRequest
 from scipy.ndimage import maximum_filter, minimum_filter
 from sequences import flat, played, shot_graph
 
@@ -44,12 +44,14 @@ def scene_graph(scene: Scene, node: TemporalAa | None = None) -> Graph:
 def still(renderer, scene: Scene, frame: int = LAST, output: str = "out", fine: int = 1) -> np.ndarray:
     """One sample in the middle of every pixel."""
     size = (SIZE[0] * fine, SIZE[1] * fine)
-    wanted = Wanted({}, {"it": Port("outputs", output)}, size, frame=frame, precision="float")
+    wanted = RenderRequest({}, {"it": Port("outputs", output)}, size, frame=frame, precision="float")
     return renderer.render(scene_graph(replace(scene, jitter=0.0)), wanted)["it"]
 
 
 def smooth(renderer, scene: Scene, node: TemporalAa) -> np.ndarray:
-    reel = Reel(renderer, scene_graph(scene, node), Wanted({}, {"out": Port("outputs", "out")}, precision="float"))
+    reel = FrameRenderer(
+        renderer, scene_graph(scene, node), RenderRequest({}, {"out": Port("outputs", "out")}, precision="float")
+    )
     try:
         return reel.render(LAST)["out"]
     finally:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from halation.graph import Port
 from halation.nodes.time.time_offset import TimeOffset
-from halation.renderer import Wanted
+from halation.renderer import RenderRequest
 from sequences import node_at, noise_at, noise_graph
 
 
@@ -26,4 +26,4 @@ def test_offsets_add_up(renderer):
 
 def test_it_costs_no_pass(renderer):
     graph = noise_graph(TimeOffset(frames=2)).remove_output("noise")
-    assert len(renderer.compile(graph, Wanted(frame=5)).passes) == 1
+    assert len(renderer.compile(graph, RenderRequest(frame=5)).passes) == 1

@@ -8,7 +8,7 @@ from exr_files import write_exr
 from halation.graph import Graph, Key, Keys, Output, Port, Settings
 from halation.nodes.input.read_image import ReadImage
 from halation.nodes.time.time_speed import TimeSpeed
-from halation.renderer import Wanted
+from halation.renderer import RenderRequest
 from sequences import node_at, noise_at, noise_graph
 
 
@@ -57,7 +57,7 @@ def test_data_is_never_mixed(renderer, tmp_path):
     for socket, read in (("field", "field"), ("image", "out")):
         graph = graph.connect(Port("read", read), Port("node", socket))
     graph = graph.add_output("id", Output()).connect(Port("node", "field_out"), Port("outputs", "id"))
-    assert (renderer.render(graph, Wanted())["id"][..., 0] == 5.0).all()
+    assert (renderer.render(graph, RenderRequest())["id"][..., 0] == 5.0).all()
 
 
 def test_a_dissolve_holds_no_nan(renderer, tmp_path):

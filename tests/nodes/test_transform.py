@@ -10,7 +10,7 @@ from halation.graph import Graph, Input, Output, Port
 from halation.nodes import Kind
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.distort.transform import Transform
-from halation.renderer import Wanted
+from halation.renderer import RenderRequest
 from oiio_pictures import buffer
 from scipy.ndimage import map_coordinates
 
@@ -135,7 +135,7 @@ def chain(nodes) -> Graph:
 
 def planned(renderer, nodes, picture, wanted):
     targets = {name: Port("outputs", name) for name in wanted}
-    return renderer.compile(chain(nodes), Wanted({"image": picture}, targets))
+    return renderer.compile(chain(nodes), RenderRequest({"image": picture}, targets))
 
 
 def moves(seed: int, count: int, **more) -> list[Transform]:
@@ -235,7 +235,9 @@ def test_other_nodes_and_muted_ones(renderer, hdr):
     picture, (one, two) = hdr(9, 8), moves(5, 2)
     assert len(planned(renderer, [one, Exposure(stops=1.0), two], picture, ["out2"]).passes) == 3
     targets = {"out": Port("outputs", "out2")}
-    muted = renderer.compile(chain([one, Exposure(stops=1.0), two]).mute("n1"), Wanted({"image": picture}, targets))
+    muted = renderer.compile(
+        chain([one, Exposure(stops=1.0), two]).mute("n1"), RenderRequest({"image": picture}, targets)
+    )
     assert [item.nodes for item in muted.passes] == [("n0", "n2")]
 
 

@@ -7,7 +7,7 @@ import pytest
 from conftest import graph_of
 from halation.graph import Port
 from halation.nodes.stylize.tv_snow import TvSnow
-from halation.renderer import Wanted
+from halation.renderer import RenderRequest
 from hashes import hash3, pcg3d
 
 FRAME = 1
@@ -46,7 +46,7 @@ def gray(level: float, width: int, height: int) -> np.ndarray:
 def frames(renderer, node: TvSnow, picture: np.ndarray, *numbers: int) -> list[np.ndarray]:
     graph, targets = graph_of(node, {"image": picture}), {"out": Port("outputs", "out")}
     return [
-        renderer.render(graph, Wanted({"image": picture}, targets, precision="float", frame=number))["out"]
+        renderer.render(graph, RenderRequest({"image": picture}, targets, precision="float", frame=number))["out"]
         for number in numbers
     ]
 

@@ -21,12 +21,12 @@ from halation.media.sheet import sheet, shown
 from halation.nodes import Kind
 from halation.presets import paths
 from halation.presets import picture as thumbnail
-from halation.renderer import Reel, Renderer, Wanted
+from halation.renderer import FrameRenderer, Renderer, RenderRequest
 from halation.renderer.jobs.job import Writing, run_job
 
 Array = np.ndarray
 
-PLAIN = Wanted()
+PLAIN = RenderRequest()
 RENEW = bool(os.environ.get("HALATION_RENEW"))
 IMAGES = Path(__file__).parents[2] / "docs" / "images"
 PRESETS = {path.stem: path for path in paths()}
@@ -86,9 +86,9 @@ def moment(graph: Graph, part: float = 0.5) -> int:
     return first + int((last - first) * part)
 
 
-def rendered(renderer: Renderer, graph: Graph, wanted: Wanted = PLAIN, part: float = 0.5) -> Array:
+def rendered(renderer: Renderer, graph: Graph, wanted: RenderRequest = PLAIN, part: float = 0.5) -> Array:
     """The output at such a frame, with the history that it has by then."""
-    reel = Reel(renderer, graph, wanted)
+    reel = FrameRenderer(renderer, graph, wanted)
     try:
         return reel.render(moment(graph, part))["image"]
     finally:
@@ -97,7 +97,7 @@ def rendered(renderer: Renderer, graph: Graph, wanted: Wanted = PLAIN, part: flo
 
 def picture(renderer: Renderer, graph: Graph, scale: float = 1.0, part: float = 0.5) -> Array:
     """The output as light of the display, [h, w, 3] within 0..1."""
-    return shown(rendered(renderer, graph, Wanted(scale=scale), part), graph.outputs["image"].view)
+    return shown(rendered(renderer, graph, RenderRequest(scale=scale), part), graph.outputs["image"].view)
 
 
 def encoded(light: Array) -> Array:
@@ -235,7 +235,7 @@ def test_half_size_looks_the_same(name: str, renderer: Renderer, full: dict[str,
 
 @each
 def test_rendering_twice_gives_the_same_bytes(name: str, forgetful: Renderer) -> None:
-    wanted, part = (Wanted(scale=0.5), 0.1) if name in TIME else (Wanted(), 0.5)
+    wanted, part = (RenderRequest(scale=0.5), 0.1) if name in TIME else (RenderRequest(), 0.5)
     first = rendered(forgetful, loaded(name), wanted, part).tobytes()
     passes = forgetful.runner.counters.passes
     assert rendered(forgetful, loaded(name), wanted, part).tobytes() == first
@@ -249,7 +249,7 @@ def test_another_picture_of_another_size(name: str, renderer: Renderer) -> None:
     light = np.exp2(np.random.default_rng(3).uniform(-20.0, 14.0, (37, 61, 4))).astype(np.float32)
     light[..., 3] = 1.0
     arrays = {key: light[..., : item.socket().channels] for key, item in graph.inputs.items()}
-    made = rendered(renderer, graph, Wanted(arrays, size=(61, 37) if graph.settings.size else None), 0.1)
+    made = rendered(renderer, graph, RenderRequest(arrays, size=(61, 37) if graph.settings.size else None), 0.1)
     assert made.shape == (37, 61, 4)
     assert np.isfinite(made).all()
 
@@ -282,7 +282,7 @@ def test_a_display_view_goes_with_tone_mapping(renderer: Renderer, raw: dict[str
     graph = loaded("night_street")
     for view, expected in (("", "none"), ("ACES", "ACES")):
         file = tmp_path / f"night{view}.png"
-        run_job(renderer, graph, Wanted(), Writing((("image", file),), view))
+        run_job(renderer, graph, RenderRequest(), Writing((("image", file),), view))
         wanted = encoded(shown(renderer.render(graph)["image"], expected))
         assert np.abs(cv2.imread(str(file))[..., ::-1] - wanted).max() < 1.5
 

@@ -9,13 +9,13 @@ import pytest
 from conftest import graph_of
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
-from halation.renderer import Renderer, Wanted
+from halation.renderer import Renderer, RenderRequest
 from halation.renderer.execution.costs import Costs
 
 
 def planned(renderer: Renderer, node, side: int = 32):
     inputs = {"image": np.ones((side, side, 4), np.float32)}
-    return renderer.compile(graph_of(node, inputs), Wanted(inputs))
+    return renderer.compile(graph_of(node, inputs), RenderRequest(inputs))
 
 
 def test_what_was_measured_holds_for_every_size(renderer):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from halation.compiler import Form
-from halation.renderer import Renderer, Wanted, open_device
+from halation.renderer import Renderer, RenderRequest, open_device
 from random_graphs import pictures, random_graph
 
 SEEDS = range(150)
@@ -31,13 +31,13 @@ def same_bits(one: dict[str, np.ndarray], other: dict[str, np.ndarray]) -> None:
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_fused_equals_unfused_to_the_bit(engines, seed):
-    graph, wanted = random_graph(seed), Wanted(pictures(seed), precision="float")
+    graph, wanted = random_graph(seed), RenderRequest(pictures(seed), precision="float")
     same_bits(engines["compute", True].render(graph, wanted), engines["compute", False].render(graph, wanted))
 
 
 @pytest.mark.parametrize("seed", list(SEEDS)[:80])
 def test_both_forms_agree(engines, seed):
-    graph, wanted = random_graph(seed), Wanted(pictures(seed), precision="float")
+    graph, wanted = random_graph(seed), RenderRequest(pictures(seed), precision="float")
     compute = engines["compute", True].render(graph, wanted)
     fragment = engines["fragment", True].render(graph, wanted)
     for name in compute:
@@ -46,7 +46,7 @@ def test_both_forms_agree(engines, seed):
 
 @pytest.mark.parametrize("seed", list(SEEDS)[:24])
 def test_cached_equals_uncached(engines, renderer, seed):
-    graph, wanted = random_graph(seed), Wanted(pictures(seed), precision="float")
+    graph, wanted = random_graph(seed), RenderRequest(pictures(seed), precision="float")
     first, again = renderer.render(graph, wanted), renderer.render(graph, wanted)
     same_bits(first, again)
     same_bits(first, engines["compute", True].render(graph, wanted))
@@ -55,7 +55,7 @@ def test_cached_equals_uncached(engines, renderer, seed):
 @pytest.mark.parametrize("seed", list(SEEDS)[:24])
 def test_measured_peak_is_the_planned_one(seed):
     engine = Renderer(open_device(), budget=0)
-    wanted = Wanted(pictures(seed), precision="float")
+    wanted = RenderRequest(pictures(seed), precision="float")
     plan = engine.compile(random_graph(seed), wanted)
     engine.runner.run(plan)
     peak = engine.runner.textures.peak
@@ -71,7 +71,7 @@ def test_bands_equal_one_dispatch(renderer, monkeypatch, seed, pixels):
     """Large passes are dispatched in bands, between which an interrupt is heard."""
     from halation.renderer.execution import executor
 
-    graph, wanted = random_graph(seed), Wanted(pictures(seed), precision="float")
+    graph, wanted = random_graph(seed), RenderRequest(pictures(seed), precision="float")
     whole = renderer.render(graph, wanted)
     monkeypatch.setattr(executor, "BAND_PIXELS", pixels)
     engine = Renderer(open_device("compute"), budget=0)

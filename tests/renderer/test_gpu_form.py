@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.renderer import Device, Renderer, Wanted, open_device
+from halation.renderer import Device, Renderer, RenderRequest, open_device
 from msgspec.structs import replace
 from random_graphs import pictures, random_graph
 
@@ -19,14 +19,14 @@ def engine(request):
 
 @pytest.mark.parametrize("seed", range(8))
 def test_pixels_are_those_of_the_software_form(engine, renderer, seed):
-    graph, wanted = random_graph(seed), Wanted(pictures(seed), precision="float")
+    graph, wanted = random_graph(seed), RenderRequest(pictures(seed), precision="float")
     here, there = renderer.render(graph, wanted), engine.render(graph, wanted)
     for name in here:
         np.testing.assert_allclose(there[name], here[name], rtol=1e-6, atol=1e-6, err_msg=name)
 
 
 def test_nothing_is_read_through_image_units(engine):
-    plan = engine.compile(random_graph(2), Wanted(pictures(2)))
+    plan = engine.compile(random_graph(2), RenderRequest(pictures(2)))
     assert not any(one.shader.reads_images for one in plan.passes)
     assert any(surface.texel == "rgba16f" for surface in plan.surfaces)
     assert all(surface.texel.endswith("32f") for surface in plan.surfaces if surface.channels < 4)

@@ -9,7 +9,7 @@ import pytest
 from halation import document
 from halation.graph import Graph
 from halation.media.finite import as_half
-from halation.renderer import Renderer, Wanted, open_device
+from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.jobs.destinations import Writing, destinations, halves
 from halation.renderer.jobs.job import run_job
 
@@ -58,8 +58,8 @@ def all_that_matters() -> np.ndarray:
 def test_a_pass_rounds_as_the_processor_does(engine):
     """To nearest, ties to even; beyond 65504 clamped; subnormal halves too. numpy is the reference."""
     given = {"image": all_that_matters()}
-    whole = engine.render(through(), Wanted(given))["image"]
-    found = engine.render(through(), Wanted(given, halves=ONLY))["image"]
+    whole = engine.render(through(), RenderRequest(given))["image"]
+    found = engine.render(through(), RenderRequest(given, halves=ONLY))["image"]
     assert (whole.dtype, found.dtype) == (np.float32, np.float16)
     with np.errstate(over="ignore"):
         expected = np.clip(whole, -65504.0, 65504.0).astype(np.float16)
@@ -72,7 +72,9 @@ def test_a_pass_rounds_as_the_processor_does(engine):
 def test_in_a_file_not_a_number_is_always_the_same(engine):
     """Drivers and processors have different NaNs."""
     given = {"image": all_that_matters()}
-    whole, found = (engine.render(through(), Wanted(given, halves=kept))["image"] for kept in (frozenset(), ONLY))
+    whole, found = (
+        engine.render(through(), RenderRequest(given, halves=kept))["image"] for kept in (frozenset(), ONLY)
+    )
     assert as_half(whole).tobytes() == as_half(found).tobytes()
     numbers = np.array([[[0x7F800001, 0xFFC00000, 0x7FFFFFFF]]], np.uint32).view(np.float32)
     assert set(as_half(numbers).view(np.uint16).flat) == {0x7E00}
@@ -86,7 +88,7 @@ def test_infinite_halves_are_clamped_in_files():
 
 @pytest.mark.parametrize("code", ["image", "vec4(sin(image.rgb * 3e4) * 7e4, image.a)", "image / 3.0"])
 def test_files_are_the_same_to_the_byte(engine, tmp_path, monkeypatch, code):
-    given = Wanted({"image": all_that_matters()})
+    given = RenderRequest({"image": all_that_matters()})
     folders = [tmp_path / "half", tmp_path / "float"]
     for folder in folders:
         folder.mkdir()
@@ -108,14 +110,14 @@ CHAIN = '"light.image": "inputs.image", "soft.image": "light.out", "outputs.imag
 
 def test_in_between_all_stays_as_it_was(engine):
     """The output alone is narrow; what other passes read, or another output shows, is not."""
-    given = Wanted({"image": np.ones((9, 11, 4), np.float32)}, halves=ONLY)
+    given = RenderRequest({"image": np.ones((9, 11, 4), np.float32)}, halves=ONLY)
     plan = engine.compile(graph_with(LIT, CHAIN), given)
     depths = {plan.surfaces[number].depth for one in plan.passes for number in one.textures}
     assert depths == {"f4"} and plan.surfaces[plan.outputs["image"]].depth == "f2"
     two = '"image": {"type": "Image"}, "light": {"type": "Image"}'
     links = f'{CHAIN}, "outputs.light": "light.out"'
     for kept in (frozenset({"light"}), frozenset({"image", "light"})):
-        plan = engine.compile(graph_with(LIT, links, two), Wanted(given.inputs, halves=kept))
+        plan = engine.compile(graph_with(LIT, links, two), RenderRequest(given.inputs, halves=kept))
         assert plan.surfaces[plan.outputs["light"]].depth == "f4"  # the blur reads it
     same = engine.compile(graph_with(LIT, f'{CHAIN}, "outputs.light": "soft.out"', two), given)
     assert same.surfaces[same.outputs["image"]].depth == "f4"  # the other output wants all of it
@@ -127,7 +129,7 @@ def test_what_is_remembered_is_not_rounded(engine):
         '"trail.image": "inputs.image", "outputs.image": "trail.out"',
         more=', "settings": {"frames": [1, 4]}',
     )
-    given = Wanted({"image": np.ones((9, 11, 4), np.float32)}, halves=ONLY, precision="float")
+    given = RenderRequest({"image": np.ones((9, 11, 4), np.float32)}, halves=ONLY, precision="float")
     plan = engine.compile(graph, given)
     assert plan.memories and not any(memory.half for memory in plan.memories.values())
     assert plan.surfaces[plan.outputs["image"]].depth == "f4"
@@ -137,8 +139,8 @@ def test_results_of_both_kinds_are_not_mixed_up(engine):
     """Keys differ, so what is kept of one is not taken for the other."""
     given = {"image": np.full((3, 5, 4), 1.0 / 3.0, np.float32)}
     for _ in range(2):
-        assert engine.render(through(), Wanted(given))["image"][0, 0, 0] == np.float32(1.0 / 3.0)
-        assert engine.render(through(), Wanted(given, halves=ONLY))["image"][0, 0, 0] == np.float16(1.0 / 3.0)
+        assert engine.render(through(), RenderRequest(given))["image"][0, 0, 0] == np.float32(1.0 / 3.0)
+        assert engine.render(through(), RenderRequest(given, halves=ONLY))["image"][0, 0, 0] == np.float16(1.0 / 3.0)
 
 
 @pytest.mark.parametrize(
@@ -156,7 +158,7 @@ def test_results_of_both_kinds_are_not_mixed_up(engine):
     ],
 )
 def test_only_what_no_file_wants_more_of(tmp_path, names, more, expected):
-    graph, wanted = through(), Wanted()
+    graph, wanted = through(), RenderRequest()
     writing = Writing([("image", tmp_path / name) for name in names], **more)
     files = destinations(graph, wanted, writing, (1,))[1]
     assert halves(files, writing) == (ONLY if expected else frozenset())
@@ -169,5 +171,5 @@ def test_data_is_never_rounded(tmp_path):
         '"depth": {"type": "Field"}, "image": {"type": "Image"}',
     )
     writing = Writing((("", tmp_path / "o.exr"),))
-    assert halves(destinations(graph, Wanted(), writing, (1,))[1], writing) == ONLY
+    assert halves(destinations(graph, RenderRequest(), writing, (1,))[1], writing) == ONLY
     assert not list(tmp_path.iterdir())

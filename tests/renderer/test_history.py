@@ -15,7 +15,7 @@ from halation.graph import Graph, Input, Output, Port, Settings
 from halation.nodes import Draw, Drawn, Image, Kind, Slider, Temporal
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.time.time_offset import TimeOffset
-from halation.renderer import Reel, Renderer, Wanted, open_device
+from halation.renderer import FrameRenderer, Renderer, RenderRequest, open_device
 
 
 class Trail(Temporal):
@@ -56,11 +56,11 @@ def frame(number: int) -> np.ndarray:
     return np.full((5, 7, 4), float(number), np.float32)
 
 
-def reel(engine: Renderer, graph: Graph, **wanted) -> Reel:
-    return Reel(engine, graph, Wanted({"image": frame}, **{"precision": "float", **wanted}))
+def reel(engine: Renderer, graph: Graph, **wanted) -> FrameRenderer:
+    return FrameRenderer(engine, graph, RenderRequest({"image": frame}, **{"precision": "float", **wanted}))
 
 
-def rendered(one: Reel, frames: Iterable[int]) -> list[float]:
+def rendered(one: FrameRenderer, frames: Iterable[int]) -> list[float]:
     return [float(one.render(number)["out"][2, 3, 0]) for number in frames]
 
 
@@ -121,8 +121,10 @@ def test_memory_does_not_grow_with_frames(engine):
 
 
 def test_a_memory_of_another_size_is_of_another_picture(engine):
-    grown = Wanted({"image": lambda number: np.full((5 + number, 7, 4), 1.0 * number, np.float32)}, precision="float")
-    one = Reel(engine, replace(trail(frames=(1, 8)), settings=Settings(frames=(1, 8))), grown)
+    grown = RenderRequest(
+        {"image": lambda number: np.full((5 + number, 7, 4), 1.0 * number, np.float32)}, precision="float"
+    )
+    one = FrameRenderer(engine, replace(trail(frames=(1, 8)), settings=Settings(frames=(1, 8))), grown)
     assert rendered(one, (1, 2, 3)) == [1.0, 2.0, 3.0]
 
 

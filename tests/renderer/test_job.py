@@ -15,7 +15,7 @@ from halation.graph import Graph, Input, Output, Port
 from halation.nodes import catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
-from halation.renderer import Renderer, Wanted, open_device
+from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.execution.arrays import Arrays
 from halation.renderer.execution.decoding import AHEAD, AHEAD_BYTES, within_reach
 from halation.renderer.jobs.behind import BEHIND, BEHIND_BYTES, Behind
@@ -73,7 +73,7 @@ def test_the_next_frame_is_read_while_this_one_is_written(engine, graph, shot, m
 
     engine.runner._load = loading
     monkeypatch.setattr(media, "write", slow)
-    run_job(engine, graph, Wanted(), writing(shot), tuple(FRAMES))
+    run_job(engine, graph, RenderRequest(), writing(shot), tuple(FRAMES))
     assert waited == [True] and values(shot) == [2.0 * frame for frame in FRAMES]
 
 
@@ -101,7 +101,7 @@ def test_what_waits_is_bounded(engine, graph, shot, monkeypatch):
 
     engine.runner._load = loading
     monkeypatch.setattr(media, "write", counted)
-    run_job(engine, graph, Wanted(), writing(shot), tuple(FRAMES), progress=Ends())
+    run_job(engine, graph, RenderRequest(), writing(shot), tuple(FRAMES), progress=Ends())
     assert max(most_read + most_waiting) <= AHEAD + BEHIND + 2 and len(written) == len(FRAMES)
     assert engine.runner.textures.allocated <= engine.runner.textures.budget
 
@@ -109,7 +109,7 @@ def test_what_waits_is_bounded(engine, graph, shot, monkeypatch):
 def test_a_fault_comes_after_what_was_begun(engine, graph, shot):
     (shot / "in.05.exr").write_bytes(b"no picture")
     with pytest.raises(InputError, match=r"in\.05\.exr"):
-        run_job(engine, graph, Wanted(), writing(shot), tuple(FRAMES))
+        run_job(engine, graph, RenderRequest(), writing(shot), tuple(FRAMES))
     assert values(shot, range(1, 5)) == [2.0, 4.0, 6.0, 8.0]
     assert not (shot / "out.05.exr").exists() and not list(shot.glob(".halation-*"))
 
@@ -124,16 +124,16 @@ def test_a_frame_that_cannot_be_written_ends_the_job(engine, graph, shot, monkey
 
     monkeypatch.setattr(media, "write", full)
     with pytest.raises(OSError, match="disk full"):
-        run_job(engine, graph, Wanted(), writing(shot), tuple(FRAMES))
+        run_job(engine, graph, RenderRequest(), writing(shot), tuple(FRAMES))
     assert values(shot, range(1, 4)) == [2.0, 4.0, 6.0]
     assert len(list(shot.glob("out.*.exr"))) <= 3 + BEHIND + 1
 
 
 def test_the_report_says_what_became_of_every_frame(engine, graph, shot):
-    report = run_job(engine, graph, Wanted(), writing(shot), (3, 1, 2))
+    report = run_job(engine, graph, RenderRequest(), writing(shot), (3, 1, 2))
     assert [item.frame for item in report.frames] == [3, 1, 2] and all(item.passes == 1 for item in report.frames)
     assert [path.name for path in report.written] == ["out.03.exr", "out.01.exr", "out.02.exr"]
-    again = run_job(engine, graph, Wanted(), writing(shot), (1, 2, 4), resume=True)
+    again = run_job(engine, graph, RenderRequest(), writing(shot), (1, 2, 4), resume=True)
     assert [item.kept for item in again.frames] == [True, True, False] and again.passes == 1
 
 
@@ -165,18 +165,18 @@ def test_what_stays_the_same_is_kept_and_nothing_else(graph, shot):
     """Without any budget: the still is read and blurred once, and no frame leaves anything behind."""
     engine = Renderer(open_device(), budget=0)
     whole, passes = over_a_still(graph, shot), engine.runner.counters
-    run_job(engine, whole, Wanted(), writing(shot), (1,))
+    run_job(engine, whole, RenderRequest(), writing(shot), (1,))
     alone, single = passes.passes, engine.runner.textures.peak
     assert passes.uploads == 2 and not engine.runner.textures._results
     seen = Watcher(engine)
-    run_job(engine, whole, Wanted(), writing(shot), tuple(FRAMES), progress=seen)
+    run_job(engine, whole, RenderRequest(), writing(shot), tuple(FRAMES), progress=seen)
     assert passes.passes == alone + alone + len(FRAMES) - 1 and passes.uploads == 2 + 1 + len(FRAMES)
     assert max(seen.results) <= 2 and engine.runner.textures.peak <= single + 2 * 8 * 8 * 16
     assert not engine.runner.textures._leases and not engine.runner.textures._results and not engine.runner._begun
     engine.close()
     fresh = Renderer(open_device(), budget=0)
     for frame in (1, 7, 12):
-        found = fresh.render(whole, Wanted(frame=frame))["image"]
+        found = fresh.render(whole, RenderRequest(frame=frame))["image"]
         np.testing.assert_array_equal(read(shot / f"out.{frame:02d}.exr"), found)
     fresh.close()
 
@@ -185,7 +185,7 @@ def test_memory_does_not_grow_with_the_frames(graph, shot):
     """What is on the device after the fourth frame is there after the last."""
     engine = Renderer(open_device(), budget=0)
     seen = Watcher(engine)
-    run_job(engine, over_a_still(graph, shot), Wanted(), writing(shot), tuple(FRAMES) * 4, progress=seen)
+    run_job(engine, over_a_still(graph, shot), RenderRequest(), writing(shot), tuple(FRAMES) * 4, progress=seen)
     assert len(seen.bytes) == 4 * len(FRAMES)
     assert max(seen.bytes[4:]) <= max(seen.bytes[:4]) and max(seen.results[4:]) <= max(seen.results[:4])
     engine.close()
@@ -193,7 +193,7 @@ def test_memory_does_not_grow_with_the_frames(graph, shot):
 
 def test_a_still_sequence_is_computed_once(graph, shot):
     engine = Renderer(open_device(), budget=0)
-    run_job(engine, graph, Wanted({"image": shot / "in.03.exr"}), writing(shot), tuple(FRAMES))
+    run_job(engine, graph, RenderRequest({"image": shot / "in.03.exr"}), writing(shot), tuple(FRAMES))
     assert engine.runner.counters.passes == 1 and values(shot) == [6.0] * len(FRAMES)
     engine.close()
 
@@ -216,7 +216,7 @@ def test_arrays_are_used_again(engine, graph, shot, monkeypatch):
 
     monkeypatch.setattr(Arrays, "take", counted)
     monkeypatch.setattr(media, "write", slow)
-    run_job(engine, graph, Wanted(), writing(shot), tuple(FRAMES))
+    run_job(engine, graph, RenderRequest(), writing(shot), tuple(FRAMES))
     assert len(taken) <= BEHIND + 2 and values(shot) == [2.0 * frame for frame in FRAMES]
 
 

@@ -15,7 +15,7 @@ from halation.nodes import Kind, catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.saturation import Saturation
-from halation.renderer import Renderer, Wanted, open_device
+from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.execution.decoding import AHEAD
 
 PICTURE = np.random.default_rng(5).random((23, 37, 4), np.float32)
@@ -43,8 +43,8 @@ def merged(count: int) -> Graph:
     return graph.connect(last, Port("outputs", "image"))
 
 
-def wanted(picture=PICTURE, **rest) -> Wanted:
-    return Wanted({"image": picture}, precision="float", **rest)
+def wanted(picture=PICTURE, **rest) -> RenderRequest:
+    return RenderRequest({"image": picture}, precision="float", **rest)
 
 
 @pytest.fixture
@@ -268,7 +268,7 @@ def test_only_a_few_pictures_are_decoded_ahead(forgetful):
 
     forgetful.runner._load = watched
     pictures = {f"i{number:02}": PICTURE * (number + 1) for number in range(count)}
-    plan = forgetful.compile(merged(count), Wanted(pictures, precision="float"))
+    plan = forgetful.compile(merged(count), RenderRequest(pictures, precision="float"))
     kept = forgetful.runner.lease()
     steps = forgetful.runner.steps(plan, kept)
     next(steps)
@@ -293,7 +293,7 @@ def test_a_loader_that_fails_on_its_thread_is_heard(forgetful):
         return load(picture)
 
     forgetful.runner._load = second_fails
-    pictures = Wanted({"i00": PICTURE, "i01": PICTURE, "i02": PICTURE}, precision="float")
+    pictures = RenderRequest({"i00": PICTURE, "i01": PICTURE, "i02": PICTURE}, precision="float")
     with pytest.raises(InputError, match="ends too soon"):
         forgetful.render(merged(3), pictures)
     assert not forgetful.runner.textures._leases

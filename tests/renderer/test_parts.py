@@ -12,7 +12,7 @@ from halation import document
 from halation.compiler import Region
 from halation.graph import Graph, Port, signature
 from halation.presets import paths
-from halation.renderer import Renderer, Wanted
+from halation.renderer import Renderer, RenderRequest
 from random_graphs import pictures, random_graph, random_node
 
 
@@ -25,8 +25,8 @@ def warm(renderer: Renderer) -> Iterator[Renderer]:
 
 
 def same_part(warm: Renderer, cold: Renderer, graph: Graph, wanted: dict[str, Any], region: Region) -> None:
-    plan = warm.compile(graph, Wanted(**wanted, region=region))
-    got, whole = warm.runner.run(plan), cold.render(graph, Wanted(**wanted))
+    plan = warm.compile(graph, RenderRequest(**wanted, region=region))
+    got, whole = warm.runner.run(plan), cold.render(graph, RenderRequest(**wanted))
     for name, pixels in whole.items():
         window = plan.surfaces[plan.outputs[name]].window or Region.whole(pixels.shape[1::-1])
         expected = pixels[slice(*window.down), slice(*window.across)]
@@ -37,9 +37,9 @@ def same_part(warm: Renderer, cold: Renderer, graph: Graph, wanted: dict[str, An
 def test_random_graphs(warm, renderer, seed):
     rng, graph = Random(seed), random_graph(seed)
     wanted = {"inputs": pictures(seed), "precision": "float"}
-    if renderer.compile(graph, Wanted(**wanted)).memories:
+    if renderer.compile(graph, RenderRequest(**wanted)).memories:
         pytest.skip("frames that need others are made whole")
-    warm.render(graph, Wanted(**wanted))
+    warm.render(graph, RenderRequest(**wanted))
     for region in (Region(4, 3, 12, 9), Region(20, 8, 17, 6)):
         id = rng.choice([*graph.nodes])
         graph = graph.replace(id, random_node(rng, type(graph.nodes[id])))
@@ -51,7 +51,7 @@ def test_random_graphs(warm, renderer, seed):
 def test_presets(warm, renderer, name):
     graph = next(document.load(path) for path in paths() if path.stem == name)
     wanted, region = {"scale": 0.1}, Region(20, 10, 16, 16)
-    warm.render(graph, Wanted(**wanted))
+    warm.render(graph, RenderRequest(**wanted))
     for id in list(graph.nodes)[-3:]:
         for value in signature(graph.nodes[id]).values.values():
             port = Port(id, value.name)

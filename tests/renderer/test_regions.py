@@ -20,7 +20,7 @@ from halation.compiler.lowering.lower import lower
 from halation.compiler.tiling.regions import needed
 from halation.inputs.provider import Pictures
 from halation.nodes import Kind, Node, Source, Temporal, catalogue, look_at
-from halation.renderer import Renderer, Wanted
+from halation.renderer import Renderer, RenderRequest
 from random_graphs import random_node
 
 Array = np.ndarray
@@ -88,7 +88,7 @@ def prove(renderer: Renderer, node: Node, some: bool, regions: tuple[Region, ...
     library, target = graph_library(graph, outside), renderer.device.target
     program = lower(graph, request, library, outside).program
     passes = rewritten(program, fuse(program, target), target, library)
-    whole = renderer.render(graph, Wanted(arrays, precision="float"))
+    whole = renderer.render(graph, RenderRequest(arrays, precision="float"))
     proven = 0
     for name, ref in program.outputs.items():
         if program.shape(ref).size != SIZE:
@@ -108,7 +108,7 @@ def prove(renderer: Renderer, node: Node, some: bool, regions: tuple[Region, ...
             if not left_out and len(read) == len(arrays):
                 continue
             proven += left_out
-            pixels = renderer.render(graph, Wanted(bad, precision="float"))[name]
+            pixels = renderer.render(graph, RenderRequest(bad, precision="float"))[name]
             rows, columns = (slice(*span) for span in (region.down, region.across))
             np.testing.assert_array_equal(
                 pixels[rows, columns].view(np.uint8), whole[name][rows, columns].view(np.uint8), f"{name} {region}"

@@ -15,7 +15,7 @@ from halation.nodes import Kind
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.saturation import Saturation
-from halation.renderer import Renderer, Wanted, open_device
+from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.opengl.programs import Programs
 from msgspec.structs import replace
 
@@ -44,7 +44,7 @@ def engine():
 
 
 def test_a_second_render_executes_no_pass(engine):
-    wanted = Wanted({"image": PICTURE})
+    wanted = RenderRequest({"image": PICTURE})
     engine.render(chain(1.0, 2.0, 0.5), wanted)
     passes, uploads = engine.runner.counters.passes, engine.runner.counters.uploads
     assert passes == 4
@@ -53,7 +53,7 @@ def test_a_second_render_executes_no_pass(engine):
 
 
 def test_changing_a_value_compiles_nothing(engine):
-    wanted = Wanted({"image": PICTURE})
+    wanted = RenderRequest({"image": PICTURE})
     engine.render(chain(1.0, 2.0, 0.5), wanted)
     compiled = engine.runner.programs.compiled
     for stops, sigma, saturation in ((2.0, 2.0, 0.5), (1.0, 1.8, 0.5), (1.0, 2.0, 1.5), (-3.0, 1.9, 0.0)):
@@ -63,7 +63,7 @@ def test_changing_a_value_compiles_nothing(engine):
 
 def test_radii_share_programs(engine):
     """Few taps are written out, in classes: all radii there are take a handful of programs."""
-    wanted = Wanted({"image": PICTURE})
+    wanted = RenderRequest({"image": PICTURE})
     for sigma in np.geomspace(0.3, 60.0, 150):
         engine.render(chain(1.0, float(sigma), 0.5), wanted)
     # Five lengths and two decimations, along both axes; an enlargement; all last steps with their reader as well.
@@ -71,7 +71,7 @@ def test_radii_share_programs(engine):
 
 
 def test_only_what_depends_on_a_value_runs_again(engine):
-    wanted = Wanted({"image": PICTURE})
+    wanted = RenderRequest({"image": PICTURE})
     engine.render(chain(1.0, 2.0, 0.5), wanted)
     before = engine.runner.counters.passes
     engine.render(chain(1.0, 2.0, 0.7), wanted)
@@ -80,15 +80,17 @@ def test_only_what_depends_on_a_value_runs_again(engine):
 
 def test_a_changed_array_is_not_taken_for_the_old_one(engine):
     graph, picture = graph_of(Exposure(stops=1.0), {"image": PICTURE}), PICTURE.copy()
-    first = engine.render(graph, Wanted({"image": picture}))["out"]
+    first = engine.render(graph, RenderRequest({"image": picture}))["out"]
     picture *= 0.5
-    np.testing.assert_allclose(engine.render(graph, Wanted({"image": picture}))["out"][..., 0], first[..., 0] * 0.5)
+    np.testing.assert_allclose(
+        engine.render(graph, RenderRequest({"image": picture}))["out"][..., 0], first[..., 0] * 0.5
+    )
 
 
 def test_results_stay_within_the_budget():
     engine = Renderer(open_device(), budget=2 * PICTURE.nbytes)
     for stops in range(1, 12):
-        engine.render(chain(float(stops), 2.0, 0.5), Wanted({"image": PICTURE}))
+        engine.render(chain(float(stops), 2.0, 0.5), RenderRequest({"image": PICTURE}))
     assert engine.runner.textures.allocated <= 2 * PICTURE.nbytes + 4 * PICTURE.nbytes
     engine.close()
 
@@ -113,7 +115,7 @@ def test_a_broken_shader_names_node_file_and_line():
     texts["color/exposure"] = parse("color/exposure", broken)
     engine = Renderer(open_device(), library=Library(texts))
     with pytest.raises(ShaderError) as caught:
-        engine.render(graph_of(Exposure(stops=1.0), {"image": PICTURE}), Wanted({"image": PICTURE}))
+        engine.render(graph_of(Exposure(stops=1.0), {"image": PICTURE}), RenderRequest({"image": PICTURE}))
     fault = caught.value
     assert (fault.node, fault.file, fault.line) == ("node", "shaders/color/exposure.glsl", 3)
     assert "stosp" in str(fault)
@@ -125,7 +127,7 @@ def test_a_failed_allocation_is_one_sentence_with_numbers(engine, monkeypatch):
 
     monkeypatch.setattr(Textures, "_try", lambda *_: None)
     with pytest.raises(DeviceError, match=r"no room for .* MiB more .*--scale"):
-        engine.render(graph_of(Exposure(stops=1.0), {"image": PICTURE}), Wanted({"image": PICTURE}))
+        engine.render(graph_of(Exposure(stops=1.0), {"image": PICTURE}), RenderRequest({"image": PICTURE}))
 
 
 def test_more_pixels_than_the_device_has_are_made_by_tiles(engine):
@@ -133,7 +135,7 @@ def test_more_pixels_than_the_device_has_are_made_by_tiles(engine):
     graph = Graph(inputs={"image": Input(Kind.IMAGE)}, outputs={"image": Output()})
     graph = graph.add("light", Exposure(stops=1.0)).connect(Port("inputs", "image"), Port("light", "image"))
     graph = graph.connect(Port("light", "out"), Port("outputs", "image"))
-    wanted = Wanted({"image": PICTURE}, size=(limit + 1, 8))
+    wanted = RenderRequest({"image": PICTURE}, size=(limit + 1, 8))
     pixels = engine.render(graph, wanted)["image"]
     assert pixels.shape == (8, limit + 1, 4)
     middle = Region(limit // 2 - 100, 0, 200, 8)
@@ -143,17 +145,19 @@ def test_more_pixels_than_the_device_has_are_made_by_tiles(engine):
 
 def test_an_unknown_input_is_named_with_those_there_are(engine):
     with pytest.raises(UsageError, match="no input 'beuaty': its inputs are image"):
-        engine.render(chain(1.0, 2.0, 0.5), Wanted({"beuaty": PICTURE}))
+        engine.render(chain(1.0, 2.0, 0.5), RenderRequest({"beuaty": PICTURE}))
 
 
 def test_stopping_between_passes_leaves_nothing_behind(engine):
-    plan = engine.compile(chain(1.0, 2.0, 0.5), Wanted({"image": PICTURE}))
+    plan = engine.compile(chain(1.0, 2.0, 0.5), RenderRequest({"image": PICTURE}))
     steps = engine.runner.steps(plan, engine.runner.lease())
     next(steps)
     steps.close()
-    result = engine.render(chain(1.0, 2.0, 0.5), Wanted({"image": PICTURE}))["image"]
+    result = engine.render(chain(1.0, 2.0, 0.5), RenderRequest({"image": PICTURE}))["image"]
     fresh = Renderer(open_device())
-    np.testing.assert_array_equal(result, fresh.render(chain(1.0, 2.0, 0.5), Wanted({"image": PICTURE}))["image"])
+    np.testing.assert_array_equal(
+        result, fresh.render(chain(1.0, 2.0, 0.5), RenderRequest({"image": PICTURE}))["image"]
+    )
     fresh.close()
 
 
@@ -188,7 +192,9 @@ def test_an_interrupt_during_compilation_is_heard_after_it(engine, monkeypatch):
     handler = signal.getsignal(signal.SIGINT)
     graph = graph_of(Exposure(stops=1.0), {"image": PICTURE})
     with pytest.raises(KeyboardInterrupt):
-        engine.render(graph, Wanted({"image": PICTURE}))
+        engine.render(graph, RenderRequest({"image": PICTURE}))
     assert len(reached) == 1 and signal.getsignal(signal.SIGINT) is handler
-    np.testing.assert_allclose(engine.render(graph, Wanted({"image": PICTURE}))["out"][..., 0], PICTURE[..., 0] * 2.0)
+    np.testing.assert_allclose(
+        engine.render(graph, RenderRequest({"image": PICTURE}))["out"][..., 0], PICTURE[..., 0] * 2.0
+    )
     assert len(reached) == 1

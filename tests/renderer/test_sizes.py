@@ -9,7 +9,7 @@ from halation.graph import Graph, Input, Output, Port, Settings
 from halation.nodes import Kind, catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
-from halation.renderer import Wanted
+from halation.renderer import RenderRequest
 from scipy.ndimage import gaussian_filter
 
 NODES = catalogue()
@@ -83,7 +83,9 @@ MEASURED = {"measure.image": "inputs.image"}
 def test_a_pattern_colored_by_a_measurement_fills_the_canvas(renderer):
     nodes = {"measure": NODES["luminance_statistics"](), "checker": NODES["checker"](size=4.0)}
     links = {**MEASURED, "checker.first": "measure.average", "outputs.image": "checker.out"}
-    found = renderer.render(linked(nodes, links, IMAGE, {"image": Output()}), Wanted({"image": PICTURE}))["image"]
+    found = renderer.render(linked(nodes, links, IMAGE, {"image": Output()}), RenderRequest({"image": PICTURE}))[
+        "image"
+    ]
     luminance = PICTURE[..., :3].astype(np.float64) @ [0.2126, 0.7152, 0.0722]
     assert found.shape == (20, 30, 4)
     np.testing.assert_allclose(found[0, 0, :3], luminance.mean(), rtol=1e-5)
@@ -94,7 +96,7 @@ def test_a_number_bound_as_a_picture_is_no_canvas(renderer):
     inputs = {"amount": Input(Kind.NUMBER), "image": Input(Kind.IMAGE)}
     graph = linked({"c": NODES["checker"]()}, {"outputs.image": "c.out"}, inputs, {"image": Output()})
     bound = {"amount": np.ones((1, 1), np.float32), "image": PICTURE}
-    assert renderer.render(graph, Wanted(bound))["image"].shape == (20, 30, 4)
+    assert renderer.render(graph, RenderRequest(bound))["image"].shape == (20, 30, 4)
 
 
 ENDS = {
@@ -128,7 +130,7 @@ def test_a_constant_is_shown_as_the_output_says(renderer, kind):
 def test_a_field_is_shown_as_the_output_says(renderer, kind, size):
     field = np.random.default_rng(1).random(size, np.float32)
     graph = linked({}, {"outputs.o": "inputs.f"}, {"f": Input(Kind.FIELD)}, {"o": ENDS[kind]})
-    found = renderer.render(graph, Wanted({"f": field}, precision="float"))["o"]
+    found = renderer.render(graph, RenderRequest({"f": field}, precision="float"))["o"]
     channels = ENDS[kind].socket().channels
     expected = np.repeat(field[..., None], channels, axis=2)
     if channels == 4:
@@ -140,7 +142,7 @@ def test_data_that_changes_its_type_keeps_32_bits(renderer):
     """Depth of 1000.123 has no half float."""
     depth = np.full((3, 5), 1000.123, np.float32)
     graph = linked({}, {"outputs.o": "inputs.f"}, {"f": Input(Kind.FIELD)}, {"o": ENDS["Vector"]})
-    found = renderer.render(graph, Wanted({"f": depth}, precision="half"))["o"]
+    found = renderer.render(graph, RenderRequest({"f": depth}, precision="half"))["o"]
     np.testing.assert_array_equal(found, np.repeat(depth[..., None], 2, axis=2))
 
 
@@ -167,7 +169,7 @@ def test_a_number_is_bound_by_its_value(renderer, bound):
     inputs = {**IMAGE, "stops": Input(Kind.NUMBER)}
     links = {"light.image": "inputs.image", "light.stops": "inputs.stops", "outputs.image": "light.out"}
     graph = linked({"light": PLAIN}, links, inputs, {"image": Output()})
-    found = renderer.render(graph, Wanted({"image": PICTURE, "stops": bound}, precision="float"))["image"]
+    found = renderer.render(graph, RenderRequest({"image": PICTURE, "stops": bound}, precision="float"))["image"]
     np.testing.assert_allclose(found[..., :3], 2.0 * PICTURE[..., :3], rtol=1e-6)
 
 
@@ -185,6 +187,6 @@ def test_a_number_is_bound_by_its_value(renderer, bound):
 )
 def test_any_layout_of_an_array_will_do(run, renderer, change):
     found = renderer.render(
-        graph_of(Exposure(stops=1.0), {"image": PICTURE}), Wanted({"image": change(PICTURE)}, precision="float")
+        graph_of(Exposure(stops=1.0), {"image": PICTURE}), RenderRequest({"image": change(PICTURE)}, precision="float")
     )["out"]
     np.testing.assert_array_equal(found, run(Exposure(stops=1.0), {"image": PICTURE}))

@@ -10,7 +10,7 @@ from halation.errors import HalationError, OutputError
 from halation.graph import Graph, Input, Output, Port
 from halation.media import row_file
 from halation.nodes import Kind, catalogue
-from halation.renderer import Renderer, Wanted, open_device
+from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.jobs.job import Writing, run_job
 from oiio_pictures import stored
 
@@ -39,7 +39,7 @@ def written(folder: Path, picture: str, memory: int, **how) -> Path:
     """The file that a job makes of it, with so much memory."""
     renderer, file = Renderer(open_device("compute").within(memory), budget=0), folder / "out.exr"
     try:
-        run_job(renderer, blurred(), Wanted({"image": picture}), Writing([("image", file)], **how))
+        run_job(renderer, blurred(), RenderRequest({"image": picture}), Writing([("image", file)], **how))
     finally:
         renderer.close()
     return file.rename(folder / f"{memory}.exr")

@@ -18,7 +18,7 @@ from halation.graph import Graph, Input, Output, Port
 from halation.inputs.provider import Pictures
 from halation.nodes import Camera, Filter, Kind, Reader, Temporal, catalogue, look_at
 from halation.presets import paths
-from halation.renderer import Reel, Renderer, Wanted, open_device
+from halation.renderer import FrameRenderer, Renderer, RenderRequest, open_device
 from msgspec.structs import replace
 from random_graphs import pictures, random_graph
 
@@ -76,7 +76,7 @@ def noise(width: int, height: int) -> np.ndarray:
 
 @pytest.mark.parametrize("seed", [seed for seed in range(12) if not remembers(random_graph(seed))])
 def test_random_graphs_have_the_same_bits(fitting, in_pieces, seed):
-    plan = fitting.compile(random_graph(seed), Wanted(pictures(seed), precision="float"))
+    plan = fitting.compile(random_graph(seed), RenderRequest(pictures(seed), precision="float"))
     assert plan.tiling is not None
     same_bits(fitting.runner.run(plan), fitting.runner.run(replace(plan, tiling=None)))
 
@@ -84,7 +84,7 @@ def test_random_graphs_have_the_same_bits(fitting, in_pieces, seed):
 @pytest.mark.parametrize("name", ["auto_exposed", "city_lights", "comic_ink", "lens_character", "neon_edges"])
 def test_presets_have_the_same_bits(fitting, in_pieces, name):
     graph = next(document.load(path) for path in paths() if path.stem == name)
-    plan = fitting.compile(graph, Wanted(scale=0.04))
+    plan = fitting.compile(graph, RenderRequest(scale=0.04))
     same_bits(fitting.runner.run(plan), fitting.runner.run(replace(plan, tiling=None)))
 
 
@@ -92,7 +92,7 @@ def test_presets_have_the_same_bits(fitting, in_pieces, name):
 def test_every_edge_has_the_same_bits(fitting, in_pieces, edge):
     blurs = (NODES["gaussian_blur"](sigma=sigma, edge=edge) for sigma in (2.0, 9.0))
     graph = chain(*blurs, NODES["convolve3x3"](edge=edge))
-    plan = fitting.compile(graph, Wanted({"image": noise(83, 47)}, scale=0.9, precision="half"))
+    plan = fitting.compile(graph, RenderRequest({"image": noise(83, 47)}, scale=0.9, precision="half"))
     same_bits(fitting.runner.run(plan), fitting.runner.run(replace(plan, tiling=None)))
 
 
@@ -154,7 +154,7 @@ def test_what_looks_far_has_the_same_bits(fitting, in_pieces, monkeypatch, name)
         "environment": noise(*size),
     }
     given = {socket: known[socket] for socket in type(node).inputs if socket in known}
-    plan = fitting.compile(graph_of(node, given | cameras(node)), Wanted(given, precision="float"))
+    plan = fitting.compile(graph_of(node, given | cameras(node)), RenderRequest(given, precision="float"))
     assert plan.tiling is not None
     same_bits(fitting.runner.run(plan), fitting.runner.run(replace(plan, tiling=None)))
 
@@ -200,13 +200,13 @@ def test_the_manual_says_what_may_read_anywhere():
 def test_long_rows_have_the_same_histogram(fitting, in_pieces):
     """They are looked at piece by piece."""
     given = {"image": noise(9000, 3)}
-    plan = fitting.compile(graph_of(NODES["auto_exposure"](), given), Wanted(given, precision="float"))
+    plan = fitting.compile(graph_of(NODES["auto_exposure"](), given), RenderRequest(given, precision="float"))
     same_bits(fitting.runner.run(plan), fitting.runner.run(replace(plan, tiling=None)))
 
 
 def test_a_region_has_the_bits_that_it_has_in_the_whole(fitting):
     for seed in range(6):
-        graph, wanted = random_graph(seed), Wanted(pictures(seed), precision="float")
+        graph, wanted = random_graph(seed), RenderRequest(pictures(seed), precision="float")
         whole = fitting.render(graph, wanted)
         plan = fitting.compile(graph, replace(wanted, region=Region(9, 5, 11, 7)))
         for name, pixels in fitting.runner.run(plan).items():
@@ -220,7 +220,7 @@ def test_a_region_has_the_bits_that_it_has_in_the_whole(fitting):
 
 def test_a_device_holds_tiles_of_what_is_too_large_for_it(fitting):
     small, graph = limited(side=64), chain(NODES["bloom"](radius=0.05), NODES["exposure"](stops=1.0))
-    wanted = Wanted({"image": noise(150, 90)})
+    wanted = RenderRequest({"image": noise(150, 90)})
     plan = small.compile(graph, wanted)
     assert plan.tiling is not None and "150x90 pixels is more than the 64" in explain(plan)
     same_bits(small.render(graph, wanted), fitting.render(graph, wanted))
@@ -232,7 +232,7 @@ def test_tiles_share_their_programs():
     compiled: list[int] = []
     for side in (100, 40):
         small = limited(side=side)
-        small.render(graph, Wanted({"image": picture}))
+        small.render(graph, RenderRequest({"image": picture}))
         compiled.append(small.runner.programs.compiled)
         small.close()
     assert compiled[0] == compiled[1]
@@ -240,7 +240,7 @@ def test_tiles_share_their_programs():
 
 def test_no_more_is_held_than_may_be():
     graph = chain(*(NODES["gaussian_blur"](sigma=sigma) for sigma in (2.0, 3.0, 9.0)))
-    wanted = Wanted({"image": noise(900, 700)})
+    wanted = RenderRequest({"image": noise(900, 700)})
     free = limited()
     whole, plan = free.render(graph, wanted), free.compile(graph, wanted)
     free.close()
@@ -253,7 +253,7 @@ def test_no_more_is_held_than_may_be():
     tight.close()
 
 
-def through(reel: Reel, frames: int) -> list[dict[str, np.ndarray]]:
+def through(reel: FrameRenderer, frames: int) -> list[dict[str, np.ndarray]]:
     """Frames one after the other; what each has in common with the next stays for that."""
     made: list[dict[str, np.ndarray]] = []
     for frame in range(1, frames + 1):
@@ -268,29 +268,29 @@ def through(reel: Reel, frames: int) -> list[dict[str, np.ndarray]]:
 
 def test_what_a_frame_remembers_is_counted_twice(fitting):
     """Before a frame is done, what was remembered of the one before is still there."""
-    graph, wanted = chain(NODES["light_trails"]()), Wanted({"image": noise(100, 50)}, precision="float")
-    free = Reel(fitting, graph, wanted)
+    graph, wanted = chain(NODES["light_trails"]()), RenderRequest({"image": noise(100, 50)}, precision="float")
+    free = FrameRenderer(fitting, graph, wanted)
     memory = free.plan(2).held_bytes
     tight = limited(memory=memory)
-    for one, other in zip(through(Reel(tight, graph, wanted), 4), through(free, 4), strict=True):
+    for one, other in zip(through(FrameRenderer(tight, graph, wanted), 4), through(free, 4), strict=True):
         same_bits(one, other)
     assert tight.runner.textures.peak <= memory - 2 * 100 * 50 * 16
     tight.close()
     tighter = limited(memory=memory - 1)
     with pytest.raises(DeviceError, match="node 'n0': what it remembers of a frame"):
-        Reel(tighter, graph, wanted).plan(1)
+        FrameRenderer(tighter, graph, wanted).plan(1)
     tighter.close()
 
 
 def test_nothing_is_carried_on_that_there_is_no_room_for(fitting):
     """A still under noise that moves is made once where there is room, else in every frame."""
     graph = chain(NODES["median"](), NODES["film_grain"](), *[NODES["gaussian_blur"](sigma=2.0)] * 2)
-    wanted = Wanted({"image": noise(300, 200)}, precision="float")
-    plan = Reel(fitting, graph, wanted).plan(1)
+    wanted = RenderRequest({"image": noise(300, 200)}, precision="float")
+    plan = FrameRenderer(fitting, graph, wanted).plan(1)
     peaks: list[int] = []
     for memory in (4 * plan.held_bytes, plan.held_bytes):
         tight = limited(memory=memory)
-        through(Reel(tight, graph, wanted), 3)
+        through(FrameRenderer(tight, graph, wanted), 3)
         peaks.append(tight.runner.textures.peak)
         tight.close()
     assert peaks[1] <= plan.peak_bytes and peaks[1] < peaks[0]
@@ -298,7 +298,7 @@ def test_nothing_is_carried_on_that_there_is_no_room_for(fitting):
 
 def test_outputs_in_memory_go_with_their_lease(fitting, in_pieces):
     """Whether they were downloaded or not."""
-    plan = fitting.compile(chain(NODES["exposure"](stops=1.0)), Wanted({"image": noise(60, 40)}))
+    plan = fitting.compile(chain(NODES["exposure"](stops=1.0)), RenderRequest({"image": noise(60, 40)}))
     kept, other = fitting.runner.lease(), fitting.runner.lease()
     for lease in (kept, other):
         with fitting.runner.steps(plan, lease) as run:
@@ -318,13 +318,13 @@ def test_what_is_read_anywhere_must_fit_as_a_whole():
     small = limited(side=64)
     graph = graph_of(NODES["displace"](), {"image": noise(100, 50), "vector": noise(100, 50)[..., :2]})
     with pytest.raises(DeviceError, match=r"node 'node': it may need all 100x50 pixels .* render smaller with --scale"):
-        small.compile(graph, Wanted({"image": noise(100, 50), "vector": noise(100, 50)[..., :2]}))
+        small.compile(graph, RenderRequest({"image": noise(100, 50), "vector": noise(100, 50)[..., :2]}))
     small.close()
 
 
 def test_tiles_are_as_large_as_the_device_can_hold(fitting):
     """However much memory the whole picture takes: that is not on the device."""
-    wanted = Wanted({"image": noise(100, 50)}, size=(40_000, 20_000))
+    wanted = RenderRequest({"image": noise(100, 50)}, size=(40_000, 20_000))
     made = fitting.compile(chain(NODES["exposure"](stops=1.0)), wanted).tiling
     assert made is not None and len(made.stages[-1].tiles) <= 16
 
@@ -332,7 +332,7 @@ def test_tiles_are_as_large_as_the_device_can_hold(fitting):
 def test_memory_that_no_tile_fits_into_is_refused():
     tight = limited(memory=2**16)
     with pytest.raises(DeviceError, match=r"only 64.0 KiB may be used; give more with --memory"):
-        tight.compile(chain(NODES["convolve3x3"]()), Wanted({"image": noise(100, 50)}))
+        tight.compile(chain(NODES["convolve3x3"]()), RenderRequest({"image": noise(100, 50)}))
     tight.close()
 
 
@@ -340,12 +340,12 @@ def test_tiles_that_are_too_many_are_refused(monkeypatch):
     monkeypatch.setattr(tiling, "MOST_TILES", 5)
     tight = limited(memory=2 * 100 * 50 * 16 + 2**15)  # both pictures, and small tiles
     with pytest.raises(DeviceError, match=r"node 'n0': within 188.* its 100x50 pixels can only be made in tiles of"):
-        tight.compile(chain(NODES["convolve3x3"]()), Wanted({"image": noise(100, 50)}))
+        tight.compile(chain(NODES["convolve3x3"]()), RenderRequest({"image": noise(100, 50)}))
     tight.close()
 
 
 def test_what_remembers_frames_is_refused():
     tight = limited(memory=2**17)
     with pytest.raises(DeviceError, match="node 'n0': what it remembers of a frame"):
-        tight.compile(chain(NODES["light_trails"]()), Wanted({"image": noise(100, 50)}))
+        tight.compile(chain(NODES["light_trails"]()), RenderRequest({"image": noise(100, 50)}))
     tight.close()

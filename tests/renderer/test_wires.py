@@ -8,7 +8,7 @@ from halation.graph import Graph, Input, Output, Port, Settings
 from halation.nodes import Kind, catalogue
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
-from halation.renderer import Wanted
+from halation.renderer import RenderRequest
 
 RNG = np.random.default_rng(11)
 PICTURE = RNG.random((20, 30, 4), np.float32)
@@ -23,7 +23,7 @@ def wired(node, links: dict[str, str], inputs: dict[str, Input], output: str = "
 
 
 def image(renderer, graph: Graph, **arrays) -> np.ndarray:
-    return renderer.render(graph, Wanted(arrays, precision="float"))["image"]
+    return renderer.render(graph, RenderRequest(arrays, precision="float"))["image"]
 
 
 def test_a_number_of_the_graph_drives_a_value(renderer):
@@ -123,7 +123,7 @@ def test_half_intermediates_stay_within_half_rounding(renderer):
     exact = PICTURE[..., :3].astype(np.float64) * 2.0**2.0
     unfused = Renderer(open_device(), budget=0, fusion=False)
     for engine, roundings in ((renderer, 1), (unfused, 4)):
-        result = engine.render(graph, Wanted({"image": PICTURE}, precision="half"))["image"][..., :3]
+        result = engine.render(graph, RenderRequest({"image": PICTURE}, precision="half"))["image"][..., :3]
         assert np.abs(result / exact - 1.0).max() <= roundings * 2.0**-11 * 1.001
     unfused.close()
 

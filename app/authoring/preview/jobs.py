@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ...compiler import Plan
 from ...errors import DeviceError, HalationError
 from ...graph import Port
-from ...renderer import Reel, Renderer, Run
+from ...renderer import FrameRenderer, Renderer, Run
 from .glimpses import Glimpse, Part, part_of
 from .wishes import Wish
 
@@ -46,14 +46,14 @@ class Job:
         """The same for plans."""
         self.kept = renderer.runner.lease()
         self._runs: Iterator[Run] | None = None
-        self._reel: Reel | None = None
+        self._reel: FrameRenderer | None = None
         try:
             self._reel = wish.take.reel(ports)
             if self._reel is None:
                 region = part.region if part else None
                 plan = _fitting(renderer.compile(wish.graph, wish.wanted(ports, frame, region)))
                 if plan.memories:
-                    self._reel = wish.take.begin(ports, Reel(renderer, wish.graph, wish.wanted(ports, frame)))
+                    self._reel = wish.take.begin(ports, FrameRenderer(renderer, wish.graph, wish.wanted(ports, frame)))
                 else:
                     self.plan, self.run = plan, renderer.runner.steps(plan, self.kept, timings=self.timings)
         except BaseException:

@@ -10,7 +10,7 @@ from halation.nodes import Size
 
 from ...compiler import Surface
 from ...graph import Port
-from ...renderer import Lease, Reel, Renderer
+from ...renderer import FrameRenderer, Lease, Renderer
 
 SHARE = 0.5
 """The part of the memory budget that frames may take which were shown."""
@@ -46,7 +46,7 @@ class Take:
         self._leases: dict[int, Lease] = {}
         self._seen: tuple[tuple[str, ...], float, tuple[int, ...]] = ((), 0.0, ())
         """For whom it was looked up which frames are there, when, and which."""
-        self._reels: dict[tuple[tuple[str, Port], ...], Reel] = {}
+        self._reels: dict[tuple[tuple[str, Port], ...], FrameRenderer] = {}
         self.closed = False
         self.hopeless: set[int] = set()
         """Frames that cannot be made."""
@@ -91,7 +91,7 @@ class Take:
 
     # --- histories ---------------------------------------------------------------------------------------------------
 
-    def reel(self, ports: Mapping[str, Port]) -> Reel | None:
+    def reel(self, ports: Mapping[str, Port]) -> FrameRenderer | None:
         """The history of these ports, if they are known to have one."""
         return self._reels.get(tuple(ports.items()))
 
@@ -100,7 +100,7 @@ class Take:
         """True if frames are known to need the ones before."""
         return bool(self._reels)
 
-    def begin(self, ports: Mapping[str, Port], reel: Reel) -> Reel:
+    def begin(self, ports: Mapping[str, Port], reel: FrameRenderer) -> FrameRenderer:
         """They have one."""
         self._reels[tuple(ports.items())] = reel
         return reel

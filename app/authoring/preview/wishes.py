@@ -12,7 +12,7 @@ from halation.nodes import Kind, Size
 from ...compiler import Region, Upstream
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Port
-from ...renderer import Wanted
+from ...renderer import RenderRequest
 from .takes import Take
 
 if TYPE_CHECKING:
@@ -35,9 +35,9 @@ class Wish:
     take: Take = field(default_factory=Take)
     """What is known of all frames of it."""
 
-    def wanted(self, ports: Mapping[str, Port], frame: int, region: Region | None = None) -> Wanted:
+    def wanted(self, ports: Mapping[str, Port], frame: int, region: Region | None = None) -> RenderRequest:
         """The same for the renderer."""
-        return Wanted(self.bindings, ports, self.size, self.scale, frame, region=region)
+        return RenderRequest(self.bindings, ports, self.size, self.scale, frame, region=region)
 
     def follows(self, before: Wish) -> bool:
         """True where nothing but the frame differs."""

@@ -12,8 +12,8 @@ from halation.nodes import Camera, Uniform, glsl_type
 from msgspec import Struct, structs
 
 from ...glsl import Text, words
-from ..fusion.fuse import Fused
-from ..ir import Accessor, Call, Convolve, Foreign, Gather, Program, Raster, Reduce, Ref, Shape
+from ..fusion.fuse import PassGroup
+from ..ir import Accessor, Call, Convolve, ExternalProgram, Gather, Program, Raster, Reduce, Ref, Shape
 from ..library import ASKED, Library, Lines
 from ..plan import LINES_PER_FILE, Shader
 from ..raster import CHANNELS, fragment_lines, vertex_text
@@ -41,12 +41,12 @@ class Emitted(Struct, frozen=True):
     groups: tuple[int, int, int]
 
 
-def emit(program: Program, fused: Fused, library: Library, target: Target, texels: Mapping[Ref, str]) -> Emitted:
+def emit(program: Program, fused: PassGroup, library: Library, target: Target, texels: Mapping[Ref, str]) -> Emitted:
     """Write the program of one pass. `texels` are the formats of what it reads and writes."""
     root = program.ops[fused.root]
     if isinstance(root, Raster):
         return _drawn(program, root, fused, library)
-    if isinstance(root, Foreign):
+    if isinstance(root, ExternalProgram):
         rounding = _half_rounding(target, [texels[ref].endswith("16f") for ref in fused.writes])
         return Emitted(*foreign(root, fused, rounding), (), (0, 0, 0))
     by_image = target.loads_images and len(fused.reads) + len(fused.writes) <= target.max_images
@@ -87,7 +87,7 @@ def emit(program: Program, fused: Fused, library: Library, target: Target, texel
     )
 
 
-def _look_through(names: Names, fused: Fused) -> None:
+def _look_through(names: Names, fused: PassGroup) -> None:
     """Where of pictures only a part is on the device, say which."""
     windows = names.program.windows
     for number, ref in enumerate(fused.reads):
@@ -97,7 +97,7 @@ def _look_through(names: Names, fused: Fused) -> None:
         names.window(windows[fused.writes[0]])
 
 
-def _drawn(program: Program, root: Raster, fused: Fused, library: Library) -> Emitted:
+def _drawn(program: Program, root: Raster, fused: PassGroup, library: Library) -> Emitted:
     """The program that draws meshes."""
     text = library.closure(("primitive/raster",), root.owner)[0]
     wanted = [tuple(CHANNELS)[ref.output] for ref in fused.writes]
@@ -154,7 +154,7 @@ class Parts(Struct, frozen=True):
     guests: tuple[Guest, ...] = ()
 
 
-def parts_of(program: Program, fused: Fused, names: Names, library: Library) -> Parts:
+def parts_of(program: Program, fused: PassGroup, names: Names, library: Library) -> Parts:
     """What a pass does, in pieces."""
     root = program.ops[fused.root]
     ops = [program.ops[index] for index in fused.members]
@@ -202,7 +202,7 @@ def _convolved(names: Names, op: Convolve) -> tuple[list[str], list[str]]:
     return functions + bodies.convolution(names, op), [f"{glsl} convolved = convolution();"]
 
 
-def _guests(program: Program, fused: Fused, library: Library) -> Iterator[Guest]:
+def _guests(program: Program, fused: PassGroup, library: Library) -> Iterator[Guest]:
     """The members of a pass that look around."""
     for number, index in enumerate(fused.members):
         op = program.ops[index]
@@ -211,7 +211,7 @@ def _guests(program: Program, fused: Fused, library: Library) -> Iterator[Guest]
             yield Guest(op, text, f"g{number}_")
 
 
-def _included_texts(program: Program, fused: Fused, parts: Parts, library: Library) -> Lines:
+def _included_texts(program: Program, fused: PassGroup, parts: Parts, library: Library) -> Lines:
     """The shader files that a pass includes: many passes of a large graph differ in numbers alone."""
     ops = [op for op in (program.ops[index] for index in fused.members) if isinstance(op, (Call, Gather))]
     if any(isinstance(op, Call) and op.program for op in ops):
@@ -231,7 +231,7 @@ def _included_texts(program: Program, fused: Fused, parts: Parts, library: Libra
     return library.kept(key, lambda: _find_texts(program, fused, parts, library))
 
 
-def _find_texts(program: Program, fused: Fused, parts: Parts, library: Library) -> Lines:
+def _find_texts(program: Program, fused: PassGroup, parts: Parts, library: Library) -> Lines:
     texts, files = texts_of(program, fused, parts, library), ["generated"]
     early, late = (
         [line for text in some for line in _included(text, files, program, fused)] for some in around(texts, parts)
@@ -241,7 +241,7 @@ def _find_texts(program: Program, fused: Fused, parts: Parts, library: Library) 
     return (*early,), (*late,), (*files,), asked
 
 
-def texts_of(program: Program, fused: Fused, parts: Parts, library: Library) -> tuple[Text, ...]:
+def texts_of(program: Program, fused: PassGroup, parts: Parts, library: Library) -> tuple[Text, ...]:
     """The shader files of a pass, includes first, with only the functions that it needs."""
     found: list[Text] = []
     needed = words(*parts.functions, *parts.body, *parts.results)
@@ -268,7 +268,7 @@ def around(texts: tuple[Text, ...], parts: Parts) -> tuple[list[Text], list[Text
     return early, late
 
 
-def _calls(program: Program, fused: Fused, names: Names, library: Library) -> tuple[list[str], dict[Ref, str]]:
+def _calls(program: Program, fused: PassGroup, names: Names, library: Library) -> tuple[list[str], dict[Ref, str]]:
     """Statements that evaluate the members of a pass at one pixel, and the names of all they computed."""
     lines: list[str] = []
     values: dict[Ref, str] = {}
@@ -307,7 +307,7 @@ def _gathered(op: Gather, arguments: list[str], library: Library, prefix: str = 
     return convert(call, glsl_channels(returned), glsl_type(op.shapes[0].channels))
 
 
-def _as_guest(guest: Guest, files: list[str], program: Program, fused: Fused) -> list[str]:
+def _as_guest(guest: Guest, files: list[str], program: Program, fused: PassGroup) -> list[str]:
     """The file of a member that looks around, under names of its own."""
     return [
         *(f"#define {word} {guest.prefix}{word}" for word in guest.renamed),
@@ -316,7 +316,7 @@ def _as_guest(guest: Guest, files: list[str], program: Program, fused: Fused) ->
     ]
 
 
-def _included(text: Text, files: list[str], program: Program, fused: Fused) -> list[str]:
+def _included(text: Text, files: list[str], program: Program, fused: PassGroup) -> list[str]:
     """A shader file, with the macros of its node's choices around it and its own line numbers."""
     macros = macros_of(text, program, fused)
     files.append(text.file)
@@ -329,7 +329,7 @@ def _included(text: Text, files: list[str], program: Program, fused: Fused) -> l
     ]
 
 
-def macros_of(text: Text, program: Program, fused: Fused) -> list[tuple[str, int]]:
+def macros_of(text: Text, program: Program, fused: PassGroup) -> list[tuple[str, int]]:
     """The macros of a node's choices that its file asks for."""
     ops = [op for op in (program.ops[index] for index in fused.members) if isinstance(op, (Call, Gather))]
     choices = next((op.choices for op in ops if op.shader == text.name), ())
@@ -342,7 +342,7 @@ def macro(value: str, choice: str) -> str:
     return "".join(letter if letter.isalnum() else "_" for letter in f"{value}_{choice}").upper()
 
 
-def _textures(names: Names, fused: Fused, target: Target, texels: Mapping[Ref, str]) -> Iterator[str]:
+def _textures(names: Names, fused: PassGroup, target: Target, texels: Mapping[Ref, str]) -> Iterator[str]:
     for number, ref in enumerate(fused.reads):
         if names.by_image:
             yield f"layout(binding = {number}, {texels[ref]}) readonly uniform image2D t{number};"
@@ -352,7 +352,7 @@ def _textures(names: Names, fused: Fused, target: Target, texels: Mapping[Ref, s
             yield f"uniform sampler2D t{number};"
 
 
-def _targets(names: Names, fused: Fused, target: Target, texels: Mapping[Ref, str]) -> Iterator[str]:
+def _targets(names: Names, fused: PassGroup, target: Target, texels: Mapping[Ref, str]) -> Iterator[str]:
     first = len(fused.reads) if names.by_image else 0
     for number, ref in enumerate(fused.writes):
         if target.form == "compute":

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from halation.nodes import Stage, Uniform
 
-from ..fusion.fuse import Fused
-from ..ir import Foreign
+from ..fusion.fuse import PassGroup
+from ..ir import ExternalProgram
 from ..plan import LINES_PER_FILE, Shader
 from .names import held
 
 
-def foreign(root: Foreign, fused: Fused, rounding: list[str]) -> tuple[Shader, tuple[tuple[str, Uniform], ...]]:
+def foreign(
+    root: ExternalProgram, fused: PassGroup, rounding: list[str]
+) -> tuple[Shader, tuple[tuple[str, Uniform], ...]]:
     """Its program, and what its uniforms are set to: samplers to the places of their pictures among those read.
 
     `rounding` is the function `as_half`, where the result is stored in half floats.

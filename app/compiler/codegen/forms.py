@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from halation.nodes import Size, glsl_type
 
-from ..fusion.fuse import Fused
+from ..fusion.fuse import PassGroup
 from ..ir import Call, Convolve, Gather, Op, Program
 from ..library import Library
 from . import bodies
@@ -29,7 +29,7 @@ rows that the one above it has read is then still in the nearest cache.
 """
 
 
-def count_of(program: Program, fused: Fused, library: Library) -> int:
+def count_of(program: Program, fused: PassGroup, library: Library) -> int:
     """How many pixels an invocation of a compute pass should make. Functions with loops share nothing.
 
     Where several functions look around, what two rows share is lost again, since so much does not fit into registers.

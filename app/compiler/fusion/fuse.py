@@ -21,7 +21,7 @@ MAX_UNIFORMS = 512
 """Floats that the values of a pass may take as uniforms: GL promises no more to a compute shader."""
 
 
-class Fused(Struct, frozen=True):
+class PassGroup(Struct, frozen=True):
     """Operations of one pass in order, the root last; what it reads from textures and what it writes."""
 
     members: tuple[int, ...]
@@ -33,7 +33,7 @@ class Fused(Struct, frozen=True):
         return self.members[-1]
 
 
-def fuse(program: Program, target: Target, *, enabled: bool = True, gathers: bool = True) -> tuple[Fused, ...]:
+def fuse(program: Program, target: Target, *, enabled: bool = True, gathers: bool = True) -> tuple[PassGroup, ...]:
     """Group the operations of `program` into passes, in order.
 
     `enabled=False` leaves every one alone, `gathers=False` those that look around.
@@ -68,7 +68,7 @@ def fuse(program: Program, target: Target, *, enabled: bool = True, gathers: boo
         home[index], members[index], uniforms[index] = index, [index], count_uniforms(op)
         reads[index] = dict.fromkeys(op.reads())
     return tuple(
-        Fused(tuple(reversed(members[root])), tuple(reads[root]), tuple(_writes(ops, root, readers, kept)))
+        PassGroup(tuple(reversed(members[root])), tuple(reads[root]), tuple(_writes(ops, root, readers, kept)))
         for root in sorted(members)
     )
 

@@ -6,10 +6,10 @@ from collections.abc import Iterable
 
 from ..ir import Call, Op, Program, Ref
 from ..target import Target
-from .fuse import MAX_MEMBERS, MAX_UNIFORMS, Fused, count_tables, count_uniforms
+from .fuse import MAX_MEMBERS, MAX_UNIFORMS, PassGroup, count_tables, count_uniforms
 
 
-def fits(program: Program, one: Fused, target: Target) -> bool:
+def fits(program: Program, one: PassGroup, target: Target) -> bool:
     """True if a pass of pointwise operations is within the limits of a device, and still reads the fast way."""
     reads, writes = len(one.reads), len(one.writes)
     if target.loads_images and reads + writes > target.max_images:
@@ -29,6 +29,6 @@ def ordered(ops: tuple[Op, ...], *members: Iterable[int]) -> tuple[int, ...]:
     return tuple(sorted(both, key=lambda index: (isinstance(ops[index], Call), index)))
 
 
-def looks_around(ops: tuple[Op, ...], one: Fused, ref: Ref) -> bool:
+def looks_around(ops: tuple[Op, ...], one: PassGroup, ref: Ref) -> bool:
     """True if a pass reads more of a picture than its own pixel."""
     return any(ref in ops[index].reads() for index in one.members if not isinstance(ops[index], Call))

@@ -16,26 +16,26 @@ from msgspec import Struct
 from ..ir import Call, Gather, Program, Ref
 from ..library import Library
 from ..target import Target
-from .fuse import Fused, kept_refs
+from .fuse import PassGroup, kept_refs
 from .limits import fits, looks_around, ordered
 
 MOST_TRIED = 4
 """Passes that read a picture and are tried for another one that does, the latest: hundreds may read one file."""
 
 
-def merge(program: Program, passes: tuple[Fused, ...], target: Target, library: Library) -> tuple[Fused, ...]:
+def merge(program: Program, passes: tuple[PassGroup, ...], target: Target, library: Library) -> tuple[PassGroup, ...]:
     """Merge passes as far as `target` allows. They stay in an order in which each comes after what it reads."""
     found = _Merging(program, passes, target).run()
     return tuple(group.fused for group in found)
 
 
-def alone(program: Program, fused: Fused) -> tuple[Fused, ...]:
+def alone(program: Program, fused: PassGroup) -> tuple[PassGroup, ...]:
     """What a pass writes, each operation's as the pass that would make nothing else; the pass itself if it is one."""
     roots = tuple(dict.fromkeys(ref.op for ref in fused.writes))
     return (fused,) if len(roots) == 1 else tuple(_behind(program, fused, root) for root in roots)
 
 
-def _behind(program: Program, fused: Fused, root: int) -> Fused:
+def _behind(program: Program, fused: PassGroup, root: int) -> PassGroup:
     """The part of a pass that an operation needs."""
     needed, reads = {root}, set[Ref]()
     for index in reversed(fused.members):
@@ -43,7 +43,7 @@ def _behind(program: Program, fused: Fused, root: int) -> Fused:
             found = set(program.ops[index].reads())
             needed |= {ref.op for ref in found if ref not in fused.reads}
             reads |= found
-    return Fused(
+    return PassGroup(
         tuple(index for index in fused.members if index in needed),
         tuple(ref for ref in fused.reads if ref in reads),
         tuple(ref for ref in fused.writes if ref.op == root),
@@ -61,14 +61,14 @@ class _Group(Struct, frozen=True):
     open: bool
 
     @property
-    def fused(self) -> Fused:
-        return Fused(self.members, tuple(self.reads), tuple(self.writes))
+    def fused(self) -> PassGroup:
+        return PassGroup(self.members, tuple(self.reads), tuple(self.writes))
 
 
 class _Merging:
     """The work in progress: who makes and who reads each picture, by the numbers of groups."""
 
-    def __init__(self, program: Program, passes: tuple[Fused, ...], target: Target) -> None:
+    def __init__(self, program: Program, passes: tuple[PassGroup, ...], target: Target) -> None:
         self.program, self.ops, self.target = program, program.ops, target
         self.kept = frozenset(kept_refs(program))
         self.groups: dict[int, _Group] = {}
@@ -88,7 +88,7 @@ class _Merging:
                 number = self._widened(number)
         return sorted(self.groups.values(), key=lambda group: group.place)
 
-    def _is_open(self, one: Fused) -> bool:
+    def _is_open(self, one: PassGroup) -> bool:
         """True for what makes each pixel of its own: pointwise operations, and what looks around and is light."""
         root = self.ops[one.root]
         if not isinstance(root, Call) and not (isinstance(root, Gather) and root.light):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..ir import Call, Program, Reduce, Ref
 from ..library import Library
 from ..target import Target
-from .fuse import Fused, kept_refs
+from .fuse import PassGroup, kept_refs
 from .limits import fits, looks_around, ordered
 
 MOST_READERS = 3
@@ -16,7 +16,9 @@ STORE = 4
 """A picture that is stored takes as long as so many that are read: measured on the software rasterizer."""
 
 
-def recompute(program: Program, passes: tuple[Fused, ...], target: Target, library: Library) -> tuple[Fused, ...]:
+def recompute(
+    program: Program, passes: tuple[PassGroup, ...], target: Target, library: Library
+) -> tuple[PassGroup, ...]:
     """Leave out passes whose readers can do their work, where that costs fewer reads than it saves."""
     kept = frozenset(kept_refs(program))
     found = dict(enumerate(passes))
@@ -42,14 +44,14 @@ def recompute(program: Program, passes: tuple[Fused, ...], target: Target, libra
     return tuple(found.values())
 
 
-def _is_cheap(program: Program, one: Fused, library: Library) -> bool:
+def _is_cheap(program: Program, one: PassGroup, library: Library) -> bool:
     ops = [program.ops[index] for index in one.members]
     return len(ops) <= MOST_AGAIN and all(
         isinstance(op, Call) and not op.program and library.cheap(op.shader, op.function, op.owner) for op in ops
     )
 
 
-def _takes(program: Program, reader: Fused, ref: Ref) -> bool:
+def _takes(program: Program, reader: PassGroup, ref: Ref) -> bool:
     """True if a pass wants each pixel of a picture for one of its own, and can compute it there."""
     root, size = program.ops[reader.root], program.shape(ref).size
     if isinstance(root, Reduce):
@@ -57,7 +59,9 @@ def _takes(program: Program, reader: Fused, ref: Ref) -> bool:
     return isinstance(root, Call) and size == root.size and not looks_around(program.ops, reader, ref)
 
 
-def _with(program: Program, one: Fused, reader: Fused) -> Fused:
+def _with(program: Program, one: PassGroup, reader: PassGroup) -> PassGroup:
     """A pass that also does the work of one that it reads."""
     reads = dict.fromkeys((*(ref for ref in reader.reads if ref not in one.writes), *one.reads))
-    return Fused((*ordered(program.ops, one.members, reader.members[:-1]), reader.root), tuple(reads), reader.writes)
+    return PassGroup(
+        (*ordered(program.ops, one.members, reader.members[:-1]), reader.root), tuple(reads), reader.writes
+    )

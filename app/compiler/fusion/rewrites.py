@@ -8,7 +8,7 @@ from __future__ import annotations
 from ..ir import Program
 from ..library import Library
 from ..target import Target
-from .fuse import Fused
+from .fuse import PassGroup
 from .merge import alone, merge
 from .recompute import recompute
 
@@ -18,7 +18,9 @@ REWRITES = (recompute, merge)
 """In this order."""
 
 
-def rewritten(program: Program, passes: tuple[Fused, ...], target: Target, library: Library) -> tuple[Fused, ...]:
+def rewritten(
+    program: Program, passes: tuple[PassGroup, ...], target: Target, library: Library
+) -> tuple[PassGroup, ...]:
     """Fewer passes, or such that read and write less."""
     for rewrite in REWRITES:
         passes = rewrite(program, passes, target, library)

@@ -80,7 +80,7 @@ def _walk(item: Any, found: Anatomy) -> object:
     if isinstance(item, Around):
         return Around  # it matters for parts of a picture alone, which a shader of this format never makes
     if isinstance(item, Struct):
-        aside = item.aside if isinstance(item, Record) else ()
+        aside = item.compare_exclude if isinstance(item, Record) else ()
         names = (name for name in item.__struct_fields__ if name not in aside)
         return type(item), tuple(_walk(getattr(item, name), found) for name in names)
     if isinstance(item, tuple):

@@ -12,7 +12,7 @@ from ...graph import Graph, Port
 from ...resources.color_program import ColorProgram
 from ...resources.mesh import Mesh
 from ...resources.picture import Picture
-from ...resources.provider import Frame, Outside, Probed
+from ...resources.provider import Frame, Probed, ResourceProvider
 from ...resources.working_space import Working
 from .. import graph_library
 from ..fusion.fuse import fuse
@@ -44,7 +44,7 @@ class Exported:
 class _Bound:
     """The world beyond the graph, where every bound input is a picture of the size that is wanted."""
 
-    outside: Outside
+    outside: ResourceProvider
     size: Size
 
     def at(self, path: str, frame: int, missing: Missing) -> Frame:
@@ -66,7 +66,9 @@ class _Bound:
         return self.outside.mesh(scene)
 
 
-def export_isf(graph: Graph, target: Port, outside: Outside, *, size: Size | None = None, doc: str = "") -> Exported:
+def export_isf(
+    graph: Graph, target: Port, outside: ResourceProvider, *, size: Size | None = None, doc: str = ""
+) -> Exported:
     """Write what `target` shows of a graph as one shader. Raises the errors of compiling a graph.
 
     Its pictures become those of the shader, and its controls inputs where they change nothing but numbers, evenly.
@@ -78,7 +80,7 @@ def export_isf(graph: Graph, target: Port, outside: Outside, *, size: Size | Non
 class _Export:
     """The work in progress."""
 
-    def __init__(self, graph: Graph, target: Port, outside: Outside, size: Size) -> None:
+    def __init__(self, graph: Graph, target: Port, outside: ResourceProvider, size: Size) -> None:
         self.graph, self.target, self.outside, self.size = graph, target, outside, size
         self.library = graph_library(graph, outside)
         self.first = (graph.settings.frames or (1, 1))[0]

@@ -11,8 +11,8 @@ from msgspec import field
 from ...glsl import Text, words
 from ..codegen.emit import Parts, around, macros_of, parts_of, texts_of
 from ..codegen.names import Names, convert
-from ..fusion.fuse import Fused
-from ..ir import Constant, Convolve, Foreign, Op, Program, Raster, Read, Ref
+from ..fusion.fuse import PassGroup
+from ..ir import Constant, Convolve, ExternalProgram, Op, Program, Raster, Read, Ref
 from ..library import Library
 from .affine import literal
 
@@ -64,7 +64,7 @@ class PassNames(Names):
         return convert(whole, len(texts), glsl)
 
 
-def reasons(program: Program, passes: tuple[Fused, ...], pictures: Mapping[Ref, str]) -> Iterator[tuple[str, str]]:
+def reasons(program: Program, passes: tuple[PassGroup, ...], pictures: Mapping[Ref, str]) -> Iterator[tuple[str, str]]:
     """Why a graph cannot be written as one shader: nodes, and sentences about them."""
     for fused in passes:
         for index in fused.members:
@@ -81,7 +81,7 @@ def reasons(program: Program, passes: tuple[Fused, ...], pictures: Mapping[Ref, 
 def _reason(op: Op) -> str:
     if isinstance(op, Raster):
         return "draws meshes"
-    if isinstance(op, Foreign):
+    if isinstance(op, ExternalProgram):
         return "is a shader of this format already: use its file"
     if getattr(op, "tables", ()):
         return "changes color by tables of a color library"
@@ -89,7 +89,7 @@ def _reason(op: Op) -> str:
 
 
 def function(
-    program: Program, fused: Fused, output: int, prefix: str, names: PassNames, library: Library
+    program: Program, fused: PassGroup, output: int, prefix: str, names: PassNames, library: Library
 ) -> tuple[list[str], str]:
     """The functions of a pass, and the name of the one that makes its pixel: a vec4."""
     parts = parts_of(program, fused, names, library)
@@ -126,7 +126,7 @@ def function(
 
 
 def _lines(
-    program: Program, fused: Fused, texts: tuple[Text, ...], parts: Parts, functions: list[str]
+    program: Program, fused: PassGroup, texts: tuple[Text, ...], parts: Parts, functions: list[str]
 ) -> Iterator[str]:
     early, late = around(texts, parts)
     for group in (early, None, late):

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from halation.nodes import Size, Uniform
 
-from ..fusion.fuse import Fused, fuse
+from ..fusion.fuse import PassGroup, fuse
 from ..ir import Ref
 from ..library import Library
 from ..target import NULL
@@ -54,7 +54,7 @@ class Writing:
         lines += ["", *self.blocks, "void main() {", *(calls if len(calls) > 1 else self.calls), "}"]
         return "\n".join(lines) + "\n", targets
 
-    def _pass(self, fused: Fused, output: int, first: int) -> None:
+    def _pass(self, fused: PassGroup, output: int, first: int) -> None:
         ref = fused.writes[output]
         names = PassNames(
             self.found.program,

@@ -51,7 +51,7 @@ from ..ir import (
     Choice,
     Constant,
     Convolve,
-    Foreign,
+    ExternalProgram,
     Gather,
     History,
     Memory,
@@ -247,7 +247,9 @@ class Recorder:
     ) -> Drawn:
         samplers = tuple((name, self._pixels(item).ref) for name, item in pictures.items())
         values = tuple((name, Constant(value)) for name, value in uniforms.items())
-        return self._made(Foreign((self._shape(result, size or self.size),), self._owner, text, samplers, values))
+        return self._made(
+            ExternalProgram((self._shape(result, size or self.size),), self._owner, text, samplers, values)
+        )
 
     def blur(self, image: Pixels, sigma: float | tuple[float, float], edge: Edge = "clamp") -> Drawn:
         sigmas = sigma if isinstance(sigma, tuple) else (sigma, sigma)
@@ -335,7 +337,7 @@ class Recorder:
 
     # --- parts ---------------------------------------------------------------------------------------------------
 
-    def _made(self, op: Call | Foreign | Gather | Convolve | Read | Reduce) -> Made:
+    def _made(self, op: Call | ExternalProgram | Gather | Convolve | Read | Reduce) -> Made:
         return Made(self._builder.add(op), op.shapes[0])
 
     def _shape(self, result: Socket | None, size: Size) -> Shape:

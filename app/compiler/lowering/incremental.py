@@ -19,7 +19,7 @@ from msgspec.structs import replace
 
 from ...errors import HalationError
 from ...graph import Graph
-from ...resources.provider import Outside
+from ...resources.provider import ResourceProvider
 from ..ir import Builder, Op, Ref
 from ..request import Request
 from .lower import Lowering
@@ -31,7 +31,7 @@ class Other(Exception):
     """The program is another one in more than single operations."""
 
 
-def relower(known: Lowered, graph: Graph, request: Request, outside: Outside) -> Lowered | None:
+def relower(known: Lowered, graph: Graph, request: Request, outside: ResourceProvider) -> Lowered | None:
     """Lower `graph`, with the library of what is `known` of another one, for a request that differs from that of then
     in its frame, bindings and memories alone; None where that takes as long as from the start."""
     try:
@@ -91,7 +91,9 @@ class Again(Builder):
 class _Relowering:
     """The work in progress."""
 
-    def __init__(self, known: Lowered, graph: Graph, request: Request, outside: Outside, moments: Moments) -> None:
+    def __init__(
+        self, known: Lowered, graph: Graph, request: Request, outside: ResourceProvider, moments: Moments
+    ) -> None:
         self.known, self.moments, self.now = known, moments, request.frame
         self.builder = Again(known.builder)
         self.lowering = Lowering(graph, request, known.library, outside, moments, self.builder)

@@ -32,7 +32,7 @@ from msgspec.structs import replace
 
 from ...errors import GraphError, HalationError, ShaderError
 from ...graph import INPUTS, OUTPUTS, Graph, Port, did_you_mean
-from ...resources.provider import Outside
+from ...resources.provider import ResourceProvider
 from ..ir import Builder, Call, Choice, Constant, Memory, Operand, Parameter, Program, Ref, Shape
 from ..library import Library
 from ..request import Request
@@ -44,7 +44,7 @@ from .pictures import Pictures
 from .steps import Lowered, Place, Shown, Step, Watched
 
 
-def lower(graph: Graph, request: Request, library: Library, outside: Outside) -> Lowered:
+def lower(graph: Graph, request: Request, library: Library, outside: ResourceProvider) -> Lowered:
     """Lower what `request` wants of `graph`. Raises GraphError where the graph is not fit to render."""
     return Lowering(graph, request, library, outside, Moments(graph), Builder()).run()
 
@@ -53,7 +53,13 @@ class Lowering:
     """The work in progress: `results` says what every port visited so far stands for, so many frames from now."""
 
     def __init__(
-        self, graph: Graph, request: Request, library: Library, outside: Outside, moments: Moments, builder: Builder
+        self,
+        graph: Graph,
+        request: Request,
+        library: Library,
+        outside: ResourceProvider,
+        moments: Moments,
+        builder: Builder,
     ) -> None:
         self.graph, self.request, self.library, self.outside = graph, request, library, Watched(outside)
         self.now = request.frame

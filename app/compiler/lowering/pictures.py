@@ -13,7 +13,7 @@ from ...graph import Graph, color_settings, make_socket
 from ...resources.color_program import ColorProgram
 from ...resources.mesh import Mesh
 from ...resources.picture import Picture
-from ...resources.provider import Outside, Probed
+from ...resources.provider import Probed, ResourceProvider
 from ..areas import Around, scaled
 from ..ir import Accessor, Builder, Call, Constant, Gather, Operand, Parameter, Read, Ref, Shape
 from ..request import Request
@@ -27,7 +27,7 @@ DEFAULT_CANVAS: Size = (1920, 1080)
 class Pictures:
     """Adds what is read from outside, and changes of size and type, to the operations in `builder`."""
 
-    def __init__(self, graph: Graph, flat: Flat, request: Request, outside: Outside, builder: Builder) -> None:
+    def __init__(self, graph: Graph, flat: Flat, request: Request, outside: ResourceProvider, builder: Builder) -> None:
         self.named = Named(flat, request.bindings)
         self._settled = graph.settings.size
         self._color = color_settings(graph)

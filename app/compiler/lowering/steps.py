@@ -11,7 +11,7 @@ from ...graph import Port
 from ...resources.color_program import ColorProgram
 from ...resources.mesh import Mesh
 from ...resources.picture import Picture
-from ...resources.provider import Frame, Outside, Probed
+from ...resources.provider import Frame, Probed, ResourceProvider
 from ...resources.working_space import Working
 from ..ir import Builder, Operand, Program, Ref
 from ..library import Library
@@ -60,7 +60,7 @@ class Lowered(Struct, frozen=True, weakref=True):
 class Watched:
     """The world beyond the graph; it says whether it was `asked` anything."""
 
-    def __init__(self, outside: Outside) -> None:
+    def __init__(self, outside: ResourceProvider) -> None:
         self._outside = outside
         self.asked = False
 
@@ -82,6 +82,6 @@ class Watched:
     def mesh(self, scene: Scene) -> Mesh:
         return self._seen().mesh(scene)
 
-    def _seen(self) -> Outside:
+    def _seen(self) -> ResourceProvider:
         self.asked = True
         return self._outside

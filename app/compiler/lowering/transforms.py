@@ -34,7 +34,7 @@ class Placed(Gather, frozen=True):
     chain: tuple[str, ...] = ()
     """The nodes whose matrices were multiplied, the first one first."""
 
-    aside: ClassVar[frozenset[str]] = frozenset({"owner", "chain"})
+    compare_exclude: ClassVar[frozenset[str]] = frozenset({"owner", "chain"})
 
     @property
     def owners(self) -> tuple[str, ...]:

@@ -6,13 +6,13 @@ from collections.abc import Iterable, Mapping, Sequence, Set
 from hashlib import blake2b
 
 from ..codegen.emit import EDGES, Emitted
-from ..fusion.fuse import Fused
+from ..fusion.fuse import PassGroup
 from ..fusion.rewrites import alone
 from ..ir import (
     Call,
     Constant,
     Convolve,
-    Foreign,
+    ExternalProgram,
     Gather,
     Held,
     History,
@@ -27,7 +27,7 @@ from ..ir import (
 from ..library import Library
 from ..target import Target
 
-Mark = tuple[Fused, str]
+Mark = tuple[PassGroup, str]
 """A pass that makes one thing, and a hash of all that decides it but the pictures that it reads."""
 
 
@@ -42,18 +42,18 @@ class Marks:
         self._device = (target.form, target.rounds_halves)
         self._told: dict[int, str] = {}
 
-    def of(self, fused: Fused, item: Emitted) -> tuple[Mark, ...]:
+    def of(self, fused: PassGroup, item: Emitted) -> tuple[Mark, ...]:
         """The marks of a pass, of which `item` is the program.
 
         Those of a merged pass have the keys that they would have alone: what changes one leaves the others as they are.
         """
         root = self._program.ops[fused.root]
-        if isinstance(root, Foreign | Raster):
+        if isinstance(root, ExternalProgram | Raster):
             drawn = root.mesh.digest if isinstance(root, Raster) else root.text.vertex
             return ((fused, _hash(item.shader.source, item.uniforms, drawn, *self._texels_of(fused.writes))),)
         return tuple((one, self._mark(one)) for one in alone(self._program, fused))
 
-    def _mark(self, one: Fused) -> str:
+    def _mark(self, one: PassGroup) -> str:
         ops, told, found = self._program.ops, self._told, list[object]()
         places = {ref: number for number, ref in enumerate(one.reads)}
         for index in one.members:

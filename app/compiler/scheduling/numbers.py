@@ -11,7 +11,7 @@ from ..ir import (
     Call,
     Constant,
     Convolve,
-    Foreign,
+    ExternalProgram,
     Gather,
     History,
     Op,
@@ -73,7 +73,7 @@ def _(op: Convolve) -> Op:
 
 
 @without.register
-def _(op: Foreign) -> Op:
+def _(op: ExternalProgram) -> Op:
     return replace(op, uniforms=tuple((name, Constant((0.0,) * item.channels)) for name, item in op.uniforms))
 
 

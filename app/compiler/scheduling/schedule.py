@@ -12,10 +12,10 @@ from msgspec.structs import replace
 from ...errors import DeviceError
 from ...graph import Port
 from ..codegen.emit import Emitted, emit
-from ..fusion.fuse import Fused, kept_refs
-from ..ir import Call, Foreign, Gather, Held, History, Memory, Op, Program, Raster, Read, Ref, Shape
+from ..fusion.fuse import PassGroup, kept_refs
+from ..ir import Call, ExternalProgram, Gather, Held, History, Memory, Op, Program, Raster, Read, Ref, Shape
 from ..library import Library
-from ..plan import Depth, Pass, Plan, Surface, Upload, texel, texture_bytes
+from ..plan import Depth, Pass, Plan, Surface, Upload, texture_bytes, texture_format
 from ..target import Precision, Target
 from .keys import Mark, Marks, keys_of, update
 from .numbers import differing
@@ -25,7 +25,7 @@ class Scheduled(Struct, frozen=True):
     """A plan, and what it was made of."""
 
     program: Program
-    passes: tuple[Fused, ...]
+    passes: tuple[PassGroup, ...]
     texels: Mapping[Ref, str]
     """Formats, in the order of the surfaces."""
     marks: tuple[tuple[Mark, ...], ...]
@@ -35,7 +35,7 @@ class Scheduled(Struct, frozen=True):
 
 def schedule(
     program: Program,
-    passes: tuple[Fused, ...],
+    passes: tuple[PassGroup, ...],
     library: Library,
     target: Target,
     precision: Precision,
@@ -130,7 +130,7 @@ def _memories(program: Program, keys: Mapping[Ref, str], texels: Mapping[Ref, st
 
 
 def formats(
-    program: Program, passes: Sequence[Fused], target: Target, precision: Precision, halves: frozenset[str]
+    program: Program, passes: Sequence[PassGroup], target: Target, precision: Precision, halves: frozenset[str]
 ) -> dict[Ref, str]:
     """The format of everything that needs a texture. Raises DeviceError for a pass that writes too many at once."""
     for fused in passes:
@@ -139,7 +139,7 @@ def formats(
     return {ref: _texel(program, ref, "half" if ref in rounded else precision) for ref in _textures(program, passes)}
 
 
-def _textures(program: Program, passes: Sequence[Fused]) -> dict[Ref, None]:
+def _textures(program: Program, passes: Sequence[PassGroup]) -> dict[Ref, None]:
     """Everything that passes read and write, and what must be there at the end."""
     needed = dict.fromkeys(ref for fused in passes for ref in (*fused.reads, *fused.writes))
     return needed | dict.fromkeys(kept_refs(program))
@@ -149,14 +149,14 @@ def _shape(program: Program, ref: Ref) -> Shape:
     return program.ops[ref.op].shapes[ref.output]
 
 
-def peak(program: Program, passes: Sequence[Fused], texels: Mapping[Ref, str]) -> int:
+def peak(program: Program, passes: Sequence[PassGroup], texels: Mapping[Ref, str]) -> int:
     """Bytes of all textures that passes need at the same time."""
     first, last = _lives(program, passes)
     return sum(_slots(program, _textures(program, passes), texels, first, last)[1])
 
 
 def _check_outputs(count: int, op: Op, target: Target) -> None:
-    by_image = target.form == "compute" and not isinstance(op, Foreign | Raster)
+    by_image = target.form == "compute" and not isinstance(op, ExternalProgram | Raster)
     most = target.max_images if by_image else target.max_targets
     if count > most:
         raise DeviceError(
@@ -170,12 +170,12 @@ def _texel(program: Program, ref: Ref, precision: Precision) -> str:
     """As narrow as the data allows: data keeps 32 bits, a file of halves stays half, color follows the precision."""
     op, shape = program.ops[ref.op], _shape(program, ref)
     if isinstance(op, Held):
-        return texel(shape.channels, op.halves[ref.output])
+        return texture_format(shape.channels, op.halves[ref.output])
     half = op.half if isinstance(op, (Read, History)) else precision == "half" and not shape.data
-    return texel(shape.channels, half)
+    return texture_format(shape.channels, half)
 
 
-def _rounded(program: Program, passes: Sequence[Fused], target: Target, halves: frozenset[str]) -> frozenset[Ref]:
+def _rounded(program: Program, passes: Sequence[PassGroup], target: Target, halves: frozenset[str]) -> frozenset[Ref]:
     """Outputs that are stored as half floats because nobody wants more, neither a pass nor the next frame."""
     if not target.rounds_halves:
         return frozenset()
@@ -190,7 +190,7 @@ def _depth(format: str) -> Depth:
     return "f2" if format.endswith("16f") else "f4"
 
 
-def _lives(program: Program, passes: Sequence[Fused]) -> tuple[dict[Ref, int], dict[Ref, int]]:
+def _lives(program: Program, passes: Sequence[PassGroup]) -> tuple[dict[Ref, int], dict[Ref, int]]:
     """The pass that makes each surface, or that reads an upload first; and the pass that reads it last.
 
     What was remembered of the frame before is there from the first pass to the last.
@@ -249,7 +249,7 @@ def _uploads(program: Program, numbers: Mapping[Ref, int]) -> list[Upload]:
     return found
 
 
-def _pass(program: Program, fused: Fused, item: Emitted, numbers: Mapping[Ref, int], library: Library) -> Pass:
+def _pass(program: Program, fused: PassGroup, item: Emitted, numbers: Mapping[Ref, int], library: Library) -> Pass:
     ops = [program.ops[index] for index in fused.members]
     return Pass(
         tuple(dict.fromkeys(owner for op in ops for owner in op.owners)),
@@ -271,6 +271,6 @@ def _writers(ops: list[Op], library: Library) -> dict[str, str]:
     calls = (op for op in ops if isinstance(op, (Call, Gather)))
     found = {library.file(op.shader): op.owner for op in calls if op.shader.startswith("written/")}
     for op in ops:
-        if isinstance(op, Foreign):
+        if isinstance(op, ExternalProgram):
             found |= {stage.file: op.owner for stage in (op.text.fragment, op.text.vertex) if stage}
     return found

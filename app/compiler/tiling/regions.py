@@ -13,12 +13,12 @@ from halation.nodes import Edge
 from msgspec.structs import replace
 
 from ..areas import Region, Span, inside
-from ..fusion.fuse import Fused
-from ..ir import BLOCK, Accessor, Call, Convolve, Foreign, Gather, History, Op, Program, Raster, Reduce, Ref
+from ..fusion.fuse import PassGroup
+from ..ir import BLOCK, Accessor, Call, Convolve, ExternalProgram, Gather, History, Op, Program, Raster, Reduce, Ref
 
 
 def needed(
-    program: Program, passes: Sequence[Fused], wanted: Mapping[Ref, Region], there: Set[Ref] = frozenset()
+    program: Program, passes: Sequence[PassGroup], wanted: Mapping[Ref, Region], there: Set[Ref] = frozenset()
 ) -> dict[Ref, Region]:
     """The region of every texture of these passes, so that the regions `wanted` can be made.
 
@@ -44,7 +44,7 @@ def needed(
     return found
 
 
-def focused(program: Program, passes: Sequence[Fused], region: Region, there: Set[Ref] = frozenset()) -> Program:
+def focused(program: Program, passes: Sequence[PassGroup], region: Region, there: Set[Ref] = frozenset()) -> Program:
     """The same program, which makes only a region of its outputs, as far as that lies in them.
 
     The parts that it makes may be larger, where something else reads an output. What is remembered is whole, and so is
@@ -62,7 +62,7 @@ def focused(program: Program, passes: Sequence[Fused], region: Region, there: Se
     return replace(program, windows=MappingProxyType(parts))
 
 
-def _read(program: Program, fused: Fused, region: Region) -> dict[Ref, Region]:
+def _read(program: Program, fused: PassGroup, region: Region) -> dict[Ref, Region]:
     """What a pass reads to write a region."""
     inner = dict.fromkeys(fused.writes, region)
     for index in reversed(fused.members):
@@ -84,12 +84,12 @@ def reads_all(program: Program, op: Op, ref: Ref) -> bool:
     size = program.shape(ref).size
     if isinstance(op, Gather):
         return any(item.operand == ref and item.around is None for item in op.accessors)
-    return isinstance(op, Foreign) or (isinstance(op, Call) and size != op.size)
+    return isinstance(op, ExternalProgram) or (isinstance(op, Call) and size != op.size)
 
 
 def made_whole(op: Op) -> bool:
     """True for what is always made as a whole: its program has no parts, or outputs of several sizes."""
-    return isinstance(op, Foreign | Raster) or len({shape.size for shape in op.shapes}) > 1
+    return isinstance(op, ExternalProgram | Raster) or len({shape.size for shape in op.shapes}) > 1
 
 
 def _part(program: Program, op: Op, ref: Ref, region: Region) -> Region:

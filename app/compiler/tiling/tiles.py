@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from msgspec import Struct
 
 from ..areas import Region
-from ..fusion.fuse import Fused
+from ..fusion.fuse import PassGroup
 from ..ir import Program, Ref
 from ..library import Library
 from ..target import Precision, Target
@@ -20,7 +20,7 @@ class Stage(Struct, frozen=True):
     """
 
     outputs: Mapping[str, Ref]
-    passes: tuple[Fused, ...]
+    passes: tuple[PassGroup, ...]
     tiles: tuple[Region, ...]
     windows: tuple[Mapping[Ref, Region], ...]
 

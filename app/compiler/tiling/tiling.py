@@ -18,7 +18,7 @@ from msgspec.structs import replace
 from ...errors import DeviceError
 from ..areas import Region
 from ..explain import size_text
-from ..fusion.fuse import Fused
+from ..fusion.fuse import PassGroup
 from ..ir import Held, History, Op, Program, Read, Reduce, Ref
 from ..library import Library
 from ..plan import Plan, texture_bytes
@@ -47,7 +47,7 @@ MOST_PIXELS = 2**32
 
 def tile(
     program: Program,
-    passes: tuple[Fused, ...],
+    passes: tuple[PassGroup, ...],
     texels: Mapping[Ref, str],
     library: Library,
     target: Target,
@@ -95,7 +95,7 @@ def tile_plan(tiling: Tiling, stage: Stage, number: int, made: Mapping[int, Held
     return schedule(program, stage.passes, tiling.library, tiling.target, tiling.precision, tiling.halves).plan
 
 
-def _too_much(program: Program, passes: Sequence[Fused], texels: Mapping[Ref, str], target: Target) -> str:
+def _too_much(program: Program, passes: Sequence[PassGroup], texels: Mapping[Ref, str], target: Target) -> str:
     """What cannot be held, in a sentence; "" if all can."""
     for ref in texels:
         size, owner = program.held(ref), program.ops[ref.op].owner
@@ -120,7 +120,7 @@ def _remembered(program: Program, texels: Mapping[Ref, str]) -> int:
     return max(kept - read, 0)
 
 
-def _outside(program: Program, passes: Sequence[Fused]) -> set[Ref]:
+def _outside(program: Program, passes: Sequence[PassGroup]) -> set[Ref]:
     """What is not only on the device: pictures that are read from files, and outputs."""
     reads = {ref for fused in passes for ref in fused.reads if isinstance(program.ops[ref.op], Read)}
     return reads | set(program.outputs.values())
@@ -131,7 +131,7 @@ def _nbytes(program: Program, texels: Mapping[Ref, str], ref: Ref) -> int:
     return texture_bytes(program.shape(ref).size, texels[ref])
 
 
-def _check(program: Program, passes: Sequence[Fused], target: Target) -> None:
+def _check(program: Program, passes: Sequence[PassGroup], target: Target) -> None:
     """Raise DeviceError for what must be whole and does not fit, and for what remembers frames."""
     for fused in passes:
         for op in (program.ops[index] for index in fused.members):
@@ -163,7 +163,7 @@ class _Work:
     def __init__(
         self,
         program: Program,
-        passes: tuple[Fused, ...],
+        passes: tuple[PassGroup, ...],
         texels: Mapping[Ref, str],
         target: Target,
         by_rows: frozenset[str],
@@ -190,7 +190,7 @@ class _Work:
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _is_cut(self, fused: Fused) -> bool:
+    def _is_cut(self, fused: PassGroup) -> bool:
         """True for a pass whose pictures are made as a whole before others read them."""
         if any(isinstance(op, Reduce) or made_whole(op) for op in self._ops(fused)):
             return True
@@ -207,20 +207,20 @@ class _Work:
     def _is_small(self, ref: Ref) -> bool:
         return SMALL * _area(self.program.shape(ref).size) <= self.largest
 
-    def _is_light(self, fused: Fused) -> bool:
+    def _is_light(self, fused: PassGroup) -> bool:
         """True for a pass whose pictures leave room for much else."""
         nbytes = sum(_nbytes(self.program, self.texels, ref) for ref in fused.writes)
         return not self.target.memory or 8 * nbytes <= self.target.memory
 
-    def _stays_small(self, fused: Fused) -> bool:
+    def _stays_small(self, fused: PassGroup) -> bool:
         """True for a pass between small pictures: it is made together with those that shrink or enlarge."""
         readers = [other for other in self.passes if not set(fused.writes).isdisjoint(other.reads)]
         return all(map(self._is_small, (*fused.reads, *(other.writes[0] for other in readers))))
 
-    def _ops(self, fused: Fused) -> list[Op]:
+    def _ops(self, fused: PassGroup) -> list[Op]:
         return [self.program.ops[index] for index in fused.members]
 
-    def _stage(self, outputs: dict[str, Ref], own: Fused | None) -> Stage:
+    def _stage(self, outputs: dict[str, Ref], own: PassGroup | None) -> Stage:
         """A stage with the fewest tiles that fit."""
         passes = self._needed(outputs.values(), own)
         size = self.program.shape(next(iter(outputs.values()))).size
@@ -251,14 +251,14 @@ class _Work:
         return Stage(MappingProxyType(outputs), passes, tiles, _parts(self.program, all_))
 
     def _textures(
-        self, passes: Sequence[Fused], outputs: dict[str, Ref], size: Size, tile: Size
+        self, passes: Sequence[PassGroup], outputs: dict[str, Ref], size: Size, tile: Size
     ) -> tuple[list[dict[Ref, Region]], int]:
         """The windows of tiles of this size, and what textures take at most."""
         found = [self._windows(passes, outputs.values(), region) for region in _sample(size, tile)]
         programs = (replace(self.program, windows=one, outputs=outputs, memories={}) for one in found)
         return found, max(peak(program, passes, self.texels) for program in programs)
 
-    def _needed(self, refs: Iterable[Ref], own: Fused | None) -> tuple[Fused, ...]:
+    def _needed(self, refs: Iterable[Ref], own: PassGroup | None) -> tuple[PassGroup, ...]:
         """The passes that make pictures of what stages before made; `own` is the stage's own one."""
         found: set[int] = set()
         todo = list(refs)
@@ -272,11 +272,11 @@ class _Work:
             todo.extend(fused.reads)
         return tuple(self.passes[number] for number in sorted(found))
 
-    def _windows(self, passes: Sequence[Fused], refs: Iterable[Ref], region: Region) -> dict[Ref, Region]:
+    def _windows(self, passes: Sequence[PassGroup], refs: Iterable[Ref], region: Region) -> dict[Ref, Region]:
         return needed(self.program, passes, dict.fromkeys(refs, region))
 
     def _pictures(
-        self, passes: Sequence[Fused], outputs: Mapping[str, Ref], found: Sequence[Mapping[Ref, Region]], tile: Size
+        self, passes: Sequence[PassGroup], outputs: Mapping[str, Ref], found: Sequence[Mapping[Ref, Region]], tile: Size
     ) -> int:
         """Bytes of the pictures that are held meanwhile: what was read or made before, and what is made.
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from ...graph import Port
-from ...renderer import Nonfinite, Wanted, first_nonfinite
+from ...renderer import Nonfinite, RenderRequest, first_nonfinite
 
 if TYPE_CHECKING:
     from ..editor import Editor
@@ -66,7 +66,7 @@ class Finder:
 
 def _search(editor: Editor, port: Port) -> Iterator[Nonfinite | None]:
     viewer = editor.viewer
-    wanted = Wanted(editor.session.bindings, {"A": port}, scale=viewer.proxy)
+    wanted = RenderRequest(editor.session.bindings, {"A": port}, scale=viewer.proxy)
     return first_nonfinite(editor.preview.renderer, editor.session.root, wanted, port)
 
 

@@ -17,7 +17,7 @@ from ...errors import UsageError
 from ...graph import OUTPUTS, Graph, Port, color_settings, did_you_mean
 from ...graph.frames import Pattern, check_numbered, is_video
 from ...resources.picture import Picture
-from ..engine import Wanted
+from ..engine import RenderRequest
 
 
 class Writing(Struct, frozen=True):
@@ -58,7 +58,7 @@ class Destination(Struct, frozen=True):
 
 
 def destinations(
-    graph: Graph, wanted: Wanted, writing: Writing, frames: Sequence[int]
+    graph: Graph, wanted: RenderRequest, writing: Writing, frames: Sequence[int]
 ) -> dict[int, tuple[Destination, ...]]:
     """The files of every frame; an EXR may be named for several outputs.
 
@@ -76,7 +76,7 @@ def _at(path: Path, frame: int) -> Path:
     return path if pattern is None else Path(pattern.name(frame))
 
 
-def _files(graph: Graph, wanted: Wanted, writing: Writing) -> tuple[Destination, ...]:
+def _files(graph: Graph, wanted: RenderRequest, writing: Writing) -> tuple[Destination, ...]:
     """What is to be written, by the names that were given."""
     names = tuple(wanted.targets or graph.outputs)
     files: dict[Path, tuple[str, ...]] = {}
@@ -124,7 +124,9 @@ def halves(files: Sequence[Destination], writing: Writing) -> frozenset[str]:
     return frozenset(found - rest)
 
 
-def _destination(graph: Graph, wanted: Wanted, writing: Writing, path: Path, names: Sequence[str]) -> Destination:
+def _destination(
+    graph: Graph, wanted: RenderRequest, writing: Writing, path: Path, names: Sequence[str]
+) -> Destination:
     layers: dict[str, str] = {}
     kinds: dict[str, Kind] = {}
     for name in names:
@@ -141,7 +143,7 @@ def _destination(graph: Graph, wanted: Wanted, writing: Writing, path: Path, nam
     return Destination(path, layers, kinds, encoding)
 
 
-def _port(wanted: Wanted, name: str) -> Port:
+def _port(wanted: RenderRequest, name: str) -> Port:
     return wanted.targets.get(name, Port(OUTPUTS, name))
 
 

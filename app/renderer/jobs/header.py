@@ -17,7 +17,7 @@ from ...errors import HalationError
 from ...graph import Graph
 from ...graph.paths import inlined
 from ...version import VERSION
-from ..engine import Wanted
+from ..engine import RenderRequest
 from .destinations import Destination, Writing
 from .sources import Hashes, Source, said
 
@@ -33,7 +33,7 @@ def whole(graph: Graph) -> str:
 def header(
     graph: str,
     target: Target,
-    wanted: Wanted,
+    wanted: RenderRequest,
     frames: tuple[int, int],
     writing: Writing,
     file: Destination,
@@ -62,7 +62,7 @@ def header(
 
 
 def settings(
-    wanted: Wanted, target: Target, writing: Writing, file: Destination, frames: tuple[int, int] | None
+    wanted: RenderRequest, target: Target, writing: Writing, file: Destination, frames: tuple[int, int] | None
 ) -> str:
     """How a file was rendered and written, as `name=value` words that a shell would take apart.
 
@@ -84,7 +84,7 @@ def settings(
 
 def frame_key(
     graph: str,
-    wanted: Wanted,
+    wanted: RenderRequest,
     plan: Plan,
     file: Destination,
     writing: Writing,

@@ -20,9 +20,9 @@ from ...compiler import Pass, Plan
 from ...errors import HalationError, UsageError
 from ...graph import Graph
 from ...resources.atomic_write import sweep
-from ..engine import Renderer, Wanted
+from ..engine import Renderer, RenderRequest
 from ..execution.decoding import Array
-from ..frame_renderer import Reel
+from ..frame_renderer import FrameRenderer
 from ..opengl.textures import Lease
 from .behind import Behind
 from .destinations import Destination, Writing, check, destinations, halves
@@ -82,7 +82,7 @@ class Report(Struct, frozen=True):
 def run_job(
     renderer: Renderer,
     graph: Graph,
-    wanted: Wanted,
+    wanted: RenderRequest,
     writing: Writing,
     frames: Sequence[int] | None = None,
     *,
@@ -126,7 +126,7 @@ class _Job:
         self,
         renderer: Renderer,
         graph: Graph,
-        wanted: Wanted,
+        wanted: RenderRequest,
         writing: Writing,
         resume: bool,
         progress: Progress | None,
@@ -138,7 +138,7 @@ class _Job:
         wanted = replace(wanted, halves=halves(first, writing), by_rows=by_rows)
         self._renderer, self._graph, self._wanted, self._writing = renderer, graph, wanted, writing
         self._resume, self._progress, self._frames = resume, progress, frames
-        self._reel = Reel(renderer, graph, wanted)
+        self._reel = FrameRenderer(renderer, graph, wanted)
         self._hashes = Hashes()
         self._sources = Sources(renderer.pictures, graph, renderer.pictures.bind(graph, wanted.bound))
         self._behind = Behind[FrameReport]()

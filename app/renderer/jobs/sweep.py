@@ -16,9 +16,9 @@ from msgspec import structs
 from ...errors import UsageError
 from ...graph import OUTPUTS, Graph, Port
 from ...media.sheet import data_shown, grid_sheet, grouped_sheet, shown_over_checker
-from ..engine import Renderer, Wanted
+from ..engine import Renderer, RenderRequest
 from ..execution.decoding import Array
-from ..frame_renderer import Reel
+from ..frame_renderer import FrameRenderer
 from .destinations import Writing
 from .job import run_job
 
@@ -70,7 +70,7 @@ class Cell:
 class Swept:
     """What to render of each graph, and how it is shown. `width` is that of a cell in pixels, 0 for the picture's."""
 
-    wanted: Wanted
+    wanted: RenderRequest
     output: str
     view: str = ""
     width: int = 480
@@ -144,7 +144,7 @@ def sweep(
 
 
 def _rendered(renderer: Renderer, cell: Cell, swept: Swept) -> Array:
-    reel = Reel(renderer, cell.graph, swept.wanted)
+    reel = FrameRenderer(renderer, cell.graph, swept.wanted)
     try:
         return reel.render(cell.frame)[swept.output]
     finally:

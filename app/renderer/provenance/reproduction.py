@@ -17,7 +17,7 @@ from ...media.compare import CODE, Compared, compare
 from ...media.stored import stored
 from ...resources.sandbox import ROOT
 from ...version import VERSION
-from ..engine import Renderer, Wanted
+from ..engine import Renderer, RenderRequest
 from ..execution.decoding import Array
 from ..jobs.destinations import Writing
 from ..jobs.job import run_job
@@ -94,7 +94,7 @@ def reproduce(
     if recipe.node:
         targets = {recipe.node: node_output(graph, recipe.node)}
     names = recipe.outputs or (recipe.node,)  # "" is all of them
-    wanted = Wanted({}, targets, recipe.size, recipe.scale, recipe.frame, recipe.intermediates)
+    wanted = RenderRequest({}, targets, recipe.size, recipe.scale, recipe.frame, recipe.intermediates)
     for file in files:
         if file.resolve() == recipe.path.resolve():
             raise UsageError(f"-o {file}: this is the picture to compare with; write to another file")

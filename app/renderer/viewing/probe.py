@@ -12,7 +12,7 @@ from msgspec.structs import replace
 from ...compiler import installed
 from ...errors import UsageError
 from ...graph import INPUTS, Graph, Port
-from ..engine import Renderer, Wanted
+from ..engine import Renderer, RenderRequest
 from ..execution.decoding import Array
 from ..opengl.device import Device
 from ..opengl.programs import VERTEX, undisturbed
@@ -97,7 +97,7 @@ class Nonfinite(Struct, frozen=True):
     value: tuple[float, ...]
 
 
-def first_nonfinite(renderer: Renderer, graph: Graph, wanted: Wanted, port: Port) -> Iterator[Nonfinite | None]:
+def first_nonfinite(renderer: Renderer, graph: Graph, wanted: RenderRequest, port: Port) -> Iterator[Nonfinite | None]:
     """Search what `port` shows and everything upstream of it, in order and without fusion.
 
     Yields None after every step, so that a caller can stop in between; what is found comes last. Raises the errors of
@@ -119,7 +119,7 @@ def first_nonfinite(renderer: Renderer, graph: Graph, wanted: Wanted, port: Port
         yield None
 
 
-def _pixels(renderer: Renderer, graph: Graph, wanted: Wanted) -> Generator[None, None, Array]:
+def _pixels(renderer: Renderer, graph: Graph, wanted: RenderRequest) -> Generator[None, None, Array]:
     plan = renderer.compile(graph, wanted, fusion=False)
     kept = renderer.runner.lease()
     try:
