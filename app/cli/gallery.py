@@ -47,7 +47,7 @@ def gallery(
     from halation.nodes import catalogue
     from halation.presets import paths
 
-    from ..media.sheet import write_sheet
+    from ..media.comparison.contact_sheet import write_sheet
     from .specimen import drawn
 
     done: list[dict[str, object]] = []
@@ -72,7 +72,7 @@ def preset_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet:
     from halation.presets import paths
 
     from .. import document
-    from ..media.sheet import grouped_sheet
+    from ..media.comparison.contact_sheet import grouped_sheet
 
     pictures: dict[str, Array] = {}
     for path in paths():
@@ -84,7 +84,7 @@ def preset_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet:
 
 def time_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet:
     """A row for every preset that moves: some of its frames, from the first to the last."""
-    from ..media.sheet import grouped_sheet
+    from ..media.comparison.contact_sheet import grouped_sheet
 
     rows: dict[str, dict[str, Array]] = {}
     for name, graph in moving().items():
@@ -106,7 +106,7 @@ def moving() -> dict[str, Graph]:
 
 def frames_of(graph: Graph, renderer: Renderer, frames: Iterable[int]) -> dict[int, Array]:
     """What the first output of a graph is at frames, as light of the display."""
-    from ..media.sheet import shown
+    from ..media.comparison.contact_sheet import shown
     from ..renderer import FrameRenderer, RenderRequest
 
     name, output = next(iter(graph.outputs.items()))
@@ -123,7 +123,7 @@ def node_sheet(renderer: Renderer, step: Step = lambda name: None, ids: tuple[st
     from halation.presets import sample
 
     from ..editor.theme.palette import DARK
-    from ..media.sheet import grouped_sheet
+    from ..media.comparison.contact_sheet import grouped_sheet
     from .specimen import drawn
 
     nodes = [node for id, node in catalogue().items() if drawn(node) and (not ids or id in ids)]
@@ -146,7 +146,7 @@ def picture_of(node: type[Node], renderer: Renderer, sample: Path) -> Array:
     found = renderer.render(graph)
     name = next((name for name, end in graph.outputs.items() if end.kind is Kind.IMAGE), next(iter(found)))
     if graph.outputs[name].kind is Kind.NUMBER:
-        from ..media.sheet import captioned, shown
+        from ..media.comparison.contact_sheet import captioned, shown
 
         numbers = [f"{name.replace('_', ' ')}  {array.item():.4g}" for name, array in found.items() if array.size == 1]
         return captioned(shown(renderer.render(untouched(sample))["image"]), numbers)
@@ -160,7 +160,7 @@ def light_of(kind: Kind, array: Array) -> Array:
     from halation.nodes import Kind
 
     from ..authoring.preview.data import are_normals, balanced, data_range
-    from ..media.sheet import data_shown, light_shown, shown_over_checker
+    from ..media.comparison.contact_sheet import data_shown, light_shown, shown_over_checker
 
     if kind in (Kind.IMAGE, Kind.COLOR):
         return shown_over_checker(array, "none" if array[..., :3].max() <= 1.0 else "")

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
     from ..media.layers import Layer
     from ..media.sequences import Sequence
+    from ..render_layers.analysis import Survey
     from ..render_layers.camera import Solved
-    from ..render_layers.survey import Survey
 
 
 def info(
@@ -31,8 +31,8 @@ def info(
     """Show the parts, layers and metadata of a picture, what each layer of a render is, how its data are meant, and the
     camera."""
     from ..media.sequences import check_any, find_sequence
+    from ..render_layers.analysis import survey
     from ..render_layers.report import report
-    from ..render_layers.survey import survey
 
     shot = find_sequence(str(file))
     if shot is not None:
@@ -82,7 +82,7 @@ def _shot_facts(shot: Sequence) -> dict[str, Any]:
 
 def _facts(found: Survey) -> dict[str, Any]:
     """Everything, for machines."""
-    from ..media.spaces import space_rows
+    from ..media.color_spaces import space_rows
 
     header = found.header
     return {

@@ -13,7 +13,7 @@ from .versions import version
 
 if TYPE_CHECKING:
     from ..graph import Graph
-    from ..media.compare import Compared
+    from ..media.comparison.metrics import Compared
 
 Pictures = Mapping[str, Any]
 """Arrays [h, w, c] by output."""
@@ -27,7 +27,7 @@ def compared(a: str, b: str, how: How, output: Path | None) -> list[dict[str, An
 
     Raises the errors of `app.errors`.
     """
-    from ..media.compare import compare
+    from ..media.comparison.metrics import compare
     from ..renderer import Renderer, open_device
 
     inputs, size, scale, frame = how
@@ -114,7 +114,7 @@ def _is_color(graphs: Sequence[Graph], name: str) -> bool:
 
 def _show(output: Path, names: tuple[str, str], graphs: Sequence[Graph], before: Pictures, after: Pictures) -> None:
     """A row for each output."""
-    from ..media.beside import Pair, write_beside
+    from ..media.comparison.side_by_side import Pair, write_beside
 
     pairs: dict[str, Pair] = {}
     for name in dict.fromkeys((*before, *after)):

@@ -14,7 +14,7 @@ from ..graph import INPUTS, OUTPUTS, Graph, Input, color_settings
 from ..graph.frames import Pattern, is_video
 from ..media.info import info, layer_or_first
 from ..media.layers import split_layer
-from ..media.read import Pixels, read
+from ..media.pixels import Pixels, read
 
 MOST = 4
 """Pictures that may wait for somebody to want them."""

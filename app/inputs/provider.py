@@ -119,7 +119,7 @@ class Pictures:
             return widened(array, picture.kind, picture.width)
         if picture.rows is not None:
             return self._load_rows(picture, *picture.rows)
-        from ..media.read import read
+        from ..media.pixels import read
 
         what = (picture.path, picture.layer, picture.kind, picture.width)
         pixels = self.ahead and self.ahead.take((*what, picture.space, picture.color))
@@ -148,7 +148,7 @@ class Pictures:
 
     def mesh(self, scene: Scene) -> Mesh:
         """The triangles of a scene. Raises InputError for a file that cannot be read."""
-        from ..media.meshes import load_mesh
+        from ..media.meshes.load import load_mesh
 
         return load_mesh(scene)
 
@@ -162,8 +162,8 @@ class Pictures:
 
     def _load_rows(self, picture: Picture, first: int, end: int) -> Array:
         """Rows of a file; what is repaired counts as often as it is read."""
-        from ..media.bands import read_rows
-        from ..media.read import Want
+        from ..media.pictures.row_reader import read_rows
+        from ..media.pixels import Want
 
         want = Want(picture.layer, picture.kind, picture.width, picture.space, picture.color)
         pixels = read_rows(picture.path, want, first, end)
@@ -241,7 +241,7 @@ def _changes(picture: Picture, layer: str) -> bool:
     """True if the numbers of a layer do not stay as they are in the file: half floats are not enough for others."""
     from ..color.management import managed
     from ..color.transforms import is_working
-    from ..media.spaces import layer_spaces
+    from ..media.color_spaces import layer_spaces
 
     try:
         found = layer_spaces(picture.path, picture.color, picture.space).get(layer)

@@ -22,7 +22,7 @@ from ..resources.working_space import Working
 from .rules.paths import named_paths
 
 if TYPE_CHECKING:
-    from ..color.faults import ColorFault
+    from ..color.graph_faults import ColorFault
     from ..inputs.provider import Pictures
 
 UNREADABLE_FILE = Rule(
@@ -190,7 +190,7 @@ def _color_faults(graph: Graph) -> Iterator[ColorFault]:
     """What is wrong with names of color management; what knows them is loaded only for a graph that has some."""
     named = (*(end.view for end in graph.outputs.values()), *(end.color_space for end in graph.inputs.values()))
     if graph.settings.color != ColorSettings() or any(name not in ("", "none") for name in named):
-        from ..color.faults import color_faults
+        from ..color.graph_faults import color_faults
 
         yield from color_faults(graph)
 

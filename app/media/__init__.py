@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 from .info import ImageInfo, find_layer, info
 from .layers import Layer
 from .metadata import Attribute, read_metadata
-from .read import Pixels, Want, read, read_many
-from .write import check_destination, rounds, write
+from .pictures.writer import check_destination, rounds, write
+from .pixels import Pixels, Want, read, read_many
 
 if TYPE_CHECKING:
     from .sequences import Sequence, find_sequence, frame_file, suggest_pattern
-    from .video_file import VideoFile, check_video
+    from .video.writer import VideoFile, check_video
 
 __all__ = [
     "Attribute",
@@ -41,8 +41,8 @@ __all__ = [
 _LATER = MappingProxyType(
     {
         "Sequence": "sequences",
-        "VideoFile": "video_file",
-        "check_video": "video_file",
+        "VideoFile": "video.writer",
+        "check_video": "video.writer",
         "find_sequence": "sequences",
         "frame_file": "sequences",
         "suggest_pattern": "sequences",

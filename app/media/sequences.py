@@ -29,7 +29,7 @@ from ..graph.frames import Pattern, format_frames, is_video
 from ..resources.input_files import check_inside
 from ..resources.provider import Frame
 from .info import video_facts
-from .thumbnail import readable
+from .pictures.thumbnail import readable
 
 if TYPE_CHECKING:
     from fractions import Fraction

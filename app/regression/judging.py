@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import HalationError
-from ..media.compare import CODE, Compared, compare
-from ..media.goldens import Stored, maker, read_stored
+from ..media.comparison.metrics import CODE, Compared, compare
+from ..media.pictures.stored import Stored, maker, read_stored
 from .cases import METRICS, PER_PIXEL, Case, number
 from .results import Check
 

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import OutputError
-from ..media.compare import amplified, three
-from ..media.goldens import Stored, codes_of, keep, png, write_difference
+from ..media.comparison.metrics import amplified, three
+from ..media.pictures.stored import Stored, codes_of, keep, png, write_difference
 from .cases import Case
 from .judging import Parts
 from .results import Check, Views

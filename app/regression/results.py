@@ -8,7 +8,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, Literal
 
-from ..media.compare import Compared
+from ..media.comparison.metrics import Compared
 from .cases import Case
 
 Status = Literal["passed", "failed", "blessed", "skipped"]

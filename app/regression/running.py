@@ -16,8 +16,8 @@ from ..compiler import named_files
 from ..errors import GraphError, HalationError
 from ..graph import Expression, Graph, Port, node_output, problems
 from ..graph.frames import Pattern
-from ..media.goldens import Stored, keep
 from ..media.layers import split_layer
+from ..media.pictures.stored import Stored, keep
 from ..renderer import FrameRenderer, Renderer, RenderRequest
 from ..renderer.jobs.job import Writing, run_job
 from .cases import Case, Golden

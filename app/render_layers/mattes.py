@@ -21,11 +21,11 @@ from halation.nodes import Kind, Matte, float_bits
 from ..color.transforms import Array
 from ..errors import InputError
 from ..media.layers import plain
-from ..media.read import read
+from ..media.pixels import read
 from ..resources.sandbox import outside
+from .analysis import Survey, survey
 from .naming import Role
 from .recognition import Pass
-from .survey import Survey, survey
 
 _NAME = re.compile(r"cryptomatte/(\w+)/name")
 _ROLES = MappingProxyType(

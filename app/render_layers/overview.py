@@ -11,12 +11,12 @@ from halation.nodes import Matte
 from ..errors import InputError
 from ..media.info import find_layer
 from ..media.layers import nearest
+from .analysis import FoundCamera, Survey, survey
 from .conventions import Convention
 from .mattes import mattes_of
 from .naming import Role
 from .recognition import Pass, chosen
 from .report import either, maker_line, metadata_rows, part_rows, report, size_line
-from .survey import FoundCamera, Survey, survey
 
 
 @dataclass(frozen=True)

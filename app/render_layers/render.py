@@ -9,9 +9,9 @@ from types import MappingProxyType
 from halation.nodes import Meaning, Render
 
 from ..errors import HalationError
+from .analysis import survey
 from .mattes import mattes_of
 from .naming import Role
-from .survey import survey
 
 _DATA = frozenset(
     {

@@ -8,11 +8,11 @@ from typing import cast
 
 from halation.nodes import Camera
 
+from ..media.color_spaces import space_rows
 from ..media.header import PartHeader
 from ..media.metadata import is_structural
-from ..media.spaces import space_rows
+from .analysis import FoundCamera, Survey
 from .conventions import Convention
-from .survey import FoundCamera, Survey
 
 _WIDEST = 84
 _SHORT = {"float16": "half", "float32": "float"}

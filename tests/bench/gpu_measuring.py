@@ -22,7 +22,7 @@ from halation import document
 from halation.compiler import Form
 from halation.errors import HalationError
 from halation.graph import Graph
-from halation.media.compare import flip
+from halation.media.comparison.metrics import flip
 from halation.renderer import Device, FrameRenderer, Renderer, RenderRequest
 from halation.renderer.bench import bench, held
 from msgspec import structs

@@ -17,7 +17,7 @@ import pytest
 from halation import nodes, presets
 from halation.cli import gallery, specimen
 from halation.graph import Graph, problems
-from halation.media.sheet import write_sheet
+from halation.media.comparison.contact_sheet import write_sheet
 from halation.nodes import Kind, Node, Source, catalogue
 from halation.presets import sample
 from halation.renderer import Renderer

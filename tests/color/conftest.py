@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,9 @@ import PyOpenColorIO as ocio
 import pytest
 from halation.nodes import ColorSettings
 from house_config import write_house
+from oiio_pictures import write_picture
+
+Make = Callable[..., Path]
 
 
 @pytest.fixture(autouse=True)
@@ -39,3 +43,14 @@ def light() -> np.ndarray:
     """Colors [24, 32, 3] over sixteen stops."""
     random = np.random.default_rng(5)
     return np.exp2(random.uniform(-10.0, 6.0, (24, 32, 3))).astype(np.float32)
+
+
+@pytest.fixture
+def make(tmp_path: Path) -> Make:
+    """`make("a.png", array, format="uint8", ...)` writes a file and gives its path."""
+    return lambda name, array, **options: write_picture(tmp_path / name, array, **options)
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    return np.random.default_rng(7)

@@ -13,7 +13,7 @@ from exr_files import write_exr
 from halation import document
 from halation.errors import GraphError, InputError
 from halation.media import read
-from halation.media.spaces import layer_spaces
+from halation.media.color_spaces import layer_spaces
 from halation.nodes import ColorSettings, Kind
 from house_config import AP1_TO_REC709, studio, through
 

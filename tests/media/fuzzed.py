@@ -35,7 +35,7 @@ def main(count: int, sources: list[Path]) -> int:
     from halation.errors import InputError
     from halation.media import info, read, read_metadata
     from halation.nodes import Kind
-    from halation.render_layers.survey import survey
+    from halation.render_layers.analysis import survey
 
     refused = 0
     for source in sources:

@@ -9,7 +9,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation.errors import UsageError
-from halation.media.compare import CODE, amplified, compare, flip, ssim
+from halation.media.comparison.metrics import CODE, amplified, compare, flip, ssim
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays

@@ -15,7 +15,8 @@ import pytest
 from halation import media
 from halation.errors import InputError, OutputError
 from halation.nodes import Kind
-from halation.render_layers.survey import survey
+from halation.render_layers.analysis import survey
+from halation.resources.input_files import content_hash, fingerprint
 from halation.resources.sandbox import fenced
 
 Make = Callable[..., Path]
@@ -124,13 +125,13 @@ def test_odd_names(tmp_path: Path, name: str) -> None:
 
 @pytest.mark.parametrize("name", ["x" * 300 + ".png", "a\x00b.png", "/dev/zero", "/dev/stdin", "/proc/self/mem"])
 def test_names_of_no_pictures(tmp_path: Path, name: str) -> None:
-    for act in (media.info, lambda path: media.read(path, "", Kind.IMAGE), media.fingerprint):
+    for act in (media.info, lambda path: media.read(path, "", Kind.IMAGE), fingerprint):
         try:
             act(tmp_path / name)
         except InputError as fault:
             assert "\x00" not in str(fault)
         else:
-            assert act is media.fingerprint
+            assert act is fingerprint
 
 
 def test_a_pipe_is_no_picture(tmp_path: Path) -> None:
@@ -166,7 +167,7 @@ def test_nothing_is_read_or_written_outside_of_a_fence(tmp_path: Path, make: Mak
     (inside / "shot.0001.exr").symlink_to(out)
     with fenced(inside):
         for path in (out, inside / ".." / out.name, inside / "link.exr", inside / "shot.0001.exr"):
-            for act in (media.info, media.read_metadata, survey, media.fingerprint, media.content_hash):
+            for act in (media.info, media.read_metadata, survey, fingerprint, content_hash):
                 with pytest.raises(InputError, match="lies outside of"):
                     act(path)
             with pytest.raises(InputError, match="lies outside of"):

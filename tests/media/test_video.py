@@ -17,6 +17,7 @@ from halation.errors import InputError  # noqa: E402
 from halation.media.video.index import surveyed  # noqa: E402
 from halation.media.video.reader import Reader, raw_frame  # noqa: E402
 from halation.nodes import Kind  # noqa: E402
+from halation.resources.input_files import fingerprint  # noqa: E402
 from videos import bars, decoded, number_in, write_frames, write_numbers  # noqa: E402
 
 COUNT = 45
@@ -54,7 +55,7 @@ def shown(frame: Any) -> np.ndarray:
 
 
 def test_frames_are_those_of_decoding_from_the_start_in_any_order(video: Path) -> None:
-    expected, mark = decoded(video), media.fingerprint(video)
+    expected, mark = decoded(video), fingerprint(video)
     assert surveyed(str(video), mark)[0].count == len(expected) == COUNT
     order = [*range(1, COUNT + 1)] * 2
     random.Random(7).shuffle(order)
@@ -87,8 +88,8 @@ def test_a_video_stands_where_a_sequence_does(video: Path) -> None:
 
 def test_reading_in_order_decodes_every_frame_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = write_numbers(tmp_path / "a.mp4", "libx264", "yuv420p", COUNT, options={"g": "10", "bf": "2"})
-    reader, fed = Reader(str(path), media.fingerprint(path)), 0
-    surveyed(str(path), media.fingerprint(path))
+    reader, fed = Reader(str(path), fingerprint(path)), 0
+    surveyed(str(path), fingerprint(path))
     real = reader._from
 
     def counting(index: Any, key: Any) -> Any:
@@ -114,17 +115,17 @@ def test_what_an_edit_list_cuts_off_is_no_frame(tmp_path: Path) -> None:
                 target.mux(packet)
     expected = decoded(cut)
     assert len(expected) < COUNT
-    facts, index = surveyed(str(cut), media.fingerprint(cut))
+    facts, index = surveyed(str(cut), fingerprint(cut))
     assert facts.count == len(expected) and index.times
     for number in (len(expected), 1, 20, 2):
-        assert np.array_equal(shown(raw_frame(str(cut), media.fingerprint(cut), number)), expected[number - 1])
+        assert np.array_equal(shown(raw_frame(str(cut), fingerprint(cut), number)), expected[number - 1])
     assert number_in(expected[0]) == 8
 
 
 def test_facts_are_those_of_the_file(tmp_path: Path) -> None:
     color = {"colorspace": 9, "color_range": 1, "color_primaries": 9, "color_trc": 16}
     path = write_numbers(tmp_path / "a.mkv", "ffv1", "yuv420p10le", 10, rate=25, color=color)
-    facts, _ = surveyed(str(path), media.fingerprint(path))
+    facts, _ = surveyed(str(path), fingerprint(path))
     assert (facts.size, facts.count, facts.rate, facts.seconds) == ((80, 32), 10, Fraction(25), 0.4)
     assert (facts.codec, facts.pixels, facts.bits, facts.alpha) == ("ffv1", "yuv420p10le", 10, False)
     assert (facts.matrix, facts.range, facts.primaries, facts.transfer) == (9, 1, 9, 16)

@@ -16,7 +16,7 @@ av: Any = pytest.importorskip("av", reason="PyAV is not installed: pip install h
 from halation import media  # noqa: E402
 from halation.color.encoding import Encoding  # noqa: E402
 from halation.media.video.signals import LUMA, from_rgb, linear, to_rgb  # noqa: E402
-from halation.media.video_file import exact_rate  # noqa: E402
+from halation.media.video.writer import exact_rate  # noqa: E402
 from halation.nodes import Kind  # noqa: E402
 from videos import write_frames  # noqa: E402
 

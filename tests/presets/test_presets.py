@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from halation import document, media
 from halation.graph import Control, Graph, Group, problems, signature
-from halation.media.sheet import sheet, shown
+from halation.media.comparison.contact_sheet import sheet, shown
 from halation.nodes import Kind
 from halation.presets import paths
 from halation.presets import picture as thumbnail

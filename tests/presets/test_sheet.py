@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 from halation.errors import OutputError, UsageError
-from halation.media.sheet import (
+from halation.media.comparison.contact_sheet import (
     captioned,
     data_shown,
     grouped_sheet,

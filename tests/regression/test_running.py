@@ -13,7 +13,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from halation.media.goldens import Stored
+from halation.media.pictures.stored import Stored
 from halation.regression import crew
 from halation.regression.cases import Case
 from halation.regression.judging import unusable

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from halation import document
 from halation.graph import Graph
-from halation.media.finite import as_half
+from halation.media.pictures.finite import as_half
 from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.jobs.destinations import Writing, destinations, halves
 from halation.renderer.jobs.job import run_job

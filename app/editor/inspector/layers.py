@@ -14,7 +14,7 @@ from ...color.management import color_mark
 from ...color.transforms import NO_VIEW, Array, to_display
 from ...errors import HalationError
 from ...media import ImageInfo, find_layer, info, read
-from ...media.spaces import layer_spaces
+from ...media.color_spaces import layer_spaces
 from ...watch.versions import Versions
 
 WIDTH, HEIGHT = 96, 54

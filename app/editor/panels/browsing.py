@@ -8,8 +8,8 @@ from time import localtime, strftime
 
 from ...color.gpu_programs import table_endings
 from ...graph.frames import VIDEO_ENDINGS
-from ...media.meshes import MESH_ENDINGS
-from ...media.thumbnail import readable
+from ...media.meshes.load import MESH_ENDINGS
+from ...media.pictures.thumbnail import readable
 from ..dialogs import Browse
 from ..editor import Editor
 from .listing import Item, Listing, Order

@@ -48,7 +48,7 @@ class Pictures:
         self._decoded.close()
 
     def _made(self, key: tuple[Path, float]) -> Array | str:
-        from ...media.thumbnail import load_thumbnail, save_thumbnail, thumbnail
+        from ...media.pictures.thumbnail import load_thumbnail, save_thumbnail, thumbnail
 
         path, time = key
         name = hashlib.sha256(f"{path.absolute()}\n{time}".encode(errors="surrogatepass")).hexdigest()[:32]

@@ -11,7 +11,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...authoring.services.preferences import Recent
 from ...authoring.services.recovery import Recovered
-from ...media.thumbnail import load_thumbnail
+from ...media.pictures.thumbnail import load_thumbnail
 from ..actions.documents import open_graph, open_preset, recover
 from ..editor import Editor
 from ..keys import chord

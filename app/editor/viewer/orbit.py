@@ -11,7 +11,7 @@ import numpy as np
 from halation.nodes import BuiltInScene, Camera, Node, SceneFile, orbit_camera
 
 from ...graph import Graph, Item, Port
-from ...media.meshes import load_mesh
+from ...media.meshes.load import load_mesh
 from ...resources.mesh import ATTRIBUTES
 from .perspective import Place, neat
 

@@ -11,7 +11,7 @@ from ..execution.decoding import Array
 from .destinations import Destination, Writing
 
 if TYPE_CHECKING:
-    from ...media.row_file import RowFile
+    from ...media.pictures.row_writer import RowFile
 
 
 def written_by_rows(files: Sequence[Destination]) -> frozenset[str]:
@@ -41,7 +41,7 @@ class Strips:
 
     def take(self, name: str, row: int, pixels: Array) -> None:
         """Write rows of an output. Raises OutputError."""
-        from ...media.row_file import RowFile
+        from ...media.pictures.row_writer import RowFile
 
         size = self._plan.surfaces[self._plan.outputs[name]].size
         for file in self._files:

@@ -15,7 +15,7 @@ from msgspec import structs
 
 from ...errors import UsageError
 from ...graph import OUTPUTS, Graph, Port
-from ...media.sheet import data_shown, grid_sheet, grouped_sheet, shown_over_checker
+from ...media.comparison.contact_sheet import data_shown, grid_sheet, grouped_sheet, shown_over_checker
 from ..engine import Renderer, RenderRequest
 from ..execution.decoding import Array
 from ..frame_renderer import FrameRenderer

@@ -13,8 +13,8 @@ import numpy as np
 from ...color.management import color_digest
 from ...errors import DeviceError, UsageError
 from ...graph import Graph, color_settings, node_output
-from ...media.compare import CODE, Compared, compare
-from ...media.stored import stored
+from ...media.comparison.metrics import CODE, Compared, compare
+from ...media.pictures.same_numbers import stored
 from ...resources.sandbox import ROOT
 from ...version import VERSION
 from ..engine import Renderer, RenderRequest

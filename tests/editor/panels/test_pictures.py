@@ -10,7 +10,7 @@ import pytest
 from halation.editor.panels.pictures import Pictures
 from halation.errors import InputError
 from halation.media import write
-from halation.media.thumbnail import load_thumbnail, readable, save_thumbnail, thumbnail
+from halation.media.pictures.thumbnail import load_thumbnail, readable, save_thumbnail, thumbnail
 from halation.nodes import Kind
 
 

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 from halation.nodes import Kind
 
-from ..color.transforms import Array
-from .compare import amplified
-from .sheet import data_shown, sheet, shown
-from .write import write
+from ...color.transforms import Array
+from ..pictures.writer import write
+from .contact_sheet import data_shown, sheet, shown
+from .metrics import amplified
 
 
 @dataclass(frozen=True)

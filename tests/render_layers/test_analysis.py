@@ -11,11 +11,11 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation.errors import InputError
-from halation.media.read import Want, read_many
+from halation.media.pixels import Want, read_many
 from halation.nodes import Camera, Kind
 from halation.nodes._declare.camera import look_at
+from halation.render_layers.analysis import Survey, survey
 from halation.render_layers.naming import Renderer, Role
-from halation.render_layers.survey import Survey, survey
 from raycast import Seen, seen
 
 ROOT = Path(__file__).parents[2]

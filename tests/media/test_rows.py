@@ -6,7 +6,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation.media import Want, info, read
-from halation.media.bands import read_rows
+from halation.media.pictures.row_reader import read_rows
 from halation.nodes import Kind
 from oiio_pictures import stored
 

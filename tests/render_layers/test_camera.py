@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from halation.errors import InputError
-from halation.media.read import Want, read_many
+from halation.media.pixels import Want, read_many
 from halation.nodes import Camera, Kind
 from halation.nodes._declare.camera import look_at
 from halation.render_layers.camera import header_camera, residual_of, solve_camera

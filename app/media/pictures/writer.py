@@ -12,14 +12,14 @@ import OpenImageIO as oiio
 from halation.nodes import Kind, Size
 from msgspec import Struct
 
-from ..color.encoding import Encoding, png_space
-from ..color.transforms import Array
-from ..errors import OutputError, UsageError
-from ..resources.atomic_write import check_room, store
+from ...color.encoding import Encoding, png_space
+from ...color.transforms import Array
+from ...errors import OutputError, UsageError
+from ...resources.atomic_write import check_room, store
+from ..info import TAG
+from ..layers import is_depth
+from ..metadata import add_metadata
 from .finite import as_half
-from .info import TAG
-from .layers import is_depth
-from .metadata import add_metadata
 
 _FORMATS = {
     ".exr": "openexr",

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 from halation.nodes import BuiltInScene, Scene
 
-from ..errors import InputError
-from ..resources.input_files import check_inside, fingerprint
-from ..resources.mesh import ATTRIBUTES, Mesh
-from .stages import BUILT_IN, Piece
+from ...errors import InputError
+from ...resources.input_files import check_inside, fingerprint
+from ...resources.mesh import ATTRIBUTES, Mesh
+from .built_in import BUILT_IN, Piece
 
 Array = np.ndarray
 MESH_ENDINGS = frozenset({".glb", ".gltf", ".obj", ".ply", ".stl"})
@@ -121,7 +121,7 @@ def _piece(scene: Any, node: str) -> Piece | None:
 
 def _color(visual: Any, material: Any) -> tuple[float, float, float]:
     """The base color: scene-linear in glTF; the other formats mean sRGB."""
-    from ..color.transforms import as_float, decode_srgb
+    from ...color.transforms import as_float, decode_srgb
 
     base = getattr(material, "baseColorFactor", None)
     if base is not None:

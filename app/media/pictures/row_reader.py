@@ -7,12 +7,12 @@ import OpenImageIO as oiio
 from halation.nodes import Kind
 from msgspec.structs import replace
 
-from ..color.transforms import Array
-from ..errors import InputError
+from ...color.transforms import Array
+from ...errors import InputError
+from ..info import check_memory, described, fault, find_layer, opened
+from ..layers import Layer
+from ..pixels import READ_AS, Pixels, Want, pixels_of, select
 from .finite import has_bad, not_finite
-from .info import check_memory, described, fault, find_layer, opened
-from .layers import Layer
-from .read import READ_AS, Pixels, Want, pixels_of, select
 
 _MORE = 16
 """Rows that are read besides at a time, until what is repaired in the first one that is wanted can be known."""

@@ -8,11 +8,11 @@ import numpy as np
 import OpenImageIO as oiio
 from halation.nodes import Kind
 
-from ..color.transforms import NO_VIEW, Array, to_display
-from ..errors import InputError
-from ..resources.atomic_write import store
-from .info import find_layer, info
-from .read import read
+from ...color.transforms import NO_VIEW, Array, to_display
+from ...errors import InputError
+from ...resources.atomic_write import store
+from ..info import find_layer, info
+from ..pixels import read
 
 _NO_PICTURES = ("null", "term", "ffmpeg", "openvdb", "ptex")
 

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import OpenImageIO as oiio
 import pytest
+from halation.render_layers.analysis import Survey, survey
 from halation.render_layers.naming import SCHEMES, Renderer, Role
 from halation.render_layers.recognition import Grounds
-from halation.render_layers.survey import Survey, survey
 
 ROOT = Path(__file__).parents[2]
 LETTERS = {"rgb": "RGB", "rgba": "RGBA", "xyz": "XYZ", "z": "Z", "x": "X", "uv": "UV", "xyzw": "XYZW", "y": "Y"}

@@ -17,10 +17,10 @@ from ..errors import InputError
 from ..graph.frames import is_video
 from ..resources.input_files import check_file
 from ..resources.input_files import fingerprint as marked
-from .finite import has_bad, not_finite
-from .hints import hints_of
 from .info import ImageInfo, check_memory, described, described_video, fault, find_layer, opened
 from .layers import Layer
+from .pictures.color_hints import hints_of
+from .pictures.finite import has_bad, not_finite
 
 READ_AS = {"float16": "half", "uint8": "uint8", "uint16": "uint16", "uint32": "uint"}
 _ALPHA = ("a", "alpha")

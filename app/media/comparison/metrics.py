@@ -8,8 +8,8 @@ from math import inf, log10, nan
 import numpy as np
 import OpenImageIO as oiio
 
-from ..color.transforms import Array, as_float, decode_srgb
-from ..errors import UsageError
+from ...color.transforms import Array, as_float, decode_srgb
+from ...errors import UsageError
 
 CODE = 1.0 / 255.0
 """One step of an 8-bit picture."""

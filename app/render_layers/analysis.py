@@ -21,7 +21,7 @@ from ..errors import InputError
 from ..media.header import Header, read_header
 from ..media.info import find_layer
 from ..media.layers import Layer
-from ..media.read import Want, read_many
+from ..media.pixels import Want, read_many
 from ..resources.input_files import fingerprint
 from . import evidence
 from .camera import Solved, header_camera, residual_of, solve_camera

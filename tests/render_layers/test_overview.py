@@ -9,12 +9,12 @@ import pytest
 from exr_files import write_exr
 from halation.errors import InputError
 from halation.presets import sample
+from halation.render_layers.analysis import survey
 from halation.render_layers.conventions import DepthKind
 from halation.render_layers.mattes import id_map
 from halation.render_layers.naming import Role
 from halation.render_layers.overview import overview
 from halation.render_layers.render import find_render, is_render
-from halation.render_layers.survey import survey
 
 NEON = str(sample())
 ROLES = (Role.BEAUTY, Role.DEPTH, Role.NORMAL, Role.POSITION, Role.UV)

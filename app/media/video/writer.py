@@ -13,13 +13,13 @@ from typing import Any
 import numpy as np
 from halation.nodes import Kind, Size
 
-from ..color.encoding import Encoding
-from ..errors import OutputError
-from ..resources.atomic_write import check_room, reason_of, unfinished
-from .video.codecs import find_codec
-from .video.library import library
-from .video.signals import Array, from_rgb, scales
-from .write import shown_layer
+from ...color.encoding import Encoding
+from ...errors import OutputError
+from ...resources.atomic_write import check_room, reason_of, unfinished
+from ..pictures.writer import shown_layer
+from .codecs import find_codec
+from .library import library
+from .signals import Array, from_rgb, scales
 
 _RGB, _UNKNOWN = 0, 2
 _LIMITED, _FULL = 1, 2

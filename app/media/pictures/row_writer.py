@@ -10,12 +10,12 @@ from typing import Any
 
 from halation.nodes import Kind, Size
 
-from ..color.encoding import Encoding
-from ..color.transforms import Array
-from ..errors import OutputError
-from ..resources.atomic_write import reason_of, unfinished
-from .metadata import add_metadata
-from .write import Precision, encoder_of, exr_parts, refusal
+from ...color.encoding import Encoding
+from ...color.transforms import Array
+from ...errors import OutputError
+from ...resources.atomic_write import reason_of, unfinished
+from ..metadata import add_metadata
+from .writer import Precision, encoder_of, exr_parts, refusal
 
 _BLOCK = 2**16
 """Bytes that a disk should have left."""

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..color.transforms import Array
-from ..errors import InputError
-from .info import described, fault, opened
+from ...color.transforms import Array
+from ...errors import InputError
+from ..info import described, fault, opened
 
 
 def stored(path: str | Path) -> Mapping[str, Array]:

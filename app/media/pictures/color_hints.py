@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import OpenImageIO as oiio
 
-from ..color.file_space import SRGB, Hints
-from ..color.management import LINEAR_REC709
-from .info import space as tag_of
-from .info import text
+from ...color.file_space import SRGB, Hints
+from ...color.management import LINEAR_REC709
+from ..info import space as tag_of
+from ..info import text
 
 
 def hints_of(spec: oiio.ImageSpec, format: str, integer: bool) -> Hints:

@@ -10,9 +10,9 @@ from types import MappingProxyType
 import numpy as np
 import OpenImageIO as oiio
 
-from ..color.transforms import Array, decode_srgb, to_display
-from ..errors import OutputError
-from ..resources.atomic_write import store
+from ...color.transforms import Array, decode_srgb, to_display
+from ...errors import OutputError
+from ...resources.atomic_write import store
 
 RGB = tuple[float, float, float]
 

@@ -11,8 +11,8 @@ from ..color.file_space import FileSpace, space_of
 from ..color.management import DEFAULT_COLOR, managed
 from ..errors import HalationError
 from ..graph.frames import is_video
-from .hints import hints_of
 from .info import described, opened
+from .pictures.color_hints import hints_of
 
 
 def layer_spaces(path: str | Path, color: ColorSettings = DEFAULT_COLOR, wanted: str = "") -> Mapping[str, FileSpace]:

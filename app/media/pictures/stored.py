@@ -12,13 +12,13 @@ import numpy as np
 import OpenImageIO as oiio
 from halation.nodes import Kind
 
-from ..color.transforms import Array, to_display
-from ..errors import InputError, OutputError
-from ..resources.atomic_write import store
-from .compare import three
-from .info import fault, opened
-from .metadata import read_metadata
-from .write import write
+from ...color.transforms import Array, to_display
+from ...errors import InputError, OutputError
+from ...resources.atomic_write import store
+from ..comparison.metrics import three
+from ..info import fault, opened
+from ..metadata import read_metadata
+from .writer import write
 
 _MAKER = ("halation:renderer", "halation:driver", "halation:version")
 _FLOATS = ("half", "float", "double")

@@ -1,0 +1,1 @@
+"""Picture files: EXR, PNG, TIFF and whatever else OpenImageIO reads and writes."""
