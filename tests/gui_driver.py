@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
-from halation.editor.editor import Editor
-from halation.editor.keys import chord
+from halation.editor.toolkit.keys import chord
+from halation.editor.window.editor import Editor
 from halation.editor.window.opengl import needs_no_display
 from halation.editor.window.window import Window
 from imgui_bundle import ImVec2, hello_imgui, imgui, immapp

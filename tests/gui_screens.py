@@ -12,8 +12,8 @@ from halation import presets
 from halation.authoring.services.export import Export, Job, State
 from halation.authoring.services.recovery import Recovery
 from halation.document import save
-from halation.editor.dialogs import Browse, Question
-from halation.editor.editor import Editor
+from halation.editor.shared.dialogs import Browse, Question
+from halation.editor.window.editor import Editor
 from halation.graph import Control, Graph, Input, Output, Port, Settings
 from halation.nodes import Kind, Light, LightKind, catalogue, numbers_of
 from toy_nodes import Lamps, Tint

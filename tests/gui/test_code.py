@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from halation import document
 from halation.custom_nodes import Written
-from halation.editor.keys import chord
-from halation.editor.panels.findings import findings
+from halation.editor.problems.findings import findings
+from halation.editor.toolkit.keys import chord
 from halation.graph import Graph, Output, Port, Settings, Unknown
 from halation.nodes import Kind, catalogue
 

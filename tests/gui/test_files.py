@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from halation import presets
-from halation.editor.dialogs import Browse
+from halation.editor.shared.dialogs import Browse
 
 FOLDER = presets.paths()[0].parent
 

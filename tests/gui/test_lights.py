@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from halation.editor.inspector.value_field import height_of
+from halation.editor.fields.value_field import height_of
 from halation.graph import Graph, Port
 from halation.nodes import Light, LightKind, catalogue, lights_of, numbers_of
 from toy_nodes import Lamps, Tint

@@ -124,7 +124,7 @@ def test_the_wheel_goes_nearer_and_space_pans_the_picture(gui, path: Path) -> No
 
 
 def ui_key(name: str):
-    from halation.editor.keys import chord
+    from halation.editor.toolkit.keys import chord
     from imgui_bundle import imgui
 
     return imgui.Key(chord(name))

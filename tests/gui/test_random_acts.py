@@ -11,7 +11,7 @@ import shutil
 
 import pytest
 from halation import document, presets
-from halation.editor.keys import chord
+from halation.editor.toolkit.keys import chord
 from imgui_bundle import ImVec2
 
 SIZE = (1400, 900)

@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 from gui_driver import drive
 from halation import document
-from halation.editor.panels.findings import findings
+from halation.editor.problems.findings import findings
 from halation.graph import Graph, Output, Port, Settings, Unknown
 from halation.nodes import Kind, Node, catalogue
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 from halation import document, presets
-from halation.editor.dialogs import Question
-from halation.editor.panels.findings import findings
+from halation.editor.problems.findings import findings
+from halation.editor.shared.dialogs import Question
 from halation.graph import Port
 from imgui_bundle import imgui
 

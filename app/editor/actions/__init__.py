@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from ..action import Action
-from .animation import ANIMATION
-from .code import CODE
-from .documents import DOCUMENTS
+from ..canvas.actions import GRAPH
+from ..curves.actions import ANIMATION
+from ..shared.action import Action
+from ..timeline.actions import PLAYBACK
+from ..viewer.actions import VIEWER
+from ..viewer.handle_actions import HANDLES
+from ..workflows.code_files import CODE
+from ..workflows.documents import DOCUMENTS
+from ..workflows.flipbook import FLIPBOOK
 from .edits import EDITS
-from .flipbook import FLIPBOOK
-from .graph import GRAPH
-from .handles import HANDLES
-from .playback import PLAYBACK
 from .view import VIEW
-from .viewer import VIEWER
 
 __all__ = ["MENUS", "table"]
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..action import Act, Action, Ask
+from ..shared.action import Act, Action, Ask
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 
 def _toggle(name: str) -> Act:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
 from ...authoring.edits.elements import entry
 from ...graph import Graph, Port
-from ..editor import Editor
 from ..theme.style import ui_scale
 from .brush import DETAILS_FROM, Brush, Texts, ink
 from .crumbs import draw_crumbs
@@ -41,6 +41,9 @@ from .places import Places
 from .scene import Box, Scene
 from .search import Search
 from .staging import Stage
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
 
 _HINTS = ("An empty graph", "Tab adds a node", "Drop an image or a graph file here")
 _ANY_TIME = int(imgui.HoveredFlags_.allow_when_blocked_by_active_item)

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ..editor import Editor
 from ..theme.style import u32, ui_scale, vec4
 from .brush import Brush
 from .geometry import Rect
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
 
 
 def draw_crumbs(editor: Editor, brush: Brush, panel: Rect) -> None:

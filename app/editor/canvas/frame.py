@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
-from ..editor import Editor
 from .geometry import Point, Rect, Transform, drift, zoomed
 from .layout import ROW
 from .scene import Scene
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
 
 CLICK = 4.0
 """Pixels (at UI scale 1) that the mouse may move within a click."""

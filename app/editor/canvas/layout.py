@@ -13,8 +13,9 @@ from ...authoring.edits.coding import LANGUAGES
 from ...custom_nodes import Written
 from ...errors import GraphError
 from ...graph import Graph, Group, Item, Port, Unknown, signature
-from ..inspector.lights import counted
-from ..inspector.numbers import SUFFIX, bar, shown
+from ..fields.lights import counted
+from ..fields.numbers import SUFFIX, bar, shown
+from ..shared.entries import words
 from .geometry import Rect
 
 WIDTH, END_WIDTH = 184.0, 152.0
@@ -110,11 +111,6 @@ def value_kind(value: Value) -> Kind | None:
     if not value.wireable:
         return None
     return {"color": Kind.COLOR, "vector": Kind.VECTOR}.get(value.type, Kind.NUMBER)
-
-
-def words(name: str) -> str:
-    """A name as people read it."""
-    return name.replace("_", " ")
 
 
 def end_layout(key: str, socket: Socket, picture: bool, doc: str = "") -> Layout:

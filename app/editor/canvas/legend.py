@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from halation.nodes import Kind
 from imgui_bundle import imgui
 
-from ..editor import Editor
 from ..theme.style import u32, ui_scale, vec4
 from .brush import Brush
 from .geometry import Rect, Transform
 from .paint_node import paint_pin
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
 
 _POPUP = "sockets"
 _SIDE, _GAP = 24.0, 12.0

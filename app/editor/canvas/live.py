@@ -3,26 +3,29 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from halation.nodes import Plain, Value
 from imgui_bundle import imgui
 
 from ...authoring.session import Session
 from ...graph import Port
-from ..editor import Editor
-from ..inspector.choice_field import toggle_field
-from ..inspector.color_field import color_picker, has_alpha, rgba
-from ..inspector.colors import intensity
-from ..inspector.fields import Edit, Fields
-from ..inspector.file_field import browse
-from ..inspector.number_field import number_field, row_of_numbers
-from ..inspector.text_field import text_field
+from ..fields.choice_field import toggle_field
+from ..fields.color_field import color_picker, has_alpha, rgba
+from ..fields.colors import intensity
+from ..fields.fields import Edit, Fields
+from ..fields.number_field import number_field, row_of_numbers
+from ..fields.text_field import text_field
+from ..shared.dialogs import browse
 from .brush import TEXT, Brush, on_nodes
 from .geometry import Rect
 from .layout import FIELD_HEIGHT, Row
 from .paint_field import MOST_PARTS, paint_label, split
 from .scene import Box
 from .sketch import Sketch
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
 
 _CHOICES, _PICKER = "choices of a node", "color of a node"
 

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
 from ...authoring.edits.elements import owner
 from ...graph import Problem
-from ..editor import Editor
 from .brush import Ink
 from .gestures import Gesture, Link
 from .paint_node import Look
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
 
 SLOW, COSTLY = 0.35, 0.12
 """Shares of the whole time from which a node counts as slow, or worth a look."""

@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...graph import Group, Port
-from ..actions import Action
-from ..editor import Editor
-from ..keys import shown
+from ..shared.action import Action
 from ..toolkit.buttons import entry
+from ..toolkit.keys import shown
 from ..toolkit.places import record
 from .geometry import Point
 from .scene import EMPTY, Hit
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
 
 _POPUP = "on the canvas"
 

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
-from ..editor import Editor
 from ..theme.style import u32, ui_scale
 from .brush import Brush
 from .geometry import Rect, bounds
 from .scene import Scene
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
 
 _SIZE, _GAP, _PAD = (168.0, 112.0), 12.0, 6.0
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
 from ...graph import Group, Port
-from ..actions.code import show_code
-from ..editor import Editor
+from ..workflows.code_files import show_code
 from .frame import Frame, pan_at_border, turn_wheel
 from .geometry import Point, holds
 from .gestures import (
@@ -36,6 +36,9 @@ from .gestures import (
     with_members,
 )
 from .scene import EMPTY, Hit, Scene
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
 
 LEFT, RIGHT, MIDDLE = imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.MouseButton_.middle
 

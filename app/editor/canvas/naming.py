@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
 from ...authoring.edits.elements import end_port, entry
-from ..editor import Editor
 from .brush import TEXT, Brush
 from .geometry import Rect
 from .scene import Scene
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
 
 
 @dataclass

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
-from ..inspector.colors import swatch
+from ..fields.colors import swatch
 from ..theme.style import u32
 from .brush import TEXT
 from .geometry import Rect

@@ -8,9 +8,10 @@ from halation.nodes import Kind
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ..shared.entries import words
 from .brush import DETAILS_FROM, SMALL, TITLE, Brush
 from .geometry import Rect
-from .layout import HEADER, ROW, WIDTH, Layout, Pin, Row, words
+from .layout import HEADER, ROW, WIDTH, Layout, Pin, Row
 from .paint_field import paint_field
 from .scene import Box
 from .sketch import Sketch

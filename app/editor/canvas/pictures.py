@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ...authoring.edits.elements import Sizes
-from ..editor import Editor
 from .layout import HEADER, PAD, PICTURE
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
 
 
 @dataclass

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
-from ..editor import Editor
 from .brush import DETAILS_FROM, Brush
 from .geometry import Rect, Transform, overlap
 from .link_index import Net, Wire
 from .scene import Box, Scene
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
 
 _PIN = 5.0
 

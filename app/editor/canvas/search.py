@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from halation import presets
 from halation.nodes import Kind
@@ -12,10 +13,7 @@ from imgui_bundle import imgui
 
 from ...graph import Port
 from ...graph.names import fresh_name
-from ..editor import Editor
-from ..theme.style import mix, u32, ui_scale, vec4
-from ..toolkit.places import record
-from .entries import (
+from ..shared.entries import (
     GRAPH,
     GROUP,
     SHADER,
@@ -29,7 +27,12 @@ from .entries import (
     preset_entries,
     shader_entries,
 )
+from ..theme.style import mix, u32, ui_scale, vec4
+from ..toolkit.places import record
 from .geometry import Point
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
 
 _POPUP = "add to the graph"
 _RECENT = 5

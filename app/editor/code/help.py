@@ -18,7 +18,7 @@ from ..toolkit.places import record
 from ..toolkit.words import dim, font, tip
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
     from .page import Page
 
 _POPUP = "help for code"

@@ -15,7 +15,7 @@ from ...graph import Unknown
 from ..theme.style import mix, u32
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 PAUSE = 0.25
 """Seconds without a key after which what was typed is taken over."""

@@ -4,21 +4,24 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from pathlib import PurePath
+from typing import TYPE_CHECKING
 
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...authoring.edits import paths
 from ...custom_nodes import Code
-from ..actions.code import save_code
-from ..editor import Editor
-from ..keys import chord
 from ..theme.style import EM, ui_scale, vec4
 from ..toolkit.buttons import quiet, right_aligned
+from ..toolkit.keys import chord
 from ..toolkit.places import record
 from ..toolkit.words import dim, elided, font, nothing_here, tip, wrapped
+from ..workflows.code_files import save_code
 from .help import Help
 from .page import Page
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
 
 MOST = 16
 """Texts whose cursor and own history of undo are kept."""

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...graph import Interpolation, Keys, Port
+from ..toolkit.plane import Plane
 from .hits import Mark, line_at
-from .plane import Plane
 from .rows import Lane, Row, Spot
 from .shapes import Pieces, all_pieces, is_straight, level, on_screen, outside, points
 

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 from ...authoring.session.animating import values_of
 from ...errors import UsageError
 from ...graph import Graph, Interpolation, Keys, Outside, Port, Settings
+from ..toolkit.plane import View
 from .copying import copied, pasted, read
 from .editing import Ease, automatic, chosen, eased, extent, fixed, going_on, interpolated, moved, removed, straightened
-from .plane import View
 from .rows import Row, Spot, limits, spots_of, width
 from .shapes import Samples, heights
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 
 def put(editor: Editor, changes: Mapping[Port, Keys], label: str, merge: str = "") -> None:

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
 from ...graph import Graph, Keys, Port
-from ..editor import Editor
 from ..theme.palette import RGB
 from ..theme.style import mix, u32
+from ..toolkit.plane import Plane, Rect
 from .hits import Mark, Tip
-from .plane import Plane, Rect
 from .rows import Lane, Row
 from .state import CurvesState
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
 
 TOOLBAR, LIST, RULER, BAR, ROW = 36.0, 224.0, 34.0, 12.0, 22.0
 """Sizes at UI scale 1: the tools, the names of rows, the ruler, the bar of what is chosen, and a row."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from ...graph import Animation, Keys, Port
 from ...graph.keys import rounded
+from ..toolkit.plane import View
 from .editing import Change, Limits, Side, moved, pulled, scaled
-from .plane import View
 from .rows import Spot
 
 Animations = Mapping[Port, Animation]

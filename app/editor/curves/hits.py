@@ -8,8 +8,8 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 
 from ...graph import Animation, Interpolation, Keys, Port
+from ..toolkit.plane import Plane, Rect
 from .editing import Side, has_handle
-from .plane import Plane, Rect
 from .rows import Lane, Row, Spot, spots_of
 from .shapes import Line, level
 

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from halation.nodes import Value
 from imgui_bundle import imgui
 from msgspec import structs
 
 from ...graph import Keys, Port
 from ...graph.graph import declared
-from ..editor import Editor
-from ..inspector.fields import Edit, Fields
-from ..inspector.number_field import row_of_numbers
+from ..fields.fields import Edit, Fields
+from ..fields.number_field import row_of_numbers
 from ..theme.palette import DARK
 from ..theme.style import ui_scale
 from ..toolkit.places import place
@@ -20,6 +21,9 @@ from .editing import Change, has_handle, moved, with_number
 from .frame import Frame
 from .hits import SIDES
 from .rows import spots_of
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
 
 _LABEL, _SHARE, _INF = 46.0, 0.6, float("inf")
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from imgui_bundle import imgui
 
 from ...graph import Keys
-from ..editor import Editor
 from . import commands
 from .editing import Change, aligned, extent
 from .frame import Frame, holds
@@ -17,6 +16,9 @@ from .hits import REACH, Mark, Tip, boxed, nearest
 from .paint import grips
 from .rows import Lane, Spot, limits
 from .shapes import level
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
 
 LEFT, RIGHT, MIDDLE = imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.MouseButton_.middle
 CLICK = 3.0

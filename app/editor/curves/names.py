@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from halation.nodes import Plain
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...errors import HalationError
 from ...graph import Keys, Port
-from ..editor import Editor
 from ..theme.style import mix, u32
 from ..toolkit.words import fitted
 from .frame import Frame, color_of, small
@@ -16,6 +17,9 @@ from .hits import Entries
 from .paint import paint_key
 from .rows import Row
 from .shapes import number
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
 
 _BUTTONS = int(imgui.ButtonFlags_.mouse_button_left) | int(imgui.ButtonFlags_.mouse_button_right)
 _KEY, _LETTER = 20.0, 15.0

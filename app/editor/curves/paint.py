@@ -7,9 +7,9 @@ from imgui_bundle import imgui
 from ...graph import Interpolation
 from ..theme.palette import Palette
 from ..theme.style import mix, u32
+from ..toolkit.plane import Rect, ticks
 from .editing import extent
 from .frame import Frame, small
-from .plane import Rect, ticks
 
 KEY = 5.0
 """Half the width of a key, at UI scale 1."""

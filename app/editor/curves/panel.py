@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...graph import Keys
-from ..editor import Editor
 from ..theme.style import u32, ui_scale
 from ..toolkit.buttons import dropdown
+from ..toolkit.plane import Plane, View
 from ..toolkit.words import nothing_here
 from . import commands
 from .frame import BAR, LIST, ROW, RULER, TOOLBAR, Frame, small
@@ -18,11 +20,13 @@ from .key_fields import KeyFields
 from .mouse import Mouse, hot_of
 from .names import Names, value_menu
 from .paint import paint_bar, paint_box, paint_now, paint_ruler, paint_time
-from .plane import Plane, View
 from .plot import Plot
 from .rows import Row
 from .sheet import SheetPainter
 from .toolbar import draw_toolbar, keys_menu, offered
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
 
 _ANY_TIME = int(imgui.HoveredFlags_.allow_when_blocked_by_active_item)
 _BUTTONS = (

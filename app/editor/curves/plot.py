@@ -10,11 +10,11 @@ from imgui_bundle import ImVec2, imgui
 
 from ...graph import Interpolation, Port
 from ..theme.style import mix, u32
+from ..toolkit.plane import Plane, View, ticks
 from .bundle import Bundle, Bundles
 from .frame import Frame, color_of, small
 from .hits import Mark, Tip
 from .paint import KEY, paint_key
-from .plane import Plane, View, ticks
 from .rows import Lane, Row
 from .shapes import Pieces, Samples, dashes
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...errors import GraphError
 from ...graph import Graph, Key, Keys, Port, Settings, value_at
-from .plane import Plane
+from ..toolkit.plane import Plane
 
 Pieces = NDArray[np.float64]
 """Cubic pieces [n, 4, 2]: start, two handles and end as (frame, value)."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from ...graph import Graph, Keys, Port
-from .plane import View
+from ..toolkit.plane import View
 from .rows import Row, Spot, rows
 
 Mode = Literal["sheet", "curves"]

@@ -5,19 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...authoring.edits.naming import called
 from ...graph import Interpolation
-from ..editor import Editor
 from ..theme.style import u32, ui_scale, vec4
 from ..toolkit.buttons import dropdown, entry, quiet, room_for, tip_of, tool
 from ..toolkit.words import tip
 from . import commands
 from .paint import paint_key
 from .state import Mode
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
 
 LOOKS: tuple[Interpolation, ...] = ("constant", "linear", "smooth", "bezier")
 _GAP, _APART = 2.0, 10.0

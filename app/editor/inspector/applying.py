@@ -9,8 +9,8 @@ from halation.nodes import Plain, Value
 
 from ...errors import GraphError, UsageError
 from ...graph import Graph, Port, Unknown, signature
-from .fields import Edit
-from .numbers import typed
+from ..fields.fields import Edit
+from ..fields.numbers import typed
 
 if TYPE_CHECKING:
     from ...authoring.session import Session

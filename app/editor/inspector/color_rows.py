@@ -9,12 +9,12 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...color.management import builtin_configs, color_mark, managed, ocio
-from ..dialogs import Browse
-from ..viewer.coloring import coloring
-from .choice_field import choose
-from .fields import Edit, Fields
+from ..fields.choice_field import choose
+from ..fields.fields import Edit, Fields
+from ..fields.text_field import text_field
+from ..shared.coloring import coloring
+from ..shared.dialogs import Browse
 from .rows import Rows
-from .text_field import text_field
 
 FOUND = "found out"
 """A color space that nobody chose."""

@@ -12,16 +12,16 @@ from imgui_bundle import imgui
 from ...color.transforms import views
 from ...graph import INPUTS, Input, Output, Port
 from ...graph.frames import Pattern
+from ..fields.choice_field import choose
+from ..fields.color_field import color_field
+from ..fields.fields import Edit, Fields
+from ..fields.number_field import number_field, row_of_numbers
+from ..fields.text_field import text_field
+from ..shared.coloring import coloring
 from ..toolkit.words import tip
-from ..viewer.coloring import coloring
-from .choice_field import choose
-from .color_field import color_field
 from .color_rows import space_field
-from .fields import Edit, Fields
 from .file_field import PICTURE, FileField
 from .heading import faults, heading, name_field
-from .number_field import number_field, row_of_numbers
-from .text_field import text_field
 from .value_rows import link_chip
 
 if TYPE_CHECKING:

@@ -14,15 +14,15 @@ from ...errors import HalationError
 from ...media import ImageInfo
 from ...media.sequences import find_sequence
 from ...watch.sequence_files import standing
-from ..dialogs import Browse
+from ..fields.fields import Edit, Fields
+from ..fields.text_field import text_field
+from ..shared.coloring import coloring
+from ..shared.dialogs import browse
 from ..toolkit.fields import draw_arrow
 from ..toolkit.places import item_rect, place, union
 from ..toolkit.textures import Textures
 from ..toolkit.words import tip, write
-from ..viewer.coloring import coloring
-from .fields import Edit, Fields
 from .layers import HEIGHT, WIDTH, Layers, described
-from .text_field import text_field
 
 if TYPE_CHECKING:
     from .rows import Rows
@@ -32,17 +32,6 @@ PICTURE = Value("file", "path", "")
 """What a graph input takes."""
 
 FIRST = "first color layer"
-
-
-def browse(declaration: Value, then: Callable[[Path], object]) -> Browse:
-    """The question for a file of the kind that a value takes."""
-    match declaration.holds:
-        case "table":
-            return Browse("Choose a Color Table", "table", then)
-        case "scene":
-            return Browse("Choose Meshes", "scene", then)
-        case "picture" | "render":
-            return Browse("Choose an Image", "image", then)
 
 
 class FileField:

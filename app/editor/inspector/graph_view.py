@@ -12,20 +12,20 @@ from ...authoring.edits.elements import entry
 from ...authoring.edits.naming import called
 from ...graph import Port, Unknown, signature
 from ...graph.names import fresh_name
+from ..fields.color_field import color_field
+from ..fields.colors import decode, encode
+from ..fields.fields import Fields
+from ..fields.number_field import number_field, row_of_numbers
+from ..fields.numbers import RATE, near
+from ..fields.text_field import text_field
 from ..theme.palette import RGB
 from ..theme.style import ui_scale
 from ..toolkit.places import item_rect
 from ..toolkit.words import tip
-from .color_field import color_field
 from .color_rows import color_rows
-from .colors import decode, encode
 from .end_view import bound_to, draw_text
-from .fields import Fields
 from .heading import faults, heading
-from .number_field import number_field, row_of_numbers
-from .numbers import RATE, near
 from .rows import Rows
-from .text_field import text_field
 from .value_rows import ValueRows, go_to
 
 _SIDE = Value("size", "int", 1920, low=1.0, high=4096.0, minimum=1.0, maximum=16384.0, unit="px")

@@ -13,12 +13,12 @@ from imgui_bundle import imgui
 from ...authoring.edits.coding import LANGUAGES
 from ...custom_nodes import Written
 from ...graph import Group, Item
+from ..fields.fields import Fields
+from ..fields.text_field import text_field
 from ..theme.palette import RGB
 from ..theme.style import EM, u32, ui_scale
 from ..toolkit.places import item_rect, place
 from ..toolkit.words import font, tip, write
-from .fields import Fields
-from .text_field import text_field
 
 if TYPE_CHECKING:
     from .rows import Rows

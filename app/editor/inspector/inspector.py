@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from imgui_bundle import imgui
 
 from ...authoring.edits.elements import end_port
+from ..fields.fields import Fields
 from ..theme.palette import DARK
 from .end_view import EndView
-from .fields import Fields
 from .file_field import FileField
 from .graph_view import GraphView
 from .heading import heading
@@ -18,7 +18,7 @@ from .rows import Rows
 from .value_rows import ValueRows
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 
 class Inspector:

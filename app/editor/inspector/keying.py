@@ -13,13 +13,13 @@ from imgui_bundle import imgui
 from ...document.animation import read_animation, written_animation
 from ...errors import GraphError, UsageError
 from ...graph import Animation, Expression, Keys, Port
+from ..fields.fields import Fields
+from ..fields.text_entry import text_entry
 from ..theme.palette import RGB, Palette
 from ..theme.style import mix, u32, ui_scale
 from ..toolkit.fields import background
 from ..toolkit.places import Rect, item_rect, place
 from ..toolkit.words import SMALL, font, note_below, tip, wrapped
-from .fields import Fields
-from .text_entry import text_entry
 
 if TYPE_CHECKING:
     from ...authoring.session import Session

@@ -12,16 +12,16 @@ from imgui_bundle import imgui
 
 from ...errors import UsageError
 from ...graph.values import value_fault
+from ..fields.choice_field import choice_field
+from ..fields.color_field import color_field
+from ..fields.fields import Edit
+from ..fields.lights import KINDS, Numbers, Part, changed, light_at, parts_of, turned
+from ..fields.lights_field import selected
+from ..fields.number_field import number_field, vector_field
+from ..fields.numbers import described, worded
 from ..theme.style import u32, ui_scale
 from ..toolkit.places import item_rect
 from .applying import as_text, from_text
-from .choice_field import choice_field
-from .color_field import color_field
-from .fields import Edit
-from .lights import KINDS, Numbers, Part, changed, light_at, parts_of, turned
-from .lights_field import selected
-from .number_field import number_field, vector_field
-from .numbers import described, worded
 
 if TYPE_CHECKING:
     from .rows import Rows

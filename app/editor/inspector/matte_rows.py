@@ -10,11 +10,11 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...graph import Port
+from ..fields.fields import Fields
+from ..shared.render_facts import matte_at
 from ..theme.style import mix, u32, ui_scale, vec4
 from ..toolkit.places import item_rect, place
 from ..toolkit.words import SMALL, font, write
-from .fields import Fields
-from .render_facts import matte_at
 
 if TYPE_CHECKING:
     from .rows import Rows

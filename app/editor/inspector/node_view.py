@@ -13,12 +13,12 @@ from ...authoring.edits import paths
 from ...authoring.edits.coding import LANGUAGES
 from ...custom_nodes import Code
 from ...graph import Group, Item, Port, Unknown, signature
+from ..fields.fields import Fields
+from ..shared.render_facts import render_path
 from ..toolkit.places import item_rect
 from ..toolkit.words import tip
 from .applying import common
-from .fields import Fields
 from .heading import doc_of, explanation, faults, heading, name_field, title_of
-from .render_facts import render_path
 from .render_rows import RenderRows
 from .value_rows import ValueRows, link_chip
 

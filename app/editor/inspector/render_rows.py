@@ -14,12 +14,12 @@ from ...render_layers.naming import Role
 from ...render_layers.overview import Overview, Use
 from ...render_layers.recognition import Pass
 from ...render_layers.report import camera_rows, either
+from ..shared.render_facts import FOUND, overview_of, render_path, rule_words
 from ..theme.palette import RGB
 from ..toolkit.buttons import dropdown
 from ..toolkit.places import item_rect, place
 from ..toolkit.words import SMALL, elided, font, tip, wrapped, write
 from .matte_rows import MatteRows
-from .render_facts import FOUND, overview_of, render_path, rule_words
 from .value_rows import ValueRows
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ from ..toolkit.places import item_rect, place
 from ..toolkit.words import SMALL, font, tip, wrapped, write
 
 if TYPE_CHECKING:
-    from ..editor import Editor
-    from .fields import Fields
+    from ..fields.fields import Fields
+    from ..window.editor import Editor
 
 
 class Rows:

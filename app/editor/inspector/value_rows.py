@@ -11,22 +11,22 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...graph import INPUTS, Graph, Port, signature
+from ..fields.choice_field import choose
+from ..fields.fields import Edit, Fields
+from ..fields.numbers import described, worded
+from ..fields.value_field import value_field
+from ..shared.render_facts import convention_words, first_words, use_of
 from ..theme.palette import RGB
 from ..theme.style import ui_scale
 from ..toolkit.places import item_rect
 from .applying import Ports, apply, as_text, default_of, from_text, reset
-from .choice_field import choose
 from .color_rows import space_field
-from .fields import Edit, Fields
 from .file_field import FileField
 from .keying import WIDTH, Keying, spoken, value_now
 from .light_rows import light_rows
-from .numbers import described, worded
-from .render_facts import convention_words, first_words, use_of
-from .value_field import value_field
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
     from .rows import Rows
 
 _MENU = "value menu"

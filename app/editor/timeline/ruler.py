@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Literal
 
 from imgui_bundle import imgui
 
-from ..curves.plane import Plane, View, ticks
 from ..theme.style import mix, u32, ui_scale
 from ..toolkit.places import Rect
+from ..toolkit.plane import Plane, View, ticks
 from ..toolkit.words import SMALL, font, tip
 from .gaps import Missing
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 Hold = Literal["", "now", "in", "out", "pan"]
 

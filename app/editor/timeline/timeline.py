@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ..inspector.fields import Edit, Fields
-from ..inspector.number_field import number_field
-from ..inspector.numbers import RATE, near
+from ..fields.fields import Edit, Fields
+from ..fields.number_field import number_field
+from ..fields.numbers import RATE, near
 from ..theme.palette import DARK
 from ..theme.style import ui_scale
 from ..toolkit.buttons import entry, quiet, tip_of, tool
@@ -19,7 +19,7 @@ from .playback import Loop
 from .ruler import Ruler
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 HEIGHT = 40.0
 """Of the bar, at UI scale 1."""

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import ImVec2, imgui
 
-from ..keys import shown
 from ..theme.palette import RGB
 from ..theme.style import mix, u32, ui_scale, vec4
+from .keys import shown
 from .places import Surface, item_rect, record
 from .words import tip
 
 if TYPE_CHECKING:
-    from ..action import Action
-    from ..editor import Editor
+    from ..shared.action import Action
+    from ..window.editor import Editor
 
 
 def quiet(

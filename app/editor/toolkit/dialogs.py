@@ -11,7 +11,7 @@ from imgui_bundle import ImVec2, imgui
 from ..theme.style import ui_scale, vec4
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 FIXED = (
     int(imgui.WindowFlags_.no_docking)

@@ -15,7 +15,7 @@ from ..theme.style import EM, mix, u32, ui_scale, vec4
 from .places import Rect, Surface
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 SMALL, TITLE, BIG = EM * 0.86, EM * 1.125, EM * 1.6
 """Font sizes besides that of everything else: notes and headings of sections, titles of dialogs, the program's name."""

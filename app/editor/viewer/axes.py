@@ -15,7 +15,7 @@ from .orbit import Orbit, aspect_of, scene_at
 from .strokes import BLACK, WHITE, around
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 _COLORS: dict[str, RGB] = {"x": (0.95, 0.30, 0.33), "y": (0.42, 0.78, 0.25), "z": (0.30, 0.56, 0.98)}
 _ARM, _MARGIN, _KNOB = 30.0, 16.0, 7.5

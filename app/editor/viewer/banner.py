@@ -13,7 +13,7 @@ from ..toolkit.buttons import quiet, room_for
 from ..toolkit.words import dim, elided, font, tip
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 _WITH = f"{icons.ICON_FA_TABLE_COLUMNS}  Compare with..."
 _BACK = f"{icons.ICON_FA_XMARK}  Back to the graph"

@@ -10,7 +10,7 @@ from ...graph import Port
 from ...renderer import Nonfinite, RenderRequest, first_nonfinite
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 BUDGET = 0.010
 """Seconds per frame."""

@@ -10,7 +10,7 @@ from ...graph import Port
 
 if TYPE_CHECKING:
     from ...authoring.session import Session
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 _CHOICE, _POINT, _DISTANCE = "focus", "focus_point", "focus_distance"
 

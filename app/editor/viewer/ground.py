@@ -14,7 +14,7 @@ from .orbit import scene_at
 from .perspective import Place, project, unproject
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 SCENE, DEPTH, PLACE = "scene depth", "depth", "place"
 """Under which names the depth of the scene that is orbited, and depth and places of the active node, are wanted."""

@@ -17,7 +17,7 @@ from .orbit import Orbit, scene_at
 from .orbit import put as put_camera
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 NOTCHES = 4.0
 """Steps of the wheel that double the size."""

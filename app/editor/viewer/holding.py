@@ -19,7 +19,7 @@ from .orbit import Orbit, aspect_of, scene_at
 from .orbit import put as put_camera
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 What = Literal[
     "pan",

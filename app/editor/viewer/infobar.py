@@ -20,7 +20,7 @@ from .scopes import LUMINANCE
 
 if TYPE_CHECKING:
     from ...authoring.preview import Shown
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 _LETTERS = "RGBA"
 _CHANNEL_COLORS: tuple[RGB, ...] = ((0.93, 0.36, 0.36), (0.30, 0.72, 0.36), (0.36, 0.54, 0.98))

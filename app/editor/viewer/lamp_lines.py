@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from halation.nodes import Light, LightKind
 from imgui_bundle import imgui
 
-from ..inspector.colors import swatch
-from ..inspector.lights import title
+from ..fields.colors import swatch
+from ..fields.lights import title
 from ..theme.palette import RGB
 from ..theme.style import mix, u32, ui_scale
 from .dome import RADIUS, knob_of, middle_of
@@ -19,7 +19,7 @@ from .perspective import Place, dot, moved, project, unit
 from .strokes import BLACK, CHOSEN, SHADE, WHITE, around, dashed_circle, label, path
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 _STEPS = 64
 """Corners of circles in perspective."""

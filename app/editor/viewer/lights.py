@@ -10,13 +10,13 @@ from halation.nodes import Camera, Kind, Light, LightKind, lights_of
 from msgspec import structs
 
 from ...graph import Port, Unknown, signature
-from ..inspector.lights import added, changed, count_of, fresh, light_at, removed
+from ..fields.lights import added, changed, count_of, fresh, light_at, removed
 from .geometry import Point
 from .ground import surface_at
 from .perspective import Place, dot, moved, project, unit, unproject
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 MOST = 64
 """Lights that are shown together; of longer lists only the selected one is."""

@@ -11,11 +11,11 @@ from imgui_bundle import imgui
 
 from ...graph import Port
 from ...render_layers.mattes import IdMap
-from ..inspector.render_facts import matte_at, pick_value, render_file
+from ..shared.render_facts import matte_at, pick_value, render_file
 from ..theme.style import u32, ui_scale
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
     from .geometry import Point, Sight
 
 

@@ -17,7 +17,7 @@ from .perspective import Place, neat
 
 if TYPE_CHECKING:
     from ...authoring.session import Session
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 SENSOR = 36.0
 """Width in mm of what the focal length is measured against."""

@@ -20,7 +20,7 @@ from .mattes import draw_name
 from .strokes import BLACK, WHITE, around, cross, frame, label
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 
 def draw_overlays(editor: Editor, sight: Sight) -> None:

@@ -13,7 +13,7 @@ from ..toolkit.buttons import dropdown
 
 if TYPE_CHECKING:
     from ...graph import Graph
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 
 def ports_of(graph: Graph) -> tuple[tuple[str, tuple[Port, ...]], ...]:

@@ -10,13 +10,13 @@ from halation.nodes import Kind
 
 from ...color.transforms import decode_srgb
 from ...media import write
-from ..dialogs import Browse
+from ..shared.dialogs import Browse
 from .looking import picture_only
 
 if TYPE_CHECKING:
     from ...authoring.preview import Shown
     from ...renderer.viewing.look import Look
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 
 def ask_to_save(editor: Editor, a: Shown, b: Shown | None, look: Look) -> None:

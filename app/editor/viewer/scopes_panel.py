@@ -11,11 +11,11 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...renderer.viewing.plates import Plate
+from ..shared.coloring import coloring
 from ..theme.style import u32, ui_scale
 from ..toolkit.buttons import quiet, room_for, tool
 from ..toolkit.words import nothing_here
 from . import graticules, scope_images
-from .coloring import coloring
 from .geometry import Box, Sight, texels
 from .looking import asked_view, displayed, look_of, meaning_of, range_of
 from .reading import Reader
@@ -25,7 +25,7 @@ from .wanted import A
 
 if TYPE_CHECKING:
     from ...authoring.preview import Shown
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 SECONDS = 0.2
 """Between refreshes."""

@@ -17,7 +17,7 @@ from .wanted import layer
 
 if TYPE_CHECKING:
     from ...authoring.preview import Shown
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 _FLAGS = (
     int(imgui.TableFlags_.row_bg)

@@ -11,17 +11,17 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...color.transforms import NO_LOOK, displays, looks, views
+from ..shared.coloring import coloring
 from ..theme.style import ui_scale
 from ..toolkit.buttons import dropdown, entries, entry, room_for, tool
 from ..toolkit.fields import number
-from .coloring import coloring
 from .focus import focused
 from .picking import list_ports, pick_port
 from .state import MEANINGS
 from .wanted import A, B
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 _SHORT: Mapping[str, str] = MappingProxyType(
     {

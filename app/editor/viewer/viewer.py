@@ -11,10 +11,10 @@ from imgui_bundle import imgui
 
 from ...graph import OUTPUTS, Port
 from ...renderer.viewing.look import Look
+from ..shared.coloring import coloring
 from ..theme.style import u32, ui_scale
 from . import infobar
 from .banner import draw_banner
-from .coloring import coloring
 from .finding import Finder
 from .focus import is_distance
 from .geometry import Sight
@@ -36,7 +36,7 @@ from .wanted import A, B
 
 if TYPE_CHECKING:
     from ...authoring.preview import Shown
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 TABLE_LINES = 7
 """Always the same, whatever it holds: else the picture would move under the pointer."""

@@ -11,7 +11,7 @@ from .ground import depths
 from .looking import measures
 
 if TYPE_CHECKING:
-    from ..editor import Editor
+    from ..window.editor import Editor
 
 A, B = "A", "B"
 

@@ -10,9 +10,9 @@ from ...errors import HalationError
 from ...media.sequences import find_sequence
 from ...renderer.provenance.recipe import has_recipe
 from ...watch.sequence_files import patterns
-from ..actions.documents import open_graph, open_made
-from ..dialogs import Question
-from ..editor import Editor
+from ..shared.dialogs import Question
+from ..workflows.documents import open_graph, open_made
+from .editor import Editor
 
 
 def arrived(editor: Editor, paths: Sequence[Path]) -> None:

@@ -19,9 +19,9 @@ from ...renderer import Device, Renderer
 from ...renderer.viewing.display import Display
 from ...renderer.viewing.probe import Probe
 from ...watch.watching import Watcher
-from ..action import Actions
 from ..actions import table
-from ..editor import Editor
+from ..shared.action import Actions
+from .editor import Editor
 
 
 class SystemClipboard:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from imgui_bundle import imgui
 
-from ..editor import Editor
+from .editor import Editor
 
 
 def guarded(editor: Editor, name: str, draw: Callable[[], object]) -> bool:

@@ -12,11 +12,11 @@ from ...watch.code_files import code_files
 from ...watch.reloading import NodeFiles, migrated, shader_folder
 from ...watch.sequence_files import all_files
 from ...watch.watching import Change, groups_of, pictures_of
-from ..actions.code import code_changed
-from ..actions.flipbook import follow_flipbook
-from ..dialogs import Question
-from ..editor import Editor
+from ..shared.dialogs import Question
 from ..viewer.wanted import glimpse, wanted
+from ..workflows.code_files import code_changed
+from ..workflows.flipbook import follow_flipbook
+from .editor import Editor
 
 FRAME_BUDGET = 0.012
 """Seconds of rendering per frame: the rest of a sixtieth is for drawing panels."""

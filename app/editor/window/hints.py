@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from ..editor import Editor
-from ..keys import shown
+from ..toolkit.keys import shown
 from ..viewer.lights import can_add
 from ..viewer.mattes import picks
+from .editor import Editor
 
 Hint = tuple[str, str]
 """Keys or a button, and what they do."""

@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 
 from imgui_bundle import imgui
 
-from ..action import Action
 from ..actions import MENUS
-from ..editor import Editor
+from ..shared.action import Action
 from ..toolkit.buttons import entry
+from .editor import Editor
 
 
 @dataclass

@@ -6,25 +6,25 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
+from ..browser.browser import FileBrowser
 from ..canvas.canvas import Canvas
 from ..code.panel import CodePanel
+from ..command_palette.palette import CommandPalette
 from ..curves.panel import Animation
-from ..editor import Editor
+from ..dialogs.about import About
+from ..dialogs.cheat_sheet import CheatSheet
+from ..dialogs.question import QuestionDialog
+from ..history.panel import HistoryPanel
 from ..inspector.inspector import Inspector
-from ..panels.about import About
-from ..panels.browser import FileBrowser
-from ..panels.cheat_sheet import CheatSheet
-from ..panels.command_palette import CommandPalette
-from ..panels.history import HistoryPanel
-from ..panels.log import LogPanel
-from ..panels.preferences import PreferencesDialog
-from ..panels.problems import Problems
-from ..panels.question import QuestionDialog
-from ..panels.renders import Renders
-from ..panels.start import StartScreen
-from ..panels.toasts import Toasts
+from ..log.panel import LogPanel
+from ..log.toasts import Toasts
+from ..preferences.dialog import PreferencesDialog
+from ..problems.panel import Problems
+from ..renders.panel import Renders
+from ..start.screen import StartScreen
 from ..viewer.scopes_panel import Scopes
 from ..viewer.viewer import Viewer
+from .editor import Editor
 
 
 class Panel(Protocol):

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from imgui_bundle import imgui
 
-from ..editor import Editor
-from ..keys import chord
+from ..toolkit.keys import chord
+from .editor import Editor
 
 
 def note_scope(editor: Editor) -> None:

@@ -7,11 +7,11 @@ from time import time
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ..editor import Editor
 from ..theme.style import EM, vec4
 from ..toolkit.places import record
 from ..toolkit.words import dim, fitted, font, level_color
 from ..viewer.wanted import A
+from .editor import Editor
 from .hints import hints
 from .panels import DOCKED
 

@@ -13,14 +13,14 @@ import glfw  # isort: skip
 
 from ...compiler import Form
 from ...renderer.opening import adopt
-from ..actions.documents import ask_to_close
-from ..dialogs import Browse
-from ..editor import Editor
+from ..shared.dialogs import Browse
 from ..theme import fonts, style
 from ..theme.palette import Palette
 from ..timeline.timeline import HEIGHT, Timeline
+from ..workflows.documents import ask_to_close
 from .arriving import arrived
 from .assembly import assemble, open_first, take_apart
+from .editor import Editor
 from .guard import failed, forgive, guarded
 from .heartbeat import Heartbeat
 from .menus import draw_menus

@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 from halation.authoring.edits.decor import add_frame
 from halation.authoring.edits.layout import pinned, positions
-from halation.editor.canvas.entries import GROUP, found, graph_entries, narrowed, node_entries
 from halation.editor.canvas.gestures import (
     Link,
     Move,
@@ -22,6 +21,7 @@ from halation.editor.canvas.gestures import (
 )
 from halation.editor.canvas.scene import Scene
 from halation.editor.canvas.staging import Stage, comment_height
+from halation.editor.shared.entries import GROUP, found, graph_entries, narrowed, node_entries
 from halation.graph import Graph, Input, Output, Port, Unknown
 from halation.nodes import catalogue
 

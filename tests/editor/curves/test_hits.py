@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from halation.editor.curves.bundle import Bundles
 from halation.editor.curves.hits import Entries, boxed, line_at, nearest, sheet_marks, tips
-from halation.editor.curves.plane import Plane, View
 from halation.editor.curves.rows import rows
+from halation.editor.toolkit.plane import Plane, View
 from halation.graph import Graph, Key, Keys, Port
 from toy_nodes import Gain
 

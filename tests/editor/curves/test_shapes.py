@@ -6,8 +6,8 @@ import itertools
 
 import numpy as np
 import pytest
-from halation.editor.curves.plane import Plane, View, ticks
 from halation.editor.curves.shapes import Samples, dashes, heights, outside, pieces, points
+from halation.editor.toolkit.plane import Plane, View, ticks
 from halation.graph import Expression, Graph, Key, Keys, Port, Settings
 from toy_nodes import Gain
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from halation.color.transforms import decode_srgb
-from halation.editor.inspector.colors import (
+from halation.editor.fields.colors import (
     brightened,
     decode,
     dimmed,

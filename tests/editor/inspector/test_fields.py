@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 from halation.authoring.session import Session
+from halation.editor.fields.fields import Edit, Fields
 from halation.editor.inspector.applying import apply, as_text, common, from_text, reset
-from halation.editor.inspector.fields import Edit, Fields
 from halation.editor.theme.palette import DARK
 from halation.errors import HalationError, UsageError
 from halation.graph import Graph, Port, Unknown

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from halation.editor.inspector.fields import Fields
-from halation.editor.inspector.lights import (
+from halation.editor.fields.fields import Fields
+from halation.editor.fields.lights import (
     PARTS,
     added,
     changed,
@@ -19,7 +19,7 @@ from halation.editor.inspector.lights import (
     title,
     turned,
 )
-from halation.editor.inspector.lights_field import selected
+from halation.editor.fields.lights_field import selected
 from halation.editor.theme.palette import DARK
 from halation.graph.values import value_fault
 from halation.nodes import MAX_LIGHTS, Light, LightKind, lights_of, numbers_of

@@ -5,8 +5,8 @@ from __future__ import annotations
 import ast
 
 import pytest
-from halation.editor.inspector.arithmetic import evaluate
-from halation.editor.inspector.numbers import Drag, bar, described, editable, shortened, shown, step, stepped, typed
+from halation.editor.fields.arithmetic import evaluate
+from halation.editor.fields.numbers import Drag, bar, described, editable, shortened, shown, step, stepped, typed
 from halation.errors import UsageError
 from halation.nodes import Value
 from hypothesis import given

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from halation.editor.inspector.points import CURVES, RAMPS, added, changed, inverted, nearest, removed, scaled
+from halation.editor.fields.points import CURVES, RAMPS, added, changed, inverted, nearest, removed, scaled
 from halation.graph.values import value_fault
 from hypothesis import given
 from hypothesis import strategies as st

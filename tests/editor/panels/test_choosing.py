@@ -10,11 +10,11 @@ import pytest
 from halation.authoring.services.exporting import Exports, Options
 from halation.authoring.services.preferences import Store
 from halation.authoring.session import Session
-from halation.editor.dialogs import Browse
-from halation.editor.panels.browsing import Browsing, begun, size_text
-from halation.editor.panels.export_form import Form
-from halation.editor.panels.export_words import title
-from halation.editor.panels.opening_folders import command, show_folder
+from halation.editor.browser.browsing import Browsing, begun, size_text
+from halation.editor.renders.folders import command, show_folder
+from halation.editor.renders.form import Form
+from halation.editor.renders.wording import title
+from halation.editor.shared.dialogs import Browse
 from halation.editor.timeline.state import TimelineState
 from halation.errors import UsageError
 from halation.presets import paths

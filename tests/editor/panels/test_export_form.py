@@ -9,8 +9,8 @@ import pytest
 from halation.authoring.services.exporting import Exports
 from halation.authoring.services.preferences import Store
 from halation.authoring.session import Session
-from halation.editor.panels.export_form import Form
-from halation.editor.panels.export_words import aim_text, exist_text, time_text
+from halation.editor.renders.form import Form
+from halation.editor.renders.wording import aim_text, exist_text, time_text
 from halation.editor.timeline.state import TimelineState
 from halation.errors import UsageError
 from halation.presets import paths

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from halation.editor.panels.fuzzy import Match, match, runs
+from halation.editor.shared.fuzzy import Match, match, runs
 
 NODES = (
     "Blend",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from halation.editor.keys import chord, shown, text
+from halation.editor.toolkit.keys import chord, shown, text
 from halation.errors import UsageError
 from imgui_bundle import imgui
 

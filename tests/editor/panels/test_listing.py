@@ -6,8 +6,8 @@ import os
 from pathlib import Path
 
 import pytest
-from halation.editor.panels.listing import Item, Listing, arranged, make_folder, read_folder
-from halation.editor.panels.places import completed, drives, places
+from halation.editor.browser.listing import Item, Listing, arranged, make_folder, read_folder
+from halation.editor.browser.places import completed, drives, places
 from halation.errors import InputError
 
 

@@ -9,14 +9,14 @@ from typing import Any, cast
 import pytest
 from halation.authoring.services.preferences import Store
 from halation.authoring.session import Session
-from halation.editor.action import Action, Actions
 from halation.editor.actions import table
-from halation.editor.editor import Editor
-from halation.editor.keys import chord, text
-from halation.editor.panels.commands import commands, ranked
-from halation.editor.panels.findings import findings, show
-from halation.editor.panels.shortcut_groups import columns, condensed, groups
-from halation.editor.panels.taking_over import assigned, reset, taken_over
+from halation.editor.command_palette.commands import commands, ranked
+from halation.editor.preferences.shortcut_changes import assigned, reset, taken_over
+from halation.editor.problems.findings import findings, show
+from halation.editor.shared.action import Action, Actions
+from halation.editor.shared.shortcut_groups import columns, condensed, groups
+from halation.editor.toolkit.keys import chord, text
+from halation.editor.window.editor import Editor
 from halation.graph import Port
 from halation.presets import paths
 

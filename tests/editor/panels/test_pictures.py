@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from halation.editor.panels.pictures import Pictures
+from halation.editor.toolkit.thumbnails import Pictures
 from halation.errors import InputError
 from halation.media import write
 from halation.media.pictures.thumbnail import load_thumbnail, readable, save_thumbnail, thumbnail

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from halation.authoring.services.shader_files import ShaderFile, ShaderFiles
-from halation.editor.canvas.entries import shader_entries
+from halation.editor.shared.entries import shader_entries
 
 
 def put(path: Path, **head: object) -> None:

@@ -1,0 +1,1 @@
+"""The file browser: choosing a file without leaving the window."""

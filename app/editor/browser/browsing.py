@@ -1,0 +1,135 @@
+"""What a file browser is about to do: where it is, what is chosen, what an answer would be. Draws nothing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from time import localtime, strftime
+from typing import TYPE_CHECKING
+
+from ...color.gpu_programs import table_endings
+from ...graph.frames import VIDEO_ENDINGS
+from ...media.meshes.load import MESH_ENDINGS
+from ...media.pictures.thumbnail import readable
+from ..shared.dialogs import Browse
+from .listing import Item, Listing, Order
+from .places import Place, places
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
+
+
+@dataclass
+class Browsing:
+    """One request for a file while it is open."""
+
+    browse: Browse
+    folder: Path
+    endings: frozenset[str]
+    offered: tuple[Place, ...]
+    name: str = ""
+    query: str = ""
+    order: Order = "name"
+    down: bool = False
+    hidden: bool = False
+    chosen: int = -1
+    """The index in `items`; -1 is none, as while a new name is typed."""
+    listing: Listing = field(default_factory=Listing)
+    _back: str = ""
+
+    def go(self, folder: Path) -> None:
+        """Show another folder; the one that was left is chosen if it is in there."""
+        self._back = self.folder.name if self.folder.parent == folder else ""
+        self.folder, self.query, self.chosen = folder, "", self.first
+        self.listing.show(folder)
+
+    def up(self) -> None:
+        """Show the folder around this one."""
+        self.go(self.folder.parent)
+
+    def poll(self) -> None:
+        """Take what was read meanwhile."""
+        if self.listing.poll() and self._back:
+            names = [item.name for item in self.items]
+            self.chosen = names.index(self._back) if self._back in names else self.first
+            self._back = ""
+        self.chosen = min(max(self.chosen, self.first), max(len(self.items) - 1, 0))
+
+    @property
+    def first(self) -> int:
+        """What is chosen at first: while saving nothing, so that Enter takes the name."""
+        return -1 if self.browse.saving else 0
+
+    @property
+    def items(self) -> tuple[Item, ...]:
+        """What is listed."""
+        return self.listing.shown(self.endings, self.query, self.order, self.down, self.hidden)
+
+    @property
+    def item(self) -> Item | None:
+        """The one that is chosen."""
+        items = self.items
+        return items[self.chosen] if 0 <= self.chosen < len(items) else None
+
+    def search(self, query: str) -> None:
+        """Filter by name; the best match is chosen."""
+        self.query, self.chosen = query, self.first
+
+    def choose(self, index: int) -> None:
+        """Choose an item; while saving, a file gives its name."""
+        self.chosen = index
+        item = self.item
+        if self.browse.saving and item and not item.is_folder:
+            self.name = item.name
+
+    @property
+    def target(self) -> Path | None:
+        """The file that would be the answer now, with the ending that is asked for."""
+        if self.browse.saving:
+            name = self.name.strip()
+            if not name or name in (".", ".."):
+                return None
+            path = self.folder / name
+            return path if path.suffix else path.with_name(path.name + (Path(self.browse.name).suffix or ".json"))
+        return self.folder / self.item.name if self.item and not self.item.is_folder else None
+
+
+def begun(editor: Editor, browse: Browse) -> Browsing:
+    """Start in the folder that was used last for this, else where the document is."""
+    path = editor.session.path
+    own = path.absolute().parent if path else None
+    last = editor.store.folder(browse.purpose)
+    start = own if browse.saving and browse.purpose == "graph" and own else Path(last) if last else own or Path.home()
+    recent = tuple(dict.fromkeys(Path(one.path).parent for one in editor.store.now.recent))[:4]
+    used = tuple(Path(folder) for folder in editor.store.now.folders.values())
+    made = Browsing(browse, start, endings(browse), places(own, recent, used), browse.name)
+    made.listing.show(start)
+    return made
+
+
+def endings(browse: Browse) -> frozenset[str]:
+    """Which files are listed."""
+    if browse.purpose == "image":
+        return readable() | VIDEO_ENDINGS
+    if browse.purpose == "table":
+        return table_endings()
+    if browse.purpose == "scene":
+        return MESH_ENDINGS
+    if browse.purpose == "config":
+        return frozenset({".ocio", ".ocioz"})
+    return frozenset({".json" if browse.purpose == "graph" else Path(browse.name).suffix.lower() or ".exr"})
+
+
+def size_text(size: int) -> str:
+    """Bytes as people read them."""
+    if size < 1000:
+        return f"{size} B"
+    value, unit = float(size), 0
+    while value >= 999.5:
+        value, unit = value / 1000, unit + 1
+    return f"{value:.3g} {('kB', 'MB', 'GB', 'TB', 'PB')[unit - 1]}"
+
+
+def time_text(time: float) -> str:
+    """When a file was changed."""
+    return strftime("%Y-%m-%d %H:%M", localtime(time))

@@ -1,0 +1,176 @@
+"""Files as a list and as pictures; only what is visible is drawn."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from imgui_bundle import ImVec2, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
+
+from ..theme.style import u32, ui_scale
+from ..toolkit.buttons import outline
+from ..toolkit.places import record
+from ..toolkit.textures import Textures, fitted
+from ..toolkit.thumbnails import Pictures
+from ..toolkit.words import dim, elided, tip
+from .browsing import Browsing, size_text, time_text
+from .listing import Item, Order
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
+
+_ORDERS: tuple[Order, ...] = ("name", "size", "time")
+_CELL, _PICTURE = (168.0, 128.0), (152.0, 88.0)
+
+
+class FileTable:
+    """Name, size and date; a click on a header sorts."""
+
+    columns = 1
+
+    def __init__(self) -> None:
+        self.reveal = False
+
+    def draw(self, editor: Editor, now: Browsing) -> bool:
+        """True if an item was double-clicked."""
+        flags = int(imgui.TableFlags_.sortable) | int(imgui.TableFlags_.scroll_y) | int(imgui.TableFlags_.row_bg)
+        if not imgui.begin_table("table", 3, flags):
+            return False
+        scale, fixed = ui_scale(), imgui.TableColumnFlags_.width_fixed.value
+        imgui.table_setup_scroll_freeze(0, 1)
+        imgui.table_setup_column("Name", imgui.TableColumnFlags_.width_stretch.value)
+        imgui.table_setup_column("Size", fixed, 84 * scale)
+        imgui.table_setup_column("Changed", fixed, 136 * scale)
+        imgui.table_headers_row()
+        _sort(now)
+        items, done = now.items, False
+        clipper = imgui.ListClipper()
+        clipper.begin(len(items))
+        if self.reveal:
+            clipper.include_item_by_index(now.chosen)
+        while clipper.step():
+            for index in range(clipper.display_start, clipper.display_end):
+                imgui.table_next_row()
+                done = self._row(editor, now, index, items[index]) or done
+        clipper.end()
+        imgui.end_table()
+        return done
+
+    def _row(self, editor: Editor, now: Browsing, index: int, item: Item) -> bool:
+        imgui.table_next_column()
+        icon = icons.ICON_FA_FOLDER if item.is_folder else _icon(item.name)
+        flags = int(imgui.SelectableFlags_.span_all_columns) | int(imgui.SelectableFlags_.allow_double_click)
+        room = imgui.get_content_region_avail().x - 26 * ui_scale()
+        chosen = index == now.chosen
+        done = False
+        if imgui.selectable(f"{icon}  {elided(item.name, room)}##{index}", chosen, flags)[0]:
+            now.choose(index)
+            done = imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
+        record(editor, f"file {item.name}")
+        if chosen and self.reveal:
+            imgui.internal.scroll_to_item()
+            self.reveal = False
+        imgui.table_next_column()
+        dim(editor, "" if item.is_folder else size_text(item.size))
+        imgui.table_next_column()
+        dim(editor, time_text(item.time))
+        return done
+
+
+class FileGrid:
+    """Pictures with their names; those that are visible are decoded beside the window."""
+
+    def __init__(self) -> None:
+        self.reveal = False
+        self.columns = 1
+        self._pictures: Pictures | None = None
+        self._textures = Textures()
+
+    def close(self) -> None:
+        """End the decoding, give pictures back."""
+        if self._pictures:
+            self._pictures.close()
+        self._textures.clear()
+
+    def draw(self, editor: Editor, now: Browsing) -> bool:
+        """True if an item was double-clicked."""
+        if self._pictures is None:
+            self._pictures = Pictures(editor.store.file.parent / "thumbnails")
+        scale, items, done = ui_scale(), now.items, False
+        self.columns = max(int((imgui.get_content_region_avail().x - 16 * scale) / (_CELL[0] * scale)), 1)
+        imgui.begin_child("grid")
+        clipper = imgui.ListClipper()
+        clipper.begin(-(-len(items) // self.columns), _CELL[1] * scale)
+        if self.reveal:
+            clipper.include_item_by_index(now.chosen // self.columns)
+        start = imgui.get_cursor_pos() + ImVec2(4 * scale, 4 * scale)
+        while clipper.step():
+            for row in range(clipper.display_start, clipper.display_end):
+                for index in range(row * self.columns, min((row + 1) * self.columns, len(items))):
+                    corner = ((index % self.columns) * _CELL[0], row * _CELL[1])
+                    imgui.set_cursor_pos(ImVec2(start.x + corner[0] * scale, start.y + corner[1] * scale))
+                    done = self._cell(editor, now, index, items[index], self._pictures) or done
+        clipper.end()
+        imgui.end_child()
+        return done
+
+    def _cell(self, editor: Editor, now: Browsing, index: int, item: Item, pictures: Pictures) -> bool:
+        scale, palette = ui_scale(), editor.palette
+        chosen = index == now.chosen
+        size = ImVec2((_CELL[0] - 6) * scale, (_CELL[1] - 6) * scale)
+        imgui.push_id(index)
+        flags = int(imgui.SelectableFlags_.allow_double_click)
+        clicked, _ = imgui.selectable("##cell", chosen, flags, size)
+        record(editor, f"file {item.name}")
+        tip(f"{item.name}\n{size_text(item.size)}, {time_text(item.time)}")
+        if chosen:
+            outline(palette.accent)
+            if self.reveal:
+                imgui.internal.scroll_to_item()
+                self.reveal = False
+        low = imgui.get_item_rect_min()
+        self._picture(editor, now.folder / item.name, item, low, pictures)
+        lines = imgui.get_window_draw_list()
+        name = elided(item.name, _PICTURE[0] * scale)
+        left = low.x + (size.x - imgui.calc_text_size(name).x) / 2
+        lines.add_text(ImVec2(left, low.y + (_PICTURE[1] + 10) * scale), u32(palette.text), name)
+        imgui.pop_id()
+        if clicked:
+            now.choose(index)
+        return clicked and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
+
+    def _picture(self, editor: Editor, path: Path, item: Item, low: ImVec2, pictures: Pictures) -> None:
+        scale, palette, lines = ui_scale(), editor.palette, imgui.get_window_draw_list()
+        left, top = low.x + 5 * scale, low.y + 5 * scale
+        width, height = _PICTURE[0] * scale, _PICTURE[1] * scale
+        found = None if item.is_folder else pictures.get(path, item.time)
+        if found is not None and not isinstance(found, str):
+            across, down = fitted(found, width, height)
+            corner = ImVec2(left + (width - across) / 2, top + (height - down) / 2)
+            texture = self._textures.get((path, item.time), lambda: found)
+            lines.add_image(texture, corner, ImVec2(corner.x + across, corner.y + down))
+            return
+        broken = isinstance(found, str)
+        icon = icons.ICON_FA_FOLDER if item.is_folder else icons.ICON_FA_BAN if broken else icons.ICON_FA_IMAGE
+        size = 34 * scale
+        color = palette.error if broken else palette.dim
+        font = editor.fonts.text if editor.fonts else imgui.get_font()
+        corner = ImVec2(left + (width - size) / 2, top + (height - size) / 2)
+        lines.add_text(font, size, corner, u32(color, 0.7), icon)
+        if broken and imgui.is_item_hovered():
+            imgui.set_tooltip(str(found))
+
+
+def _sort(now: Browsing) -> None:
+    """Take over what a click on a header asked for."""
+    specs = imgui.table_get_sort_specs()
+    if specs is not None and specs.specs_dirty and specs.specs_count:
+        first = specs.get_specs(0)
+        now.order = _ORDERS[first.column_index]
+        now.down = first.get_sort_direction() == imgui.SortDirection.descending
+        specs.specs_dirty = False
+
+
+def _icon(name: str) -> str:
+    return icons.ICON_FA_DIAGRAM_PROJECT if name.lower().endswith(".json") else icons.ICON_FA_IMAGE

@@ -1,0 +1,172 @@
+"""What is in a folder: read in a thread, sorted and filtered for a list."""
+
+from __future__ import annotations
+
+import os
+import re
+import stat
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Thread
+from typing import Literal
+
+from ...errors import InputError
+from ..shared.fuzzy import match
+
+Order = Literal["name", "size", "time"]
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """A file or a folder; `size` in bytes, `time` of the last change in seconds since 1970."""
+
+    name: str
+    is_folder: bool
+    size: int
+    time: float
+    hidden: bool
+
+
+def read_folder(folder: Path) -> tuple[Item, ...]:
+    """Everything in a folder; what cannot be looked at is left out. Raises InputError if the folder cannot be read."""
+    try:
+        with os.scandir(folder) as entries:
+            found = [_item(entry) for entry in entries]
+    except OSError as error:
+        raise InputError(f"{folder}: {_reason(error)}") from None
+    return tuple(item for item in found if item)
+
+
+def arranged(
+    items: Sequence[Item],
+    endings: Collection[str],
+    *,
+    query: str = "",
+    order: Order = "name",
+    down: bool = False,
+    hidden: bool = False,
+) -> tuple[Item, ...]:
+    """What a list shows: folders first, then files whose name ends in one of `endings` (none: all), sorted.
+
+    With a `query` the best matches come first instead.
+    """
+    wanted = [
+        item
+        for item in items
+        if (hidden or not item.hidden) and (item.is_folder or not endings or _ending(item.name) in endings)
+    ]
+    keys = {
+        "name": lambda item: _natural(item.name),
+        "size": lambda item: (item.size, _natural(item.name)),
+        "time": lambda item: (item.time, _natural(item.name)),
+    }
+    wanted.sort(key=keys[order], reverse=down)
+    wanted.sort(key=lambda item: not item.is_folder)
+    if not query:
+        return tuple(wanted)
+    return tuple(wanted[one.index] for one in match(query, tuple(item.name for item in wanted)))
+
+
+class Listing:
+    """The folder that is shown; reading it never blocks. `fault` is a sentence if it cannot be read."""
+
+    def __init__(self) -> None:
+        self.folder = Path()
+        self.items: tuple[Item, ...] = ()
+        self.fault = ""
+        self._reader: _Reader | None = None
+        self._asked: tuple[object, ...] = ()
+        self._shown: tuple[Item, ...] = ()
+
+    def shown(self, endings: frozenset[str], query: str, order: Order, down: bool, hidden: bool) -> tuple[Item, ...]:
+        """The items `arranged`; asking the same again costs nothing."""
+        asked = (endings, query, order, down, hidden)
+        if not self._asked or self._asked[0] is not self.items or self._asked[1:] != asked:
+            self._shown = arranged(self.items, endings, query=query, order=order, down=down, hidden=hidden)
+            self._asked = (self.items, *asked)
+        return self._shown
+
+    @property
+    def busy(self) -> bool:
+        """True until the folder has been read."""
+        return self._reader is not None
+
+    def show(self, folder: Path) -> None:
+        """Read a folder; the list is empty meanwhile, unless it is the same one again."""
+        if folder != self.folder:
+            self.items = ()
+        self.folder, self.fault = folder, ""
+        self._reader = _Reader(folder)
+        self._reader.start()
+
+    def poll(self) -> bool:
+        """Take what has been read; True if there was something new."""
+        if self._reader is None or self._reader.is_alive():
+            return False
+        self.items, self.fault, self._reader = self._reader.items, self._reader.fault, None
+        return True
+
+    def wait(self) -> None:
+        """Block until the folder has been read."""
+        if self._reader is not None:
+            self._reader.join()
+        self.poll()
+
+
+class _Reader(Thread):
+    """Reads one folder; nobody waits for one that a slow disk holds up."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__(name="folder", daemon=True)
+        self.items: tuple[Item, ...] = ()
+        self.fault = ""
+        self._folder = folder
+
+    def run(self) -> None:
+        try:
+            self.items = read_folder(self._folder)
+        except InputError as fault:
+            self.fault = str(fault)
+
+
+def make_folder(parent: Path, name: str) -> Path:
+    """A new folder. Raises InputError."""
+    name = name.strip()
+    if not name or name in (".", "..") or set(name) & set('/\\:*?"<>|'):
+        raise InputError(f"'{name}' cannot be the name of a folder")
+    try:
+        (parent / name).mkdir()
+    except OSError as error:
+        raise InputError(f"{parent / name}: {_reason(error)}") from None
+    return parent / name
+
+
+def _item(entry: os.DirEntry[str]) -> Item | None:
+    try:
+        status = entry.stat()
+    except OSError:
+        return None
+    marked = getattr(status, "st_file_attributes", 0) & getattr(stat, "FILE_ATTRIBUTE_HIDDEN", 0)
+    hidden = entry.name.startswith(".") or bool(marked)
+    return Item(entry.name, stat.S_ISDIR(status.st_mode), status.st_size, status.st_mtime, hidden)
+
+
+def _ending(name: str) -> str:
+    return os.path.splitext(name)[1].lower()  # noqa: PTH122 - ten thousand times, so without a Path each
+
+
+def _natural(name: str) -> tuple[tuple[bool, int, str], ...]:
+    """Numbers within names sort as numbers: frame 2 before frame 10."""
+    parts = re.split(r"(\d+)", name.casefold())
+    return tuple((part.isdecimal(), int(part) if part.isdecimal() else 0, part) for part in parts)
+
+
+def _reason(error: OSError) -> str:
+    known = {
+        PermissionError: "it may not be read or written; ask its owner, or choose another folder",
+        FileNotFoundError: "there is no such folder",
+        NotADirectoryError: "this is a file, not a folder",
+        FileExistsError: "there is something of that name already",
+    }
+    return next((sentence for kind, sentence in known.items() if isinstance(error, kind)), error.strerror or str(error))

@@ -1,0 +1,114 @@
+"""What the command palette offers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from halation.presets import paths
+
+from ...graph import Group
+from ..shared.action import Action
+from ..shared.entries import code_entries, words
+from ..shared.fuzzy import Match, match
+from ..workflows.documents import open_preset
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
+
+
+@dataclass(frozen=True)
+class Command:
+    """One line of the palette. `reason` says why it cannot be done now, "" if it can."""
+
+    id: str
+    label: str
+    kind: str
+    run: Callable[[], object]
+    shortcut: str = ""
+    doc: str = ""
+    reason: str = ""
+    weight: float = 0.0
+    """Added to how well it matches: what is wanted less often stands lower."""
+
+
+def commands(editor: Editor) -> tuple[Command, ...]:
+    """Every action, node type, preset, and node of the graph; `run` does it within `editor.attempt`."""
+    return tuple(_all(editor))
+
+
+def ranked(query: str, offered: tuple[Command, ...], recent: Collection[str]) -> tuple[tuple[Command, Match], ...]:
+    """The commands that match, best first; without a query those used last, then those that can be done now."""
+    labels = tuple(command.label for command in offered)
+    found = [(offered[one.index], one) for one in match(query, labels)]
+    if query.strip():
+
+        def worth(pair: tuple[Command, Match]) -> tuple[bool, float, int]:
+            return bool(pair[0].reason), -pair[1].score - pair[0].weight, pair[1].index
+
+        return tuple(sorted(found, key=worth))
+    order = {id: place for place, id in enumerate(reversed(tuple(recent)))}
+    last = len(order)
+    return tuple(sorted(found, key=lambda pair: (order.get(pair[0].id, last), bool(pair[0].reason), pair[1].index)))
+
+
+def reason(editor: Editor, action: Action) -> str:
+    """Why an action cannot be done now, "" if it can."""
+    if action.enabled(editor):
+        return ""
+    if action.id == "edit.undo":
+        return "nothing was done yet"
+    if action.id == "edit.redo":
+        return "nothing was undone"
+    return "select something first" if action.scope == "graph" and not editor.session.selection else "not possible now"
+
+
+def _all(editor: Editor) -> Iterator[Command]:
+    for action in editor.actions.all:
+        label = action.label.removesuffix("...")
+        menu = action.menu.split("/")
+        full = f"{menu[1]} {label}" if len(menu) > 1 and menu[1].lower() not in label.lower() else label
+        yield Command(
+            action.id,
+            full,
+            menu[0] or "Action",
+            partial(editor.actions.run, action.id, editor),
+            editor.actions.shortcut(action.id),
+            action.doc,
+            reason(editor, action),
+        )
+    for id, type in editor.session.types.items():
+        doc = (type.__doc__ or "").strip().splitlines()
+        yield Command(
+            f"add {id}",
+            f"Add {words(id).title()}",
+            words(type.category).capitalize(),
+            partial(_add, editor, id),
+            doc=doc[0] if doc else "",
+        )
+    for entry in code_entries():
+        yield Command(f"add {entry.id}", "Add Code", "Code", partial(_add, editor, entry.id), doc=entry.doc)
+    for path in paths():
+        name = words(path.stem).title()
+        opens, adds = partial(open_preset, editor, path), partial(_add_preset, editor, path)
+        yield Command(f"preset {path.stem}", f"Open Preset {name}", "Preset", opens, weight=-4.0)
+        yield Command(f"group {path.stem}", f"Add Preset {name}", "Preset", adds, weight=-5.0)
+    for key, item in editor.session.graph.nodes.items():
+        kind = "Group" if isinstance(item, Group) else "Node"
+        yield Command(f"go {key}", f"Go to {key}", kind, partial(_go, editor, key), weight=-6.0)
+
+
+def _add(editor: Editor, type_id: str) -> None:
+    editor.session.select((editor.session.add_node(type_id, editor.canvas.pointer),))
+
+
+def _add_preset(editor: Editor, path: Path) -> None:
+    editor.session.select((editor.session.add_group(path, editor.canvas.pointer),))
+
+
+def _go(editor: Editor, key: str) -> None:
+    editor.session.select((key,))
+    editor.canvas.fit((key,))

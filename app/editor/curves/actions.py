@@ -1,0 +1,192 @@
+"""Actions on keys, in the Animation panel."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ...graph import Interpolation, Outside
+from ..shared.action import Action
+from . import commands
+from .commands import some
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
+
+_KEYS = frozenset({"keys"})
+_HOW: tuple[tuple[Interpolation, str], ...] = (
+    ("constant", "Hold the value up to the next key."),
+    ("linear", "Go straight to the next key."),
+    ("smooth", "Go smoothly through the keys, never beyond them."),
+    ("bezier", "Go as the handles say."),
+)
+_OUTSIDE: tuple[tuple[Outside, str, str], ...] = (
+    ("hold", "Hold", "Before the first and after the last key the value stays."),
+    ("linear", "Go On Straight", "Before the first and after the last key the value goes on as it came."),
+    ("loop", "Repeat", "What lies between the first and the last key comes over and over."),
+    ("mirror", "To and Fro", "What lies between the first and the last key comes backwards, forwards, and so on."),
+)
+
+
+def _interpolation(how: Interpolation, doc: str) -> Action:
+    return Action(
+        f"keys.{how}",
+        how.title(),
+        commands.interpolate(how),
+        shortcut=how[0].upper(),
+        scope="animation",
+        enabled=some,
+        contexts=frozenset({"keys interpolation"}),
+        doc=doc,
+    )
+
+
+def _outside(how: Outside, label: str, doc: str) -> Action:
+    return Action(
+        f"keys.outside_{how}",
+        f"Outside: {label}",
+        commands.go_on(how),
+        scope="animation",
+        enabled=lambda e: bool(e.curves.spots or e.curves.shown),
+        checked=lambda e: commands.goes_on(e, how),
+        contexts=frozenset({"keys outside"}),
+        doc=doc,
+    )
+
+
+def _toggle_snap(editor: Editor) -> None:
+    editor.curves.snap = not editor.curves.snap
+
+
+ANIMATION: tuple[Action, ...] = (
+    Action("keys.mode", "Dope Sheet or Curves", commands.swap_mode, shortcut="Tab", scope="animation"),
+    Action(
+        "keys.here",
+        "Key Rows at This Frame",
+        commands.key_here,
+        shortcut="K",
+        scope="animation",
+        enabled=lambda e: bool(e.session.graph.animation),
+        doc="A key on the curve of every selected row, or of all rows.",
+    ),
+    Action("keys.cut", "Cut Keys", commands.cut, shortcut="Ctrl+X", scope="animation", enabled=some, contexts=_KEYS),
+    Action("keys.copy", "Copy Keys", commands.copy, shortcut="Ctrl+C", scope="animation", enabled=some, contexts=_KEYS),
+    Action(
+        "keys.paste",
+        "Paste Keys",
+        commands.paste,
+        shortcut="Ctrl+V",
+        scope="animation",
+        contexts=_KEYS,
+        doc="From the current frame on; keys of one value go into the selected rows.",
+    ),
+    Action(
+        "keys.duplicate",
+        "Duplicate Keys",
+        commands.duplicate,
+        shortcut="Ctrl+D",
+        scope="animation",
+        enabled=some,
+        contexts=_KEYS,
+        doc="The copies come behind.",
+    ),
+    Action(
+        "keys.delete",
+        "Delete Keys",
+        commands.delete,
+        shortcut="Delete",
+        scope="animation",
+        enabled=some,
+        contexts=_KEYS,
+        doc="A value without keys stays as it is now.",
+    ),
+    Action("keys.all", "Select All Keys", commands.choose_all, shortcut="Ctrl+A", scope="animation"),
+    Action("keys.none", "Select No Keys", commands.choose_none, shortcut="Ctrl+Shift+A", scope="animation"),
+    Action(
+        "keys.earlier",
+        "Keys One Frame Earlier",
+        commands.nudge(-1.0),
+        shortcut="Alt+LeftArrow",
+        scope="animation",
+        enabled=some,
+        repeats=True,
+    ),
+    Action(
+        "keys.later",
+        "Keys One Frame Later",
+        commands.nudge(1.0),
+        shortcut="Alt+RightArrow",
+        scope="animation",
+        enabled=some,
+        repeats=True,
+    ),
+    *(_interpolation(*one) for one in _HOW),
+    Action(
+        "keys.ease_in",
+        "Ease In",
+        commands.ease("in"),
+        shortcut="Shift+I",
+        scope="animation",
+        enabled=some,
+        contexts=frozenset({"keys ease"}),
+        doc="Arrive gently: the handle before the key lies flat.",
+    ),
+    Action(
+        "keys.ease_out",
+        "Ease Out",
+        commands.ease("out"),
+        shortcut="Shift+O",
+        scope="animation",
+        enabled=some,
+        contexts=frozenset({"keys ease"}),
+        doc="Leave gently: the handle after the key lies flat.",
+    ),
+    Action(
+        "keys.ease",
+        "Ease In and Out",
+        commands.ease("both"),
+        shortcut="E",
+        scope="animation",
+        enabled=some,
+        contexts=frozenset({"keys ease"}),
+        doc="Arrive and leave gently.",
+    ),
+    Action(
+        "keys.automatic",
+        "Automatic Handles",
+        commands.make_automatic,
+        scope="animation",
+        enabled=some,
+        contexts=frozenset({"keys handles"}),
+        doc="Handles go along the smooth curve, whatever the keys do.",
+    ),
+    Action(
+        "keys.aligned",
+        "Aligned Handles",
+        commands.make_aligned,
+        scope="animation",
+        enabled=some,
+        contexts=frozenset({"keys handles"}),
+        doc="Both handles of a key lie on one line, and turn together.",
+    ),
+    Action(
+        "keys.free",
+        "Free Handles",
+        commands.make_free,
+        scope="animation",
+        enabled=some,
+        contexts=frozenset({"keys handles"}),
+        doc="Each handle turns alone, as with Alt while it is dragged.",
+    ),
+    *(_outside(*one) for one in _OUTSIDE),
+    Action(
+        "keys.snap",
+        "Whole Frames",
+        _toggle_snap,
+        shortcut="Shift+S",
+        scope="animation",
+        checked=lambda e: e.curves.snap,
+        doc="Keys that are moved land on whole frames.",
+    ),
+    Action("keys.fit_all", "Show All Keys", lambda e: e.curves.fit(), shortcut="A", scope="animation"),
+    Action("keys.fit_chosen", "Show Selected Keys", lambda e: e.curves.fit("chosen"), shortcut="F", scope="animation"),
+)

@@ -1,0 +1,1 @@
+"""Small dialogs: About, questions, the sheet of shortcuts."""

@@ -1,0 +1,62 @@
+"""What this program is."""
+
+from __future__ import annotations
+
+import platform
+from importlib import metadata
+from typing import TYPE_CHECKING
+
+from imgui_bundle import icons_fontawesome_6 as icons
+from imgui_bundle import imgui
+
+from ..theme.style import ui_scale
+from ..toolkit.buttons import close_button, quiet
+from ..toolkit.dialogs import backdrop, dialog, escaped
+from ..toolkit.words import dim, font, wrapped
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
+
+_LIBRARIES = ("moderngl", "imgui-bundle", "OpenImageIO", "opencolorio", "numpy")
+
+
+class About:
+    """Version and what it runs on, ready to be copied into a report."""
+
+    def draw(self, editor: Editor) -> None:
+        """Draw over everything, if it is open."""
+        if "about" not in editor.dialogs.open:
+            return
+        close = backdrop(editor, "about")
+        with dialog(editor, "About", (440, 0)):
+            with font(editor, "bold", 26.0):
+                imgui.text_unformatted("Halation")
+            wrapped(editor.palette.dim, metadata.metadata("halation")["Summary"])
+            imgui.dummy((0, 6 * ui_scale()))
+            lines = _versions()
+            if imgui.begin_table("versions", 2):
+                imgui.table_setup_column("name", imgui.TableColumnFlags_.width_fixed.value, 130 * ui_scale())
+                imgui.table_setup_column("version", imgui.TableColumnFlags_.width_stretch.value)
+                for name, version in lines:
+                    imgui.table_next_row()
+                    imgui.table_next_column()
+                    dim(editor, name)
+                    imgui.table_next_column()
+                    imgui.text_wrapped(version)
+                imgui.end_table()
+            imgui.dummy((0, 6 * ui_scale()))
+            if quiet(editor, f"{icons.ICON_FA_COPY}  Copy", "copy versions", "Copy for a report"):
+                editor.clipboard.put("\n".join(f"{name}: {version}" for name, version in lines))
+            imgui.same_line()
+            close = close_button(editor, "close about") or close or escaped()
+        if close:
+            editor.dialogs.open.discard("about")
+
+
+def _versions() -> list[tuple[str, str]]:
+    return [
+        ("Halation", metadata.version("halation")),
+        ("Python", platform.python_version()),
+        ("System", platform.platform(terse=True)),
+        *((name, metadata.version(name)) for name in _LIBRARIES),
+    ]

@@ -1,0 +1,64 @@
+"""A question that must be answered before anything else."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from imgui_bundle import imgui
+
+from ..shared.dialogs import Question
+from ..theme.style import ui_scale
+from ..toolkit.buttons import main_button
+from ..toolkit.dialogs import backdrop, dialog, escaped
+from ..toolkit.places import record
+from ..toolkit.words import font
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
+
+
+class QuestionDialog:
+    """Answers as buttons: Enter chooses the first, Escape the last, which is the safest."""
+
+    def draw(self, editor: Editor) -> None:
+        """Draw over everything, if there is a question."""
+        question = editor.dialogs.question
+        if question is None:
+            return
+        backdrop(editor, "question")
+        chosen: int | None = None
+        with dialog(editor, "Question", (460, 0), top=0.4):
+            with font(editor, "bold", 18.0):
+                imgui.text_unformatted(question.title)
+            imgui.dummy((0, 2 * ui_scale()))
+            imgui.text_wrapped(question.sentence)
+            imgui.dummy((0, 8 * ui_scale()))
+            chosen = _buttons(editor, question)
+            if escaped():
+                chosen = len(question.answers) - 1
+            elif imgui.is_key_pressed(imgui.Key.enter, False) and not imgui.is_window_appearing():
+                chosen = 0
+        if chosen is not None:
+            editor.dialogs.question = None
+            editor.attempt(question.answers[chosen][1])
+
+
+def _buttons(editor: Editor, question: Question) -> int | None:
+    """Side by side from the right, or one above the other where they do not fit; the index of the one clicked."""
+    style = imgui.get_style()
+    labels = [answer for answer, _ in question.answers]
+    width = sum(imgui.calc_text_size(label).x + 2 * style.frame_padding.x for label in labels)
+    width += style.item_spacing.x * (len(labels) - 1)
+    room = imgui.get_content_region_avail().x
+    beside = width <= room
+    if beside:
+        imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + room - width)
+    chosen = None
+    for index, label in enumerate(labels):
+        name, across = f"answer {index}", 0.0 if beside else -1.0
+        if main_button(editor, label, name, width=across) if index == 0 else imgui.button(label, (across, 0)):
+            chosen = index
+        record(editor, name)
+        if beside and index + 1 < len(labels):
+            imgui.same_line()
+    return chosen

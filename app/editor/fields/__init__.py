@@ -1,0 +1,1 @@
+"""Fields that edit one value of a graph: numbers, colors, texts, choices, curves, ramps, lights."""

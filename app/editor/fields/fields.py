@@ -1,0 +1,165 @@
+"""What fields of values hand back, and what they remember between frames. Nothing here draws."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from halation.nodes import Plain, Value
+
+from ...errors import UsageError
+from ..theme.palette import Palette
+from .numbers import Drag, typed
+
+if TYPE_CHECKING:
+    from ..window.editor import Rectangle
+
+
+@dataclass(frozen=True)
+class Edit:
+    """A new value. Edits of one gesture, a drag say, have the same `merge`; `text` is what was typed, if so."""
+
+    value: Plain
+    merge: str = ""
+    text: str = ""
+    expression: str = ""
+    """What was typed after a `=`, with it: the value is the old one then."""
+
+
+@dataclass
+class Typing:
+    """The field that has the text cursor. `number` says how its text is read; None takes it as it is."""
+
+    id: str
+    text: str
+    before: str
+    old: Plain
+    number: Value | None = None
+    merge: str = ""
+    starting: bool = True
+    """True until the text cursor is in it."""
+    seen: bool = True
+    tab: int = 0
+    """1 or -1: the next or previous field is wanted."""
+    stepped: bool = False
+    """True in the frame in which an arrow key changed a digit."""
+
+    def result(self) -> Edit | None:
+        """What was typed, None if nothing changed. Raises UsageError."""
+        if self.text == self.before and not self.merge:
+            return None
+        if self.number is None:
+            return Edit(self.text, self.merge, self.text)
+        assert isinstance(self.old, int | float)
+        if self.text.lstrip().startswith("="):
+            return Edit(self.old, self.merge, self.text, self.text)
+        return Edit(typed(self.text, self.old, self.number), self.merge, self.text)
+
+    @property
+    def fault(self) -> str:
+        """What is wrong with the text, "" if nothing."""
+        try:
+            self.result()
+        except UsageError as error:
+            return str(error)
+        return ""
+
+
+@dataclass
+class Fields:
+    """The fields of one panel: at most one is dragged and at most one typed in."""
+
+    palette: Palette
+    places: dict[str, Rectangle] = field(default_factory=dict[str, "Rectangle"])
+    """The editor's: where things were drawn."""
+    typing: Typing | None = None
+    drag: Drag | None = None
+    drag_id: str = ""
+    pressed: str = ""
+    """The field under a mouse button that has not been dragged yet."""
+    wanted: str = ""
+    """The field that gets the text cursor when it is drawn next."""
+    eyedropper: str = ""
+    """The color field whose eyedropper was pressed in this frame."""
+    stops: float = 0.0
+    """The intensity that the open color picker shows, in EV."""
+    before: Plain = 0.0
+    """The curve, ramp or lights as they were before they were dragged."""
+    point: tuple[str, int] = ("", -1)
+    """The curve or ramp field whose point of that number is selected."""
+    lights: dict[str, int] = field(default_factory=dict[str, int])
+    """The editor's: the light that is selected, by its field."""
+    lights_shown: dict[str, int] = field(default_factory=dict[str, int])
+    """The light that each field has scrolled to."""
+    lights_gesture: str = ""
+    """The merge token of the drag that `before` is of, for lights."""
+    filter: str = ""
+    """What was typed to find a choice."""
+    gesture: int = 0
+    order: list[str] = field(default_factory=list[str])
+    """Fields that can be typed in, as drawn so far in this frame."""
+    parts: dict[str, Callable[[Edit], Edit | None]] = field(default_factory=dict[str, "Callable[[Edit], Edit | None]"])
+    """How an edit of a field that is part of another (`gain#2` of `gain`) becomes one of that, by the part's name."""
+    owners: dict[str, str] = field(default_factory=dict[str, str])
+    """The field that a part belongs to."""
+    known: tuple[str, ...] = ()
+    """The same of the whole frame before."""
+
+    def begin(self, held: bool = True) -> None:
+        """Call before the panel's fields, every frame; `held` says whether a mouse button is down."""
+        if not held:
+            self.drag_id = ""
+        self.known = tuple(self.order)
+        self.order.clear()
+        self.eyedropper = ""
+        if self.typing:
+            self.typing.seen = False
+        else:
+            self.parts.clear()
+            self.owners.clear()
+
+    def end(self) -> tuple[str, Edit] | None:
+        """Call after them: what was typed in a field that is not there any more, since something else was selected."""
+        left = self.typing
+        if left is None or left.seen:
+            return None
+        self.typing = None
+        try:
+            edit = None if left.starting else left.result()
+        except UsageError:
+            edit = None
+        id = left.id
+        while edit and id in self.owners:
+            edit, id = self.parts[id](edit), self.owners[id]
+        return (id, edit) if edit else None
+
+    def part(self, id: str, owner: str, whole: Callable[[Edit], Edit | None]) -> None:
+        """Say that field `id` is part of another one; `whole` makes an edit of that of an edit of the part."""
+        self.parts[id], self.owners[id] = whole, owner
+
+    @property
+    def dragging(self) -> bool:
+        """True while something is dragged."""
+        return self.drag_id != ""
+
+    def start_gesture(self) -> str:
+        """A merge token that no other gesture has."""
+        self.gesture += 1
+        return self.merge
+
+    @property
+    def merge(self) -> str:
+        """The merge token of the gesture that goes on."""
+        return f"field {id(self)} {self.gesture}"
+
+    def type_in(self, id: str, text: str, old: Plain, number: Value | None = None) -> None:
+        """Put the text cursor into a field."""
+        self.wanted = ""
+        self.typing = Typing(id, text, text, old, number)
+
+    def next_after(self, id: str, direction: int) -> str:
+        """The field that Tab goes to."""
+        if id not in self.known or len(self.known) < 2:
+            return ""
+        return self.known[(self.known.index(id) + direction) % len(self.known)]

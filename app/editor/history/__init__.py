@@ -1,0 +1,1 @@
+"""The History panel: the steps that can be undone."""

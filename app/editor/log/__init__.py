@@ -1,0 +1,1 @@
+"""The Log panel, and the messages that appear in the corner of the window."""

@@ -1,0 +1,69 @@
+"""What was said just now, in the corner."""
+
+from __future__ import annotations
+
+from time import time
+from typing import TYPE_CHECKING
+
+from imgui_bundle import ImVec2, imgui
+
+from ...authoring.log import TOAST_SECONDS, Entry
+from ..theme.style import ui_scale, vec4
+from ..toolkit.dialogs import FIXED
+from ..toolkit.words import ICONS, level_color, wrapped
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
+
+_WIDTH, _GAP, _BELOW, _MOST, _FADE = 360.0, 8.0, 34.0, 5, 0.6
+_TOAST = (
+    FIXED
+    | int(imgui.WindowFlags_.no_decoration)
+    | int(imgui.WindowFlags_.always_auto_resize)
+    | int(imgui.WindowFlags_.no_nav)
+    | int(imgui.WindowFlags_.no_focus_on_appearing)
+)
+
+
+class Toasts:
+    """The newest sentences, stacked upwards from the bottom right; each fades after a while, a click ends it."""
+
+    def __init__(self) -> None:
+        self._dismissed = frozenset[float]()
+
+    def draw(self, editor: Editor) -> None:
+        """Draw over everything."""
+        entries = [entry for entry in editor.log.toasts() if entry.at not in self._dismissed][-_MOST:]
+        self._dismissed &= {entry.at for entry in editor.log.toasts()}
+        view, scale = imgui.get_main_viewport(), ui_scale()
+        right, bottom = view.pos.x + view.size.x - 12 * scale, view.pos.y + view.size.y - _BELOW * scale
+        for index, entry in enumerate(reversed(entries)):
+            bottom -= self._draw_one(editor, entry, index, ImVec2(right, bottom)) + _GAP * scale
+
+    def _draw_one(self, editor: Editor, entry: Entry, index: int, corner: ImVec2) -> float:
+        """Draw with the lower right corner there; the height."""
+        scale = ui_scale()
+        left = TOAST_SECONDS - (time() - entry.at)
+        opacity = min(max(left / _FADE, 0.05), 1.0)
+        imgui.set_next_window_pos(corner, imgui.Cond_.always.value, ImVec2(1, 1))
+        imgui.set_next_window_size_constraints(ImVec2(_WIDTH * scale, 0), ImVec2(_WIDTH * scale, 400 * scale))
+        imgui.push_style_var(imgui.StyleVar_.alpha, opacity)
+        imgui.push_style_var(imgui.StyleVar_.window_rounding, 6.0 * scale)
+        imgui.push_style_color(imgui.Col_.window_bg, vec4(editor.palette.raised))
+        imgui.begin(f"##toast {entry.at}", None, _TOAST)
+        imgui.internal.bring_window_to_display_front(imgui.internal.get_current_window())
+        imgui.text_colored(vec4(level_color(editor.palette, entry.level)), ICONS[entry.level])
+        imgui.same_line()
+        imgui.push_text_wrap_pos((_WIDTH - 12) * scale)
+        wrapped(editor.palette.text, entry.sentence)
+        imgui.pop_text_wrap_pos()
+        if imgui.is_window_hovered():
+            imgui.set_mouse_cursor(imgui.MouseCursor_.hand.value)
+            if imgui.is_mouse_clicked(imgui.MouseButton_.left):
+                self._dismissed |= {entry.at}
+        low, extent = imgui.get_window_pos(), imgui.get_window_size()
+        editor.places[f"toast {index}"] = (low.x, low.y, low.x + extent.x, low.y + extent.y)
+        imgui.end()
+        imgui.pop_style_color()
+        imgui.pop_style_var(2)
+        return extent.y

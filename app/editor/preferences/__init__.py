@@ -1,0 +1,1 @@
+"""The Preferences dialog, with the editor of shortcuts."""

@@ -1,0 +1,1 @@
+"""The Problems panel: what is wrong now, and where."""

@@ -1,0 +1,1 @@
+"""The Renders panel: a form for renders to files, and the queue of them."""

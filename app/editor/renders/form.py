@@ -1,0 +1,224 @@
+"""What a render to files shall be: the form's state and what it asks for. Draws nothing."""
+
+from __future__ import annotations
+
+import os
+import time
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from halation.nodes import Kind
+
+from ...authoring.services.exporting import Export, Options
+from ...errors import HalationError, UsageError
+from ...graph.frames import Pattern, check_numbered, format_frames, is_video, numbered, parse_frames, unnumbered
+from ...media.sequences import find_sequence
+from ...media.video.library import library
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
+
+Sizing = Literal["as it is", "scale", "size"]
+Extent = Literal["this frame", "all frames", "what is played", "some frames"]
+Depth = Literal["", "half", "float"]
+
+DEPTHS: tuple[tuple[Depth, str], ...] = (
+    ("", "as the format has it"),
+    ("half", "16 bit"),
+    ("float", "32 bit (16 in PNG and TIFF)"),
+)
+PICTURES = (".exr", ".png", ".jpg", ".tif", ".webp", ".hdr")
+VIDEOS = (".mp4", ".mov", ".mkv", ".webm")
+VIEWED = frozenset({".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp", *VIDEOS})
+"""Formats that show a picture as a display does."""
+
+_FRESH = 1.0
+"""Seconds for which what was found on the disk counts."""
+
+
+@dataclass(frozen=True)
+class Aim:
+    """What a render would write: so many files, of which some `exist`, or why it cannot be."""
+
+    files: int = 0
+    first: str = ""
+    last: str = ""
+    exist: int = 0
+    fault: str = ""
+
+
+@dataclass
+class Form:
+    """What was chosen. `files` are the paths that were typed, by output; "" takes the suggestion."""
+
+    chosen: dict[str, bool] = field(default_factory=dict[str, bool])
+    files: dict[str, str] = field(default_factory=dict[str, str])
+    format: str = ".exr"
+    sizing: Sizing = "as it is"
+    scale: float = 0.5
+    size: tuple[int, int] = (1920, 1080)
+    precision: Depth = ""
+    view: str = ""
+    extent: Extent | None = None
+    """None is all frames, where there are several."""
+    listed: str = ""
+    """The frames that were typed."""
+    jobs: int = 1
+    resume: bool = False
+    _seen: tuple[object, float, Aim] = (None, 0.0, Aim())
+
+    # --- frames ------------------------------------------------------------------------------------------------------
+
+    def extents(self, editor: Editor) -> dict[Extent, tuple[int, ...]]:
+        """The frames that can be chosen. Typed ones are none while they make no sense."""
+        session = editor.session
+        first, last = session.frames
+        found: dict[Extent, tuple[int, ...]] = {"this frame": (session.frame,)}
+        if first < last:
+            found["all frames"] = tuple(range(first, last + 1))
+            low, high = editor.timeline.span(session)
+            if (low, high) != (first, last):
+                found["what is played"] = tuple(range(low, high + 1))
+        found["some frames"] = _listed(self.listed)[0]
+        return found
+
+    def extent_of(self, editor: Editor) -> Extent:
+        """Which of them are to be rendered."""
+        offered = self.extents(editor)
+        usual: Extent = "all frames" if "all frames" in offered else "this frame"
+        return self.extent if self.extent in offered else usual
+
+    def frames(self, editor: Editor) -> tuple[int, ...]:
+        """The frames to render; none while those that are typed make no sense."""
+        return self.extents(editor)[self.extent_of(editor)]
+
+    def extend(self, editor: Editor, extent: Extent) -> None:
+        """Render other frames. Names that were typed get a place for the number, where they need one."""
+        if extent == "some frames" and not self.listed:
+            self.listed = format_frames(self.frames(editor))
+        self.extent = extent
+        if extent != "this frame":
+            self.files = {name: _numbered(path) if path else "" for name, path in self.files.items()}
+
+    @property
+    def list_fault(self) -> str:
+        """What is wrong with the frames that were typed."""
+        return _listed(self.listed)[1]
+
+    # --- files -------------------------------------------------------------------------------------------------------
+
+    def suggested(self, editor: Editor, output: str) -> Path:
+        """Where an output goes if nothing else is said."""
+        last = editor.store.folder("export")
+        session = editor.session
+        folder = Path(last) if last else session.path.absolute().parent if session.path else Path.home()
+        name = session.name if len(session.root.outputs) == 1 else f"{session.name}_{output}"
+        plain = f"{name}{self.format}"
+        return folder / (plain if self.extent_of(editor) == "this frame" else _numbered(plain))
+
+    def file(self, editor: Editor, output: str) -> Path:
+        """Where an output goes."""
+        typed = self.files.get(output, "")
+        return Path(typed).expanduser() if typed else self.suggested(editor, output)
+
+    def wanted(self, editor: Editor) -> tuple[str, ...]:
+        """The outputs that are chosen; at first those that are pictures."""
+        kinds = {name: output.kind for name, output in editor.session.root.outputs.items()}
+        return tuple(name for name, kind in kinds.items() if self.chosen.get(name, kind in (Kind.IMAGE, Kind.FIELD)))
+
+    def reform(self, format: str) -> None:
+        """Another format for all files; a video has no place for the frame number."""
+        self.format = format
+        named = {name: str(Path(path).with_suffix(format)) for name, path in self.files.items() if path}
+        self.files = {name: unnumbered(path) if is_video(path) else path for name, path in named.items()}
+
+    def number(self, editor: Editor) -> None:
+        """Give all files a place for the frame number."""
+        self.files = {name: _numbered(str(self.file(editor, name))) for name in self.wanted(editor)}
+
+    # --- all together ------------------------------------------------------------------------------------------------
+
+    def aim(self, editor: Editor) -> Aim:
+        """What would be written now."""
+        frames = self.frames(editor)
+        paths = tuple(dict.fromkeys(str(self.file(editor, name)) for name in self.wanted(editor)))
+        key, now = (paths, frames, self.list_fault if not frames else ""), time.monotonic()
+        if self._seen[0] != key or now - self._seen[1] > _FRESH:
+            self._seen = (key, now, _aim(paths, frames, key[2]))
+        return self._seen[2]
+
+    def options(self, editor: Editor) -> Options:
+        """The choices as the exporter wants them."""
+        frames = self.frames(editor)
+        made = Options(
+            frames=frames,
+            precision=self.precision or None,
+            view=self.view,
+            resume=self.resume and not any(is_video(str(self.file(editor, name))) for name in self.wanted(editor)),
+            jobs=self.jobs if len(frames) > 1 else 1,
+        )
+        if self.sizing == "scale":
+            return replace(made, scale=self.scale)
+        return replace(made, size=self.size) if self.sizing == "size" else made
+
+    def start(self, editor: Editor) -> Export:
+        """Put it into the queue. Raises UsageError or GraphError."""
+        files = [(name, self.file(editor, name)) for name in self.wanted(editor)]
+        if not self.frames(editor):
+            raise UsageError(self.list_fault)
+        made = editor.exports.start(editor.session.root, files, dict(editor.session.bindings), self.options(editor))
+        if files:
+            editor.store.used("export", files[0][1])
+        self._seen = (None, 0.0, Aim())
+        return made
+
+
+def formats() -> tuple[str, ...]:
+    """The endings to choose from: those of videos where PyAV is installed."""
+    return (*PICTURES, *VIDEOS) if library() is not None else PICTURES
+
+
+@lru_cache(maxsize=8)
+def _listed(text: str) -> tuple[tuple[int, ...], str]:
+    """The frames of a text, or what is wrong with it."""
+    try:
+        return parse_frames(text), ""
+    except UsageError as fault:
+        return (), str(fault)
+
+
+def _numbered(path: str) -> str:
+    """The path with a place for the number, unless it has one, or needs none."""
+    try:
+        return path if is_video(path) or Pattern.parse(path) else numbered(path)
+    except UsageError:
+        return path
+
+
+def _aim(paths: tuple[str, ...], frames: tuple[int, ...], fault: str) -> Aim:
+    if fault or not paths:
+        return Aim(fault=fault or "Choose an output to render.")
+    try:
+        for path in paths:
+            check_numbered(path, frames)
+        names = [_at(path, frame) for path, frame in ((paths[0], frames[0]), (paths[-1], frames[-1]))]
+        exist = sum(_existing(path, frames) for path in paths)
+    except HalationError as error:
+        return Aim(fault=str(error))
+    count = sum(1 if is_video(path) else len(frames) for path in paths)
+    return Aim(count, names[0], names[1], exist)
+
+
+def _at(path: str, frame: int) -> str:
+    pattern = Pattern.parse(path)
+    return pattern.name(frame) if pattern else path
+
+
+def _existing(path: str, frames: tuple[int, ...]) -> int:
+    """How many of the files are there."""
+    if Pattern.parse(path) is None or len(frames) == 1:
+        return int(os.path.isfile(_at(path, frames[0])))  # noqa: PTH113 - False for a path that no system allows
+    found = find_sequence(path)
+    return len(found.names.keys() & set(frames)) if found else 0

@@ -1,0 +1,57 @@
+"""Renders to files: what to make, and how far those under way are."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from imgui_bundle import ImVec2, imgui
+from imgui_bundle import icons_fontawesome_6 as icons
+
+from ..theme.style import ui_scale
+from ..toolkit.words import nothing_here
+from .form import Form
+from .form_view import draw_form
+from .queue_view import Queue
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
+
+_FORM, _WIDE = 420.0, 760.0
+"""Width of the form, and from which width on the queue is beside it."""
+
+
+class Renders:
+    """A form and a queue. Rendering runs beside the editor, on the graph as it was when it was asked for."""
+
+    title = "Renders"
+
+    def __init__(self) -> None:
+        self._forms: dict[Path | None, Form] = {}
+        """What was chosen last, by document."""
+        self._queue = Queue()
+
+    def close(self) -> None:
+        """Give back what the window holds."""
+        self._queue.close()
+
+    def draw(self, editor: Editor) -> None:
+        """Draw into the current window."""
+        if not editor.session.root.outputs and not editor.exports.all:
+            sentence = "Add a graph output and link a node to it."
+            nothing_here(editor, icons.ICON_FA_FILM, "There is nothing to render", sentence)
+            return
+        form = self._forms.setdefault(editor.session.path, Form())
+        room, scale = imgui.get_content_region_avail(), ui_scale()
+        if room.x < _WIDE * scale:
+            draw_form(editor, form)
+            imgui.separator()
+            self._queue.draw(editor)
+            return
+        imgui.begin_child("form", ImVec2(_FORM * scale, room.y))
+        draw_form(editor, form)
+        imgui.end_child()
+        imgui.same_line(0, 20 * scale)
+        imgui.begin_child("queue", ImVec2(0, room.y))
+        self._queue.draw(editor)
+        imgui.end_child()

@@ -1,0 +1,80 @@
+"""What is said of renders to files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ...authoring.services.exporting import Export
+from .form import Aim
+
+
+def title(export: Export) -> str:
+    """What a render is called: its files."""
+    first = export.destinations[0][1].name
+    more = len(export.destinations) - 1
+    return f"{first} and {more} more" if more else first
+
+
+def progress_text(export: Export) -> str:
+    """How far a render is that runs."""
+    done, total = export.passes
+    if export.total > 1:
+        return f"{export.done} of {export.total} frames" if export.done or total else "starting"
+    if not total:
+        return "writing" if export.done else "starting"
+    return f"{done} of {total} passes" if done < total else "writing"
+
+
+def under_way(export: Export) -> str:
+    """What of a render is computed now, and how long it still takes."""
+    parts: list[str] = []
+    if export.total > 1 and export.job.jobs > 1 and not export.node:
+        parts.append(f"{export.job.jobs} processes")
+    elif export.node:
+        parts.append(f"frame {export.frame}: {export.node}" if export.total > 1 else export.node)
+    left = export.seconds_left
+    if left is not None:
+        parts.append(f"{time_text(left)} left")
+    return "   ".join(parts) or "reading the graph"
+
+
+def state_text(export: Export, turn: int = 0) -> str:
+    """How a render ended, or the turn that it waits for."""
+    if export.state == "waiting":
+        return "next" if turn == 0 else f"{turn} before it"
+    many = export.total > 1
+    count = f"{export.done} of {export.total} frames" if export.done < export.total else f"{export.total} frames"
+    if export.state == "done":
+        took = time_text(export.seconds)
+        if not many:
+            return f"{'kept as it was' if export.kept else 'done'} in {took}"
+        number = "all" if export.kept == export.total else f"{export.kept}"
+        return f"{count} in {took}, {number} kept as they were" if export.kept else f"{count} in {took}"
+    return f"{export.state} after {count}" if many and export.done else export.state
+
+
+def time_text(seconds: float) -> str:
+    """A length of time: `0.4 s`, `12 s`, `3:05`, `1:02:30`."""
+    if seconds < 9.95:
+        return f"{seconds:.1f} s"
+    whole = round(seconds)
+    minutes, rest = divmod(whole, 60)
+    if not minutes:
+        return f"{rest} s"
+    return f"{minutes}:{rest:02d}" if minutes < 60 else f"{minutes // 60}:{minutes % 60:02d}:{rest:02d}"
+
+
+def aim_text(aim: Aim) -> str:
+    """What a render would write."""
+    if aim.files == 1:
+        return f"Writes {Path(aim.first).name}"
+    return f"Writes {aim.files:,} files: {Path(aim.first).name} \u2026 {Path(aim.last).name}"
+
+
+def exist_text(aim: Aim, resume: bool) -> str:
+    """What happens to files that are there already."""
+    which = "It is" if aim.files == 1 else "All of them are" if aim.exist == aim.files else f"{aim.exist:,} of them are"
+    they = "It is kept where it" if aim.files == 1 else "They are kept where they"
+    if resume:
+        return f"{which} there. {they} would come out the same."
+    return f"{which} there, and will be replaced."

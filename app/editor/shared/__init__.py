@@ -1,0 +1,1 @@
+"""What panels share without knowing each other: actions, open dialogs, search, facts of documents. Draws nothing."""

@@ -1,0 +1,68 @@
+"""What the window asks a person: files, yes or no, and which dialog is open. Panels draw it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+from halation.nodes import Value
+
+Purpose = Literal["graph", "image", "table", "scene", "config", "code", "export"]
+"""What kind of file is wanted: it decides what is listed and which folder is remembered."""
+
+
+@dataclass(frozen=True)
+class Browse:
+    """A file is wanted; `then` gets it. `saving` asks for a new name, starting from `name`."""
+
+    title: str
+    purpose: Purpose
+    then: Callable[[Path], object]
+    saving: bool = False
+    name: str = ""
+
+
+def browse(declaration: Value, then: Callable[[Path], object]) -> Browse:
+    """The question for a file of the kind that a value takes."""
+    match declaration.holds:
+        case "table":
+            return Browse("Choose a Color Table", "table", then)
+        case "scene":
+            return Browse("Choose Meshes", "scene", then)
+        case "picture" | "render":
+            return Browse("Choose an Image", "image", then)
+
+
+@dataclass(frozen=True)
+class Question:
+    """A question with answers, the safest one last; Escape chooses that one."""
+
+    title: str
+    sentence: str
+    answers: tuple[tuple[str, Callable[[], object]], ...]
+
+
+@dataclass
+class Dialogs:
+    """What is open on top of the panels; at most one of each."""
+
+    browse: Browse | None = None
+    question: Question | None = None
+    open: set[str] = field(default_factory=set[str])
+    """Names of open dialogs: "palette", "shortcuts", "preferences", "export", "about", "start", "search"."""
+
+    def toggle(self, name: str) -> None:
+        """Open a dialog, or close it."""
+        self.open ^= {name}
+
+    def close(self) -> None:
+        """Nothing is asked any more."""
+        self.browse = self.question = None
+        self.open.clear()
+
+    @property
+    def any(self) -> bool:
+        """True if something asks for an answer."""
+        return self.browse is not None or self.question is not None or bool(self.open)

@@ -1,0 +1,92 @@
+"""What the inspector knows of the renders that nodes read. Nothing here draws."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from halation.nodes import Matte, Node, Value, matte_of
+
+from ...graph import Graph, Port
+from ...render_layers.conventions import Convention
+from ...render_layers.naming import Role
+from ...render_layers.overview import Overview, Use
+from ...render_layers.report import certainty
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
+
+FOUND = "found"
+"""The choice that leaves a convention to what the file shows."""
+
+
+def render_path(item: object) -> str:
+    """The value of a node that is the path of a render, "" for nodes that read none."""
+    values = item.values.values() if isinstance(item, Node) else ()
+    return next((value.name for value in values if value.type == "path" and value.holds == "render"), "")
+
+
+def render_file(graph: Graph, id: str) -> Path | None:
+    """The render that a node reads, if it names one."""
+    item = graph.nodes.get(id)
+    name = render_path(item)
+    path = str(getattr(item, name)) if name else ""
+    return Path(graph.folder, path) if path else None
+
+
+def overview_of(editor: Editor, id: str) -> Overview | str | None:
+    """What the render of a node holds, a sentence if it cannot be read or none is named, None while nobody knows."""
+    graph = editor.session.graph
+    file = render_file(graph, id)
+    return "no file" if file is None else editor.renders.overview(file, named(graph.nodes[id]))
+
+
+def named(item: object) -> Mapping[str, str]:
+    """The layers that a node names, by the roles that they are to have."""
+    values = item.values.values() if isinstance(item, Node) else ()
+    return {value.role: str(getattr(item, value.name)) for value in values if value.role and value.type == "text"}
+
+
+def use_of(editor: Editor, port: Port, declaration: Value) -> Use | None:
+    """What is known of the layer that a value is about."""
+    seen = overview_of(editor, port.node) if declaration.role else None
+    return seen.uses.get(Role(declaration.role)) if isinstance(seen, Overview) else None
+
+
+def first_words(use: Use | None) -> str:
+    """What a field says that leaves the layer to what the file shows."""
+    if use is None:
+        return FOUND
+    return f"{FOUND}: {use.found}" if use.found else "choose a layer" if use.open else "none found"
+
+
+def convention_words(declaration: Value, use: Use | None) -> tuple[str, ...]:
+    """The choices of a convention; the first says what was found."""
+    rule = use.rule if use else None
+    return (f"{FOUND}: {rule.words}" if rule else FOUND, *declaration.choices[1:])
+
+
+def rule_words(rule: Convention, *, told: bool) -> str:
+    """How a convention is known; `told` that the kind is shown elsewhere."""
+    return f"{certainty(rule)}: {rule.reason}" if told else f"{rule.words}, {certainty(rule)}: {rule.reason}"
+
+
+def matte_at(editor: Editor, id: str) -> Matte | str | None:
+    """The cryptomatte that a node picks from, a sentence if there is none, None while nobody knows."""
+    item, seen = editor.session.graph.nodes.get(id), overview_of(editor, id)
+    pick = pick_value(item)
+    if not isinstance(seen, Overview) or pick is None:
+        return seen if isinstance(seen, str) else None
+    kind = str(getattr(item, pick.matte))
+    found = matte_of(seen.mattes, kind)
+    if found is not None:
+        return found
+    others = [matte.kind or "nameless" for matte in seen.mattes]
+    return f"no cryptomatte of kind {kind} in this file; it has {', '.join(others) or 'none'}"
+
+
+def pick_value(item: object) -> Value | None:
+    """The value of a node that lists names of a cryptomatte."""
+    values = item.values.values() if isinstance(item, Node) else ()
+    return next((value for value in values if value.matte), None)

@@ -1,0 +1,82 @@
+"""Shortcuts by what they are for."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from .action import Action
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
+
+_SCOPES = {
+    "graph": "Graph, with the mouse over it",
+    "viewer": "Viewer, with the mouse over it",
+    "animation": "Animation, with the mouse over it",
+}
+
+MOUSE: tuple[tuple[str, str], ...] = (
+    ("Middle drag, Alt+drag", "Move the view"),
+    ("Wheel", "Zoom"),
+    ("Right click", "Menu of what is there"),
+    ("Shift+click", "Select more"),
+    ("Drag on nothing", "Select with a frame"),
+    ("Ctrl+Right drag", "Cut links"),
+)
+
+
+def groups(editor: Editor, every: bool = False) -> Iterator[tuple[str, tuple[Action, ...]]]:
+    """Actions by scope and menu, those with a shortcut; `every` gives all of them."""
+    found: dict[str, list[Action]] = {}
+    for action in editor.actions.all:
+        if every or editor.actions.shortcut(action.id):
+            title = _SCOPES.get(action.scope, action.menu.split("/")[0] or "Everywhere")
+            found.setdefault(title, []).append(action)
+    return ((title, tuple(actions)) for title, actions in found.items())
+
+
+def condensed(lines: Iterable[tuple[str, str]]) -> tuple[tuple[str, str], ...]:
+    """Keys and labels, where a row that only counts up is one line: `1 - 9`, `View 1 - 9`."""
+    made: list[tuple[str, str]] = []
+    for keys, label in lines:
+        before = (re.sub(r"\d", "#", keys), re.sub(r"\d", "#", label))
+        if made and "#" in before[0] and "#" in before[1] and (_stem(made[-1][0]), _stem(made[-1][1])) == before:
+            digit = re.findall(r"\d", keys)[-1]
+            made[-1] = (_through(made[-1][0], digit), _through(made[-1][1], digit))
+        else:
+            made.append((keys, label))
+    return tuple(made)
+
+
+def _stem(text: str) -> str:
+    return re.sub(r"\d( - \d)?", "#", text)
+
+
+def _through(text: str, digit: str) -> str:
+    return re.sub(r"(\d)( - \d)?", rf"\1 - {digit}", text)
+
+
+def columns(sizes: tuple[int, ...], count: int) -> tuple[tuple[int, ...], ...]:
+    """Blocks of these heights in columns as equal as their order allows: the indices of the blocks of each column."""
+    lowest, highest = max(sizes, default=0), sum(sizes)
+    while lowest < highest:
+        middle = (lowest + highest) // 2
+        if len(_filled(sizes, middle)) <= count:
+            highest = middle
+        else:
+            lowest = middle + 1
+    return _filled(sizes, highest)
+
+
+def _filled(sizes: tuple[int, ...], height: int) -> tuple[tuple[int, ...], ...]:
+    made: list[list[int]] = []
+    room = 0
+    for index, size in enumerate(sizes):
+        if not made or size > room:
+            made.append([])
+            room = height
+        made[-1].append(index)
+        room -= size
+    return tuple(map(tuple, made))

@@ -1,0 +1,181 @@
+"""Actions on time: play, step, jump."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..shared.action import Act, Action
+from .playback import LOOPS, Loop
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
+
+
+def play(editor: Editor) -> None:
+    """Play, or stop."""
+    editor.timeline.play(editor.session, editor.preview.remembers)
+
+
+def _step(by: int) -> Act:
+    """One frame on; within what is played, the other end comes after the last one."""
+
+    def step(editor: Editor) -> None:
+        editor.timeline.stop()
+        session = editor.session
+        first, last = editor.timeline.span(session)
+        wanted = session.frame + by
+        if session.frame in (first, last) and not first <= wanted <= last and editor.timeline.loop == "loop":
+            wanted = first if by > 0 else last
+        session.seek(wanted)
+
+    return step
+
+
+def _end(place: int) -> Act:
+    def jump(editor: Editor) -> None:
+        if editor.timeline.playback.playing and place:
+            editor.timeline.stop()
+        editor.session.seek(editor.timeline.span(editor.session)[place])
+
+    return jump
+
+
+def _to_key(later: bool) -> Act:
+    def jump(editor: Editor) -> None:
+        session = editor.session
+        frame = session.next_key() if later else session.previous_key()
+        editor.timeline.stop()
+        if frame is not None:
+            session.seek(frame)
+
+    return jump
+
+
+def _set_loop(loop: Loop) -> Act:
+    def choose(editor: Editor) -> None:
+        editor.timeline.loop = loop
+
+    return choose
+
+
+def _every(editor: Editor) -> None:
+    editor.timeline.every = not editor.timeline.every
+
+
+def _in(editor: Editor) -> None:
+    session, timeline = editor.session, editor.timeline
+    timeline.set_part(session, session.frame, max(timeline.span(session)[1], session.frame))
+
+
+def _out(editor: Editor) -> None:
+    session, timeline = editor.session, editor.timeline
+    timeline.set_part(session, min(timeline.span(session)[0], session.frame), session.frame)
+
+
+def _whole(editor: Editor) -> None:
+    editor.timeline.part = editor.timeline.view = None
+
+
+def _range_from_part(editor: Editor) -> None:
+    first, last = editor.timeline.span(editor.session)
+    editor.session.set_frames(first, last)
+
+
+def _has_part(editor: Editor) -> bool:
+    return editor.timeline.part is not None
+
+
+def _loop(loop: Loop, label: str, doc: str) -> Action:
+    return Action(
+        f"time.{loop.replace('-', '_')}",
+        label,
+        _set_loop(loop),
+        "Time",
+        doc=doc,
+        checked=lambda e: e.timeline.loop == loop,
+        contexts=frozenset({"timeline"}),
+    )
+
+
+_KEYED = frozenset({"timeline"})
+_LABELS = {
+    "loop": ("Loop", "After the last frame comes the first one."),
+    "once": ("Once", "Stop at the last frame."),
+    "ping-pong": ("To and Fro", "From the last frame back to the first one, and so on."),
+}
+
+PLAYBACK: tuple[Action, ...] = (
+    Action(
+        "time.play",
+        "Play or Stop",
+        play,
+        "Time",
+        "Space",
+        checked=lambda e: e.timeline.playback.playing,
+        doc="At the graph's rate; frames that are not ready in time are left out, and counted.",
+    ),
+    Action("time.next", "Next Frame", _step(1), "Time", "RightArrow", repeats=True, separated=True),
+    Action("time.previous", "Previous Frame", _step(-1), "Time", "LeftArrow", repeats=True),
+    Action("time.first", "First Frame", _end(0), "Time", "Shift+LeftArrow"),
+    Action("time.last", "Last Frame", _end(1), "Time", "Shift+RightArrow"),
+    Action(
+        "time.next_key",
+        "Next Key",
+        _to_key(True),
+        "Time",
+        "UpArrow",
+        repeats=True,
+        doc="Of the selected nodes, else of all.",
+    ),
+    Action(
+        "time.previous_key",
+        "Previous Key",
+        _to_key(False),
+        "Time",
+        "DownArrow",
+        repeats=True,
+        doc="Of the selected nodes, else of all.",
+    ),
+    Action(
+        "time.in",
+        "Play from Here",
+        _in,
+        "Time",
+        "Alt+I",
+        contexts=_KEYED,
+        separated=True,
+        doc="What is played begins at this frame. The range of the graph stays.",
+    ),
+    Action(
+        "time.out",
+        "Play to Here",
+        _out,
+        "Time",
+        "Alt+O",
+        contexts=_KEYED,
+        doc="What is played ends at this frame. The range of the graph stays.",
+    ),
+    Action(
+        "time.whole",
+        "Play and See All Frames",
+        _whole,
+        "Time",
+        "Alt+P",
+        contexts=_KEYED,
+        enabled=lambda e: e.timeline.part is not None or e.timeline.view is not None,
+    ),
+    Action(
+        "time.range", "Make This Part the Graph's Range", _range_from_part, "Time", enabled=_has_part, contexts=_KEYED
+    ),
+    *(_loop(loop, *_LABELS[loop]) for loop in LOOPS),
+    Action(
+        "time.every",
+        "Every Frame",
+        _every,
+        "Time",
+        checked=lambda e: e.timeline.every,
+        contexts=_KEYED,
+        separated=True,
+        doc="Leave none out, however slow that makes it.",
+    ),
+)

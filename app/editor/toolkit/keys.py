@@ -1,0 +1,91 @@
+"""Shortcuts as people write them, such as `Ctrl+Shift+S`, and as the window library wants them."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Mapping
+from functools import cache
+from types import MappingProxyType
+
+from imgui_bundle import imgui
+
+from ...errors import UsageError
+
+_MODIFIERS: Mapping[str, int] = MappingProxyType(
+    {
+        "Ctrl": int(imgui.Key.mod_ctrl),
+        "Shift": int(imgui.Key.mod_shift),
+        "Alt": int(imgui.Key.mod_alt),
+        "Super": int(imgui.Key.mod_super),
+    }
+)
+_SIGNS = MappingProxyType(
+    {
+        "Comma": ",",
+        "Period": ".",
+        "Slash": "/",
+        "Backslash": "\\",
+        "Minus": "-",
+        "Equal": "=",
+        "Semicolon": ";",
+        "Apostrophe": "'",
+        "LeftBracket": "[",
+        "RightBracket": "]",
+        "GraveAccent": "`",
+        "LeftArrow": "Left",
+        "RightArrow": "Right",
+        "UpArrow": "Up",
+        "DownArrow": "Down",
+        "PageUp": "Page Up",
+        "PageDown": "Page Down",
+    }
+)
+
+
+def chord(text: str) -> int:
+    """The key chord that `text` names. Raises UsageError for a key that there is not."""
+    *modifiers, key = text.split("+")
+    if key not in _keys() or not set(modifiers) <= _MODIFIERS.keys() or len(set(modifiers)) != len(modifiers):
+        raise UsageError(f"'{text}' is no shortcut; write it like 'Ctrl+Shift+S' or 'F5'")
+    return _keys()[key] | sum(_MODIFIERS[name] for name in modifiers)
+
+
+def text(chord: int) -> str:
+    """How a chord is written: modifiers always in the same order, so that equal chords are equal texts."""
+    modifiers = [name for name, bit in _MODIFIERS.items() if chord & bit]
+    return "+".join([*modifiers, _names()[chord & ~sum(_MODIFIERS.values())]])
+
+
+def shown(text: str) -> str:
+    """A shortcut as people read it: `Ctrl+,` for `Ctrl+Comma`, and Cmd for Ctrl on macOS."""
+    control = "Cmd" if sys.platform == "darwin" else "Ctrl"
+    return "+".join(control if part == "Ctrl" else _SIGNS.get(part, part) for part in text.split("+"))
+
+
+def pressed() -> str:
+    """The chord whose key went down in this frame, "" if none did; Escape is left to whoever asks."""
+    held = int(imgui.get_io().key_mods)
+    for name, key in _keys().items():
+        if name != "Escape" and imgui.is_key_pressed(imgui.Key(key), False):
+            return text(key | held)
+    return ""
+
+
+@cache
+def _keys() -> Mapping[str, int]:
+    """Keys of the keyboard by name; modifiers alone are none."""
+    names = list(imgui.Key.__members__)  # `dir` leaves out names that share a number
+    other = re.compile(r"^(mouse|gamepad|reserved|named|mod|none)|_(ctrl|shift|alt|super)$")
+    plain = [name for name in names if not other.search(name)]
+    return MappingProxyType({_named(name): int(getattr(imgui.Key, name)) for name in plain})
+
+
+@cache
+def _names() -> Mapping[int, str]:
+    return MappingProxyType({key: name for name, key in _keys().items()})
+
+
+def _named(name: str) -> str:
+    """`left_bracket` as LeftBracket, `_0` as 0."""
+    return "".join(part[:1].upper() + part[1:] for part in name.split("_"))

@@ -1,0 +1,331 @@
+"""Actions on the viewer: what of the picture is seen, and how."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ..shared.action import Action
+from .state import BACKGROUNDS, PROXIES, SCOPES, Background, Channels, Compare
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
+
+_CHANNELS: tuple[tuple[Channels, str, str], ...] = (
+    ("color", "Color", "C"),
+    ("red", "Red", "R"),
+    ("green", "Green", "G"),
+    ("blue", "Blue", "B"),
+    ("alpha", "Alpha", "A"),
+    ("luminance", "Luminance", "L"),
+    ("false color", "False Color", "Shift+L"),
+)
+_COMPARES: tuple[tuple[Compare, str, str], ...] = (
+    ("wipe", "Wipe", "W"),
+    ("beside", "Side by Side", "S"),
+    ("difference", "Difference", "D"),
+    ("toggle", "A or B", ""),
+)
+_SHOWN = frozenset({"viewer"})
+
+
+def _set(**values: Any):
+    """An act that sets fields of the viewer."""
+
+    def act(editor: Editor) -> None:
+        for name, value in values.items():
+            setattr(editor.viewer, name, value)
+
+    return act
+
+
+def _flip(name: str):
+    def act(editor: Editor) -> None:
+        setattr(editor.viewer, name, not getattr(editor.viewer, name))
+
+    return act
+
+
+def _is(name: str, value: Any = True):
+    return lambda editor: getattr(editor.viewer, name) == value
+
+
+def _expose(step: float):
+    def act(editor: Editor) -> None:
+        editor.viewer.exposure = round(editor.viewer.exposure + step, 3)
+
+    return act
+
+
+def _zoom(factor: float):
+    def act(editor: Editor) -> None:
+        editor.viewer.nearer *= factor
+
+    return act
+
+
+def _toggle(editor: Editor) -> None:
+    """Show B instead of A and back; comparing begins with B, which is what was asked for."""
+    viewer = editor.viewer
+    viewer.toggled = not viewer.toggled if viewer.compare == "toggle" else True
+    viewer.compare = "toggle"
+
+
+def _swap(editor: Editor) -> None:
+    session = editor.session
+    first, second = session.viewed("A"), session.viewed("B")
+    if first and second:
+        session.view(second, "A")
+        session.view(first, "B")
+
+
+def _region(editor: Editor) -> None:
+    """Begin to draw one; where there is one, or one is being drawn, end that."""
+    viewer = editor.viewer
+    viewer.drawing_region = viewer.region is None and not viewer.drawing_region
+    viewer.region = None
+
+
+def _shown(editor: Editor) -> bool:
+    return editor.session.viewed("A") is not None
+
+
+def _background(name: Background) -> Action:
+    return Action(
+        f"viewer.background.{name}",
+        name.capitalize(),
+        _set(background=name),
+        "Viewer/Background",
+        checked=_is("background", name),
+    )
+
+
+def _proxy(scale: float) -> Action:
+    return Action(
+        f"viewer.proxy.{1 / scale:.0f}",
+        f"1/{1 / scale:.0f}",
+        _set(proxy=scale),
+        "Viewer/Proxy",
+        checked=_is("proxy", scale),
+        doc="Compute fewer pixels, each standing for several.",
+    )
+
+
+def _scope(name: str) -> Action:
+    def act(editor: Editor) -> None:
+        editor.viewer.scopes ^= {name}
+
+    return Action(
+        f"scopes.{name}", name.capitalize(), act, "Viewer/Scopes", checked=lambda editor: name in editor.viewer.scopes
+    )
+
+
+def _numbered(number: int) -> tuple[Action, Action]:
+    recall = Action(
+        f"viewer.recall.{number}",
+        f"Show {number}",
+        lambda e: e.session.recall_viewer(number),
+        "Viewer/Bookmarks",
+        str(number),
+        enabled=lambda e: number in e.session.viewers,
+        doc="Show what this key was given to.",
+    )
+    assign = Action(
+        f"viewer.assign.{number}",
+        f"Assign {number}",
+        lambda e: e.session.assign_viewer(number),
+        "Viewer/Bookmarks",
+        f"Ctrl+{number}",
+        enabled=_shown,
+        doc="Let this key show the active node, or else what is viewed now.",
+    )
+    return recall, assign
+
+
+_BOOKMARKS = tuple(_numbered(number) for number in range(1, 10))
+
+VIEWER: tuple[Action, ...] = (
+    Action(
+        "viewer.fit",
+        "Fit",
+        lambda e: e.viewer.fit(),
+        "Viewer",
+        "F",
+        "viewer",
+        contexts=_SHOWN,
+        checked=lambda e: e.viewer.zoom == 0.0,
+        doc="The whole picture, whatever the size of the panel.",
+    ),
+    Action(
+        "viewer.actual",
+        "Actual Pixels",
+        _set(zoom=1.0, pan=(0.0, 0.0)),
+        "Viewer",
+        "0",
+        "viewer",
+        contexts=_SHOWN,
+        checked=_is("zoom", 1.0),
+        doc="One pixel of the picture on one of the screen.",
+    ),
+    Action("viewer.nearer", "Zoom In", _zoom(2.0), "Viewer", "Equal", "viewer"),
+    Action("viewer.farther", "Zoom Out", _zoom(0.5), "Viewer", "Minus", "viewer"),
+    *(
+        Action(
+            f"viewer.{name.replace(' ', '_')}",
+            label,
+            lambda e, name=name: e.viewer.show(name),
+            "Viewer/Channels",
+            key,
+            "viewer",
+            checked=_is("channels", name),
+        )
+        for name, label, key in _CHANNELS
+    ),
+    *(
+        Action(
+            f"viewer.{name}",
+            label,
+            lambda e, name=name: e.viewer.comparing(name),
+            "Viewer/Compare",
+            key,
+            "viewer",
+            checked=_is("compare", name),
+        )
+        for name, label, key in _COMPARES
+    ),
+    Action(
+        "viewer.other", "Show the Other", _toggle, "Viewer/Compare", "Q", "viewer", doc="B in place of A, and back."
+    ),
+    Action(
+        "viewer.swap",
+        "Swap A and B",
+        _swap,
+        "Viewer/Compare",
+        "Shift+X",
+        "viewer",
+        lambda e: _shown(e) and e.session.viewed("B") is not None,
+    ),
+    Action(
+        "viewer.brighter",
+        "Brighter",
+        _expose(0.5),
+        "Viewer/Exposure",
+        "RightBracket",
+        "viewer",
+        repeats=True,
+        doc="Half a stop up, in the viewer only.",
+    ),
+    Action(
+        "viewer.darker",
+        "Darker",
+        _expose(-0.5),
+        "Viewer/Exposure",
+        "LeftBracket",
+        "viewer",
+        repeats=True,
+        doc="Half a stop down, in the viewer only.",
+    ),
+    Action(
+        "viewer.neutral",
+        "Reset Exposure and Gamma",
+        _set(exposure=0.0, gamma=1.0),
+        "Viewer/Exposure",
+        "Backslash",
+        "viewer",
+        lambda e: e.viewer.exposure != 0.0 or e.viewer.gamma != 1.0,
+    ),
+    *(_background(name) for name in BACKGROUNDS),
+    *(_proxy(scale) for scale in PROXIES),
+    Action(
+        "viewer.pause",
+        "Pause",
+        _flip("paused"),
+        "Viewer",
+        "P",
+        "viewer",
+        checked=_is("paused"),
+        separated=True,
+        doc="Compute nothing until it is let go again.",
+    ),
+    Action(
+        "viewer.clipping",
+        "Show Clipping",
+        _flip("warn_clipping"),
+        "Viewer/Warnings",
+        "Z",
+        "viewer",
+        checked=_is("warn_clipping"),
+        doc="Stripes where the display cannot show how bright or dark it is.",
+    ),
+    Action(
+        "viewer.nonfinite",
+        "Show NaN and Infinity",
+        _flip("warn_nonfinite"),
+        "Viewer/Warnings",
+        checked=_is("warn_nonfinite"),
+        doc="Magenta where numbers are none.",
+    ),
+    Action(
+        "viewer.find_nonfinite",
+        "Find the First Node That Makes Them",
+        _set(finding=True),
+        "Viewer/Warnings",
+        enabled=_shown,
+        doc="Looks at one node after the other, from the inputs on.",
+    ),
+    Action(
+        "viewer.region",
+        "Region of Interest",
+        _region,
+        "Viewer",
+        "Shift+R",
+        "viewer",
+        _shown,
+        lambda e: e.viewer.drawing_region or e.viewer.region is not None,
+        contexts=_SHOWN,
+        doc="Drag a rectangle: scopes and the pixel table measure only that, and the rest is dimmed.",
+    ),
+    Action(
+        "viewer.table",
+        "Pixel Values",
+        _flip("table"),
+        "Viewer",
+        "I",
+        "viewer",
+        checked=_is("table"),
+        contexts=_SHOWN,
+        doc="The values of every input, and of rectangles (Ctrl+drag) and markers (Ctrl+click).",
+    ),
+    Action(
+        "viewer.clear_markers",
+        "Clear Markers",
+        _set(markers=(), measured=None),
+        "Viewer",
+        "",
+        "viewer",
+        lambda e: bool(e.viewer.markers or e.viewer.measured),
+        contexts=_SHOWN,
+    ),
+    Action(
+        "viewer.copy",
+        "Copy Pixel Values",
+        _set(copying=True),
+        "Viewer",
+        "Ctrl+C",
+        "viewer",
+        _shown,
+        contexts=_SHOWN,
+        doc="The numbers under the pointer.",
+    ),
+    Action(
+        "viewer.save",
+        "Save What Is Seen...",
+        _set(saving=True),
+        "Viewer",
+        enabled=_shown,
+        contexts=_SHOWN,
+        doc="The picture as the viewer shows it, at its own size.",
+    ),
+    *(_scope(name) for name in SCOPES),
+    *(recall for recall, _ in _BOOKMARKS),
+    *(assign for _, assign in _BOOKMARKS),
+)

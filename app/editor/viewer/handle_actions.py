@@ -1,0 +1,76 @@
+"""Actions on what the mouse takes hold of in the viewer: the camera of a scene, lights, what is sharp."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ..shared.action import Action
+from .focus import focused, pick_focus
+from .lights import can_remove, remove
+from .orbit import frame_scene
+
+if TYPE_CHECKING:
+    from ..window.editor import Editor
+
+
+def _orbit(editor: Editor) -> None:
+    editor.viewer.orbiting = not editor.viewer.orbiting
+
+
+def _has_scene(editor: Editor) -> bool:
+    return editor.viewer.scene != ""
+
+
+def _picks(editor: Editor) -> bool:
+    port = focused(editor.session)
+    return port is not None and editor.viewer.picking == str(port)
+
+
+HANDLES: tuple[Action, ...] = (
+    Action(
+        "viewer.orbit",
+        "Orbit the Scene",
+        _orbit,
+        "Viewer/Handles",
+        "O",
+        "viewer",
+        _has_scene,
+        lambda e: e.viewer.orbits,
+        contexts=frozenset({"viewer"}),
+        doc="Drag to go around the scene that is seen, Shift or the middle button to move it, the wheel to go nearer. "
+        "Space and drag pans the picture as before. Alt does the same while it is held.",
+    ),
+    Action(
+        "viewer.frame_scene",
+        "Frame the Scene",
+        frame_scene,
+        "Viewer/Handles",
+        "Home",
+        "viewer",
+        _has_scene,
+        contexts=frozenset({"viewer"}),
+        doc="Turn the camera's distance and target so that all of it is seen; a floor "
+        "or backdrop as wide as everything does not count.",
+    ),
+    Action(
+        "viewer.pick_focus",
+        "Pick What Is Sharp",
+        pick_focus,
+        "Viewer/Handles",
+        "E",
+        "viewer",
+        lambda e: focused(e.session) is not None,
+        _picks,
+        doc="Of the selected depth of field: click on the picture, and what is there is sharp.",
+    ),
+    Action(
+        "viewer.remove_light",
+        "Remove the Light",
+        remove,
+        "Viewer/Handles",
+        "Delete",
+        "viewer",
+        can_remove,
+        doc="The one that is selected of the selected node. A double click on the picture adds one.",
+    ),
+)

@@ -1,0 +1,1 @@
+"""What takes several steps with questions between them: documents, files of code, flipbooks."""
