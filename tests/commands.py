@@ -33,6 +33,7 @@ def command(capfd: pytest.CaptureFixture[str], *before: str) -> Cli:
     def called(*words: object) -> Result:
         capfd.readouterr()
         code = run([*before, *map(str, words)])
-        return Result(code, *capfd.readouterr())
+        output = capfd.readouterr()
+        return Result(code, output.out, output.err)
 
     return called

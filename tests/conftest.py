@@ -1,18 +1,16 @@
-"""What all tests share: one device, and the shortest way from a node to its pixels.
-
-HALATION_TEST_FORM=fragment runs them with fragment passes, as on macOS.
-"""
+"""What all tests share: one renderer, and the shortest way from a node to its pixels."""
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 import pytest
+from devices import open_renderer
+from halation.compiler import Precision
 from halation.graph import Graph, Input, Output, Port
 from halation.nodes import Camera, Kind, Node
-from halation.renderer import Renderer, RenderRequest, open_device
+from halation.renderer import Renderer, RenderRequest
 
 Array = np.ndarray
 Run = Callable[..., Array]
@@ -22,10 +20,10 @@ _KINDS = {1: Kind.FIELD, 2: Kind.VECTOR, 3: Kind.VECTOR, 4: Kind.IMAGE}
 
 @pytest.fixture(scope="session")
 def renderer() -> Iterator[Renderer]:
-    """The engine on whatever OpenGL this machine has."""
-    made = Renderer(open_device(os.environ.get("HALATION_TEST_FORM")))
-    yield made
-    made.close()
+    """One renderer for all tests, so that they share its programs."""
+    renderer = open_renderer()
+    yield renderer
+    renderer.close()
 
 
 def graph_of(node: Node, inputs: Mapping[str, Array | Camera]) -> Graph:
@@ -63,7 +61,7 @@ def run(renderer: Renderer) -> Run:
         size: tuple[int, int] | None = None,
         output: str = "out",
         scale: float = 1.0,
-        precision: str = "float",
+        precision: Precision = "float",
         engine: Renderer | None = None,
     ) -> Array:
         given = inputs or {}

@@ -18,13 +18,20 @@ def write_exr(path: Path, parts: dict[str, np.ndarray], formats: dict[str, str])
         spec.attribute("oiio:subimagename", name)
         spec.attribute("Camera", "Lens 50")
         specs.append(spec)
-    file = oiio.ImageOutput.create(str(path))
+    file = create_output(path)
     assert file.open(str(path), tuple(specs))
     for index, (spec, array) in enumerate(zip(specs, parts.values(), strict=True)):
         assert index == 0 or file.open(str(path), spec, "AppendSubimage")
         assert file.write_image(array)
     assert file.close()
     return path
+
+
+def create_output(path: Path) -> oiio.ImageOutput:
+    """OpenImageIO's writer of the format that the suffix names."""
+    output = oiio.ImageOutput.create(str(path))
+    assert output is not None, oiio.geterror()
+    return output
 
 
 def read(path: Path | str, part: int = 0) -> np.ndarray:

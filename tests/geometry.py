@@ -44,7 +44,7 @@ def sample_camera() -> Camera:
     height, width = depth.shape
     world = np.column_stack([position[there], np.ones(there.sum())])
     seen = np.dstack([places(width, height), np.ones((height, width))])[there] * depth[there, None]
-    return Camera(tuple(np.linalg.lstsq(world, seen, rcond=None)[0].T.ravel()))
+    return Camera(tuple(np.linalg.lstsq(world, seen, rcond=None)[0].T.ravel().tolist()))
 
 
 def ball(camera: Camera, center: tuple[float, ...], radius: float, width: int, height: int) -> dict[str, Array]:

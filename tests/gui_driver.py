@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
+from devices import form_to_test
 from halation.editor.toolkit.keys import chord
 from halation.editor.window.editor import Editor
 from halation.editor.window.opengl import needs_no_display
@@ -157,7 +158,9 @@ class Ui:
         """The window as [height, width, 3] of 8 bits."""
         import OpenImageIO as oiio
 
-        return oiio.ImageBuf(str(self.shot(name))).get_pixels(oiio.UINT8)[..., :3]
+        pixels = oiio.ImageBuf(str(self.shot(name))).get_pixels(oiio.UINT8)
+        assert pixels is not None
+        return pixels[..., :3]
 
 
 class _Held:
@@ -191,7 +194,12 @@ def drive(
 
     def whole(ctx: Any) -> None:
         ui = Ui(window, ctx, folder)
-        window.params.callbacks.post_new_frame = lambda: (before_panels(), ui.answer())
+
+        def each_frame() -> None:
+            before_panels()
+            ui.answer()
+
+        window.params.callbacks.post_new_frame = each_frame
         patience = imgui.test_engine.get_io(hello_imgui.get_imgui_test_engine())
         patience.config_watchdog_warning = patience.config_watchdog_kill_test = 600.0
         imgui.get_io().config_error_recovery_enable_assert = True  # what a panel leaves open is a fault here
@@ -222,7 +230,7 @@ def headless(
     assert needs_no_display()
     state = folder / "state"
     state.mkdir(exist_ok=True)
-    form = os.environ.get("HALATION_TEST_FORM")
+    form = form_to_test()
     version = (4, 1) if form == "fragment" else (4, 5)
     window = Window(path, bindings or {}, version=version, state=state, size=size, form=form)
     window.params.ini_disable = True

@@ -12,10 +12,11 @@ from halation import presets
 from halation.authoring.services.export import Export, Job, State
 from halation.authoring.services.recovery import Recovery
 from halation.document import save
-from halation.editor.shared.dialogs import Browse, Question
+from halation.editor.shared.dialogs import Browse, Purpose, Question
 from halation.editor.window.editor import Editor
 from halation.graph import Control, Graph, Input, Output, Port, Settings
 from halation.nodes import Kind, Light, LightKind, catalogue, numbers_of
+from halation.nodes.input.read_image import ReadImage
 from toy_nodes import Lamps, Tint
 
 SAMPLES = presets.paths()[0].parent / "samples"
@@ -32,7 +33,7 @@ def made(folder: Path) -> Path:
     graph = graph.add_output("image", Output(Kind.IMAGE, 4)).add_output("lights", Output(Kind.FIELD, 1))
     for id in ("grade", "noise", "bloom", "vignette", "tone_map", "convolve3x3", "luminance"):
         graph = graph.add(id, node[id]())
-    graph = graph.add("plate", node["read_image"](path="samples/neon.exr"))
+    graph = graph.add("plate", ReadImage(path="samples/neon.exr"))
     for source, target in (
         ("inputs.beauty", "grade.image"),
         ("grade.out", "bloom.image"),
@@ -274,7 +275,8 @@ def renders(ui: Ui) -> Screens:
 
 def files(ui: Ui) -> Screens:
     """The file browser as pictures and as a list, opening and saving."""
-    for purpose, saving in (("image", False), ("graph", False), ("export", True)):
+    purposes: tuple[tuple[Purpose, bool], ...] = (("image", False), ("graph", False), ("export", True))
+    for purpose, saving in purposes:
         ui.editor.store.used(purpose, (SAMPLES if purpose == "image" else SAMPLES.parent) / "x")
         ui.editor.dialogs.browse = Browse(f"Choose: {purpose}", purpose, lambda path: None, saving, "halation.png")
         ui.wait(12)

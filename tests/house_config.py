@@ -6,7 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import PyOpenColorIO as ocio
+import PyOpenColorIO
+
+OCIO: Any = PyOpenColorIO
+"""OpenColorIO, whose compiled module declares no types."""
 
 AP1_TO_AP0 = np.array(
     [
@@ -104,14 +107,19 @@ def write_house(folder: Path, name: str = "house.ocio", text: str = HOUSE) -> Pa
     return path
 
 
+def read_config(path: Path) -> Any:
+    """A config as OpenColorIO reads it."""
+    return OCIO.Config.CreateFromFile(str(path))
+
+
 def through(config: Any, rgb: np.ndarray, *steps: Any) -> np.ndarray:
     """What OpenColorIO's CPU path makes of colors [..., 3]; `steps` are names of two spaces, or transforms."""
     colors = np.array(rgb, np.float32).reshape(-1, 3)
     made = config.getProcessor(*steps)
-    made.getOptimizedCPUProcessor(ocio.OPTIMIZATION_LOSSLESS).applyRGB(colors)
+    made.getOptimizedCPUProcessor(OCIO.OPTIMIZATION_LOSSLESS).applyRGB(colors)
     return colors.reshape(rgb.shape)
 
 
 def studio() -> Any:
     """OpenColorIO's own studio config."""
-    return ocio.Config.CreateFromBuiltinConfig("ocio://studio-config-latest")
+    return OCIO.Config.CreateFromBuiltinConfig("ocio://studio-config-latest")

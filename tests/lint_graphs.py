@@ -20,7 +20,7 @@ def chain(*steps: tuple[str, dict], file: str = "", layer: str = "", kind: Kind 
     graph = Graph(inputs={"beauty": Input(kind, file=file, layer=layer)}, outputs={"image": Output()})
     before = Port("inputs", "beauty")
     for id, (kind_of, values) in zip("abcdefg", steps, strict=False):
-        graph = graph.add(id, NODES[kind_of](**values))
-        graph = graph.connect(before, Port(id, next(iter(graph.nodes[id].inputs))))
+        node = NODES[kind_of](**values)
+        graph = graph.add(id, node).connect(before, Port(id, next(iter(node.inputs))))
         before = Port(id, "out")
     return graph.connect(before, Port("outputs", "image"))

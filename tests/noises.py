@@ -70,7 +70,7 @@ def _cubes(p: np.ndarray, corner) -> np.ndarray:
     cell, inside = np.floor(p), p - np.floor(p)
     fade = inside**3 * (inside * (inside * 6 - 15) + 10)
     weights = ((np.prod(np.where(c, fade, 1 - fade), -1)[..., None], np.array(c)) for c in np.ndindex(2, 2, 2))
-    return sum(weight * corner(cell + c, inside - c) for weight, c in weights)
+    return np.sum([weight * corner(cell + c, inside - c) for weight, c in weights], axis=0)
 
 
 def simplex_noise(p: np.ndarray, seed: np.ndarray) -> np.ndarray:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import OpenImageIO as oiio
+from exr_files import create_output
 
 
 def buffer(pixels: np.ndarray) -> oiio.ImageBuf:
@@ -24,7 +25,7 @@ def stored(path: Path, array: np.ndarray, *, format: str = "half", tile: int = 0
     spec.tile_width = spec.tile_height = tile
     for name, item in said.items():
         spec.attribute(name, item)
-    output = oiio.ImageOutput.create(str(path))
+    output = create_output(path)
     assert output.open(str(path), spec) and output.write_image(array) and output.close()
     return str(path)
 
@@ -52,6 +53,6 @@ def write_picture(
             spec.attribute(name, value[0], value[1])
         else:
             spec.attribute(name, value)
-    output = oiio.ImageOutput.create(str(path))
+    output = create_output(path)
     assert output.open(str(path), spec) and output.write_image(np.ascontiguousarray(array)) and output.close()
     return path

@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import numpy as np
 from halation.authoring.preview import Preview
 from halation.graph import Graph, Input, Output, Port
-from halation.nodes import Kind
+from halation.nodes import Kind, Size
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.saturation import Saturation
 from halation.renderer import Renderer, RenderRequest
 
+if TYPE_CHECKING:
+    from halation.inputs.provider import Binding
+
 PICTURE = np.random.default_rng(8).random((23, 37, 4), np.float32)
 IMAGE = Port("outputs", "image")
-OUT = {"A": IMAGE}
+OUT = MappingProxyType({"A": IMAGE})
+INPUTS: Mapping[str, Binding] = MappingProxyType({"image": PICTURE})
 
 
 def chain(stops: float = 1.0, sigma: float = 2.0, saturation: float = 0.5) -> Graph:
@@ -28,8 +35,18 @@ def chain(stops: float = 1.0, sigma: float = 2.0, saturation: float = 0.5) -> Gr
     return graph.connect(last, Port("outputs", "image"))
 
 
-def want(preview: Preview, graph: Graph, ports=OUT, **rest) -> None:
-    preview.want(graph, ports, **({"bindings": {"image": PICTURE}} | rest))
+def want(
+    preview: Preview,
+    graph: Graph,
+    ports: Mapping[str, Port] = OUT,
+    *,
+    bindings: Mapping[str, Binding] = INPUTS,
+    scale: float = 1.0,
+    frame: int = 1,
+    size: Size | None = None,
+) -> None:
+    """Ask for pictures of a graph whose input is PICTURE unless `bindings` say otherwise."""
+    preview.want(graph, ports, bindings=bindings, scale=scale, frame=frame, size=size)
 
 
 def settle(preview: Preview) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from random import Random
 
 import numpy as np
-from halation.graph import Graph, Input, Output, Port, conversion, signature
+from halation.graph import Graph, Input, Output, Port, signature
 from halation.nodes import Kind, Node, Source, Temporal, catalogue, look_at
 
 SIZE = (37, 23)
@@ -42,9 +42,9 @@ def random_graph(seed: int, length: int = 10) -> Graph:
         }
     )
     for index in range(length):
-        name = f"n{index}"
-        graph = graph.add(name, random_node(rng))
-        face = signature(graph.nodes[name])
+        name, node = f"n{index}", random_node(rng)
+        graph = graph.add(name, node)
+        face = signature(node)
         wires = [
             value for value in face.values if face.pointwise and face.values[value].wireable and rng.random() < 0.15
         ]
@@ -52,20 +52,16 @@ def random_graph(seed: int, length: int = 10) -> Graph:
             fitting = [
                 port
                 for port in sources(graph, name)
-                if conversion(graph.source(port), graph.target(Port(name, target))) is None
-                and not (looks_around(graph.nodes[name]) and remembers(graph, port.node))
+                if graph.link_fault(port, Port(name, target)) is None
+                and not (looks_around(node) and remembers(graph, port.node))
             ]
             if fitting and (target in wires or not face.inputs[target].optional or rng.random() < 0.7):
                 # Late nodes are more likely, so that chains grow long.
                 graph = graph.connect(fitting[-1 - int(len(fitting) * rng.random() ** 3)], Port(name, target))
     read = set(graph.links.values())
-    loose = [
-        port
-        for port in sources(graph, "")
-        if port not in read and port.node != "inputs" and graph.source(port).kind is not Kind.CAMERA
-    ]
-    for number, port in enumerate(loose[-4:]):
-        socket = graph.source(port)
+    sockets = {port: graph.source(port) for port in sources(graph, "") if port not in read and port.node != "inputs"}
+    loose = [(port, socket) for port, socket in sockets.items() if socket and socket.kind is not Kind.CAMERA]
+    for number, (port, socket) in enumerate(loose[-4:]):
         kind = {Kind.NUMBER: Kind.FIELD, Kind.COLOR: Kind.IMAGE}.get(socket.kind, socket.kind)
         name = f"o{number}"
         graph = graph.add_output(name, Output(kind, socket.channels)).connect(port, Port("outputs", name))

@@ -50,6 +50,7 @@ def write_frames(
 
     with av.open(str(path), "w", options=dict(container or {})) as file:
         stream = file.add_stream(codec, rate=rate)
+        assert isinstance(stream, av.VideoStream)
         stream.width, stream.height, stream.pix_fmt = frames[0].width, frames[0].height, frames[0].format.name
         stream.options = dict(options or {})
         stream.metadata.update(tags or {})

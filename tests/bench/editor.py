@@ -129,8 +129,9 @@ def drag(folder: Path) -> dict[str, float]:
             ui.ctx.inputs.mouse_pos_value = ImVec2(left + 8 + steps % 60, y)  # moved once a frame, as by a hand
             ui.wait(1)
             values.add(ui.session.value(Port("n9", "stops")))
-            seen.add(ui.editor.preview.shown("A").revision)
-            assert ui.editor.preview.shown("A").scale == 1.0
+            shown = ui.editor.preview.shown("A")
+            assert shown is not None and shown.scale == 1.0
+            seen.add(shown.revision)
         spent, used = time.perf_counter() - started, sum(os.times()[:2]) - before
         ui.ctx.mouse_up(0)
         assert len(values) > 10, "the mouse drags it"
@@ -160,7 +161,8 @@ def zoomed(folder: Path) -> dict[str, Any]:
                     value += 0.003
                     graph = graph.set(Port.parse(word), value)
                     taken = _until_seen(preview, graph)
-                    assert preview.seen("A").partial == part
+                    seen = preview.seen("A")
+                    assert seen is not None and seen.partial == part
                     if turn > 1 and step:  # before, programs are compiled and caches filled
                         steps[part].append(taken)
             parts, wholes = (np.median(steps[part], axis=0) for part in (True, False))

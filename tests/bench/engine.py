@@ -48,9 +48,10 @@ def main() -> None:
     planned = time.perf_counter()
     engine.runner.run(plan)
     first, seconds = time.perf_counter() - planned, []
+    pixels = np.empty(0)
     for _ in range(options.repeat + 1):
         before = time.perf_counter()
-        made = engine.runner.run(plan)["out"]
+        pixels = engine.runner.run(plan)["out"]
         seconds.append(time.perf_counter() - before)
     print(
         json.dumps(
@@ -60,7 +61,7 @@ def main() -> None:
                 "plan": planned - started,
                 "passes": len(plan.passes),
                 "device": engine.device.description,
-                "finite": bool(np.isfinite(made).all()),
+                "finite": bool(np.isfinite(pixels).all()),
             }
         )
     )

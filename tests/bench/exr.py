@@ -25,6 +25,8 @@ def read(path: Path, half: bool = False) -> Array:
         raise OSError(oiio.geterror())
     pixels = opened.read_image(0, 0, 0, opened.spec().nchannels, "half" if half else "float")
     opened.close()
+    if pixels is None:
+        raise OSError(f"{path}: {oiio.geterror()}")
     return pixels
 
 

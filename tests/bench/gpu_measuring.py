@@ -46,7 +46,7 @@ def measure_copies(results: Results, device: Device, given: argparse.Namespace, 
 
 def measure_work(results: Results, device: Device, given: argparse.Namespace, say: Say) -> None:
     """Every graph in every form and precision, all in turn."""
-    forms = [form for form in FORMS if form == "fragment" or device.target.version >= 430]
+    forms: list[Form] = [form for form in FORMS if form == "fragment" or device.target.version >= 430]
     engines = {form: engine(device, form) for form in forms}
     for name in given.work:
         work = replace(WORK[name], size=DRY) if given.dry else WORK[name]

@@ -7,6 +7,7 @@ from statistics import median
 
 from bench.figures import Figure, Row, number_text
 from bench.results import Results, Run, paired
+from halation.compiler import Form, Precision
 
 COPY = 0.7
 """How much of the bandwidth of a copy fused nodes are to reach."""
@@ -16,8 +17,8 @@ ROUNDING = 2.0
 """Two pictures that are both rounded may be so many times as far apart as one that is rounded from one that is not."""
 UNSEEN = 1e-3
 """FLIP that nobody can see: rounding may change less than that, and then this is the limit."""
-FORMS = ("compute", "fragment")
-PRECISIONS = ("half", "float")
+FORMS: tuple[Form, ...] = ("compute", "fragment")
+PRECISIONS: tuple[Precision, ...] = ("half", "float")
 
 _NOTHING = (
     "**{card} is a software rasterizer: these figures mean nothing. They show that all of it runs.**",

@@ -13,6 +13,7 @@ import pytest
 from commands import Cli, command
 from exr_files import write_exr
 from halation import renderer
+from halation.compiler import Form
 
 WIDTH, HEIGHT = 48, 32
 RED = np.linspace(0.0, 1.0, WIDTH, dtype=np.float32).astype(np.float16).astype(np.float32)
@@ -21,7 +22,7 @@ Graphs = Callable[..., Path]
 
 
 @cache
-def device(form: str | None) -> renderer.Device:
+def device(form: Form | None) -> renderer.Device:
     return REAL_DEVICE(form)
 
 

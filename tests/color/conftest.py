@@ -6,10 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-import PyOpenColorIO as ocio
 import pytest
 from halation.nodes import ColorSettings
-from house_config import write_house
+from house_config import read_config, write_house
 from oiio_pictures import write_picture
 
 Make = Callable[..., Path]
@@ -29,7 +28,7 @@ def house(tmp_path: Path) -> Path:
 @pytest.fixture
 def reference(house: Path):
     """The house config as OpenColorIO reads it."""
-    return ocio.Config.CreateFromFile(str(house))
+    return read_config(house)
 
 
 @pytest.fixture

@@ -2,26 +2,26 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 
 import pytest
+from devices import open_renderer
 from halation.authoring.preview import Preview
-from halation.renderer import Display, Renderer, open_device
+from halation.renderer import Display, Renderer
 
 
 @pytest.fixture
 def engine() -> Iterator[Renderer]:
-    made = Renderer(open_device(os.environ.get("HALATION_TEST_FORM")))
-    yield made
-    made.close()
+    renderer = open_renderer()
+    yield renderer
+    renderer.close()
 
 
 @pytest.fixture
 def preview(engine: Renderer) -> Iterator[Preview]:
     display = Display(engine.device)
-    made = Preview(engine, display)
-    made.patience = 0.0
-    yield made
-    made.close()
+    preview = Preview(engine, display)
+    preview.patience = 0.0
+    yield preview
+    preview.close()
     display.close()

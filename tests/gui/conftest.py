@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from gui_driver import Ui, drive
+from gui_driver import drive
 from halation.editor.window.window import Window
 
 Gui = Callable[..., Window]
@@ -17,7 +17,4 @@ def gui(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Gui:
     """Takes the arguments of `gui_driver.drive` but the folder; what an editor remembers is kept between calls."""
     monkeypatch.setenv("HALATION_STATE", str(tmp_path / "state"))
 
-    def run(body: Callable[[Ui], object], path: Path | None = None, **options: object) -> Window:
-        return drive(body, tmp_path, path, **options)
-
-    return run
+    return lambda body, path=None, **options: drive(body, tmp_path, path, **options)

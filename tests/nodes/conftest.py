@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from importlib import resources
 
 import numpy as np
-import OpenImageIO as oiio
 import pytest
+from exr_files import read
 
 
 @dataclass(frozen=True)
@@ -53,4 +53,4 @@ def hdr():
 def rendered_frame() -> np.ndarray:
     """The color of the sample frame that ships with Halation, by OpenImageIO: [h, w, 4]."""
     with resources.as_file(resources.files("halation.presets") / "samples" / "neon.exr") as path:
-        return np.ascontiguousarray(oiio.ImageBuf(str(path)).get_pixels(oiio.FLOAT)[..., :4])
+        return np.ascontiguousarray(read(path)[..., :4])

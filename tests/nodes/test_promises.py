@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import MappingProxyType
@@ -11,6 +10,7 @@ import cv2
 import numpy as np
 import OpenImageIO as oiio
 import pytest
+from devices import open_renderer
 from exr_files import write_exr
 from halation import document, media
 from halation.authoring.preview.data import data_range
@@ -19,7 +19,7 @@ from halation.color.transforms import decode_srgb
 from halation.compiler import installed
 from halation.nodes import Kind, Node, Pointwise, catalogue
 from halation.presets import sample
-from halation.renderer import Renderer, RenderRequest, open_device
+from halation.renderer import Renderer, RenderRequest
 
 Array = np.ndarray
 
@@ -148,9 +148,9 @@ def picture(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def another() -> Iterator[Renderer]:
     """A second context with programs and textures of its own."""
-    made = Renderer(open_device(os.environ.get("HALATION_TEST_FORM")), budget=0)
-    yield made
-    made.close()
+    renderer = open_renderer(budget=0)
+    yield renderer
+    renderer.close()
 
 
 def rendered(engine: Renderer, node: type[Node], picture: Path, scale: float) -> dict[str, Array]:

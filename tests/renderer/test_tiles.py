@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import weakref
 from pathlib import Path
@@ -10,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import graph_of
+from devices import form_to_test
 from halation import document
 from halation.compiler import Region, Request, examine, explain
 from halation.compiler.tiling import tiling
@@ -22,13 +22,12 @@ from halation.renderer import FrameRenderer, Renderer, RenderRequest, open_devic
 from msgspec.structs import replace
 from random_graphs import pictures, random_graph
 
-FORM = os.environ.get("HALATION_TEST_FORM")
 NODES = catalogue()
 
 
 def limited(side: int = 16384, memory: int = 0) -> Renderer:
     """A renderer on a device that holds no more."""
-    device = open_device(FORM).within(memory)
+    device = open_device(form_to_test()).within(memory)
     return Renderer(replace(device, target=replace(device.target, max_size=side)), budget=0)
 
 
