@@ -1,0 +1,218 @@
+"""Every way in which a graph can name a file, tried from inside of `--root`: none may open a file outside of it.
+
+What can name a file is found from the declarations of the nodes, so a new one is covered by itself. What is opened is
+watched by the system (inotify), not guessed from what comes out.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from random import Random
+
+import images
+import PyOpenColorIO as ocio
+from cases import Case
+from halation.nodes import Node, catalogue
+
+Tree = dict[str, object]
+WAYS = (
+    "../secret/",
+    "link/",
+    "./../secret/",
+    "inner/../../secret/",
+    "{absolute}/",
+    "file://{absolute}/",
+    "LINK/../link/",
+    "chain/",
+)
+"""How a path leads out: up, by links, by links to links, whole."""
+
+
+def path_values() -> Iterator[tuple[type[Node], str]]:
+    """Every value of every node that names a file."""
+    for kind in catalogue().values():
+        for name, value in kind.values.items():
+            if value.type == "path":
+                yield kind, name
+
+
+def _wrap(node: Tree, output: str, **parts: object) -> Tree:
+    return {
+        "halation": 1,
+        "settings": {"size": [16, 16]},
+        "outputs": {"image": {"type": "Image"}},
+        "nodes": {"n": node, "s": {"type": "noise"}},
+        "links": {"outputs.image": f"n.{output}"},
+        **parts,
+    }
+
+
+def fields(name: str) -> Iterator[tuple[str, str, Tree]]:
+    """Label, ending and graph of every field of the format that names a file, here `name` plus that ending."""
+    for kind, value in path_values():
+        for ending in ("exr", "cube", "clf", "obj", "gltf", "ply", "mov"):
+            path = f"{name}.{ending}"
+            values: Tree = {value: path} if kind.id != "scene" else {"scene": "file", value: path}
+            tree = _wrap({"type": kind.id, "values": values}, next(iter(kind.outputs), "out"))
+            links = tree["links"]
+            assert isinstance(links, dict)
+            links |= {f"n.{socket}": "s.out" for socket in kind.inputs if not kind.inputs[socket].optional}
+            yield f"{kind.id}.{value}", ending, tree
+    for ending in ("exr", "####.exr", "mov"):
+        inputs = {"b": {"type": "Image", "file": f"{name}.{ending}"}}
+        yield (
+            "inputs.file",
+            ending,
+            {
+                "halation": 1,
+                "inputs": inputs,
+                "outputs": {"image": {"type": "Image"}},
+                "links": {"outputs.image": "inputs.b"},
+            },
+        )
+    yield "group.path", "json", _wrap({"type": "group", "path": f"{name}.json"}, "image")
+    yield "glsl.file", "glsl", _wrap({"type": "glsl", "file": f"{name}.glsl"}, "out")
+    yield "isf.file", "fs", _wrap({"type": "isf", "file": f"{name}.fs"}, "out")
+    yield (
+        "settings.color.config",
+        "ocio",
+        _wrap({"type": "noise"}, "out", settings={"size": [16, 16], "color": {"config": f"{name}.ocio"}}),
+    )
+
+
+def inner_files(name: str) -> Iterator[tuple[str, dict[str, str], Tree]]:
+    """Label, files inside the jail that name others outside by `name` in turn, and the graph that names them."""
+    clf = (
+        '<?xml version="1.0"?><ProcessList id="a" compCLFversion="3">'
+        '<Reference path="{}" inBitDepth="32f" outBitDepth="32f"/></ProcessList>'
+    )
+    lut = _wrap({"type": "lut_file", "values": {"file": "a.clf"}}, "out")
+    lut["links"] = {"n.image": "s.out", "outputs.image": "n.out"}
+    for ending in ("clf", "ctf", "cube"):
+        yield f"reference in a CLF to {ending}", {"a.clf": clf.format(f"{name}.{ending}")}, lut
+        other = json.loads(json.dumps(lut).replace("a.clf", "a.ctf"))
+        text = clf.format(f"{name}.{ending}").replace('compCLFversion="3"', 'version="1.3"')
+        yield f"reference in a CTF to {ending}", {"a.ctf": text}, other
+        chained = {"a.clf": clf.format("b.clf"), "b.clf": clf.format(f"{name}.{ending}")}
+        yield f"reference by way of another CLF to {ending}", chained, lut
+    scene = {"type": "scene", "values": {"scene": "file", "file": "a.obj"}}
+    obj = f"mtllib {name}.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n"
+    yield "material of an OBJ", {"a.obj": obj}, _wrap(scene, "color")
+    textured = {"a.obj": obj.replace(f"{name}.mtl", "a.mtl"), "a.mtl": f"newmtl m\nmap_Kd {name}.png\n"}
+    yield "texture of a material", textured, _wrap(scene, "color")
+    gltf = json.loads(images.TEXTS["gltf"])
+    gltf["buffers"][0]["uri"] = f"{name}.bin"
+    gltf["images"] = [{"uri": f"{name}.png"}]
+    scene = {"type": "scene", "values": {"scene": "file", "file": "a.gltf"}}
+    yield "buffer of a glTF", {"a.gltf": json.dumps(gltf)}, _wrap(scene, "color")
+    for transform in (f"!<FileTransform> {{src: {name}.cube}}", f"!<FileTransform> {{src: {name}.clf}}"):
+        config = CONFIG.replace("TRANSFORM", transform)
+        settings = {"size": [16, 16], "color": {"config": "a.ocio", "working": "looked"}}
+        yield "table of a config", {"a.ocio": config}, _wrap({"type": "noise"}, "out", settings=settings)
+    moved = CONFIG.replace("search_path: .", f"search_path: {name.rpartition('/')[0] or '.'}").replace(
+        "TRANSFORM", "!<FileTransform> {src: secret.cube}"
+    )
+    yield (
+        "search path of a config",
+        {"a.ocio": moved},
+        _wrap(
+            {"type": "noise"}, "out", settings={"size": [16, 16], "color": {"config": "a.ocio", "working": "looked"}}
+        ),
+    )
+    yield (
+        "include of code",
+        {},
+        _wrap({"type": "glsl", "code": [f'#include "{name}.glsl"', "vec4 f(vec4 image) { return image; }"]}, "out"),
+    )
+    group = _wrap({"type": "read_image", "values": {"path": f"{name}.exr"}}, "out")
+    yield "picture of a group", {"g.json": json.dumps(group)}, _wrap({"type": "group", "path": "g.json"}, "image")
+
+
+CONFIG = """ocio_profile_version: 2
+search_path: .
+strictparsing: true
+roles:
+  default: raw
+  scene_linear: raw
+file_rules:
+  - !<Rule> {name: Default, colorspace: default}
+displays:
+  d:
+    - !<View> {name: v, colorspace: looked}
+active_displays: []
+active_views: []
+colorspaces:
+  - !<ColorSpace>
+    name: raw
+    isdata: true
+  - !<ColorSpace>
+    name: looked
+    isdata: false
+    to_scene_reference: TRANSFORM
+"""
+
+
+def make_yard(folder: Path) -> None:
+    """jail/ with links that lead out, and secret/ beside it with a file of every kind."""
+    jail, secret = folder / "jail", folder / "secret"
+    (jail / "inner").mkdir(parents=True)
+    secret.mkdir()
+    for path in images.write_corpus(secret):
+        path.rename(path.with_name(f"secret{path.suffix}"))
+    (secret / "secret.0001.exr").write_bytes((secret / "secret.exr").read_bytes())
+    (secret / "secret.ctf").write_text(images.TEXTS["clf"].replace('compCLFversion="3"', 'version="1.3"'))
+    (secret / "secret.mtl").write_text("newmtl m\nKd 1 0 0\n")
+    (secret / "secret.bin").write_bytes(bytes(36))
+    (secret / "secret.glsl").write_text("vec4 pixel(vec4 image) { return image; }\n")
+    (secret / "secret.json").write_text(json.dumps(_wrap({"type": "noise"}, "out")))
+    (secret / "secret.ocio").write_text(ocio.Config.CreateFromBuiltinConfig("cg-config-latest").serialize())
+    (jail / "link").symlink_to(secret)
+    (jail / "LINK").symlink_to(secret)
+    (jail / "chain").symlink_to("link")
+
+
+COMMANDS = (
+    ("render", "jail/graph.json", "-o", "jail/out.exr", "--root", "jail", "--timeout", "8"),
+    ("check", "jail/graph.json", "--root", "jail"),
+    ("explain", "jail/graph.json", "--root", "jail"),
+)
+
+
+def build_cases(seed: int, count: int) -> Iterator[Case]:
+    """All fields in all ways by all commands, in an order by the seed; `count` of them, 0 for all."""
+    plans: list[tuple[str, str, Callable[[Path], None], tuple[str, ...]]] = []
+    for way in WAYS:
+        for words in COMMANDS:
+            for label, ending, _ in fields("x"):
+                plans.append((f"{label} ({ending})", way, _write_field(way, label, ending), words))
+            for number, (label, _, _) in enumerate(inner_files("x")):
+                plans.append((label, way, _write_inner(way, number), words))
+    Random(f"jails {seed}").shuffle(plans)
+    for number, (label, way, prepare, words) in enumerate(plans[: count or None]):
+        yield Case(f"jail-{seed}-{number} {label} by {way} {words[0]}", prepare, words, forbidden="secret")
+
+
+def _named(way: str, folder: Path) -> str:
+    return way.replace("{absolute}", str(folder / "secret")) + "secret"
+
+
+def _write_field(way: str, label: str, ending: str) -> Callable[[Path], None]:
+    def prepare(folder: Path) -> None:
+        make_yard(folder)
+        tree = next(tree for its, end, tree in fields(_named(way, folder)) if (its, end) == (label, ending))
+        (folder / "jail" / "graph.json").write_text(json.dumps(tree))
+
+    return prepare
+
+
+def _write_inner(way: str, number: int) -> Callable[[Path], None]:
+    def prepare(folder: Path) -> None:
+        make_yard(folder)
+        _, files, tree = list(inner_files(_named(way, folder)))[number]
+        for name, text in files.items():
+            (folder / "jail" / name).write_text(text)
+        (folder / "jail" / "graph.json").write_text(json.dumps(tree))
+
+    return prepare
