@@ -1,7 +1,7 @@
 """Renders and saves that are killed at every system call that writes: what is there afterwards is whole, old or new.
 
-strace sends the signal as the n-th call of a kind begins, for n = 1, 2, ... until the program comes to its end, so no
-moment is left to luck. Needs strace (Debian: apt-get install strace).
+A first run is only watched: it tells which calls concern files of the folder. Then strace sends the signal as each of
+them begins, so no moment is left to luck. Needs strace (Debian: apt-get install strace).
 """
 
 from __future__ import annotations
@@ -73,36 +73,49 @@ def find_broken(folder: Path) -> Iterator[str]:
 
 
 def run_kills(count: int, keep: Path | None) -> Tally:
-    """Up to so many kills, scene by scene and call by call."""
+    """Up to so many kills: every call on a file of the folder that a whole run makes, scene after scene."""
     if not shutil.which("strace"):
         raise SystemExit("kills need strace: apt-get install strace")
     tally = Tally()
     for scene, words in SCENES.items():
-        for call in CALLS:
-            number = 0
-            while tally.count < count:
-                number += 1
-                if not _kill_once(tally, scene, words, call, number, keep):
-                    break
+        for call, number in sorted(_find_calls(words)):
+            if tally.count < count:
+                _kill(tally, scene, words, call, number, keep)
     return tally
 
 
-def _kill_once(tally: Tally, scene: str, words: tuple[str, ...], call: str, number: int, keep: Path | None) -> bool:
-    """Whether there was a call of that number to die at."""
-    folder = Path(tempfile.mkdtemp(prefix="hostile-kill-"))
-    try:
+def _find_calls(words: tuple[str, ...]) -> set[tuple[str, int]]:
+    """The calls that concern the folder, each with its number among those of its name in its thread."""
+    with tempfile.TemporaryDirectory(prefix="hostile-kill-") as text:
+        folder, log = Path(text), Path(text, "strace.log")
         prepare(folder)
-        command = [
-            *("strace", "-f", "-qq", "-o", "/dev/null", "-P", str(folder)),
-            *("-e", f"trace={call}", "-e", f"inject={call}:signal=KILL:when={number}"),
-            sys.executable, "-P", "-m", "halation.cli", *words,
-        ]  # fmt: skip
-        # -P follows only calls on paths below the folder; descriptors of files there count as such.
-        result = subprocess.run(
-            command, cwd=folder, capture_output=True, text=True, env={**os.environ, "LP_NUM_THREADS": "1"}
-        )
-        if result.returncode == 0:
-            return False
+        _run(folder, words, "-y", "-o", str(log), "-e", f"trace={','.join(CALLS)}")
+        counts: dict[tuple[str, str], int] = {}
+        calls: set[tuple[str, int]] = set()
+        for line in log.read_text("utf-8", "replace").splitlines():
+            thread, _, rest = line.partition(" ")
+            call = rest.strip().partition("(")[0]
+            if call not in CALLS:  # the end of a call that another thread interrupted
+                continue
+            counts[thread, call] = counts.get((thread, call), 0) + 1
+            if text in rest and "strace.log" not in rest:
+                calls.add((call, counts[thread, call]))
+        return calls
+
+
+def _run(folder: Path, words: tuple[str, ...], *options: str) -> int:
+    command = ["strace", "-f", "-qq", "--seccomp-bpf", *options, sys.executable, "-P", "-m", "halation.cli", *words]
+    environment = {**os.environ, "LP_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
+    return subprocess.run(command, cwd=folder, capture_output=True, env=environment).returncode
+
+
+def _kill(tally: Tally, scene: str, words: tuple[str, ...], call: str, number: int, keep: Path | None) -> None:
+    with tempfile.TemporaryDirectory(prefix="hostile-kill-") as text:
+        folder = Path(text)
+        prepare(folder)
+        inject = f"inject={call}:signal=KILL:when={number}"
+        if _run(folder, words, "-o", "/dev/null", "-e", f"trace={call}", "-e", inject) == 0:
+            return
         tally.count += 1
         name = f"kill {scene} {call} {number}"
         for fault in find_broken(folder):
@@ -110,6 +123,3 @@ def _kill_once(tally: Tally, scene: str, words: tuple[str, ...], call: str, numb
             print(f"{name}: {fault}", flush=True)
             if keep:
                 shutil.copytree(folder, keep / name.replace(" ", "-"), dirs_exist_ok=True)
-        return True
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
