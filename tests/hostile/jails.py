@@ -12,7 +12,6 @@ from pathlib import Path
 from random import Random
 
 import images
-import PyOpenColorIO as ocio
 from cases import Case
 from halation.nodes import Node, catalogue
 
@@ -167,7 +166,7 @@ def make_yard(folder: Path) -> None:
     (secret / "secret.bin").write_bytes(bytes(36))
     (secret / "secret.glsl").write_text("vec4 pixel(vec4 image) { return image; }\n")
     (secret / "secret.json").write_text(json.dumps(_wrap({"type": "noise"}, "out")))
-    (secret / "secret.ocio").write_text(ocio.Config.CreateFromBuiltinConfig("cg-config-latest").serialize())
+    (secret / "secret.ocio").write_text(CONFIG.replace("TRANSFORM", "!<CDLTransform> {slope: [2, 2, 2]}"))
     (jail / "link").symlink_to(secret)
     (jail / "LINK").symlink_to(secret)
     (jail / "chain").symlink_to("link")

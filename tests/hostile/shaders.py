@@ -47,8 +47,11 @@ def _writer(code: str) -> Callable[[Path], None]:
         "nodes": {"s": {"type": "noise"}, "n": {"type": "glsl", "code": code.split("\n")}},
         "links": {"n.image": "s.out", "outputs.image": "n.out"},
     }
-    text = json.dumps(graph)
-    return lambda folder: (folder / "graph.json").write_text(text) and None
+
+    def prepare(folder: Path) -> None:
+        (folder / "graph.json").write_text(json.dumps(graph))
+
+    return prepare
 
 
 def write_function(rng: Random) -> str:

@@ -91,6 +91,6 @@ def run_concurrency(count: int) -> Tally:
             tally.faults += [(f"pair {number}", fault) for fault in kills.find_broken(folder)]
             for path in folder.glob("out.0*.exr"):
                 pixels = oiio.ImageBuf(str(path)).get_pixels(oiio.FLOAT)
-                if not np.isfinite(pixels).all():
+                if pixels is None or not np.isfinite(pixels).all():
                     tally.faults.append((f"pair {number}", f"{path.name} holds no picture"))
     return tally
