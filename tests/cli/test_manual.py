@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import inspect
-import os
 import re
-from pathlib import Path
 
 import pytest
 from halation.cli import manual
@@ -114,11 +112,3 @@ def test_a_section_says_everything_as_it_was_written(page, id):
             assert [float(part) for part in re.findall(r"at (?:least|most) (\S+?)(?:,|$)", hard)] == [
                 pytest.approx(limit) for limit in (value.minimum, value.maximum) if abs(limit) != float("inf")
             ]
-
-
-def test_the_page_in_the_project_is_current(page):
-    """HALATION_RENEW=1 writes it anew."""
-    stored = Path(__file__).parents[2] / "docs" / "nodes.md"
-    if os.environ.get("HALATION_RENEW"):
-        stored.write_text(page, encoding="utf-8")
-    assert stored.read_text(encoding="utf-8") == page

@@ -1,4 +1,4 @@
-"""The script that sets everything up speaks plainly where it cannot."""
+"""The script `dev` sets everything up, and says in plain words where it cannot."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def dev(checkout: Path, *words: str, commands: dict[str, str]) -> subprocess.Com
 def test_help(checkout: Path, word: str) -> None:
     result = dev(checkout, *filter(None, [word]), commands={})
     assert result.returncode == 0
-    assert all(f"./dev {task}" in result.stdout for task in ("demo", "edit", "test"))
+    assert all(f"./dev {task}" in result.stdout for task in ("demo", "edit", "test", "renew"))
 
 
 def test_an_unknown_word_is_a_usage_error(checkout: Path) -> None:
@@ -86,7 +86,7 @@ case $1 in
         pip) echo pip "$@" >>log; echo Collecting a; echo ERROR: no network; exit {pip} ;;
         pytest) echo run "$@" >>log; exit 7 ;;
     esac ;;
-    demo | edit) echo run "$@" >>log; exit 7 ;;
+    demo | edit | tests/generated_pages.py) echo run "$@" >>log; exit 7 ;;
 esac
 """
 
@@ -120,6 +120,13 @@ def test_set_up_happens_once_and_again_when_something_changed(checkout: Path) ->
     assert steps("test") == ["venv", "pip", "run"]
     (checkout / ".venv/bin/python").unlink()
     assert steps("test") == ["venv", "pip", "run"]
+
+
+def test_renewing_needs_what_tests_need(checkout: Path) -> None:
+    result = dev(checkout, "renew", commands=fake())
+    assert result.returncode == 7, result.stderr
+    venv, pip, run = (checkout / "log").read_text().splitlines()
+    assert (venv, pip.split()[-2:], run.split()) == ("venv", ["-e", ".[test]"], ["run", "tests/generated_pages.py"])
 
 
 def test_a_moved_checkout_gets_a_new_venv(checkout: Path) -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import get_args
 
+import pytest
 from halation import document
 from halation.cli.outcome import EXIT_CODES
 from halation.graph import Interpolation, problems
@@ -19,6 +20,7 @@ from halation.nodes import Pointwise, Temporal, catalogue
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
+PAGES = (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")))
 
 
 def block(language: str, start: str = "") -> str:
@@ -48,12 +50,20 @@ def test_the_node_is_declared_as_its_shader_says() -> None:
     assert [field.name for field in fields(node)] == ["threshold"]
 
 
-def test_files_and_folders_it_names_exist() -> None:
-    names = {*re.findall(r"\b(?:docs|presets|tests|nodes|shaders|app)/[\w/-]+(?:\.\w+)?", README)}
-    missing = {name for name in names if not (ROOT / name).exists() and "solarize" not in name}
-    assert not missing
-    parts = re.findall(r"^  (\w+(?:/|\.py)) ", block("text", "dev "), re.M)
-    assert {part.rstrip("/") for part in parts} <= {path.name for path in (ROOT / "app").iterdir()}
+def test_the_floor_plan_lists_every_room() -> None:
+    rooms = re.findall(r"^  (\w+(?:/|\.py)) ", block("text", "dev "), re.M)
+    modules = {path.name for path in (ROOT / "app").glob("*.py")} - {"__init__.py"}
+    folders = {f"{path.parent.name}/" for path in (ROOT / "app").glob("*/__init__.py")}
+    assert sorted(rooms) == sorted(modules | folders)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_files_and_folders_that_a_page_names_exist(page: Path) -> None:
+    text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.S)
+    paths = set(re.findall(r"(?<![\w./-])(?:docs|presets|tests|nodes|shaders|app)/[\w/-]+(?:\.\w+)?", text))
+    assert not {path for path in paths if not (ROOT / path).exists()}
+    links = set(re.findall(r"\]\((?!https?:|#)([^)#]+)", re.sub(r"`[^`]*`", "", text)))
+    assert not {link for link in links if not (page.parent / link).exists()}
 
 
 def test_its_commands_and_exit_codes_exist() -> None:

@@ -1,0 +1,101 @@
+"""Everything in the repository that is generated from the code: `./dev renew` writes it, a law test compares it.
+
+Each entry of PAGES is a file and the function that brings its text up to date. Pages that are only partly generated
+have marks around that part, or one table that can be recognized.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from types import MappingProxyType
+
+from api_reference import write_reference
+from command_reference import fill_tables
+from halation.cli import manual
+from halation.graph.expressions.functions import FUNCTIONS
+from halation.lint.checking import RULES
+from halation.nodes import catalogue
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = MappingProxyType(
+    {"app": "halation", "nodes": "halation.nodes", "shaders": "halation.shaders", "presets": "halation.presets"}
+)
+"""Top-level folder -> the package that it is."""
+
+
+def list_packages() -> list[str]:
+    """The import names of all folders with code, for setuptools: a package that is not listed is not in the wheel."""
+    folders = {path.parent.relative_to(ROOT).parts for top in PACKAGES for path in (ROOT / top).rglob("*.py")}
+    return sorted(".".join((PACKAGES[top], *inner)) for top, *inner in folders)
+
+
+def replace_part(text: str, pattern: str, part: str) -> str:
+    """The text with the one part that matches `pattern`, over several lines, replaced."""
+    matches = re.findall(pattern, text, re.M | re.S)
+    assert len(matches) == 1, f"{len(matches)} places look like {pattern}"
+    return re.sub(pattern, lambda _: part, text, flags=re.M | re.S)
+
+
+def fill_packages(text: str) -> str:
+    """pyproject.toml with the list of packages."""
+    lines = "".join(f'    "{name}",\n' for name in list_packages())
+    return replace_part(text, r"^packages = \[\n.*?^\]\n", f"packages = [\n{lines}]\n")
+
+
+def fill_table(text: str, head: str, rows: Iterable[Iterable[str]]) -> str:
+    """A page with the rows of the table whose first two lines are `head`."""
+    lines = "".join(f"| {' | '.join(row)} |\n" for row in rows)
+    return replace_part(text, rf"^{re.escape(head)}\n(?:\|[^\n]*\n)+", f"{head}\n{lines}")
+
+
+def fill_functions(text: str) -> str:
+    """docs/time.md with the functions of expressions."""
+    head = "| function | gives |\n|---|---|"
+    return fill_table(text, head, ((f"`{function.signature}`", function.doc) for function in FUNCTIONS.values()))
+
+
+def fill_rules(text: str) -> str:
+    """docs/checking.md with the rules of `halation check`."""
+    rows = ((f"`{rule.name}`", rule.severity, rule.doc, rule.way_out) for rule in RULES.values())
+    return fill_table(text, "| rule | severity | what is wrong | what to do |\n|---|---|---|---|", rows)
+
+
+WHOLE_PAGES: Mapping[str, Callable[[], str]] = MappingProxyType(
+    {"docs/api.md": write_reference, "docs/nodes.md": lambda: manual.page(list(catalogue().values()))}
+)
+"""Pages that are generated from the first line to the last."""
+
+PARTS: Mapping[str, Callable[[str], str]] = MappingProxyType(
+    {
+        "docs/checking.md": fill_rules,
+        "docs/command-line.md": fill_tables,
+        "docs/time.md": fill_functions,
+        "pyproject.toml": fill_packages,
+    }
+)
+"""Files with a generated part -> what fills it in."""
+
+PAGES = (*WHOLE_PAGES, *PARTS)
+
+
+def renew(page: str) -> str:
+    """The text of a page as it should be."""
+    if page in WHOLE_PAGES:
+        return WHOLE_PAGES[page]()
+    return PARTS[page]((ROOT / page).read_text(encoding="utf-8"))
+
+
+def main() -> None:
+    """Write the pages that are not up to date, and say which."""
+    for page in PAGES:
+        path = ROOT / page
+        text = renew(page)
+        if not path.is_file() or path.read_text(encoding="utf-8") != text:
+            path.write_text(text, encoding="utf-8")
+            print(f"{page} is renewed")
+
+
+if __name__ == "__main__":
+    main()
