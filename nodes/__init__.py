@@ -1,4 +1,4 @@
-"""What Halation can do: one class per file, found by walking the folders."""
+"""What Halation can do: one class per file, found by walking the folders, and the nodes of installed plug-ins."""
 
 from __future__ import annotations
 
@@ -10,61 +10,81 @@ from pathlib import Path
 from . import _declare
 from ._declare import *  # noqa: F403  (the vocabulary: `_declare.__all__` names it)
 from ._declare import Node
+from ._plugins import Plugin, find_class, list_files, plugins
 
-__all__ = ["catalogue"]
+__all__ = ["Plugin", "built_in_nodes", "catalogue", "plugins"]
 __all__ += _declare.__all__
 
 
-class Catalogue(Mapping[str, type[Node]]):
-    """Every node class by id, in the order of the menu: folder, then file.
+class BuiltInNodes(Mapping[str, type[Node]]):
+    """The node classes of this package by id, in the order of the menu: folder, then file.
 
     The names of the files say which there are; a file is loaded when its class is asked for.
     """
 
     def __init__(self) -> None:
-        self._found: dict[str, type[Node]] = {}
+        self._loaded: dict[str, type[Node]] = {}
 
     @cached_property
-    def _modules(self) -> dict[str, str]:
-        return {name: f".{folder.name}.{name}" for folder in _folders() for name in _files(folder)}
+    def menus(self) -> dict[str, str]:
+        """The menu of every node."""
+        return {id: menu for menu, id in list_files(Path(__file__).parent)}
 
     def __getitem__(self, id: str) -> type[Node]:
-        if id not in self._found:
-            self._found[id] = self._load(id)
-        return self._found[id]
+        if id not in self._loaded:
+            self._loaded[id] = find_class(importlib.import_module(f".{self.menus[id]}.{id}", __package__), id)
+        return self._loaded[id]
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._modules)
+        return iter(self.menus)
 
     def __len__(self) -> int:
-        return len(self._modules)
+        return len(self.menus)
 
     def __contains__(self, id: object) -> bool:
-        return id in self._modules
+        return id in self.menus
 
-    def _load(self, id: str) -> type[Node]:
-        loaded = importlib.import_module(self._modules[id], __package__)
-        for item in vars(loaded).values():
-            if isinstance(item, type) and issubclass(item, Node) and item.__module__ == loaded.__name__:
-                if item.id == id:
-                    return item
-                raise TypeError(f"the class {item.__name__} makes a node '{item.id}': its file must have that name")
-        raise TypeError("there is no node in this file")
+
+class Catalogue(Mapping[str, type[Node]]):
+    """The built-in node classes, then those of plug-ins; in every menu the built-in ones come first.
+
+    An id without a namespace never makes it look for plug-ins.
+    """
+
+    def __init__(self, built_in: BuiltInNodes) -> None:
+        self._built_in = built_in
+
+    @cached_property
+    def _added(self) -> dict[str, type[Node]]:
+        return {id: node for plugin in plugins() for id, node in plugin.nodes.items()}
+
+    @cached_property
+    def _ids(self) -> tuple[str, ...]:
+        if not self._added:
+            return tuple(self._built_in)
+        menus = self._built_in.menus | {id: node.category for id, node in self._added.items()}
+        return tuple(sorted(menus, key=lambda id: (menus[id], "." in id)))
+
+    def __getitem__(self, id: str) -> type[Node]:
+        return self._added[id] if "." in id else self._built_in[id]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._ids)
+
+    def __len__(self) -> int:
+        return len(self._ids)
+
+    def __contains__(self, id: object) -> bool:
+        return id in (self._added if isinstance(id, str) and "." in id else self._built_in)
+
+
+@cache
+def built_in_nodes() -> BuiltInNodes:
+    """Every node class of Halation itself by id, in the order of the menu: folder, then file."""
+    return BuiltInNodes()
 
 
 @cache
 def catalogue() -> Mapping[str, type[Node]]:
-    """Every node class by id, in the order of the menu: folder, then file."""
-    return Catalogue()
-
-
-def _folders() -> list[Path]:
-    """The packages of nodes, without loading any."""
-    found = Path(__file__).parent.iterdir()
-    return sorted(item for item in found if "." not in item.name and not item.name.startswith("_"))
-
-
-def _files(folder: Path) -> list[str]:
-    """The nodes of a package."""
-    names = [item.name for item in folder.iterdir()]
-    return sorted(name.removesuffix(".py") for name in names if name.endswith(".py") and not name.startswith("_"))
+    """Every node class by id, plug-ins included, in the order of the menu."""
+    return Catalogue(built_in_nodes())

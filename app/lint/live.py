@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from halation.nodes import Node
+from halation.nodes import Node, Trait
 
 from ..graph import Graph, Problem, problems
 from ..graph.problems import differ_in_nodes, rechecked
 from .allowing import allowed
 from .rules import data, filtering, light
-from .sheet import Sheet, bodies, is_one_of
+from .sheet import Sheet, bodies, has_trait
 
 _CHECKS = (*filtering.CHECKS, *light.CHECKS, *data.CHECKS)
 
@@ -54,7 +54,7 @@ def _same_roles(graph: Graph, before: Graph) -> bool:
 
 
 def _same_role(new: Node, old: Node) -> bool:
-    if is_one_of(new, filtering.FILTERS):  # hints name their numbers
+    if has_trait(new, Trait.RESAMPLES):  # hints name their numbers
         return False
     texts = (name for name, value in new.values.items() if value.type in ("path", "text", "choice"))
     same = type(new) is type(old) and all(getattr(new, name) == getattr(old, name) for name in texts)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Set
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple, TypeGuard
 
-from halation.nodes import Node
+from halation.nodes import Node, Reader, Trait, Value
 
 from ..compiler import Library, installed
 from ..graph import Graph, Group, Item, Port, Problem, signature
@@ -69,9 +69,22 @@ class Sheet:
         return id not in self.moving and len(item.outputs) == 1 and item.identity() is not None
 
 
-def is_one_of(item: Item | None, types: Set[str]) -> TypeGuard[Node]:
-    """True for a node of one of these types, which need not be loaded for that."""
-    return isinstance(item, Node) and item.id in types
+def has_trait(item: Item | None, *traits: Trait) -> TypeGuard[Node]:
+    """True for a node that has one of these traits."""
+    return isinstance(item, Node) and not set(traits).isdisjoint(item.traits)
+
+
+def layered_path(item: Item) -> Value | None:
+    """The path of a node that reads one layer of a picture, or None for other nodes."""
+    values = item.values.values() if isinstance(item, Reader) else ()
+    return next((value for value in values if value.layer_by), None)
+
+
+def layer_read(item: Item, output: str) -> str:
+    """The layer that a reader shows at an output, "" for other nodes. Outputs of a reader of renders are layers."""
+    if path := layered_path(item):
+        return getattr(item, path.layer_by)
+    return output if isinstance(item, Reader) else ""
 
 
 class Check(NamedTuple):

@@ -14,7 +14,7 @@ from types import ModuleType
 from typing import Any
 
 from halation import nodes, shaders
-from halation.nodes import Node, catalogue
+from halation.nodes import Node, built_in_nodes, catalogue
 
 from .. import document
 from ..custom_nodes import Written
@@ -37,7 +37,7 @@ class NodeFiles:
 
     def __init__(self) -> None:
         self.folder = Path(nodes.__path__[0])
-        dict(catalogue())
+        dict(built_in_nodes())
         self._texts = self._read()
 
     def reload(self) -> str:
@@ -52,7 +52,7 @@ class NodeFiles:
         changed = {name for name in {*texts, *self._texts} if texts.get(name) != self._texts.get(name)}
         if not changed:
             return ""
-        if any("._declare" in name or name == nodes.__name__ for name in changed):
+        if not all(self._is_ours(name) for name in changed):
             return "the vocabulary of nodes has changed (nodes/_declare): start the editor again to use it"
         # Files of nodes stand alone; anything else among them may be used by all.
         alone = all(name.count(".") == nodes.__name__.count(".") + 2 and "._" not in name for name in changed)
@@ -63,18 +63,19 @@ class NodeFiles:
             for name in sorted(stale & texts.keys()):
                 if name not in sys.modules:
                     _load(name, texts[name])
-            dict(catalogue.__wrapped__())
+            dict(built_in_nodes.__wrapped__())
         except (Exception, SystemExit) as fault:
             for name, module in before.items():
                 _install(name, module)
             return f"{self._told(fault)}; all nodes stay as they were"
+        built_in_nodes.cache_clear()
         catalogue.cache_clear()
-        dict(catalogue())
+        dict(built_in_nodes())
         self._texts = texts
         return ""
 
     def _is_ours(self, name: str) -> bool:
-        return name != nodes.__name__ and not name.startswith(f"{nodes.__name__}._declare")
+        return name != nodes.__name__ and not name.startswith(f"{nodes.__name__}._")
 
     def _read(self) -> dict[str, bytes]:
         """The text of every file by the name of its module. Raises OSError."""

@@ -13,6 +13,8 @@
 - `Filter` records draws symbolically in `passes`, `Source` makes pixels, `Reader` of files, `Temporal`
   keeps history.
 
+`traits` tell the rules of `halation check` what sockets and values do not show.
+
 Values reach `passes` and GLSL in working units (see `Slider.unit`), so no node converts any itself.
 """
 
@@ -28,6 +30,7 @@ from .recolor import WORKING_SPACE, ColorChange, ColorSettings, LookupFile, Spac
 from .render import Matte, Meaning, Render
 from .scene import BuiltInScene, Motion, Scene, SceneFile, StageName
 from .sockets import Color, Edge, Field, Image, Kind, Number, Output, Size, Socket, Vector, Viewpoint, glsl_type
+from .traits import Trait
 from .values import (
     RGBA,
     Curve,
@@ -130,6 +133,7 @@ __all__ = [
     "Swatch",
     "TablePath",
     "Temporal",
+    "Trait",
     "Uniform",
     "Unit",
     "Value",

@@ -10,6 +10,7 @@ from typing import Annotated, Any, ClassVar, Self, dataclass_transform, get_type
 from .camera import Camera
 from .draw import Draw, Drawn
 from .sockets import Output, Size, Socket
+from .traits import Trait
 from .values import Doc, Missing, Value, read_value, working_factor
 
 
@@ -17,31 +18,49 @@ def _fields(cls: Any) -> tuple[dataclasses.Field[Any], ...]:
     return dataclasses.fields(cls)
 
 
+def _namespace(module: str) -> str:
+    """The package of a plug-in that a module is part of: those are laid out as `<package>.nodes.<menu>.<file>`."""
+    match module.split("."):
+        case [package, "nodes", _, _] if package != "halation":
+            return package
+        case _:
+            return ""
+
+
 @dataclass_transform(frozen_default=True, kw_only_default=True)
 class Node:
     """One effect. The class body is the declaration; an instance is one set of values."""
 
     id: ClassVar[str] = ""
+    """The file's name; in a plug-in its namespace comes first: `acme_glow.soft_glow`."""
     category: ClassVar[str] = ""
+    """The folder's name, which is the menu."""
+    package: ClassVar[str] = ""
+    """The plug-in that brings it, as pip installs it: `acme-glow==1.2.0`."""
     version: ClassVar[int] = 1
     function: ClassVar[str] = ""
-    """The GLSL function of a pointwise node."""
+    """The GLSL function of a pointwise node: the id, with `_` for the dot."""
     shader: ClassVar[str] = ""
-    """The file of the node's GLSL, such as `color/exposure`."""
+    """The file of the node's GLSL, such as `color/exposure`; in a plug-in `acme_glow/glow/soft_glow`."""
     inputs: ClassVar[Mapping[str, Socket]] = {}
     outputs: ClassVar[Mapping[str, Output]] = {}
     values: ClassVar[Mapping[str, Value]] = {}
     order: ClassVar[tuple[str, ...]] = ()
     """Names of inputs and values in declared order: the parameters of a pointwise GLSL function."""
+    traits: ClassVar[tuple[Trait, ...]] = ()
+    """What rules and tests need to know beyond sockets and values."""
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
         body = vars(cls)
         if cls.__module__ == __name__ and "__annotations__" not in body:
             return  # a kind of node, of which there are no instances
-        cls.id = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls.__name__).lower()
+        name = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls.__name__).lower()
         cls.category = cls.__module__.rpartition(".")[0].rpartition(".")[2]
-        cls.function, cls.shader = cls.id, f"{cls.category}/{cls.id}"
+        cls.id, cls.function, cls.shader = name, name, f"{cls.category}/{name}"
+        if namespace := _namespace(cls.__module__):
+            cls.id, cls.function = f"{namespace}.{name}", f"{namespace}_{name}"
+            cls.shader = f"{namespace}/{cls.shader}"
         cls.inputs = {name: item for name, item in body.items() if isinstance(item, Socket)}
         outputs = {name: item for name, item in body.items() if isinstance(item, Output)}
         dataclasses.dataclass(frozen=True, kw_only=True)(cls)

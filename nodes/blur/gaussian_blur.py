@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Slider, Trait
 
 
 class GaussianBlur(Filter):
@@ -8,6 +8,8 @@ class GaussianBlur(Filter):
 
     Within 1e-5 of scipy's gaussian_filter below a sigma of 7 pixels, within 3e-4 (RMS) of it above.
     """
+
+    traits = (Trait.RESAMPLES,)
 
     image = Image()
     sigma: Annotated[

@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Image, Pointwise, Slider
+from .._declare import RGBA, Doc, Image, Pointwise, Slider, Trait
 
 
 class Cdl(Pointwise):
@@ -9,6 +9,8 @@ class Cdl(Pointwise):
     `(in * slope + offset) ^ power` per channel, then away from or toward Rec.709 luminance: ASC CDL 1.2 (2009). Works
     on the color without its alpha; alpha stays, and so do the alphas of the three colors.
     """
+
+    traits = (Trait.NEEDS_COLOR,)
 
     image = Image()
     style: Annotated[

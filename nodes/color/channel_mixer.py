@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Image, Pointwise, Slider
+from .._declare import Doc, Image, Pointwise, Slider, Trait
 
 _Mix = tuple[float, float, float]
 
@@ -11,6 +11,8 @@ class ChannelMixer(Pointwise):
     `red = red.r * R + red.g * G + red.b * B + constant.r`, and so on. Monochrome mixes one gray instead, as black and
     white film behind a colored filter. Linear: the constant is added where alpha covers. Alpha stays.
     """
+
+    traits = (Trait.NEEDS_COLOR,)
 
     image = Image()
     red: Annotated[_Mix, Slider(-2.0, 2.0, unit="ratio", doc="How much R, G and B go into red.")] = (1.0, 0.0, 0.0)

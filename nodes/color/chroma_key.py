@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Field, Fraction, Image, Output, Pointwise, Slider
+from .._declare import RGBA, Doc, Field, Fraction, Image, Output, Pointwise, Slider, Trait
 
 
 class ChromaKey(Pointwise):
@@ -11,6 +11,8 @@ class ChromaKey(Pointwise):
     Blinn 1996). Distance compares the color alone, with its brightness taken out: how far `rgb / (r + g + b)` lies from
     the screen's, over the tolerance. `out` is the subject with the screen subtracted, `matte` its coverage.
     """
+
+    traits = (Trait.NEEDS_COLOR,)
 
     image = Image()
     screen: Annotated[RGBA, Doc("The color of the empty screen, as it is lit.")] = (0.06, 0.5, 0.1, 1.0)

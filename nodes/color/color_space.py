@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Filter, Image, OfSpace, SpaceChange
+from .._declare import Doc, Draw, Drawn, Filter, Image, OfSpace, SpaceChange, Trait
 from ._spaces import WORKING, Space, named
 
 
@@ -12,6 +12,8 @@ class ColorSpace(Filter):
     `target_name`. To the HDR displays (PQ, HLG) 1 is 100 cd/m2. Computed by OpenColorIO's own GLSL, exactly; what the
     config does not have comes from the ACES studio config. Works on the color without its alpha; alpha stays.
     """
+
+    traits = (Trait.NEEDS_COLOR, Trait.CHANGES_ENCODING)
 
     image = Image()
     source: Annotated[Space, Doc("What the numbers are in.")] = WORKING

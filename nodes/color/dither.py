@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Image, Pointwise, Slider
+from .._declare import Doc, Image, Pointwise, Slider, Trait
 
 
 class Dither(Pointwise):
@@ -11,6 +11,8 @@ class Dither(Pointwise):
     are written it removes banding; with two levels it is the look of old computers. Works on the color without its
     alpha; alpha stays.
     """
+
+    traits = (Trait.NEEDS_COLOR,)
 
     image = Image()
     pattern: Annotated[

@@ -1,10 +1,12 @@
 from typing import Annotated
 
-from .._declare import Image, Pointwise, Slider
+from .._declare import Image, Pointwise, Slider, Trait
 
 
 class Exposure(Pointwise):
     """Brighten or darken in photographic stops: every stop doubles the light."""
+
+    traits = (Trait.NEEDS_COLOR,)
 
     image = Image()
     stops: Annotated[float, Slider(-10.0, 10.0, unit="EV", doc="+1 doubles the light, -1 halves it.")] = 0.0

@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Image, Pointwise, Slider
+from .._declare import Doc, Image, Pointwise, Slider, Trait
 
 
 class HueSaturation(Pointwise):
@@ -10,6 +10,8 @@ class HueSaturation(Pointwise):
     gray and keeps Rec.709 luminance (Haeberli 1993); it is linear. HSV (Smith 1978) keeps the largest channel, as paint
     programs do. Alpha stays.
     """
+
+    traits = (Trait.NEEDS_COLOR,)
 
     image = Image()
     mode: Annotated[Literal["perceptual", "luminance", "hsv"], Doc("What stays the same when hues turn.")] = (

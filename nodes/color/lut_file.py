@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, LookupFile, SpaceChange, TablePath
+from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, LookupFile, SpaceChange, TablePath, Trait
 from ._spaces import WORKING, Space, named
 
 
@@ -11,6 +11,8 @@ class LutFile(Filter):
     are brought back to scene light. Computed by OpenColorIO's own GLSL, exactly: tables of three dimensions are
     interpolated in tetrahedra. Works on the color without its alpha; alpha stays. Without a file the picture passes.
     """
+
+    traits = (Trait.NEEDS_COLOR, Trait.CHANGES_ENCODING)
 
     image = Image()
     file: Annotated[TablePath, Doc("The table. A relative path starts at the folder of the graph.")] = ""

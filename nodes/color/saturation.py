@@ -1,10 +1,12 @@
 from typing import Annotated
 
-from .._declare import Image, Pointwise, Slider
+from .._declare import Image, Pointwise, Slider, Trait
 
 
 class Saturation(Pointwise):
     """Move colors away from or toward the gray of the same luminance (Rec.709), which stays."""
+
+    traits = (Trait.NEEDS_COLOR,)
 
     image = Image()
     saturation: Annotated[

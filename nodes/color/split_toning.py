@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import RGBA, Doc, Fraction, Image, Pointwise, Slider
+from .._declare import RGBA, Doc, Fraction, Image, Pointwise, Slider, Trait
 
 
 class SplitToning(Pointwise):
@@ -10,6 +10,8 @@ class SplitToning(Pointwise):
     about middle gray (0.18). A tint of gray changes nothing. Works on the color without its alpha; alpha stays, and so
     do the alphas of the tints.
     """
+
+    traits = (Trait.NEEDS_COLOR,)
 
     image = Image()
     shadows: Annotated[RGBA, Doc("The color that dark grays take on; only its hue and strength count.")] = (

@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Image, Pointwise, Slider
+from .._declare import Doc, Image, Pointwise, Slider, Trait
 
 _DAYLIGHT = 6504.0
 
@@ -12,6 +12,8 @@ class WhiteBalance(Pointwise):
     lies on the Planckian locus (Krystek 1985), moved to pass through D65; tint moves it across, 3000 for a distance of
     1 in CIE 1960 uv. The eye adapts by Bradford (Lam 1985) or CAT16 (Li et al. 2017). Linear: alpha does not matter.
     """
+
+    traits = (Trait.NEEDS_COLOR,)
 
     image = Image()
     temperature: Annotated[

@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Size, Slider
+from .._declare import Doc, Draw, Drawn, Edge, Filter, Image, Size, Slider, Trait
 
 
 class Resize(Filter):
@@ -11,6 +11,8 @@ class Resize(Filter):
     The filter spans source pixels when enlarging and result pixels when shrinking, so that nothing aliases. Catmull-Rom
     and Mitchell: Mitchell and Netravali 1988. The size is rounded to whole pixels, at least one.
     """
+
+    traits = (Trait.RESAMPLES,)
 
     image = Image()
     scale: Annotated[

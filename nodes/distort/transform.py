@@ -1,7 +1,7 @@
 import math
 from typing import Annotated, Literal
 
-from .._declare import Affine, Doc, Draw, Drawn, Edge, Filter, Image, Kernel, Position, Slider
+from .._declare import Affine, Doc, Draw, Drawn, Edge, Filter, Image, Kernel, Position, Slider, Trait
 
 _SMALLEST = 1e-3
 """No scale is nearer to 0."""
@@ -15,6 +15,8 @@ class Transform(Filter):
     last one's kernel, and what left the frame in between comes back. Catmull-Rom and Mitchell: Mitchell and Netravali
     1988.
     """
+
+    traits = (Trait.RESAMPLES,)
 
     image = Image()
     position: Annotated[

@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Vector, Viewpoint
+from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Trait, Vector, Viewpoint
 
 
 class Fog(Filter):
@@ -13,6 +13,8 @@ class Fog(Filter):
     along the way to every pixel (Wenzel 2006, Quilez 2010). A camera makes the distance that along the ray; without
     one it is the depth. Distances are in units of the scene.
     """
+
+    traits = (Trait.NEEDS_SCENE_LIGHT,)
 
     image = Image()
     depth = Field(doc="Distance from the camera; what has none is sky.")

@@ -16,6 +16,7 @@ from .._declare import (
     Points,
     Size,
     Slider,
+    Trait,
     curve_at,
 )
 
@@ -37,6 +38,8 @@ class Bloom(Filter):
     grow with the radius. `out` is the picture with its glow, `glow` the glow alone. Without threshold, limit and
     firefly filter the glow is linear and loses no light. Alpha is kept.
     """
+
+    traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
 
     image = Image()
     radius: Annotated[

@@ -1,6 +1,6 @@
 from typing import Annotated, Literal
 
-from .._declare import Doc, Field, Fraction, Image, Pointwise, Slider
+from .._declare import Doc, Field, Fraction, Image, Pointwise, Slider, Trait
 
 
 class BrightPass(Pointwise):
@@ -12,6 +12,8 @@ class BrightPass(Pointwise):
     an edge that could flicker. To glow by mask only, link `mask` and set the threshold to 0. Light is measured as it
     arrives, that is premultiplied; alpha is kept.
     """
+
+    traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
 
     image = Image()
     mask = Field(1.0, doc="How much of each pixel may glow: emission, a matte.")

@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, Output, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, Output, Slider, Trait, Vector
 
 _SMOOTH = 0.2
 """Degrees over which nothing of the glare changes much, but near its middle."""
@@ -22,6 +22,8 @@ class EyeGlare(Filter):
     what it scatters, so no light is made or lost, and an even picture stays as it is. `glow` is the scattered light
     alone. Alpha is kept.
     """
+
+    traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
 
     image = Image()
     vision: Annotated[

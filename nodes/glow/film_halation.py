@@ -3,7 +3,7 @@ from collections.abc import Mapping
 from itertools import pairwise
 from typing import Annotated
 
-from .._declare import RGBA, Doc, Draw, Drawn, Filter, Fraction, Image, Output, Slider
+from .._declare import RGBA, Doc, Draw, Drawn, Filter, Fraction, Image, Output, Slider, Trait
 
 _NO_LIMIT = 65504.0
 
@@ -40,6 +40,8 @@ class FilmHalation(Filter):
     A channel's halo has `amount * color` times the sum of its light above the threshold, and is added. `glow` is the
     halo alone. Alpha is kept.
     """
+
+    traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT)
 
     image = Image()
     amount: Annotated[

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import RGBA, Doc, Draw, Drawn, Filter, Fraction, Image, Output, Position, Reach, Slider
+from .._declare import RGBA, Doc, Draw, Drawn, Filter, Fraction, Image, Output, Position, Reach, Slider, Trait
 
 _NO_LIMIT = 65504.0
 
@@ -21,6 +21,8 @@ class Ghosts(Filter):
     strays over the whole lens. All of it is multiplied by the dirt, and fades out for lights that leave the picture.
     `glow` is the flare alone. Alpha is kept.
     """
+
+    traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
 
     image = Image()
     dirt = Image(1.0, doc="A picture of the front lens: the flare is multiplied by it. Unlinked, there are smudges.")

@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Size, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Size, Slider, Trait, Vector
 
 _NO_LIMIT = 65504.0
 
@@ -27,6 +27,8 @@ class KernelGlare(Filter):
     transform. It has as many rays as blades, twice as many if their number is odd. `glow` is the glare alone. Alpha is
     kept.
     """
+
+    traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
 
     image = Image()
     kernel = Image(0.0, own_size=True, doc="What a point of light becomes. Without a link, a starburst.")

@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import RGBA, Doc, Draw, Drawn, Edge, Filter, Fraction, Image, Output, Reach, Size, Slider
+from .._declare import RGBA, Doc, Draw, Drawn, Edge, Filter, Fraction, Image, Output, Reach, Size, Slider, Trait
 
 _NO_LIMIT = 65504.0
 
@@ -19,6 +19,8 @@ class Star(Filter):
     light is turned, blurred and turned back, which softens the arms by less than a pixel and keeps the sum of lights
     of a single pixel within 7 percent only. Alpha is kept.
     """
+
+    traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
 
     image = Image()
     length: Annotated[

@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Draw, Drawn, Filter, Fraction, Image, Output, Slider
+from .._declare import RGBA, Doc, Draw, Drawn, Filter, Fraction, Image, Output, Slider, Trait
 
 _NO_LIMIT = 65504.0
 
@@ -25,6 +25,8 @@ class Streaks(Filter):
     arm has its share of the light and keeps the sum. Off the axes and the diagonals, samples between pixels soften
     an arm by about a pixel. Two arms at 0 degrees are an anamorphic lens. Alpha is kept.
     """
+
+    traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
 
     image = Image()
     arms: Annotated[

@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Position, Reach, Slider
+from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Position, Reach, Slider, Trait
 
 _NO_LIMIT = 65504.0
 
@@ -20,6 +20,8 @@ class SunBeams(Filter):
     sum; samples are less than a pixel apart, at a cost that grows with the logarithm of their number only. `glow` is
     the beams alone. Alpha is kept.
     """
+
+    traits = (Trait.NEEDS_SCENE_LIGHT,)
 
     image = Image()
     mask = Field(1.0, doc="Where light may come from: the sky, a window.")

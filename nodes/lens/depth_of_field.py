@@ -18,6 +18,7 @@ from .._declare import (
     Reach,
     Size,
     Slider,
+    Trait,
     Vector,
 )
 
@@ -42,6 +43,8 @@ class DepthOfField(Filter):
     quarter... size, near and far apart. Light is kept. `coc` is the disc's diameter in pixels of the full-size picture,
     below 0 nearer than the focus.
     """
+
+    traits = (Trait.NEEDS_SCENE_LIGHT, Trait.NEEDS_HIGHLIGHTS)
 
     image = Image()
     depth = Field(doc="Planar distance along the way the camera looks.")

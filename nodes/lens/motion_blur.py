@@ -1,7 +1,7 @@
 import math
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Image, Pixels, Reach, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Field, Filter, Image, Pixels, Reach, Slider, Trait, Vector
 
 
 class MotionBlur(Filter):
@@ -12,6 +12,8 @@ class MotionBlur(Filter):
     lies on the pixel's own path. Paths are parabolas through the places before, now and after. Where the velocity is
     0 and nothing passes by, pixels stay as they are.
     """
+
+    traits = (Trait.NEEDS_SCENE_LIGHT,)
 
     image = Image()
     velocity = Vector(

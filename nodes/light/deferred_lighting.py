@@ -18,6 +18,7 @@ from .._declare import (
     Output,
     Slider,
     Stops,
+    Trait,
     Vector,
     Viewpoint,
     lights_of,
@@ -87,6 +88,8 @@ class DeferredLighting(Filter):
     ones. A swarm adds many small lights at once. Nothing casts shadows. `out` is diffuse and specular light and
     emission.
     """
+
+    traits = (Trait.NEEDS_SCENE_LIGHT,)
 
     albedo = Image((0.6, 0.6, 0.6, 1.0), doc="Color of the surfaces. Without a link, clay.")
     normal = Vector(0.0, width=3, doc="In the world. Without a link, from depth and camera.")

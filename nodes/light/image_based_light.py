@@ -2,7 +2,21 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Overlap, Slider, Vector, Viewpoint
+from .._declare import (
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Fraction,
+    Image,
+    Output,
+    Overlap,
+    Slider,
+    Trait,
+    Vector,
+    Viewpoint,
+)
 from ._environment import DATA, SKY, irradiance, shrunk
 
 _MIRROR = (1024, 512)
@@ -28,6 +42,8 @@ class ImageBasedLight(Filter):
     of the roughness (Walter et al. 2007), times how much a surface reflects at that angle (Karis 2013, split sum).
     Nothing blocks the light: link an ambient occlusion. Where there is no normal, nothing is lit.
     """
+
+    traits = (Trait.NEEDS_SCENE_LIGHT,)
 
     normal = Vector(width=3, doc="In the world.")
     camera = Viewpoint(doc="The camera that the normals were rendered with.")

@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Image, Output, Position, Slider, Viewpoint
+from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Image, Output, Position, Slider, Trait, Viewpoint
 from ._march import surfaces
 
 _SAMPLES = {"preview": 4, "quality": 12, "reference": 64}
@@ -17,6 +17,8 @@ class LightShafts(Filter):
     those of Sun Beams, which smear what is bright. A lamp's light is sampled by equal angles (Kulla and Fajardo 2012),
     haze scatters forward as in Henyey and Greenstein 1941. The picture is not dimmed: Fog does that.
     """
+
+    traits = (Trait.NEEDS_SCENE_LIGHT,)
 
     image = Image()
     depth = Field(doc="Planar distance along the way the camera looks.")

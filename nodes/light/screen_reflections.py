@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Vector, Viewpoint
+from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Trait, Vector, Viewpoint
 from ._march import surfaces
 
 _RAYS = {"preview": 4, "quality": 16, "reference": 64}
@@ -18,6 +18,8 @@ class ScreenReflections(Filter):
     (Heitz 2018), so reflections are sharp where things touch and streak with the distance. How much is mirrored is
     Schlick's (1994) Fresnel. What is not in the picture cannot be mirrored: there, the surface stays as it is.
     """
+
+    traits = (Trait.NEEDS_SCENE_LIGHT,)
 
     image = Image()
     depth = Field(doc="Planar distance along the way the camera looks.")

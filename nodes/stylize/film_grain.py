@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Fraction, Image, Pointwise, Slider
+from .._declare import Doc, Fraction, Image, Pointwise, Slider, Trait
 
 
 class FilmGrain(Pointwise):
@@ -11,6 +11,8 @@ class FilmGrain(Pointwise):
     2017), for each layer of color. Density is logarithmic: light is multiplied by 2^grain and, so that its average
     stays, divided by the average of that. Pixels that hold several clumps average them (Selwyn, 1935).
     """
+
+    traits = (Trait.NEEDS_COLOR,)
 
     image = Image()
     amount: Annotated[

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Image, Number, Output, Slider, Temporal, Vector
+from .._declare import Doc, Draw, Drawn, Image, Number, Output, Slider, Temporal, Trait, Vector
 
 
 class EyeAdaptation(Temporal):
@@ -12,6 +12,8 @@ class EyeAdaptation(Temporal):
     cones to 0.4 s of rods, by `s = 0.04 / (0.04 + L)` of L in cd/m2, and the key is `1.03 - 2 / (2 + log10(L + 1))`
     (Krawczyk et al. 2005). Before the first frame, the eye was used to that.
     """
+
+    traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT)
 
     image = Image()
     luminance = Number(0.0, doc="What the eye follows instead: a spot, a histogram's middle. See Auto Exposure.")

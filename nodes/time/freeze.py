@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import Draw, Drawn, Field, Filter, Image, Output, Slider, Vector
+from .._declare import Draw, Drawn, Field, Filter, Image, Output, Slider, Trait, Vector
 
 
 class Freeze(Filter):
@@ -9,6 +9,8 @@ class Freeze(Filter):
 
     All that changes over time upstream stands still.
     """
+
+    traits = (Trait.KEEPS_NON_FINITE,)
 
     image = Image((0.0, 0.0, 0.0, 0.0))
     field = Field(0.0)

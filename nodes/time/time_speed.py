@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Image, Output, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Field, Filter, Image, Output, Slider, Trait, Vector
 
 
 class TimeSpeed(Filter):
@@ -11,6 +11,8 @@ class TimeSpeed(Filter):
     By speed, the frame shown is `pivot + speed (frame - pivot)`. A speed that changes would have to be summed up over
     all frames before; key `source` instead, as in a time remap: the steeper its curve, the faster.
     """
+
+    traits = (Trait.KEEPS_NON_FINITE,)
 
     image = Image((0.0, 0.0, 0.0, 0.0))
     field = Field(0.0)

@@ -2,7 +2,22 @@ from collections.abc import Mapping
 from math import ceil
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Number, Output, Position, Reach, Slider, Vector
+from .._declare import (
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Fraction,
+    Image,
+    Number,
+    Output,
+    Position,
+    Reach,
+    Slider,
+    Trait,
+    Vector,
+)
 
 _BINS = 128
 _FOLD = 32
@@ -19,6 +34,8 @@ class AutoExposure(Filter):
     and log average (Reinhard et al. 2002) are of all pixels; maximum makes the brightest pixel 1. Pixels count by
     their alpha, those that are no numbers not at all. `exposure` is in stops, `average` the luminance metered.
     """
+
+    traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT)
 
     image = Image()
     mask = Field(1.0, doc="How much each pixel counts.")

@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Image, Number, Pixels, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Field, Filter, Image, Number, Pixels, Slider, Trait, Vector
 
 _SCALES = 8
 _RATIO = 1.6
@@ -17,6 +17,8 @@ class LocalToneMap(Filter):
     paper's eight scales), `Ld = L (1 + L / white^2) / (1 + V)`. Out comes display-linear light, 0..1: encode it as
     plain sRGB (view `none`), not through another view transform. Works on the color without its alpha.
     """
+
+    traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.MAKES_DISPLAY_LIGHT)
 
     image = Image()
     average = Number(0.0, doc="Log-average luminance of the scene; without a link it is measured.")

@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Fraction, Image, Pointwise, Slider
+from .._declare import Doc, Fraction, Image, Pointwise, Slider, Trait
 
 
 class OverExposure(Pointwise):
@@ -11,6 +11,8 @@ class OverExposure(Pointwise):
     the shoulder takes away turns the color to white: by `x / (1 + x)` for `bleach` times that light over white.
     Works on the color without its alpha.
     """
+
+    traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT)
 
     image = Image()
     stops: Annotated[float, Slider(0.0, 6.0, unit="EV", doc="How much too long: +1 doubles the light.")] = 2.0

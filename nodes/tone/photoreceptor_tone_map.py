@@ -1,6 +1,6 @@
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Slider, Vector
+from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Slider, Trait, Vector
 
 
 class PhotoreceptorToneMap(Filter):
@@ -10,6 +10,8 @@ class PhotoreceptorToneMap(Filter):
     averages and contrast are measured, weighted by alpha. Out comes display-linear light, 0..1: encode it as plain
     sRGB (view `none`), not through another view transform. Works on the color without its alpha.
     """
+
+    traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.MAKES_DISPLAY_LIGHT)
 
     image = Image()
     brightness: Annotated[

@@ -1,7 +1,7 @@
 from math import degrees, pi, sqrt
 from typing import Annotated
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Number, Pixels, Slider
+from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Number, Pixels, Slider, Trait
 
 _DAY, _NIGHT = 17.25 * pi / 2.0 + 25.72, 2.0
 """Finest stripes that the eye can tell apart, in cycles per degree: in bright light, and where the fit ends."""
@@ -18,6 +18,8 @@ class ScotopicVision(Filter):
     Sharpness follows the finest stripes that are visible at Y, `17.25 atan(1.4 log10 Y + 0.35) + 25.72` cycles per
     degree, as far as it is below that of daylight. The picture is not darkened: take its exposure down as you like.
     """
+
+    traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT)
 
     image = Image()
     adaptation = Number(0.0, doc="Luminance that the eye is used to; without a link it is every pixel's own.")

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from .._declare import Doc, Image, Pointwise, Slider
+from .._declare import Doc, Image, Pointwise, Slider, Trait
 
 
 class ToneMap(Pointwise):
@@ -17,6 +17,8 @@ class ToneMap(Pointwise):
     ACES fits by Stephen Hill 2015 and Krzysztof Narkowicz 2015; Timothy Lottes 2016; Hajime Uchimura 2017 (Gran
     Turismo); AgX by Troy Sobotka, Rec.2020 version by Eary Chow; Khronos PBR Neutral 2024.
     """
+
+    traits = (Trait.NEEDS_COLOR, Trait.NEEDS_SCENE_LIGHT, Trait.MAKES_DISPLAY_LIGHT)
 
     image = Image()
     operator: Annotated[

@@ -11,7 +11,7 @@ import pytest
 from conftest import graph_of
 from halation.compiler import installed
 from halation.graph import Graph, Port
-from halation.nodes import Filter, Kind, Node, Pointwise, Source, catalogue, look_at
+from halation.nodes import Filter, Kind, Node, Pointwise, Source, Trait, catalogue, look_at
 from halation.renderer import RenderRequest
 
 ROOT = Path(__file__).parents[2]
@@ -267,10 +267,6 @@ def test_it_renders_finite_at_defaults(renderer, node, size):
         assert np.isfinite(found[name]).all(), name
 
 
-WIRES = {"freeze", "time_offset", "time_speed"}
-"""Nodes that show their inputs as they are, at another time."""
-
-
 @rendered
 def test_nothing_that_is_no_number_comes_out(renderer, node):
     """NaN and infinity in a picture neither come out nor spread; data that passes through a wire stays as it is."""
@@ -279,7 +275,7 @@ def test_nothing_that_is_no_number_comes_out(renderer, node):
     arrays = {name: picture(node, name, size, rng) for name, socket in node.inputs.items() if not socket.single}
     if not arrays:
         pytest.skip("it has no picture to spoil")
-    if node.id in WIRES:
+    if Trait.KEEPS_NON_FINITE in node.traits:
         pytest.skip("it passes its inputs on as they are")
     for array in arrays.values():
         array[3, 4] = np.nan

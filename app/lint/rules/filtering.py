@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from math import hypot
 from typing import TYPE_CHECKING
 
-from halation.nodes import Pointwise
+from halation.nodes import Pointwise, Trait
 
 from ...custom_nodes import Written
 from ...graph import Port, Problem
 from ...graph.rules import Rule
-from ..sheet import Check, Sheet, is_one_of
+from ..sheet import Check, Sheet, has_trait
 
 if TYPE_CHECKING:
     from halation.nodes.distort.resize import Resize
@@ -27,26 +27,25 @@ FILTERING_TWICE = Rule(
 _PLACES = frozenset({"pixel", "extent"})
 """What a shader says whose result depends on where a pixel is."""
 
-FILTERS = frozenset({"transform", "resize", "gaussian_blur"})
-
 
 def find(sheet: Sheet) -> Iterator[Problem]:
-    """Nodes that filter what has just been filtered."""
+    """Nodes that filter a picture which another node has just filtered."""
     for id in sheet.graph.nodes:
-        if is_one_of(sheet.works(id), FILTERS):
+        item = sheet.works(id)
+        if has_trait(item, Trait.RESAMPLES):
             before, between = _filtered(sheet, id)
-            if before and (way_out := _way_out(sheet, before, between, id)):
-                sentence = f"'{before}' and '{id}' filter the picture twice: {way_out}"
-                yield Problem(id, "image", sentence, FILTERING_TWICE, f"nodes.{id}")
+            if before and (remedy := _remedy(sheet, before, between, id)):
+                sentence = f"'{before}' and '{id}' filter the picture twice: {remedy}"
+                yield Problem(id, next(iter(item.inputs)), sentence, FILTERING_TWICE, f"nodes.{id}")
 
 
 def _filtered(sheet: Sheet, id: str) -> tuple[str, list[str]]:
     """The node that filtered the picture of `id`, and of nothing else, with what is between; "" if there is none."""
     between: list[str] = []
-    port = sheet.source(Port(id, "image"))
+    port = sheet.first(id)
     while port and sheet.readers[port] == 1:
         item = sheet.works(port.node)
-        if is_one_of(item, FILTERS):
+        if has_trait(item, Trait.RESAMPLES):
             return port.node, between
         if not isinstance(item, Pointwise) or not (name := _picture(sheet, port.node, item)):
             break
@@ -62,8 +61,8 @@ def _picture(sheet: Sheet, id: str, item: Pointwise) -> str:
     return fed[0] if alike and not sheet.library.uses(item.shader, _PLACES, id) else ""
 
 
-def _way_out(sheet: Sheet, before: str, between: list[str], id: str) -> str:
-    """What to do about two nodes that filter, or nothing where both are needed."""
+def _remedy(sheet: Sheet, before: str, between: list[str], id: str) -> str:
+    """What to do instead of filtering twice, or "" where both nodes are needed."""
     from halation.nodes.blur.gaussian_blur import GaussianBlur
     from halation.nodes.distort.resize import Resize
     from halation.nodes.distort.transform import Transform

@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import PurePath
-from typing import TYPE_CHECKING, cast
 
-from halation.nodes import Kind
+from halation.nodes import Kind, Trait
 
 from ...custom_nodes import Written
 from ...graph import INPUTS, Group, Port, Problem, signature
 from ...graph.rules import Rule
-from ..sheet import Check, Sheet, is_one_of
-
-if TYPE_CHECKING:
-    from halation.nodes.input.read_image import ReadImage
+from ..sheet import Check, Sheet, has_trait, layered_path
 
 DISPLAY_LIGHT = Rule(
     "display-light",
@@ -30,31 +26,6 @@ CLIPPED_LIGHT = Rule(
     "Read an EXR of the same picture, or allow it where the file is all there is.",
 )
 
-_TONE = frozenset({"tone_map", "local_tone_map", "photoreceptor_tone_map"})
-_RECODES = frozenset({"color_space", "lut_file"})
-_GLOWS = frozenset({"bloom", "bright_pass", "eye_glare", "ghosts", "kernel_glare", "star", "streaks"})
-_SPREADS = frozenset({"depth_of_field"})
-_LIGHT = (
-    _GLOWS
-    | _SPREADS
-    | {
-        "auto_exposure",
-        "deferred_lighting",
-        "eye_adaptation",
-        "film_halation",
-        "fog",
-        "image_based_light",
-        "light_shafts",
-        "local_tone_map",
-        "motion_blur",
-        "over_exposure",
-        "photoreceptor_tone_map",
-        "scotopic_vision",
-        "screen_reflections",
-        "sun_beams",
-        "tone_map",
-    }
-)
 _BYTES = frozenset({".bmp", ".gif", ".jpeg", ".jpg", ".tga", ".webp"})
 """Endings of files that hold 8 bits whatever is in them; those of a PNG or TIFF may be more."""
 
@@ -68,13 +39,13 @@ def display_light(sheet: Sheet) -> Iterator[Problem]:
             continue
         pictures = [source for source in _pictures(sheet, id) if source]
         made = {maker[source] for source in pictures if source in maker}
-        if is_one_of(item, _LIGHT) and pictures and pictures[0] in maker:
+        if has_trait(item, Trait.NEEDS_SCENE_LIGHT) and pictures and pictures[0] in maker:
             name, by = next(iter(item.inputs)), maker[pictures[0]]
             sentence = f"'{id}' works with light, but '{by}' has made its picture ready for the display: put it before"
             yield Problem(id, name, f"{sentence} '{by}'", DISPLAY_LIGHT, f"links.{id}.{name}")
         for name in _shown(sheet, id):
             maker[Port(id, name)] = id
-        keeps = not isinstance(item, Group) and not is_one_of(item, _LIGHT | _RECODES)
+        keeps = not isinstance(item, Group) and not has_trait(item, Trait.NEEDS_SCENE_LIGHT, Trait.CHANGES_ENCODING)
         if keeps and made and all(source in maker for source in pictures):
             outputs = signature(item).outputs
             maker |= {Port(id, name): min(made) for name, output in outputs.items() if output.kind is Kind.IMAGE}
@@ -84,7 +55,7 @@ def clipped_light(sheet: Sheet) -> Iterator[Problem]:
     """Nodes that need light above white, right behind a file that has none."""
     for id in sheet.graph.nodes:
         item = sheet.works(id)
-        if is_one_of(item, _GLOWS | _SPREADS) and (source := sheet.first(id)):
+        if has_trait(item, Trait.NEEDS_HIGHLIGHTS) and (source := sheet.first(id)):
             file = _file(sheet, source)
             if PurePath(file).suffix.lower() in _BYTES:
                 sentence = f"'{id}' wants light brighter than white, and '{file}' has none: read an EXR"
@@ -103,7 +74,7 @@ def _shown(sheet: Sheet, id: str) -> list[str]:
     item = sheet.graph.nodes[id]
     if isinstance(item, Group):
         return [name for name, output in item.graph.outputs.items() if output.view == "none"]
-    return ["out"] if is_one_of(item, _TONE) else []
+    return [next(iter(item.outputs))] if has_trait(item, Trait.MAKES_DISPLAY_LIGHT) else []
 
 
 def _file(sheet: Sheet, source: Port) -> str:
@@ -111,7 +82,8 @@ def _file(sheet: Sheet, source: Port) -> str:
     if source.node == INPUTS:
         return sheet.graph.inputs[source.socket].file
     item = sheet.graph.nodes[source.node]
-    return cast("ReadImage", item).path if is_one_of(item, {"read_image"}) else ""
+    path = layered_path(item)
+    return getattr(item, path.name) if path else ""
 
 
 CHECKS = (Check(DISPLAY_LIGHT, display_light), Check(CLIPPED_LIGHT, clipped_light))

@@ -1,0 +1,27 @@
+"""Traits: what a node says about itself to the rules of `halation check` and to the tests of all nodes."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+
+class Trait(StrEnum):
+    """One thing that is true of a node and that its sockets and values do not show. *The picture* is its first input.
+
+    A node lists its own: `traits = (Trait.NEEDS_COLOR,)`.
+    """
+
+    NEEDS_COLOR = "needs color"
+    """The picture is color or light: a layer of data, such as depth or normals, makes no sense there."""
+    NEEDS_SCENE_LIGHT = "needs scene light"
+    """It calculates with scene-linear light, so that it belongs before the tone map."""
+    NEEDS_HIGHLIGHTS = "needs highlights"
+    """It makes light glow or spread, so that the picture needs light brighter than white."""
+    MAKES_DISPLAY_LIGHT = "makes display light"
+    """Its first output is compressed for a display, as a tone map does."""
+    CHANGES_ENCODING = "changes encoding"
+    """It converts color: whether scene light or display light comes out depends on its values."""
+    RESAMPLES = "resamples"
+    """It filters the picture, so that two such nodes in a row cost sharpness and time."""
+    KEEPS_NON_FINITE = "keeps non-finite"
+    """Its outputs are its inputs unchanged, NaN and infinity included; all other nodes make every pixel finite."""

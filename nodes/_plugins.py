@@ -1,0 +1,132 @@
+"""Plug-ins: installed packages that bring nodes, shaders and presets of their own.
+
+A package is a plug-in if it has an entry point in the group `halation.nodes` whose value is its import name:
+
+    [project.entry-points."halation.nodes"]
+    acme_glow = "acme_glow"
+
+It is laid out as Halation is: `nodes/<menu>/<id>.py`, `shaders/<menu>/<id>.glsl` and `presets/*.json`. The import name
+is also the namespace: the class `SoftGlow` becomes the node `acme_glow.soft_glow` (see `Node`), so that the nodes of
+two packages cannot be confused.
+
+A plug-in is accepted or refused as a whole. One that cannot be loaded has a `fault` and no nodes; all others work.
+Entry points are looked up when the first id with a namespace is asked for, or when all nodes are listed: graphs that
+use no plug-ins never pay for the search.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cache
+from importlib.util import find_spec
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+from ._declare import Node
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+GROUP = "halation.nodes"
+"""The group of entry points that makes a package a plug-in."""
+
+
+@dataclass(frozen=True)
+class Plugin:
+    """An installed package that brings nodes, or the reason why it brings none."""
+
+    package: str
+    """The name to install it by, such as `acme-glow`."""
+    version: str
+    namespace: str
+    """The import name, such as `acme_glow`, with which the ids of its nodes start."""
+    folder: Path | None = None
+    """Where its code lies."""
+    nodes: Mapping[str, type[Node]] = field(default_factory=dict[str, type[Node]])
+    """Its node classes by id."""
+    fault: str = ""
+    """Why it is refused."""
+
+    @property
+    def requirement(self) -> str:
+        """What pip installs: `acme-glow==1.2.0`."""
+        return f"{self.package}=={self.version}"
+
+    def __str__(self) -> str:
+        return f"{self.package} {self.version}"
+
+
+@cache
+def plugins() -> tuple[Plugin, ...]:
+    """Every installed plug-in by name, refused ones included."""
+    from importlib.metadata import entry_points  # takes 10 ms to import
+
+    loaded = [_load(point) for point in entry_points(group=GROUP)]
+    return tuple(_refuse_shared_ids(sorted(loaded, key=lambda plugin: plugin.package)))
+
+
+def list_files(folder: Path) -> Iterator[tuple[str, str]]:
+    """The menu and the id of every node in a folder of nodes, without loading any."""
+    for menu in sorted(item for item in folder.iterdir() if "." not in item.name and not item.name.startswith("_")):
+        names = [item.name for item in menu.iterdir()]
+        ids = (name.removesuffix(".py") for name in names if name.endswith(".py") and not name.startswith("_"))
+        yield from ((menu.name, id) for id in sorted(ids))
+
+
+def find_class(module: ModuleType, id: str) -> type[Node]:
+    """The node class that a module declares. Raises TypeError if there is none of that id."""
+    for item in vars(module).values():
+        if isinstance(item, type) and issubclass(item, Node) and item.__module__ == module.__name__:
+            if item.id == id:
+                return item
+            raise TypeError(f"the class {item.__name__} makes a node '{item.id}': its file must have that name")
+    raise TypeError("there is no node in this file")
+
+
+def _load(point: EntryPoint) -> Plugin:
+    """The plug-in of an entry point. Whatever goes wrong in its code becomes its fault."""
+    known = point.dist
+    plugin = Plugin(known.name if known else point.name, known.version if known else "0", point.value)
+    if not point.value.isidentifier():
+        return replace(plugin, fault=f"its entry point names '{point.value}', which is no top-level package")
+    try:
+        spec = find_spec(plugin.namespace)
+        if spec is None or not spec.submodule_search_locations:
+            return replace(plugin, fault=f"its entry point names the package '{plugin.namespace}', which is not there")
+        folder = next(
+            (path for path in map(Path, spec.submodule_search_locations) if (path / "nodes").is_dir()),
+            Path(spec.submodule_search_locations[0]),
+        )
+        return replace(plugin, folder=folder, nodes=_load_nodes(plugin, folder / "nodes"))
+    except (Exception, SystemExit) as fault:
+        return replace(plugin, fault=f"{type(fault).__name__}: {fault}")
+
+
+def _load_nodes(plugin: Plugin, folder: Path) -> dict[str, type[Node]]:
+    nodes: dict[str, type[Node]] = {}
+    for menu, name in list_files(folder) if folder.is_dir() else ():
+        module = f"{plugin.namespace}.nodes.{menu}.{name}"
+        try:
+            node = find_class(importlib.import_module(module), f"{plugin.namespace}.{name}")
+        except (Exception, SystemExit) as fault:
+            raise ImportError(f"nodes/{menu}/{name}.py: {type(fault).__name__}: {fault}") from fault
+        node.package = plugin.requirement
+        nodes[node.id] = node
+    return nodes
+
+
+def _refuse_shared_ids(loaded: list[Plugin]) -> Iterator[Plugin]:
+    """Refuse all plug-ins that bring a node which another one brings too: nobody can say which of them a graph means."""
+    counts = Counter(id for plugin in loaded for id in plugin.nodes)
+    for plugin in loaded:
+        shared = next((id for id in plugin.nodes if counts[id] > 1), "")
+        if shared:
+            rivals = " and ".join(str(other) for other in loaded if shared in other.nodes)
+            fault = f"{rivals} both bring a node '{shared}': uninstall one of them"
+            yield replace(plugin, nodes={}, fault=fault)
+        else:
+            yield plugin

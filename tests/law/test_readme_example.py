@@ -1,0 +1,54 @@
+"""The README's promise: two files, copied word for word into a fresh tree, add a node that passes all tests."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from source_trees import copy_tree, run_in_tree
+
+README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+
+EVERY_NODE = ("tests/nodes/test_catalogue.py", "tests/nodes/test_promises.py", "tests/nodes/test_pointwise_values.py")
+"""Tests with a case for every node."""
+
+ALL_NODES = (
+    "tests/cli/test_manual.py",
+    "tests/lint/test_live.py",
+    "tests/lint/test_page.py",
+    "tests/lint/test_rules.py",
+    "tests/law/test_house.py",
+    "tests/law/test_floors.py",
+    "--deselect=tests/law/test_house.py::test_files_are_short",
+)
+"""Tests that look at all nodes together. How long the other files are has nothing to do with two new ones."""
+
+
+@pytest.fixture(scope="module")
+def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the source tree with the node of the README in it, and the generated page renewed as it says."""
+    tree = copy_tree(tmp_path_factory.mktemp("readme") / "tree")
+    section = README.partition("## Add a node in two files")[2].partition("\n## ")[0]
+    blocks = re.findall(r"```(?:python|glsl)\n(.*?)```", section, re.S)
+    files = {re.findall(r"(?:nodes|shaders)/\w+/\w+\.\w+", text)[0]: text for text in blocks}
+    assert sorted(name.partition("/")[0] for name in files) == ["nodes", "shaders"]
+    for name, text in files.items():
+        assert not (tree / name).exists()
+        (tree / name).write_text(text, encoding="utf-8")
+    assert "`./dev renew`" in section
+    page = run_in_tree(tree, "-c", "from halation.cli import main; main()", "nodes", "--markdown")
+    assert page.returncode == 0 and "### solarize" in page.stdout, page.stderr
+    (tree / "docs" / "nodes.md").write_text(page.stdout, encoding="utf-8")
+    return tree
+
+
+def test_the_new_node_passes_the_tests_of_every_node(tree: Path) -> None:
+    result = run_in_tree(tree, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-k", "solarize", *EVERY_NODE)
+    assert result.returncode == 0, result.stdout
+    assert int(re.findall(r"(\d+) passed", result.stdout)[0]) > 10
+
+
+def test_nothing_else_notices_it(tree: Path) -> None:
+    result = run_in_tree(tree, "-m", "pytest", "-q", "-p", "no:cacheprovider", *ALL_NODES)
+    assert result.returncode == 0, result.stdout
