@@ -120,7 +120,7 @@ def _load_nodes(plugin: Plugin, folder: Path) -> dict[str, type[Node]]:
 
 
 def _refuse_shared_ids(loaded: list[Plugin]) -> Iterator[Plugin]:
-    """Refuse all plug-ins that bring a node which another one brings too: nobody can say which of them a graph means."""
+    """Refuse all plug-ins that bring a node which another one brings too: no graph could say which it means."""
     counts = Counter(id for plugin in loaded for id in plugin.nodes)
     for plugin in loaded:
         shared = next((id for id in plugin.nodes if counts[id] > 1), "")
