@@ -119,7 +119,7 @@ def write(
     if not 1 <= channels <= 4:
         raise UsageError(f"{path}: the array is {list(picture.shape)}; give [height, width] or [height, width, 1 to 4]")
     kind = (Kind.FIELD, Kind.VECTOR, Kind.IMAGE, Kind.IMAGE)[channels - 1]
-    media.write(
+    media.write_picture(
         Path(path), {"image": picture}, kinds={"image": kind}, precision=precision, compression=compression, view=view
     )
 

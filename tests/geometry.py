@@ -33,7 +33,7 @@ def rays(camera: Camera, width: int, height: int) -> Array:
 def sample_layer(name: str) -> Array:
     """A layer of data of the sample frame."""
     width = _WIDTHS[name]
-    return media.read(sample(), name, Kind.VECTOR if width > 1 else Kind.FIELD, width).array.astype(np.float32)
+    return media.read_layer(sample(), name, Kind.VECTOR if width > 1 else Kind.FIELD, width).array.astype(np.float32)
 
 
 @cache

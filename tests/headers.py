@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from halation.inputs.provider import Pictures
+from halation.inputs.provider import MediaProvider
 from halation.nodes import Missing
 from halation.resources.picture import Picture
-from halation.resources.provider import Frame, Probed
+from halation.resources.provider import FrameFile, PictureProbe
 
 
-class Headers(Pictures):
+class Headers(MediaProvider):
     """Every picture has the same size; no file is read for it."""
 
     def __init__(self, size: tuple[int, int]) -> None:
         super().__init__()
         self.size = size
 
-    def at(self, path: str, frame: int, missing: Missing) -> Frame:
-        return Frame(path)
+    def at(self, path: str, frame: int, missing: Missing) -> FrameFile:
+        return FrameFile(path)
 
-    def probe(self, picture: Picture) -> Probed:
-        return Probed(self.size, False, picture.path)
+    def probe(self, picture: Picture) -> PictureProbe:
+        return PictureProbe(self.size, False, picture.path)

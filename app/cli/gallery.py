@@ -72,19 +72,19 @@ def preset_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet:
     from halation.presets import paths
 
     from .. import document
-    from ..media.comparison.contact_sheet import grouped_sheet
+    from ..media.comparison.contact_sheet import make_grouped_sheet
 
     pictures: dict[str, Array] = {}
     for path in paths():
         step(path.stem)
         graph = document.load(path)
         (pictures[path.stem],) = frames_of(graph, renderer, (middle(renderer, graph),)).values()
-    return Sheet(grouped_sheet({"": pictures}, 5, _WIDTH, letters=_LETTERS), tuple(pictures))
+    return Sheet(make_grouped_sheet({"": pictures}, 5, _WIDTH, letters=_LETTERS), tuple(pictures))
 
 
 def time_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet:
     """A row for every preset that moves: some of its frames, from the first to the last."""
-    from ..media.comparison.contact_sheet import grouped_sheet
+    from ..media.comparison.contact_sheet import make_grouped_sheet
 
     rows: dict[str, dict[str, Array]] = {}
     for name, graph in moving().items():
@@ -92,7 +92,7 @@ def time_sheet(renderer: Renderer, step: Step = lambda name: None) -> Sheet:
         first, last = renderer.frames(graph)
         frames = [first + round((last - first) * part / (_MOMENTS - 1)) for part in range(_MOMENTS)]
         rows[name] = {str(frame): picture for frame, picture in frames_of(graph, renderer, frames).items()}
-    return Sheet(grouped_sheet(rows, _MOMENTS, _WIDTH, letters=_LETTERS), tuple(rows))
+    return Sheet(make_grouped_sheet(rows, _MOMENTS, _WIDTH, letters=_LETTERS), tuple(rows))
 
 
 def moving() -> dict[str, Graph]:
@@ -106,13 +106,13 @@ def moving() -> dict[str, Graph]:
 
 def frames_of(graph: Graph, renderer: Renderer, frames: Iterable[int]) -> dict[int, Array]:
     """What the first output of a graph is at frames, as light of the display."""
-    from ..media.comparison.contact_sheet import shown
+    from ..media.comparison.contact_sheet import show_light
     from ..renderer import FrameRenderer, RenderRequest
 
     name, output = next(iter(graph.outputs.items()))
     reel = FrameRenderer(renderer, graph, RenderRequest())
     try:
-        return {frame: shown(reel.render(frame)[name], output.view) for frame in frames}
+        return {frame: show_light(reel.render(frame)[name], output.view) for frame in frames}
     finally:
         reel.close()
 
@@ -123,7 +123,7 @@ def node_sheet(renderer: Renderer, step: Step = lambda name: None, ids: tuple[st
     from halation.presets import sample
 
     from ..editor.theme.palette import DARK
-    from ..media.comparison.contact_sheet import grouped_sheet
+    from ..media.comparison.contact_sheet import make_grouped_sheet
     from .specimen import drawn
 
     nodes = [node for id, node in catalogue().items() if drawn(node) and (not ids or id in ids)]
@@ -132,7 +132,7 @@ def node_sheet(renderer: Renderer, step: Step = lambda name: None, ids: tuple[st
         step(node.id)
         groups[node.category][node.id] = picture_of(node, renderer, sample())
     colors = {name: DARK.category(name) for name in groups}
-    light = grouped_sheet(groups, _COLUMNS, _WIDTH, letters=_LETTERS, colors=colors)
+    light = make_grouped_sheet(groups, _COLUMNS, _WIDTH, letters=_LETTERS, colors=colors)
     return Sheet(light, tuple(node.id for node in nodes))
 
 
@@ -146,10 +146,10 @@ def picture_of(node: type[Node], renderer: Renderer, sample: Path) -> Array:
     found = renderer.render(graph)
     name = next((name for name, end in graph.outputs.items() if end.kind is Kind.IMAGE), next(iter(found)))
     if graph.outputs[name].kind is Kind.NUMBER:
-        from ..media.comparison.contact_sheet import captioned, shown
+        from ..media.comparison.contact_sheet import make_caption, show_light
 
         numbers = [f"{name.replace('_', ' ')}  {array.item():.4g}" for name, array in found.items() if array.size == 1]
-        return captioned(shown(renderer.render(untouched(sample))["image"]), numbers)
+        return make_caption(show_light(renderer.render(untouched(sample))["image"]), numbers)
     if graph.outputs[name].kind is Kind.COLOR:
         found[name] = found[name].repeat(CANVAS[0], axis=1).repeat(CANVAS[1], axis=0)
     return light_of(graph.outputs[name].kind, found[name])
@@ -160,14 +160,14 @@ def light_of(kind: Kind, array: Array) -> Array:
     from halation.nodes import Kind
 
     from ..authoring.preview.data import are_normals, balanced, data_range
-    from ..media.comparison.contact_sheet import data_shown, light_shown, shown_over_checker
+    from ..media.comparison.contact_sheet import show_any_light, show_data, show_over_checker
 
     if kind in (Kind.IMAGE, Kind.COLOR):
-        return shown_over_checker(array, "none" if array[..., :3].max() <= 1.0 else "")
+        return show_over_checker(array, "none" if array[..., :3].max() <= 1.0 else "")
     array = array.astype("float32")
     low, high = data_range(array)
     if low >= 0.0 and high > 1.0:
-        return light_shown(array)
+        return show_any_light(array)
     if kind is Kind.VECTOR:
-        return data_shown(array, *((-1.0, 1.0) if are_normals(array) else balanced(low, high)))
-    return data_shown(array, low, high)
+        return show_data(array, *((-1.0, 1.0) if are_normals(array) else balanced(low, high)))
+    return show_data(array, low, high)

@@ -82,7 +82,7 @@ def _shot_facts(shot: Sequence) -> dict[str, Any]:
 
 def _facts(found: Survey) -> dict[str, Any]:
     """Everything, for machines."""
-    from ..media.color_spaces import space_rows
+    from ..media.color_spaces import describe_color_spaces
 
     header = found.header
     return {
@@ -115,7 +115,7 @@ def _facts(found: Survey) -> dict[str, Any]:
             }
             for item in found.passes
         ],
-        "color_spaces": [list(row) for row in space_rows(header.info.path)],
+        "color_spaces": [list(row) for row in describe_color_spaces(header.info.path)],
         "roles": {role: layer.name if (layer := found.layer(role)) else None for role in found.roles},
         "undecided": {role: [layer.name for layer in layers] for role, layers in found.rivals.items()},
         "conventions": {
@@ -136,11 +136,11 @@ def _facts(found: Survey) -> dict[str, Any]:
 def _layer_facts(layer: Layer) -> dict[str, Any]:
     return {
         "name": layer.name,
-        "full_name": layer.full,
+        "full_name": layer.full_name,
         "part": layer.part,
         "channels": list(layer.channels),
         "type": layer.format,
-        "data": layer.data,
+        "data": layer.is_data,
     }
 
 

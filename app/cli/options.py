@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene
 
     from ..graph import Graph
-    from ..inputs.provider import Pictures
+    from ..inputs.provider import MediaProvider
     from ..resources.color_program import ColorProgram
     from ..resources.mesh import Mesh
     from ..resources.picture import Picture
-    from ..resources.provider import Frame, Probed
-    from ..resources.working_space import Working
+    from ..resources.provider import FrameFile, PictureProbe
+    from ..resources.working_space import WorkingSpace
 
 Inputs = Annotated[
     list[str] | None,
@@ -168,11 +168,11 @@ class LazyResourceProvider:
     """The world outside of graphs that may not need it: what reads files is loaded when the first is asked for."""
 
     @cached_property
-    def pictures(self) -> Pictures:
+    def pictures(self) -> MediaProvider:
         """The real ones."""
-        from ..inputs.provider import Pictures
+        from ..inputs.provider import MediaProvider
 
-        return Pictures()
+        return MediaProvider()
 
     def bind(self, graph: Graph, inputs: Sequence[str]) -> dict[str, Picture]:
         """Pictures for the graph inputs that the command line names."""
@@ -197,11 +197,11 @@ class LazyResourceProvider:
         if named_files(graph, {}):
             self.pictures.check_frames(graph, frames)
 
-    def at(self, path: str, frame: int, missing: Missing) -> Frame:
+    def at(self, path: str, frame: int, missing: Missing) -> FrameFile:
         """The file of a frame."""
         return self.pictures.at(path, frame, missing)
 
-    def probe(self, picture: Picture) -> Probed:
+    def probe(self, picture: Picture) -> PictureProbe:
         """Size and precision of a picture."""
         return self.pictures.probe(picture)
 
@@ -209,7 +209,7 @@ class LazyResourceProvider:
         """The program of a change of color."""
         return self.pictures.recolor(change)
 
-    def working(self, color: ColorSettings) -> Working | None:
+    def working(self, color: ColorSettings) -> WorkingSpace | None:
         """What shaders know of the working space."""
         return self.pictures.working(color)
 

@@ -13,7 +13,7 @@ from .versions import version
 
 if TYPE_CHECKING:
     from ..graph import Graph
-    from ..media.comparison.metrics import Compared
+    from ..media.comparison.metrics import PictureDifference
 
 Pictures = Mapping[str, Any]
 """Arrays [h, w, c] by output."""
@@ -27,7 +27,7 @@ def compared(a: str, b: str, how: How, output: Path | None) -> list[dict[str, An
 
     Raises the errors of `app.errors`.
     """
-    from ..media.comparison.metrics import compare
+    from ..media.comparison.metrics import compare_pictures
     from ..renderer import Renderer, open_device
 
     inputs, size, scale, frame = how
@@ -48,7 +48,7 @@ def compared(a: str, b: str, how: How, output: Path | None) -> list[dict[str, An
     found: list[dict[str, Any]] = []
     for name in dict.fromkeys((*before, *after)):
         if name in before and name in after:
-            found.append(_told(name, compare(after[name], before[name], linear=_is_color(graphs, name))))
+            found.append(_told(name, compare_pictures(after[name], before[name], linear=_is_color(graphs, name))))
         else:
             found.append({"output": name, "same": False, "words": f"only {a if name in before else b} has it"})
     if output:
@@ -86,7 +86,7 @@ def _rendered(
         reel.close()
 
 
-def _told(name: str, far: Compared) -> dict[str, Any]:
+def _told(name: str, far: PictureDifference) -> dict[str, Any]:
     """The measures of two pictures, and in words; what is not finite is null for machines."""
     if far.fault:
         return {
@@ -114,11 +114,11 @@ def _is_color(graphs: Sequence[Graph], name: str) -> bool:
 
 def _show(output: Path, names: tuple[str, str], graphs: Sequence[Graph], before: Pictures, after: Pictures) -> None:
     """A row for each output."""
-    from ..media.comparison.side_by_side import Pair, write_beside
+    from ..media.comparison.side_by_side import PicturePair, write_side_by_side
 
-    pairs: dict[str, Pair] = {}
+    pairs: dict[str, PicturePair] = {}
     for name in dict.fromkeys((*before, *after)):
         view = next(graph.outputs[name].view for graph in graphs if name in graph.outputs)
-        pairs[name] = Pair(before.get(name), after.get(name), _is_color(graphs, name), view)
-    write_beside(output, pairs, names)
+        pairs[name] = PicturePair(before.get(name), after.get(name), _is_color(graphs, name), view)
+    write_side_by_side(output, pairs, names)
     note(str(output))

@@ -12,7 +12,7 @@ from halation.nodes import ColorSettings, Kind, Matte, Missing, Node, Render, Si
 from ..compiler import NULL, Plan, Request, Target, compile_graph
 from ..graph import Graph, Input, Output, Port, Settings
 from ..resources.picture import Picture
-from ..resources.provider import Frame, Probed
+from ..resources.provider import FrameFile, PictureProbe
 from .options import LazyResourceProvider
 
 NODE = "node"
@@ -51,13 +51,13 @@ class _SameSize(LazyResourceProvider):
     def __init__(self, size: Size) -> None:
         self._size = size
 
-    def at(self, path: str, frame: int, missing: Missing) -> Frame:
+    def at(self, path: str, frame: int, missing: Missing) -> FrameFile:
         """There is one picture."""
-        return Frame(path)
+        return FrameFile(path)
 
-    def probe(self, picture: Picture) -> Probed:
+    def probe(self, picture: Picture) -> PictureProbe:
         """Nothing is read."""
-        return Probed(self._size, True, picture.path)
+        return PictureProbe(self._size, True, picture.path)
 
     def render(self, path: str, named: Mapping[str, str]) -> Render:
         """Every layer that a node may ask for is there."""

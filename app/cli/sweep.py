@@ -102,7 +102,7 @@ def sweep(
         made = sweeping.sweep(work.renderer, whole, swept, how, at, work.step)
         device = work.device
     said = {"ImageDescription": "\n".join(item.label for item in made.cells)}
-    media.write(output, {"": made.light}, kinds={"": Kind.IMAGE}, view="none", metadata=said)
+    media.write_picture(output, {"": made.light}, kinds={"": Kind.IMAGE}, view="none", metadata=said)
     spent = time.perf_counter() - started
     if as_json:
         print_json(_as_json(output, made, device, spent))

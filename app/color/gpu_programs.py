@@ -12,7 +12,7 @@ from halation.nodes import ColorChange, ColorSettings, LookupFile, SpaceChange
 
 from ..errors import InputError, UsageError
 from ..glsl import parse
-from ..resources.color_program import ColorProgram, Table
+from ..resources.color_program import ColorProgram, LookupTable
 from ..resources.input_files import fingerprint
 from .management import DEFAULT_COLOR, Space, color_mark, faults, managed, ocio
 from .transforms import display_processor
@@ -43,14 +43,14 @@ def color_program(processor: Any, name: str) -> ColorProgram:
     )
     made.setAllowTexture1D(False)
     processor.getDefaultGPUProcessor().extractGpuShaderInfo(made)
-    tables: list[Table] = []
+    tables: list[LookupTable] = []
     for table in made.getTextures():
         channels = 1 if table.channel == made.TEXTURE_RED_CHANNEL else 3
         values = np.array(table.getValues(), np.float32).reshape(table.height, table.width, channels)
-        tables.append(Table(table.samplerName, table.interpolation != api.INTERP_NEAREST, values))
+        tables.append(LookupTable(table.samplerName, table.interpolation != api.INTERP_NEAREST, values))
     for cube in made.get3DTextures():
         values = np.array(cube.getValues(), np.float32).reshape(*[cube.edgeLen] * 3, 3)
-        tables.append(Table(cube.samplerName, cube.interpolation != api.INTERP_NEAREST, values))
+        tables.append(LookupTable(cube.samplerName, cube.interpolation != api.INTERP_NEAREST, values))
     return ColorProgram(name, parse(f"OpenColorIO/{name}", made.getShaderText()), tuple(tables))
 
 

@@ -12,12 +12,12 @@ from .file_space import GAMUTS
 from .management import LINEAR_REC709, Managed, Space, managed, studio
 
 if TYPE_CHECKING:
-    from ..resources.working_space import Working
+    from ..resources.working_space import WorkingSpace
 
 _CLOSE = 2e-4
 
 
-def working_of(color: ColorSettings) -> Working | None:
+def working_of(color: ColorSettings) -> WorkingSpace | None:
     """What shaders know of the working space; None is linear Rec.709.
 
     Raises:
@@ -37,14 +37,14 @@ def chromaticities(manager: Managed, space: Space) -> tuple[float, ...]:
 
 
 @lru_cache(maxsize=16)
-def _working(manager: Managed) -> Working | None:
-    from ..resources.working_space import Working  # what reads files has no need of it
+def _working(manager: Managed) -> WorkingSpace | None:
+    from ..resources.working_space import WorkingSpace  # what reads files has no need of it
 
     rec709 = Space("Linear Rec.709 (sRGB)", False)
     to = _matrix(manager, manager.working, manager.find(LINEAR_REC709) or rec709)
     if np.allclose(to, np.eye(3), atol=_CLOSE):
         return None
-    return Working(_luminance(to), tuple(to.ravel().tolist()), tuple(np.linalg.inv(to).ravel().tolist()))
+    return WorkingSpace(_luminance(to), tuple(to.ravel().tolist()), tuple(np.linalg.inv(to).ravel().tolist()))
 
 
 def _matrix(manager: Managed, source: Space, target: Space) -> np.ndarray:

@@ -15,7 +15,7 @@ from msgspec.structs import force_setattr
 
 from ..custom_nodes import unprefixed
 from ..graph import Port
-from ..resources.color_program import ColorProgram, Table
+from ..resources.color_program import ColorProgram, LookupTable
 from ..resources.mesh import Mesh
 from ..resources.picture import Picture
 from ..resources.record import Record
@@ -155,7 +155,7 @@ class Call(Op, frozen=True):
         return "recolor" if self.program else unprefixed(self.function)
 
     @property
-    def tables(self) -> tuple[Table, ...]:
+    def tables(self) -> tuple[LookupTable, ...]:
         """What its function reads through samplers of its own."""
         return self.program.tables if self.program else ()
 

@@ -9,7 +9,7 @@ from halation.nodes import Camera, Size, Uniform
 from msgspec import Struct, field
 
 from ..graph import Port
-from ..resources.color_program import Table
+from ..resources.color_program import LookupTable
 from ..resources.mesh import Mesh
 from ..resources.picture import Picture
 from ..resources.record import Record
@@ -112,7 +112,7 @@ class Pass(Record, frozen=True):
     uniforms: tuple[tuple[str, Uniform], ...]
     weights: tuple[float, ...]
     groups: tuple[int, int, int]
-    tables: tuple[Table, ...] = ()
+    tables: tuple[LookupTable, ...] = ()
     mesh: Mesh | None = None
     writers: Mapping[str, str] = field(default_factory=dict[str, str])
     """The node behind each file of code that users wrote."""

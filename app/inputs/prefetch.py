@@ -12,9 +12,9 @@ from halation.nodes import ColorSettings, Kind
 from ..errors import HalationError
 from ..graph import INPUTS, OUTPUTS, Graph, Input, color_settings
 from ..graph.frames import Pattern, is_video
-from ..media.info import info, layer_or_first
+from ..media.info import choose_layer, read_info
 from ..media.layers import split_layer
-from ..media.pixels import Pixels, read
+from ..media.pixels import Pixels, read_layer
 
 MOST = 4
 """Pictures that may wait for somebody to want them."""
@@ -45,7 +45,7 @@ class Ahead:
 
 def _read(what: What) -> Pixels:
     path, layer, kind, width, space, color = what
-    return read(path, layer, kind, width, space=space, color=color)
+    return read_layer(path, layer, kind, width, space=space, color=color)
 
 
 def _wanted(graph: Graph, inputs: Mapping[str, str]) -> Iterator[What]:
@@ -67,6 +67,6 @@ def _file(graph: Graph, socket: Input, bound: str | None) -> tuple[str, str]:
         return (str(PurePath(graph.folder, socket.file)), socket.layer) if socket.file else ("", "")
     path, layer = split_layer(bound)
     try:
-        return path, layer or (layer_or_first(info(path), socket) if Path(path).is_file() else "")
+        return path, layer or (choose_layer(read_info(path), socket) if Path(path).is_file() else "")
     except HalationError:
         return "", ""

@@ -15,7 +15,7 @@ from ..graph import INPUTS, OUTPUTS, Graph, Input, keyed_range
 from ..graph.frames import is_video
 from ..media.layers import split_layer
 from ..resources.picture import Picture
-from ..resources.provider import Probed
+from ..resources.provider import PictureProbe
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from ..media.info import ImageInfo
     from ..resources.color_program import ColorProgram
     from ..resources.mesh import Mesh
-    from ..resources.provider import Frame
-    from ..resources.working_space import Working
+    from ..resources.provider import FrameFile
+    from ..resources.working_space import WorkingSpace
     from .prefetch import Ahead
 
     Array = np.ndarray
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     """What fills a graph input: a path, `path:layer`, an array [h, w] or [h, w, c], the value of a Number or Color."""
 
 
-class Pictures:
+class MediaProvider:
     """Probes and loads what the pictures of one graph stand for. `ahead` reads some of them already."""
 
     def __init__(self, ahead: Ahead | None = None) -> None:
@@ -86,28 +86,28 @@ class Pictures:
             for frame in frames if used and missing == "error" else ():
                 self.at(path, frame, missing)
 
-    def at(self, path: str, frame: int, missing: Missing) -> Frame:
+    def at(self, path: str, frame: int, missing: Missing) -> FrameFile:
         """The file of a frame. Raises InputError for a frame that has none."""
         from ..media.sequences import frame_file
 
         return frame_file(path, frame, missing)
 
-    def probe(self, picture: Picture) -> Probed:
+    def probe(self, picture: Picture) -> PictureProbe:
         """Size and precision of a picture. Raises InputError for what cannot be read."""
         if picture.in_memory:
             array = cast("Array", picture.pixels)
             height, width = array.shape[:2]
-            return Probed((width, height), array.dtype.name == "float16", self._marks[picture.path])
+            return PictureProbe((width, height), array.dtype.name == "float16", self._marks[picture.path])
         from ..media.info import find_layer
 
         if picture.within:
             _check_within(picture.path, picture.within)
         header = self.info(picture.path)
         layer = find_layer(header, picture.layer)
-        color = picture.kind in (Kind.IMAGE, Kind.COLOR) and not layer.data
+        color = picture.kind in (Kind.IMAGE, Kind.COLOR) and not layer.is_data
         mark = _converted(picture) if color else ""
-        half = layer.half and not (mark and _changes(picture, layer.full))
-        return Probed(header.size, half, header.fingerprint + mark, header.by_rows)
+        half = layer.is_half and not (mark and _changes(picture, layer.full_name))
+        return PictureProbe(header.size, half, header.fingerprint + mark, header.by_rows)
 
     def load(self, picture: Picture) -> Array:
         """Its pixels as [height, width, channels] of float16 or float32."""
@@ -116,14 +116,14 @@ class Pictures:
 
             pixels: Any = picture.pixels
             array = np.array(pixels, np.float32) if isinstance(pixels, tuple) else pixels
-            return widened(array, picture.kind, picture.width)
+            return fit_channels(array, picture.kind, picture.width)
         if picture.rows is not None:
             return self._load_rows(picture, *picture.rows)
-        from ..media.pixels import read
+        from ..media.pixels import read_layer
 
         what = (picture.path, picture.layer, picture.kind, picture.width)
         pixels = self.ahead and self.ahead.take((*what, picture.space, picture.color))
-        pixels = pixels or read(*what, picture.frame, space=picture.space, color=picture.color)
+        pixels = pixels or read_layer(*what, picture.frame, space=picture.space, color=picture.color)
         if pixels.repaired:
             self.repaired[picture.path] = pixels.repaired
         return pixels.array
@@ -134,7 +134,7 @@ class Pictures:
 
         return recolor(change)
 
-    def working(self, color: ColorSettings) -> Working | None:
+    def working(self, color: ColorSettings) -> WorkingSpace | None:
         """What shaders know of the working space. Raises GraphError for one that nobody knows."""
         from ..color.primaries import working_of
 
@@ -155,17 +155,17 @@ class Pictures:
     def info(self, path: str) -> ImageInfo:
         """A file's header, read once."""
         if path not in self._infos:
-            from ..media.info import info
+            from ..media.info import read_info
 
-            self._infos[path] = info(path)
+            self._infos[path] = read_info(path)
         return self._infos[path]
 
     def _load_rows(self, picture: Picture, first: int, end: int) -> Array:
         """Rows of a file; what is repaired counts as often as it is read."""
         from ..media.pictures.row_reader import read_rows
-        from ..media.pixels import Want
+        from ..media.pixels import LayerRequest
 
-        want = Want(picture.layer, picture.kind, picture.width, picture.space, picture.color)
+        want = LayerRequest(picture.layer, picture.kind, picture.width, picture.space, picture.color)
         pixels = read_rows(picture.path, want, first, end)
         if pixels.repaired:
             self.repaired[picture.path] = self.repaired.get(picture.path, 0) + pixels.repaired
@@ -210,10 +210,10 @@ class Pictures:
 
     def _hinted(self, path: str, socket: Input) -> str:
         """The layer that the input asks for, if this file has it."""
-        from ..media.info import layer_or_first
+        from ..media.info import choose_layer
 
         if socket.layer and socket.kind is Kind.IMAGE:
-            return layer_or_first(self.info(self.at(path, 1, "nearest").path), socket)
+            return choose_layer(self.info(self.at(path, 1, "nearest").path), socket)
         return socket.layer
 
 
@@ -241,10 +241,10 @@ def _changes(picture: Picture, layer: str) -> bool:
     """True if the numbers of a layer do not stay as they are in the file: half floats are not enough for others."""
     from ..color.management import managed
     from ..color.transforms import is_working
-    from ..media.color_spaces import layer_spaces
+    from ..media.color_spaces import find_layer_spaces
 
     try:
-        found = layer_spaces(picture.path, picture.color, picture.space).get(layer)
+        found = find_layer_spaces(picture.path, picture.color, picture.space).get(layer)
     except InputError:  # said again when it is read
         return True
     return found is not None and not is_working(found, managed(picture.color))
@@ -268,7 +268,7 @@ def _check_within(path: str, folder: str) -> None:
         raise InputError(f"{path}: it does not lie in the folder '{folder}', which it may not leave")
 
 
-def widened(array: Array, kind: Kind, width: int) -> Array:
+def fit_channels(array: Array, kind: Kind, width: int) -> Array:
     """An array with this many channels: missing alpha is 1, a single channel is grey, other missing ones are 0."""
     import numpy as np
 

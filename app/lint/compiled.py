@@ -17,13 +17,13 @@ from ..graph.rules import Rule
 from ..resources.color_program import ColorProgram
 from ..resources.mesh import Mesh
 from ..resources.picture import Picture
-from ..resources.provider import Frame, Probed
-from ..resources.working_space import Working
+from ..resources.provider import FrameFile, PictureProbe
+from ..resources.working_space import WorkingSpace
 from .rules.paths import named_paths
 
 if TYPE_CHECKING:
     from ..color.graph_faults import ColorFault
-    from ..inputs.provider import Pictures
+    from ..inputs.provider import MediaProvider
 
 UNREADABLE_FILE = Rule(
     "unreadable-file",
@@ -74,11 +74,11 @@ class World:
     size: tuple[int, int] = SIZE
 
     @cached_property
-    def pictures(self) -> Pictures:
+    def pictures(self) -> MediaProvider:
         """The real ones; what reads files is loaded when the first is asked for."""
-        from ..inputs.provider import Pictures
+        from ..inputs.provider import MediaProvider
 
-        return Pictures()
+        return MediaProvider()
 
     def first_frame(self, graph: Graph) -> int:
         """The first frame of a graph. A file that is missing in a sequence is noted."""
@@ -105,25 +105,25 @@ class World:
         except HalationError:
             return True
 
-    def at(self, path: str, frame: int, missing: Missing) -> Frame:
+    def at(self, path: str, frame: int, missing: Missing) -> FrameFile:
         """The file of a frame."""
         found = self._once(path, ("at", path, frame, missing), lambda: self.pictures.at(path, frame, missing))
-        shown = found or Frame(path)
+        shown = found or FrameFile(path)
         self._asked[shown.path] = path
         return shown
 
-    def probe(self, picture: Picture) -> Probed:
+    def probe(self, picture: Picture) -> PictureProbe:
         """Size and precision of a picture, or something instead."""
         how = (picture.kind, picture.width, picture.space, picture.color)
         key, path = (picture.path, picture.layer, *how), picture.path
         found = None if picture.in_memory else self._once(path, key, lambda: self.pictures.probe(picture))
-        return found or Probed(self.size, False, path)
+        return found or PictureProbe(self.size, False, path)
 
     def recolor(self, change: ColorChange) -> ColorProgram:
         """The program of a change of color."""
         return self._known_or("recolor", change, lambda: self.pictures.recolor(change))
 
-    def working(self, color: ColorSettings) -> Working | None:
+    def working(self, color: ColorSettings) -> WorkingSpace | None:
         """What shaders know of the working space."""
         return self._known_or("working", color, lambda: self.pictures.working(color))
 

@@ -6,36 +6,36 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from .info import ImageInfo, find_layer, info
+from .info import ImageInfo, find_layer, read_info
 from .layers import Layer
-from .metadata import Attribute, read_metadata
-from .pictures.writer import check_destination, rounds, write
-from .pixels import Pixels, Want, read, read_many
+from .metadata import TypedAttribute, read_metadata
+from .pictures.writer import check_destination, stores_halves, write_picture
+from .pixels import LayerRequest, Pixels, read_layer, read_layers
 
 if TYPE_CHECKING:
     from .sequences import Sequence, find_sequence, frame_file, suggest_pattern
     from .video.writer import VideoFile, check_video
 
 __all__ = [
-    "Attribute",
     "ImageInfo",
     "Layer",
+    "LayerRequest",
     "Pixels",
     "Sequence",
+    "TypedAttribute",
     "VideoFile",
-    "Want",
     "check_destination",
     "check_video",
     "find_layer",
     "find_sequence",
     "frame_file",
-    "info",
-    "read",
-    "read_many",
+    "read_info",
+    "read_layer",
+    "read_layers",
     "read_metadata",
-    "rounds",
+    "stores_halves",
     "suggest_pattern",
-    "write",
+    "write_picture",
 ]
 
 _LATER = MappingProxyType(

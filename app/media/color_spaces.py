@@ -11,11 +11,13 @@ from ..color.file_space import FileSpace, space_of
 from ..color.management import DEFAULT_COLOR, managed
 from ..errors import HalationError
 from ..graph.frames import is_video
-from .info import described, opened
-from .pictures.color_hints import hints_of
+from .info import describe_picture, open_picture
+from .pictures.color_hints import read_color_hints
 
 
-def layer_spaces(path: str | Path, color: ColorSettings = DEFAULT_COLOR, wanted: str = "") -> Mapping[str, FileSpace]:
+def find_layer_spaces(
+    path: str | Path, color: ColorSettings = DEFAULT_COLOR, wanted: str = ""
+) -> Mapping[str, FileSpace]:
     """The color space of every layer of color by its full name; data has none. `wanted` is what somebody says it is.
 
     Raises:
@@ -25,20 +27,20 @@ def layer_spaces(path: str | Path, color: ColorSettings = DEFAULT_COLOR, wanted:
     if is_video(str(path)):
         return {}
     found: dict[str, FileSpace] = {}
-    with opened(path) as handle:
-        header = described(handle, str(path))
+    with open_picture(path) as handle:
+        header = describe_picture(handle, str(path))
         for layer in header.layers:
-            if not layer.data:
+            if not layer.is_data:
                 handle.seek_subimage(layer.part, 0)
-                hints = hints_of(handle.spec(), header.format, layer.format.startswith("uint"))
-                found[layer.full] = space_of(str(path), hints, managed(color), wanted)
+                hints = read_color_hints(handle.spec(), header.format, layer.format.startswith("uint"))
+                found[layer.full_name] = space_of(str(path), hints, managed(color), wanted)
     return found
 
 
-def space_rows(path: str | Path) -> list[tuple[str, ...]]:
+def describe_color_spaces(path: str | Path) -> list[tuple[str, ...]]:
     """Rows of words: layer, color space, reason; one row where all are alike; a sentence where nobody can tell."""
     try:
-        found = layer_spaces(path)
+        found = find_layer_spaces(path)
     except HalationError as fault:
         return [("unknown", str(fault).removeprefix(f"{path}: "))]
     said = {(item.name, item.reason) for item in found.values()}

@@ -11,7 +11,15 @@ from typing import Any
 import OpenImageIO as oiio
 
 from ..graph.frames import is_video
-from .info import ImageInfo, described, described_video, opened, space, text, video_facts
+from .info import (
+    ImageInfo,
+    describe_picture,
+    describe_video,
+    make_printable,
+    open_picture,
+    read_color_tag,
+    read_video_info,
+)
 from .video import Facts, passed_on, said_of
 
 Value = int | float | str | tuple[Any, ...]
@@ -35,7 +43,7 @@ class PartHeader:
 
 
 @dataclass(frozen=True)
-class Header:
+class FileHeader:
     """What a file says before its first pixel. `attributes` are those of all parts; of equal names the first counts."""
 
     info: ImageInfo
@@ -43,51 +51,51 @@ class Header:
     attributes: Mapping[str, Value]
 
 
-def read_header(path: str | Path) -> Header:
+def read_header(path: str | Path) -> FileHeader:
     """Read all of it.
 
     Raises:
         InputError: as `info`.
     """
     if is_video(str(path)):
-        return _video_header(video_facts(path))
-    with opened(path) as handle:
-        info = described(handle, str(path))
+        return _describe_video_header(read_video_info(path))
+    with open_picture(path) as handle:
+        info = describe_picture(handle, str(path))
         parts: list[PartHeader] = []
         attributes: dict[str, Value] = {}
         while handle.seek_subimage(len(parts), 0):
             spec = handle.spec()
-            parts.append(_part(len(parts), spec))
-            attributes = {**_attributes(spec), **attributes}
-    return Header(info, tuple(parts), MappingProxyType(attributes))
+            parts.append(_read_part(len(parts), spec))
+            attributes = {**_read_attributes(spec), **attributes}
+    return FileHeader(info, tuple(parts), MappingProxyType(attributes))
 
 
-def _video_header(facts: Facts) -> Header:
-    info, window = described_video(facts), (0, 0, *facts.size)
+def _describe_video_header(facts: Facts) -> FileHeader:
+    info, window = describe_video(facts), (0, 0, *facts.size)
     layer = info.layers[0]
     formats = (layer.format,) * len(layer.channels)
     part = PartHeader(0, "", "", facts.container, facts.codec, window, window, layer.channels, formats, "")
-    return Header(info, (part,), MappingProxyType({**passed_on(facts), **said_of(facts)}))
+    return FileHeader(info, (part,), MappingProxyType({**passed_on(facts), **said_of(facts)}))
 
 
-def _part(index: int, spec: oiio.ImageSpec) -> PartHeader:
+def _read_part(index: int, spec: oiio.ImageSpec) -> PartHeader:
     formats = spec.channelformats or (spec.format,) * spec.nchannels
     tiles = f"tiles of {spec.tile_width}x{spec.tile_height}" if spec.tile_width else "scan lines"
     return PartHeader(
         index,
-        text(spec.get_string_attribute("oiio:subimagename")),
-        text(spec.get_string_attribute("view")),
+        make_printable(spec.get_string_attribute("oiio:subimagename")),
+        make_printable(spec.get_string_attribute("view")),
         tiles,
-        text(spec.get_string_attribute("compression")),
+        make_printable(spec.get_string_attribute("compression")),
         (spec.x, spec.y, spec.width, spec.height),
         (spec.full_x, spec.full_y, spec.full_width or spec.width, spec.full_height or spec.height),
-        tuple(map(text, spec.channelnames)),
+        tuple(map(make_printable, spec.channelnames)),
         tuple(map(str, formats)),
-        space(spec),
+        read_color_tag(spec),
     )
 
 
-def _attributes(spec: oiio.ImageSpec) -> dict[str, Value]:
+def _read_attributes(spec: oiio.ImageSpec) -> dict[str, Value]:
     found: dict[str, Value] = {}
     for item in spec.extra_attribs:
         try:
@@ -95,7 +103,7 @@ def _attributes(spec: oiio.ImageSpec) -> dict[str, Value]:
         except UnicodeDecodeError:  # text of an unknown alphabet is no reason to refuse a picture
             continue
         if isinstance(value, str):
-            found[text(item.name)] = text(value)
+            found[make_printable(item.name)] = make_printable(value)
         elif isinstance(value, int | float | tuple):
-            found[text(item.name)] = value
+            found[make_printable(item.name)] = value
     return found

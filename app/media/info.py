@@ -16,7 +16,7 @@ from msgspec import Struct
 from ..errors import InputError
 from ..graph.frames import is_video
 from ..resources.input_files import check_file, fingerprint
-from .layers import Layer, Part, layers_of, pick
+from .layers import ChannelPart, Layer, group_channels, match_layer
 
 if TYPE_CHECKING:
     from ..graph import Input
@@ -63,19 +63,19 @@ class ImageInfo(Struct, frozen=True):
     by_rows: bool = False
 
 
-def info(path: str | Path) -> ImageInfo:
+def read_info(path: str | Path) -> ImageInfo:
     """Read the header.
 
     Raises:
         InputError: missing, empty, damaged, deep or not a picture.
     """
     if is_video(str(path)):
-        return described_video(video_facts(path))
-    with opened(path) as handle:
-        return described(handle, str(path))
+        return describe_video(read_video_info(path))
+    with open_picture(path) as handle:
+        return describe_picture(handle, str(path))
 
 
-def video_facts(path: str | Path) -> Facts:
+def read_video_info(path: str | Path) -> Facts:
     """What is known of a video. Raises InputError."""
     from .video import facts_of
 
@@ -91,10 +91,10 @@ def find_layer(header: ImageInfo, name: str) -> Layer:
     Raises:
         InputError: no layer, or more than one, answers to the name.
     """
-    return pick(header.path, header.layers, name)
+    return match_layer(header.path, header.layers, name)
 
 
-def layer_or_first(header: ImageInfo, socket: Input) -> str:
+def choose_layer(header: ImageInfo, socket: Input) -> str:
     """The layer that an input asks for, if this file has it; a plain picture stands for any layer of color."""
     if not socket.layer or socket.kind is not Kind.IMAGE:
         return socket.layer
@@ -106,7 +106,7 @@ def layer_or_first(header: ImageInfo, socket: Input) -> str:
 
 
 @contextmanager
-def opened(path: str | Path) -> Iterator[oiio.ImageInput]:
+def open_picture(path: str | Path) -> Iterator[oiio.ImageInput]:
     """The open file; alpha is left as stored, because it must be applied to linear color."""
     file = check_file(path)
     wish = oiio.ImageSpec()
@@ -115,21 +115,21 @@ def opened(path: str | Path) -> Iterator[oiio.ImageInput]:
     try:
         handle = oiio.ImageInput.open(str(file), wish)
         if handle is None:
-            raise InputError(f"{path}: {fault(oiio.geterror())}")
+            raise InputError(f"{path}: {describe_fault(oiio.geterror())}")
         yield handle
     except UnicodeDecodeError as error:
-        raise InputError(f"{path}: {fault('corrupt')}") from error
+        raise InputError(f"{path}: {describe_fault('corrupt')}") from error
     finally:
         if handle is not None:
             handle.close()
 
 
-def described(handle: oiio.ImageInput, path: str) -> ImageInfo:
+def describe_picture(handle: oiio.ImageInput, path: str) -> ImageInfo:
     """The header of an open file. Parts of another size (previews, pages) are left out."""
     main = handle.spec()
     size = _size(main)
     _check_size(size, path)
-    parts: list[Part] = []
+    parts: list[ChannelPart] = []
     index, whole = 0, True
     while handle.seek_subimage(index, 0):
         spec = handle.spec()
@@ -140,16 +140,16 @@ def described(handle: oiio.ImageInput, path: str) -> ImageInfo:
             whole = whole and _is_whole(spec)
         index += 1
     by_rows = whole and handle.format_name() in _BY_ROWS
-    return ImageInfo(path, size, layers_of(parts), fingerprint(path), handle.format_name(), by_rows)
+    return ImageInfo(path, size, group_channels(parts), fingerprint(path), handle.format_name(), by_rows)
 
 
-def described_video(facts: Facts) -> ImageInfo:
+def describe_video(facts: Facts) -> ImageInfo:
     """A video as a picture of one layer, which is another one at every frame."""
     _check_size(facts.size, facts.path)
     names = ("R", "G", "B", "A") if facts.alpha else ("R", "G", "B")
     format = "uint8" if facts.bits == 8 else "uint16" if facts.bits < 32 else "float32"
-    part = Part(0, "", names, (format,) * len(names), "")
-    return ImageInfo(facts.path, facts.size, layers_of([part]), fingerprint(facts.path), f"video, {facts.codec}")
+    part = ChannelPart(0, "", names, (format,) * len(names), "")
+    return ImageInfo(facts.path, facts.size, group_channels([part]), fingerprint(facts.path), f"video, {facts.codec}")
 
 
 def _check_size(size: Size, path: str) -> None:
@@ -182,24 +182,24 @@ def check_memory(path: str, size: Size, channels: int) -> None:
         )
 
 
-def _part(index: int, spec: oiio.ImageSpec) -> Part:
+def _part(index: int, spec: oiio.ImageSpec) -> ChannelPart:
     formats = spec.channelformats or (spec.format,) * spec.nchannels
-    return Part(
+    return ChannelPart(
         index,
-        text(spec.get_string_attribute("oiio:subimagename")),
-        tuple(map(text, spec.channelnames)),
+        make_printable(spec.get_string_attribute("oiio:subimagename")),
+        tuple(map(make_printable, spec.channelnames)),
         tuple(_DTYPES.get(str(item), "float32") for item in formats),
-        space(spec),
+        read_color_tag(spec),
     )
 
 
-def space(spec: oiio.ImageSpec) -> str:
+def read_color_tag(spec: oiio.ImageSpec) -> str:
     """The color space that the header names, "data" for none at all, "" where it says nothing."""
     names = (TAG, "oiio:ColorSpace", "colorInteropID")
-    return text(next(filter(None, map(spec.get_string_attribute, names)), ""))
+    return make_printable(next(filter(None, map(spec.get_string_attribute, names)), ""))
 
 
-def text(name: str) -> str:
+def make_printable(name: str) -> str:
     """A name that can be printed, whatever bytes were in the file."""
     return name.encode("utf-8", "replace").decode()
 
@@ -215,7 +215,7 @@ def _is_whole(spec: oiio.ImageSpec) -> bool:
     return (spec.x, spec.y, spec.width, spec.height) == shown and spec.get_int_attribute("Orientation", 1) == 1
 
 
-def fault(message: str) -> str:
+def describe_fault(message: str) -> str:
     """OpenImageIO's complaint as the rest of a sentence that starts with the path."""
     for word, sentence in _FAULTS:
         if word in message.casefold():

@@ -30,7 +30,7 @@ DATA_NAMES = {
 }
 """What plain names of data look like, by what they may mean: numbers that are not color."""
 _DATA = re.compile("|".join(DATA_NAMES.values()))
-_LISTED = 20
+_MOST_LISTED = 20
 _DEPTH = re.compile(r"z|_*(z_?depth|depth_?z|depth|hitpz|linear_?depth|zfiltered)", re.IGNORECASE)
 
 
@@ -46,8 +46,8 @@ class Layer(Struct, frozen=True):
     part: int
     indices: tuple[int, ...]
     format: str
-    data: bool
-    full: str
+    is_data: bool
+    full_name: str
 
     @property
     def first(self) -> int:
@@ -55,12 +55,12 @@ class Layer(Struct, frozen=True):
         return self.indices[0]
 
     @property
-    def half(self) -> bool:
+    def is_half(self) -> bool:
         """True if 16-bit floats hold it without loss."""
         return self.format == "float16"
 
 
-class Part(Struct, frozen=True):
+class ChannelPart(Struct, frozen=True):
     """What the header of one part says: `tag` is its color space or "data", "" where nobody said."""
 
     index: int
@@ -80,31 +80,36 @@ def is_depth(name: str) -> bool:
     return _DEPTH.fullmatch(name) is not None
 
 
-def layers_of(parts: Sequence[Part]) -> tuple[Layer, ...]:
+def group_channels(parts: Sequence[ChannelPart]) -> tuple[Layer, ...]:
     """All layers in file order, each under a name of its own."""
     several = len(parts) > 1
-    found = [(part, layer) for part in parts for layer in _split(part, several)]
-    taken = Counter(layer.full for _, layer in found)
+    found = [(part, layer) for part in parts for layer in _split_part(part, several)]
+    taken = Counter(layer.full_name for _, layer in found)
     found = [
-        (part, layer if taken[layer.full] == 1 else replace(layer, full=f"{part.label}.{layer.full}"))
+        (part, layer if taken[layer.full_name] == 1 else replace(layer, full_name=f"{part.label}.{layer.full_name}"))
         for part, layer in found
     ]
-    tokens = {layer.full.partition(".")[0] for _, layer in found}
-    shared = len(tokens) == 1 and all("." in layer.full for _, layer in found)
+    tokens = {layer.full_name.partition(".")[0] for _, layer in found}
+    shared = len(tokens) == 1 and all("." in layer.full_name for _, layer in found)
     return tuple(
-        _named(layer, layer.full.partition(".")[2] if shared else layer.full, part.tag) for part, layer in found
+        _with_short_name(layer, layer.full_name.partition(".")[2] if shared else layer.full_name, part.tag)
+        for part, layer in found
     )
 
 
-def _named(layer: Layer, name: str, tag: str) -> Layer:
+def _with_short_name(layer: Layer, name: str, tag: str) -> Layer:
     """The layer under its short name, which also says whether it is data where the header does not."""
     words = tuple(word.casefold() for word in layer.channels)
     colored = any(set(words) <= set(family) for family in _FAMILIES[:3])
-    data = tag == "data" or not colored or (not tag and _DATA.fullmatch(plain(name).rpartition(".")[2]) is not None)
-    return replace(layer, name=name, data=data)
+    data = (
+        tag == "data"
+        or not colored
+        or (not tag and _DATA.fullmatch(normalize_name(name).rpartition(".")[2]) is not None)
+    )
+    return replace(layer, name=name, is_data=data)
 
 
-def _split(part: Part, several: bool) -> Iterable[Layer]:
+def _split_part(part: ChannelPart, several: bool) -> Iterable[Layer]:
     """The layers of one part: channels grouped by prefix, bare ones by what belongs together."""
     groups: dict[str, list[int]] = {}
     bare = {name.casefold() for name in part.channels if "." not in name}
@@ -116,7 +121,7 @@ def _split(part: Part, several: bool) -> Iterable[Layer]:
     groups = dict(_without_strangers(part.channels, groups))
     named = several and part.name
     for key, places in groups.items():
-        indices = _sorted(part.channels, places)
+        indices = _in_natural_order(part.channels, places)
         short = tuple(part.channels[index].rpartition(".")[2] for index in indices)
         full = key[:-1] if key.endswith(".") else key or "".join(short)
         if named and "." not in key:
@@ -136,75 +141,82 @@ def _without_strangers(names: Sequence[str], groups: Mapping[str, list[int]]) ->
         yield from ((names[index], [index]) for index in places if index not in own)
 
 
-def _sorted(names: Sequence[str], places: Sequence[int]) -> tuple[int, ...]:
+def _in_natural_order(names: Sequence[str], places: Sequence[int]) -> tuple[int, ...]:
     """Places in the natural order of their components, or as they are where there is none."""
     words = {index: names[index].rpartition(".")[2].casefold() for index in places}
     family = next((family for family in _FAMILIES if set(words.values()) <= set(family)), None)
     return tuple(sorted(places, key=lambda index: family.index(words[index])) if family else places)
 
 
-def plain(name: str) -> str:
+def normalize_name(name: str) -> str:
     """A name for comparison: no case, no blanks, underscores or hyphens."""
     return re.sub(r"[\s_-]", "", name.casefold())
 
 
-def pick(path: str, layers: Sequence[Layer], name: str) -> Layer:
+def match_layer(path: str, layers: Sequence[Layer], name: str) -> Layer:
     """What `info.find_layer` finds among the layers of a file, from the strictest reading of `name` to the loosest."""
     if not layers:
         raise InputError(f"{path}: holds no channels that can be read")
     if not name:
-        return _main(layers)
-    wanted = plain(name)
+        return _default_layer(layers)
+    wanted = normalize_name(name)
     tiers: tuple[Callable[[Layer], bool], ...] = (
-        lambda layer: name in (layer.full, layer.name),
-        lambda layer: wanted in (plain(layer.full), plain(layer.name)),
-        lambda layer: plain(layer.full).endswith("." + wanted),
-        lambda layer: len(layer.channels) == 1 and plain(layer.channels[0]) == wanted,
+        lambda layer: name in (layer.full_name, layer.name),
+        lambda layer: wanted in (normalize_name(layer.full_name), normalize_name(layer.name)),
+        lambda layer: normalize_name(layer.full_name).endswith("." + wanted),
+        lambda layer: len(layer.channels) == 1 and normalize_name(layer.channels[0]) == wanted,
     )
     for tier in tiers:
         if match := [layer for layer in layers if tier(layer)]:
-            return _only(path, name, match)
-    if match := [one for layer in layers for one in _channels(layer) if f".{plain(one.full)}".endswith("." + wanted)]:
-        return _only(path, name, match)
+            return _single_match(path, name, match)
+    if match := [
+        one
+        for layer in layers
+        for one in _single_channels(layer)
+        if f".{normalize_name(one.full_name)}".endswith("." + wanted)
+    ]:
+        return _single_match(path, name, match)
     choices = [layer.name for layer in layers]
-    near = nearest(layers, name)
+    near = suggest_layers(layers, name)
     hint = f"did you mean '{near[0]}'? It" if near else "it"
-    rest = f" and {len(choices) - _LISTED} more" if len(choices) > _LISTED else ""
-    raise InputError(f"{path}: has no layer '{name}': {hint} holds {', '.join(choices[:_LISTED])}{rest}")
+    rest = f" and {len(choices) - _MOST_LISTED} more" if len(choices) > _MOST_LISTED else ""
+    raise InputError(f"{path}: has no layer '{name}': {hint} holds {', '.join(choices[:_MOST_LISTED])}{rest}")
 
 
-def nearest(layers: Sequence[Layer], name: str) -> list[str]:
+def suggest_layers(layers: Sequence[Layer], name: str) -> list[str]:
     """The names of layers that are most like one that is not there, at most three."""
-    known = {plain(layer.name): layer.name for layer in layers}
-    return [known[word] for word in difflib.get_close_matches(plain(name), known, 3, 0.5)]
+    known = {normalize_name(layer.name): layer.name for layer in layers}
+    return [known[word] for word in difflib.get_close_matches(normalize_name(name), known, 3, 0.5)]
 
 
-def _main(layers: Sequence[Layer]) -> Layer:
+def _default_layer(layers: Sequence[Layer]) -> Layer:
     """The picture itself: by name, else the first color layer, else the first."""
-    colors = [layer for layer in layers if not layer.data]
+    colors = [layer for layer in layers if not layer.is_data]
     for word in _BEAUTY:
         for layer in colors:
-            if plain(layer.name).rpartition(".")[2] == word:
+            if normalize_name(layer.name).rpartition(".")[2] == word:
                 return layer
     return (colors or layers)[0]
 
 
-def _channels(layer: Layer) -> Iterable[Layer]:
+def _single_channels(layer: Layer) -> Iterable[Layer]:
     """Every channel of a layer as a layer of its own."""
     for channel, index in zip(layer.channels, layer.indices, strict=True):
         yield replace(
             layer,
             name=f"{layer.name}.{channel}",
-            full=f"{layer.full}.{channel}",
+            full_name=f"{layer.full_name}.{channel}",
             channels=(channel,),
             indices=(index,),
-            data=True,
+            is_data=True,
         )
 
 
-def _only(path: str, name: str, match: Sequence[Layer]) -> Layer:
+def _single_match(path: str, name: str, match: Sequence[Layer]) -> Layer:
     if len(match) > 1:
-        raise InputError(f"{path}: '{name}' may mean {' or '.join(layer.full for layer in match)}: write one of them")
+        raise InputError(
+            f"{path}: '{name}' may mean {' or '.join(layer.full_name for layer in match)}: write one of them"
+        )
     return match[0]
 
 

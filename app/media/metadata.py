@@ -12,7 +12,7 @@ import OpenImageIO as oiio
 from msgspec import Struct
 
 from ..graph.frames import is_video
-from .info import opened, video_facts
+from .info import open_picture, read_video_info
 
 _STRUCTURAL = re.compile(
     r"(oiio|openexr|png|jpeg|tiff|targa|bmp|gif|hdr|webp|jpegxl|ICCProfile|dwa):.*|Exif:(ColorSpace|Pixel.Dimension|ImageHistory)"
@@ -28,14 +28,14 @@ _PACKED_BYTES = 60_000
 _OURS = "halation:"
 
 
-class Attribute(Struct, frozen=True):
+class TypedAttribute(Struct, frozen=True):
     """A value whose type is more than int, float or str: `type` is OpenImageIO's name (`matrix`, `timecode`)."""
 
     type: str
     value: Any
 
 
-def read_metadata(path: str | Path) -> dict[str, int | float | str | Attribute]:
+def read_metadata(path: str | Path) -> dict[str, int | float | str | TypedAttribute]:
     """The attributes of the first part that still hold for another picture made from it.
 
     Those that describe how this file is stored (windows, compression, color encoding, date) are left out.
@@ -46,9 +46,9 @@ def read_metadata(path: str | Path) -> dict[str, int | float | str | Attribute]:
     if is_video(str(path)):
         from .video import passed_on
 
-        return {**passed_on(video_facts(path))}
-    with opened(path) as handle:
-        found: dict[str, int | float | str | Attribute] = {}
+        return {**passed_on(read_video_info(path))}
+    with open_picture(path) as handle:
+        found: dict[str, int | float | str | TypedAttribute] = {}
         for item in handle.spec().extra_attribs:
             if is_structural(item.name):
                 continue
@@ -56,8 +56,8 @@ def read_metadata(path: str | Path) -> dict[str, int | float | str | Attribute]:
                 value: Any = item.value
             except UnicodeDecodeError:  # text of an unknown alphabet is no reason to refuse a picture
                 continue
-            found[item.name] = value if isinstance(value, int | float | str) else Attribute(str(item.type), value)
-        return _unpacked(found, _PACKED.get(handle.format_name(), ""))
+            found[item.name] = value if isinstance(value, int | float | str) else TypedAttribute(str(item.type), value)
+        return _unpack(found, _PACKED.get(handle.format_name(), ""))
 
 
 def is_structural(name: str) -> bool:
@@ -71,25 +71,25 @@ def add_metadata(spec: oiio.ImageSpec, metadata: Mapping[str, Any], format: str)
     No date is among them: the same picture gives the same bytes.
     """
     spec.attribute("DateTime", "")
-    for name, value in _packed(metadata, format).items():
+    for name, value in _pack(metadata, format).items():
         if is_structural(name):
             continue
         if format == "png" and not isinstance(value, str):  # PNG holds text only
-            value = str(value.value if isinstance(value, Attribute) else value)
+            value = str(value.value if isinstance(value, TypedAttribute) else value)
         most = _PACKED_BYTES if name == _PACKED.get(format) else _JPEG_BYTES
         if format == "jpeg" and len(str(value).encode()) > most:  # libjpeg ends the process beyond 64 KB
             continue
-        if format == "jpeg" and isinstance(value, Attribute):  # it would come back as text
+        if format == "jpeg" and isinstance(value, TypedAttribute):  # it would come back as text
             continue
         if format == "jpeg" and name == _PACKED["jpeg"]:
             spec.attribute("jpeg:com_attributes", 1)
-        if isinstance(value, Attribute):
+        if isinstance(value, TypedAttribute):
             spec.attribute(name, oiio.TypeDesc(value.type), value.value)
         else:
             spec.attribute(name, value)
 
 
-def _packed(metadata: Mapping[str, Any], format: str) -> dict[str, Any]:
+def _pack(metadata: Mapping[str, Any], format: str) -> dict[str, Any]:
     """What is written instead: of formats with one place for all that is ours, one text of JSON there."""
     name = _PACKED.get(format)
     ours = {key: value for key, value in metadata.items() if key.startswith(_OURS)}
@@ -99,7 +99,9 @@ def _packed(metadata: Mapping[str, Any], format: str) -> dict[str, Any]:
     return {**rest, name: json.dumps(ours, separators=(",", ":"), default=str)}
 
 
-def _unpacked(found: dict[str, int | float | str | Attribute], name: str) -> dict[str, int | float | str | Attribute]:
+def _unpack(
+    found: dict[str, int | float | str | TypedAttribute], name: str
+) -> dict[str, int | float | str | TypedAttribute]:
     """What was meant by it."""
     text = found.get(name, "")
     if not isinstance(text, str) or not text.startswith(f'{{"{_OURS}'):

@@ -17,10 +17,10 @@ from ..errors import InputError
 from ..graph.frames import is_video
 from ..resources.input_files import check_file
 from ..resources.input_files import fingerprint as marked
-from .info import ImageInfo, check_memory, described, described_video, fault, find_layer, opened
+from .info import ImageInfo, check_memory, describe_fault, describe_picture, describe_video, find_layer, open_picture
 from .layers import Layer
-from .pictures.color_hints import hints_of
-from .pictures.finite import has_bad, not_finite
+from .pictures.color_hints import read_color_hints
+from .pictures.finite import find_non_finite, has_non_finite
 
 READ_AS = {"float16": "half", "uint8": "uint8", "uint16": "uint16", "uint32": "uint"}
 _ALPHA = ("a", "alpha")
@@ -31,7 +31,7 @@ oiio.attribute("threads", min(available_cores(), oiio.get_int_attribute("threads
 oiio.attribute("exr_threads", oiio.get_int_attribute("threads"))
 
 
-class Want(Struct, frozen=True):
+class LayerRequest(Struct, frozen=True):
     """A layer, and the socket it is for; `width` counts the channels of a Vector.
 
     `space` is what its color is in, by name or role, "" to find out; `color` says how colors are managed.
@@ -56,7 +56,7 @@ class Pixels(Struct, frozen=True):
     repaired: int
 
 
-def read(
+def read_layer(
     path: str | Path,
     layer: str,
     kind: Kind,
@@ -77,10 +77,10 @@ def read(
         InputError: the file or the layer is missing, or the file is damaged.
         GraphError, UsageError: `space` is unknown, or there is no config.
     """
-    return read_many(path, [Want(layer, kind, width, space, color)], frame)[0]
+    return read_layers(path, [LayerRequest(layer, kind, width, space, color)], frame)[0]
 
 
-def read_many(path: str | Path, wants: Sequence[Want], frame: int = 1) -> list[Pixels]:
+def read_layers(path: str | Path, wants: Sequence[LayerRequest], frame: int = 1) -> list[Pixels]:
     """Read several layers of one file; those that lie in one part are decoded together.
 
     Raises:
@@ -88,8 +88,8 @@ def read_many(path: str | Path, wants: Sequence[Want], frame: int = 1) -> list[P
     """
     if is_video(str(path)):
         return _read_video(str(check_file(path)), wants, frame)
-    with opened(path) as handle:
-        header = described(handle, str(path))
+    with open_picture(path) as handle:
+        header = describe_picture(handle, str(path))
         layers = [find_layer(header, want.layer) for want in wants]
         blocks = _decode(handle, header, layers)
         made: list[Pixels] = []
@@ -99,17 +99,17 @@ def read_many(path: str | Path, wants: Sequence[Want], frame: int = 1) -> list[P
         return made
 
 
-def _read_video(path: str, wants: Sequence[Want], frame: int) -> list[Pixels]:
+def _read_video(path: str, wants: Sequence[LayerRequest], frame: int) -> list[Pixels]:
     """What sockets want of one frame of a video."""
     mark = marked(path)
     from .video import facts_of, signal_at
 
-    header = described_video(facts_of(path, mark))
+    header = describe_video(facts_of(path, mark))
     signal = signal_at(path, mark, frame)
     made: list[Pixels] = []
     for want in wants:
         layer = find_layer(header, want.layer)
-        color = want.kind in (Kind.IMAGE, Kind.COLOR) and not layer.data
+        color = want.kind in (Kind.IMAGE, Kind.COLOR) and not layer.is_data
         as_it_is = not color or want.space not in AUTO
         block, encoding = (signal.numbers, "") if as_it_is else signal.light
         spec = oiio.ImageSpec(block.shape[1], block.shape[0], block.shape[2], "float")
@@ -133,7 +133,7 @@ def _decode(handle: oiio.ImageInput, header: ImageInfo, layers: Sequence[Layer])
             width, height = header.size
             raise InputError(f"{header.path}: {width}x{height} pixels do not fit into memory") from error
         if block is None:
-            raise InputError(f"{header.path}: {fault(handle.geterror() or 'corrupt')}")
+            raise InputError(f"{header.path}: {describe_fault(handle.geterror() or 'corrupt')}")
         decoded[part, dtype] = np.asarray(block)
     keys = [(layer.part, layer.format) for layer in layers]
     return [select(decoded[key], layer.indices, min(spans[key])) for key, layer in zip(keys, layers, strict=True)]
@@ -146,16 +146,16 @@ def select(block: Array, indices: Sequence[int], first: int) -> Array:
     return block[..., run[0] : run[-1] + 1] if wanted == run else block[..., wanted]
 
 
-def pixels_of(block: Array, layer: Layer, want: Want, spec: oiio.ImageSpec, header: ImageInfo) -> Pixels:
+def pixels_of(block: Array, layer: Layer, want: LayerRequest, spec: oiio.ImageSpec, header: ImageInfo) -> Pixels:
     """The array that a socket wants, from the channels of its layer."""
     if want.kind in (Kind.IMAGE, Kind.COLOR):
-        array = _data_image(block, layer) if layer.data else _image(block, layer, spec, header, want)
+        array = _data_image(block, layer) if layer.is_data else _image(block, layer, spec, header, want)
     else:
         width = want.width if want.kind is Kind.VECTOR else 1
         array = as_float(block[..., :width])
         if (missing := width - array.shape[2]) > 0:
             array = np.concatenate([array, np.zeros((*array.shape[:2], missing), array.dtype)], axis=2)
-    color = want.kind in (Kind.IMAGE, Kind.COLOR) and not layer.data
+    color = want.kind in (Kind.IMAGE, Kind.COLOR) and not layer.is_data
     array = np.ascontiguousarray(array)
     array, repaired = _repaired_color(array) if color else _repaired_data(array)
     array = np.ascontiguousarray(_upright(_placed(array, spec), spec.get_int_attribute("Orientation", 1)))
@@ -168,10 +168,10 @@ def _data_image(block: Array, layer: Layer) -> Array:
     return _rgba(as_float(rgb), None if alpha is None else as_float(alpha))
 
 
-def _image(block: Array, layer: Layer, spec: oiio.ImageSpec, header: ImageInfo, want: Want) -> Array:
+def _image(block: Array, layer: Layer, spec: oiio.ImageSpec, header: ImageInfo, want: LayerRequest) -> Array:
     """Premultiplied RGBA in the working space."""
     manager = managed(want.color)
-    found = space_of(header.path, hints_of(spec, header.format, block.dtype.kind in "ui"), manager, want.space)
+    found = space_of(header.path, read_color_hints(spec, header.format, block.dtype.kind in "ui"), manager, want.space)
     straight = spec.get_int_attribute("oiio:UnassociatedAlpha") == 1
     if is_working(found, manager) and not straight and tuple(map(str.casefold, layer.channels)) in _AS_IT_IS:
         return as_float(block)
@@ -213,7 +213,7 @@ def _rgba(rgb: Array, alpha: Array | None) -> Array:
 
 
 def _repaired_color(array: Array) -> tuple[Array, int]:
-    bad = int(not_finite(array).any(axis=2).sum()) if has_bad(array) else 0
+    bad = int(find_non_finite(array).any(axis=2).sum()) if has_non_finite(array) else 0
     if not bad:
         return array, 0
     buffer = oiio.ImageBuf(array)
@@ -223,7 +223,7 @@ def _repaired_color(array: Array) -> tuple[Array, int]:
 
 
 def _repaired_data(array: Array) -> tuple[Array, int]:
-    if not has_bad(array):
+    if not has_non_finite(array):
         return array, 0
     nan = np.isnan(array)
     return np.where(nan, array.dtype.type(0.0), array), int(nan.any(axis=2).sum())

@@ -27,9 +27,9 @@ from msgspec import Struct
 from ..errors import InputError, UsageError
 from ..graph.frames import Pattern, format_frames, is_video
 from ..resources.input_files import check_inside
-from ..resources.provider import Frame
-from .info import video_facts
-from .pictures.thumbnail import readable
+from ..resources.provider import FrameFile
+from .info import read_video_info
+from .pictures.thumbnail import list_readable_endings
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -105,7 +105,7 @@ def find_sequence(path: str) -> Sequence | None:
     return _sequence(pattern, names) if pattern else None
 
 
-def frame_file(path: str, frame: int, missing: Missing = "error") -> Frame:
+def frame_file(path: str, frame: int, missing: Missing = "error") -> FrameFile:
     """The file that shows a frame; of a video, which of its frames. One picture is its own, whatever the frame.
 
     `hold` takes the last frame before it, or the first of all; `nearest` the one at the smallest distance, of two the
@@ -116,16 +116,16 @@ def frame_file(path: str, frame: int, missing: Missing = "error") -> Frame:
         UsageError: as `Pattern.parse`.
     """
     if _is_file(path):
-        return _video_frame(path, frame, missing) if is_video(path) else Frame(path)
+        return _video_frame(path, frame, missing) if is_video(path) else FrameFile(path)
     pattern = Pattern.parse(path)
     if pattern and _is_file(usual := pattern.name(frame)):
-        return Frame(usual)
+        return FrameFile(usual)
     found = find_sequence(path)
     if found is None:
-        return Frame(path)
+        return FrameFile(path)
     check_any(found)
     if frame in found.names:
-        return Frame(found.path(frame))
+        return FrameFile(found.path(frame))
     if missing == "error":
         raise InputError(
             f"{found.pattern.name(frame)}: there is no such file, only frames {found.said}: render it, or choose hold, "
@@ -134,12 +134,12 @@ def frame_file(path: str, frame: int, missing: Missing = "error") -> Frame:
     after = bisect_left(found.frames, frame)
     near = found.frames[max(0, after - 1) : after + 1]
     chosen = near[0] if missing == "hold" else min(near, key=lambda there: (abs(there - frame), there))
-    return Frame(found.path(chosen), missing == "black")
+    return FrameFile(found.path(chosen), missing == "black")
 
 
 def _video(path: str) -> Sequence:
     """A video as a sequence of frames that are all in one file."""
-    facts = video_facts(path)
+    facts = read_video_info(path)
     return _filmed(path, facts.count, facts.rate)
 
 
@@ -150,16 +150,16 @@ def _filmed(path: str, count: int, rate: Fraction) -> Sequence:
     return Sequence(pattern, MappingProxyType(dict.fromkeys(range(1, count + 1), name)), rate)
 
 
-def _video_frame(path: str, frame: int, missing: Missing) -> Frame:
-    count = video_facts(path).count
+def _video_frame(path: str, frame: int, missing: Missing) -> FrameFile:
+    count = read_video_info(path).count
     if 1 <= frame <= count:
-        return Frame(path, number=frame)
+        return FrameFile(path, number=frame)
     if missing == "error":
         raise InputError(
             f"{path}: has no frame {frame}, only 1-{count}: render fewer, or choose hold, nearest or black for missing "
             "frames"
         )
-    return Frame(path, missing == "black", 1 if frame < 1 else count)
+    return FrameFile(path, missing == "black", 1 if frame < 1 else count)
 
 
 def check_any(found: Sequence) -> None:
@@ -211,7 +211,7 @@ def _groups(names: tuple[str, ...]) -> Mapping[str, tuple[int, int]]:
     Names that would look like something else as a pattern have none.
     """
     numbers: defaultdict[tuple[str, str, int], list[str]] = defaultdict(list)
-    endings = readable()
+    endings = list_readable_endings()
     for name in names:
         if not name.startswith(".") and Path(name).suffix.casefold() in endings:
             for place, (before, number, after) in enumerate(_numbers(name)):

@@ -10,22 +10,22 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import HalationError
-from ..media.comparison.metrics import CODE, Compared, compare
-from ..media.pictures.stored import Stored, maker, read_stored
+from ..media.comparison.metrics import EIGHT_BIT_STEP, PictureDifference, compare_pictures
+from ..media.pictures.stored import StoredPart, describe_maker, read_stored
 from .cases import METRICS, PER_PIXEL, Case, number
 from .results import Check
 
-Parts = Mapping[str, Stored]
+Parts = Mapping[str, StoredPart]
 
 
 def judged(case: Case, actual: Path, golden: Path, frame: int) -> tuple[Check, Parts, Parts]:
     """What there is to say of a picture, and the parts of both files. Nothing is raised for a bad golden."""
-    made, made_by = read_stored(actual), maker(actual)
+    made, made_by = read_stored(actual), describe_maker(actual)
     fresh = Check(golden, frame, made_by=made_by)
     if not golden.is_file():
         return replace(fresh, sentence=f"the golden {golden} is missing: --update makes it"), made, {}
     try:
-        wanted, golden_by = read_stored(golden), maker(golden)
+        wanted, golden_by = read_stored(golden), describe_maker(golden)
     except HalationError as fault:
         return replace(fresh, sentence=str(fault)), made, {}
     fresh = replace(fresh, golden_by=golden_by)
@@ -55,9 +55,9 @@ def in_full(case: Case, check: Check, made: Parts, wanted: Parts) -> Check:
     return replace(check, compared=_compared(case, made[check.layer], wanted[check.layer], perceptual=True))
 
 
-def _compared(case: Case, made: Stored, wanted: Stored, perceptual: bool) -> Compared:
-    threshold = case.tolerance if case.metric in PER_PIXEL else CODE
-    return compare(
+def _compared(case: Case, made: StoredPart, wanted: StoredPart, perceptual: bool) -> PictureDifference:
+    threshold = case.tolerance if case.metric in PER_PIXEL else EIGHT_BIT_STEP
+    return compare_pictures(
         made.array,
         wanted.array,
         threshold=threshold,
@@ -67,7 +67,7 @@ def _compared(case: Case, made: Stored, wanted: Stored, perceptual: bool) -> Com
     )
 
 
-def _measured(case: Case, fresh: Check, name: str, made: Stored, wanted: Stored) -> Check:
+def _measured(case: Case, fresh: Check, name: str, made: StoredPart, wanted: StoredPart) -> Check:
     found = _compared(case, made, wanted, perceptual=case.metric in ("ssim", "flip"))
     check = replace(fresh, layer=name, compared=found)
     if found.fault:
@@ -76,7 +76,7 @@ def _measured(case: Case, fresh: Check, name: str, made: Stored, wanted: Stored)
     return replace(check, value=value, sentence=_verdict(case, check, found, value))
 
 
-def _verdict(case: Case, check: Check, found: Compared, value: float) -> str:
+def _verdict(case: Case, check: Check, found: PictureDifference, value: float) -> str:
     metric = METRICS[case.metric]
     if metric.allows(value, case.tolerance):
         return ""
@@ -93,7 +93,7 @@ def _of(check: Check) -> str:
     return f"{check.golden}{layer}: "
 
 
-def _where(found: Compared) -> str:
+def _where(found: PictureDifference) -> str:
     """The worst pixel in words."""
     if found.worst is None:
         return ""

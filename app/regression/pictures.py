@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import OutputError
-from ..media.comparison.metrics import amplified, three
-from ..media.pictures.stored import Stored, codes_of, keep, png, write_difference
+from ..media.comparison.metrics import amplify_difference, to_three_channels
+from ..media.pictures.stored import StoredPart, copy_picture, encode_for_viewing, encode_png, write_difference
 from .cases import Case
 from .judging import Parts
 from .results import Check, Views
@@ -25,7 +25,7 @@ def views_of(check: Check, made: Parts, wanted: Parts, view: str) -> Views:
     name = check.layer if check.layer in made else next(iter(made))
     actual, expected = made[name], wanted.get(name)
     if expected is None:
-        return Views(png(codes_of(actual, view, _span(actual))))
+        return Views(encode_png(encode_for_viewing(actual, view, _span(actual))))
     span, gain = _span(expected), 1.0
     first, second = actual.array, expected.array
     if first.shape == second.shape:
@@ -33,9 +33,9 @@ def views_of(check: Check, made: Parts, wanted: Parts, view: str) -> Views:
         size = np.maximum(1.0, np.abs(np.where(np.isfinite(second), second, 0.0)))
         first, second = first / size, second / size
         gain = _gain(np.abs(first - second))
-    light = amplified(first, second, gain)
-    views = (png(codes_of(actual, view, span)), png(codes_of(expected, view, span)))
-    return Views(*views, png(light ** (1.0 / 2.2)), gain)
+    light = amplify_difference(first, second, gain)
+    views = (encode_png(encode_for_viewing(actual, view, span)), encode_png(encode_for_viewing(expected, view, span)))
+    return Views(*views, encode_png(light ** (1.0 / 2.2)), gain)
 
 
 def left(check: Check, case: Case, actual: Path, made: Parts, wanted: Parts, folder: Path) -> Check:
@@ -50,10 +50,10 @@ def left(check: Check, case: Case, actual: Path, made: Parts, wanted: Parts, fol
         raise OutputError(f"{folder}: the folder cannot be made ({fault.strerror}); choose another --out") from None
     stem = check.golden.stem
     files = [folder / f"{stem}.actual{actual.suffix}"]
-    keep(files[0], actual)
+    copy_picture(files[0], actual)
     if wanted:
         files.append(folder / f"{stem}.expected{check.golden.suffix}")
-        keep(files[1], check.golden)
+        copy_picture(files[1], check.golden)
         layer = check.layer if check.layer in made and check.layer in wanted else next(iter(made.keys() & wanted), "")
         if layer in made and layer in wanted:
             files.append(folder / f"{stem}.difference.exr")
@@ -70,7 +70,11 @@ def left(check: Check, case: Case, actual: Path, made: Parts, wanted: Parts, fol
 def _difference(actual: Array, expected: Array) -> Array:
     """The absolute difference as numbers; where sizes differ, a picture of that."""
     same = actual.shape == expected.shape
-    return np.abs(three(actual) - three(expected)) if same else amplified(actual, expected, 1.0)
+    return (
+        np.abs(to_three_channels(actual) - to_three_channels(expected))
+        if same
+        else amplify_difference(actual, expected, 1.0)
+    )
 
 
 def _gain(difference: Array) -> float:
@@ -79,7 +83,7 @@ def _gain(difference: Array) -> float:
     return 1.0 / float(np.percentile(there, 99.5)) if there.size else 1.0
 
 
-def _span(part: Stored) -> tuple[float, float]:
+def _span(part: StoredPart) -> tuple[float, float]:
     """What is black and what is white where data is shown."""
     finite = part.array[np.isfinite(part.array)]
     return (float(finite.min()), float(finite.max())) if part.data and finite.size else (0.0, 1.0)

@@ -8,7 +8,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, Literal
 
-from ..media.comparison.metrics import Compared
+from ..media.comparison.metrics import PictureDifference
 from .cases import Case
 
 Status = Literal["passed", "failed", "blessed", "skipped"]
@@ -36,7 +36,7 @@ class Check:
     frame: int
     layer: str = ""
     value: float | None = None
-    compared: Compared | None = None
+    compared: PictureDifference | None = None
     sentence: str = ""
     golden_by: str = ""
     made_by: str = ""

@@ -17,7 +17,7 @@ from ..errors import GraphError, HalationError
 from ..graph import Expression, Graph, Port, node_output, problems
 from ..graph.frames import Pattern
 from ..media.layers import split_layer
-from ..media.pictures.stored import Stored, keep
+from ..media.pictures.stored import StoredPart, copy_picture
 from ..renderer import FrameRenderer, Renderer, RenderRequest
 from ..renderer.jobs.job import Writing, run_job
 from .cases import Case, Golden
@@ -100,7 +100,7 @@ def _looked_at(case: Case, graph: Graph, golden: Golden, actual: Path, frame: in
         refusal = unusable(case, made) or _read_by(graph, case, path)
         if not refusal:
             old = check.sentence.removeprefix(f"{path}: ") if wanted else "new"
-            keep(path, actual)
+            copy_picture(path, actual)
             return judged(case, actual, path, frame)[0], f"{path}: {old}"
         check = replace(check, sentence=f"{path} is not blessed: {refusal}")
     if how.pictures or how.out is not None:
@@ -135,7 +135,10 @@ def _fault_of(case: Case, graph: Graph, wanted: RenderRequest, pictures: Mapping
     letters = {1: ("Y",), 2: ("X", "Y"), 3: ("X", "Y", "Z"), 4: ("R", "G", "B", "A")}
     return unusable(
         case,
-        {name: Stored(array, letters.get(array.shape[2], ("X",)), encoded=False) for name, array in pictures.items()},
+        {
+            name: StoredPart(array, letters.get(array.shape[2], ("X",)), encoded=False)
+            for name, array in pictures.items()
+        },
     )
 
 

@@ -18,10 +18,10 @@ from halation.nodes import Camera, Kind
 
 from ..color.transforms import Array
 from ..errors import InputError
-from ..media.header import Header, read_header
+from ..media.header import FileHeader, read_header
 from ..media.info import find_layer
 from ..media.layers import Layer
-from ..media.pixels import Want, read_many
+from ..media.pixels import LayerRequest, read_layers
 from ..resources.input_files import fingerprint
 from . import evidence
 from .camera import Solved, header_camera, residual_of, solve_camera
@@ -55,7 +55,7 @@ class Survey:
     `named` are layers that somebody chose for a role.
     """
 
-    header: Header
+    header: FileHeader
     maker: Maker
     passes: tuple[Pass, ...]
     before: Survey | None = None
@@ -121,8 +121,8 @@ class Survey:
         """The layers that conventions and the camera are found in."""
         wanted = [*_CONVENED, *([Role.BEAUTY] if self.before and self.layer(Role.VELOCITY) else [])]
         layers = {role: layer for role in wanted if (layer := self.layer(role))}
-        wants = [Want(layer.full, Kind.VECTOR, len(layer.channels)) for layer in layers.values()]
-        arrays = read_many(self.header.info.path, wants) if wants else []
+        wants = [LayerRequest(layer.full_name, Kind.VECTOR, len(layer.channels)) for layer in layers.values()]
+        arrays = read_layers(self.header.info.path, wants) if wants else []
         return {role: pixels.array for role, pixels in zip(layers, arrays, strict=True)}
 
     def _camera(self, pixels: Mapping[Role, Array]) -> FoundCamera:
@@ -175,8 +175,8 @@ class Survey:
             rule = evidence.velocity_by_cameras(velocity, pixels[Role.POSITION], camera.camera, there.camera)
         picture = self.before.layer(Role.BEAUTY)
         if rule is None and picture is not None and Role.BEAUTY in pixels:
-            want = Want(picture.full, Kind.VECTOR, len(picture.channels))
-            (earlier,) = read_many(self.before.header.info.path, [want])
+            want = LayerRequest(picture.full_name, Kind.VECTOR, len(picture.channels))
+            (earlier,) = read_layers(self.before.header.info.path, [want])
             rule = evidence.velocity_by_pictures(velocity, pixels[Role.BEAUTY], earlier.array)
             if rule is not None and usual is not None and usual.kind == Motion.TO_NEXT:
                 rule = replace(rule, kind=usual.kind)  # what pictures show is much the same before and after

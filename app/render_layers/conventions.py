@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from types import MappingProxyType
 
-from ..media.layers import plain
+from ..media.layers import normalize_name
 from .naming import Renderer, Role
 
 
@@ -153,7 +153,7 @@ def habit(role: Role, name: str, renderer: Renderer | None) -> Convention | None
 
     Else what most renderers do; None for roles that need no telling.
     """
-    word = plain(name.rpartition(".")[2])
+    word = normalize_name(name.rpartition(".")[2])
     found = [
         item.convention
         for item in _HABITS

@@ -20,8 +20,8 @@ from halation.nodes import Kind, Matte, float_bits
 
 from ..color.transforms import Array
 from ..errors import InputError
-from ..media.layers import plain
-from ..media.pixels import read
+from ..media.layers import normalize_name
+from ..media.pixels import read_layer
 from ..resources.sandbox import outside
 from .analysis import Survey, survey
 from .naming import Role
@@ -43,17 +43,17 @@ def mattes_of(found: Survey) -> tuple[Matte, ...]:
     groups: dict[str, list[Pass]] = {}
     for item in found.passes:
         if item.role in _ROLES:
-            groups.setdefault(item.layer.full[:-2], []).append(item)
+            groups.setdefault(item.layer.full_name[:-2], []).append(item)
     said = found.header.attributes
-    keys = {plain(str(value)): match[1] for name, value in said.items() if (match := _NAME.fullmatch(name))}
+    keys = {normalize_name(str(value)): match[1] for name, value in said.items() if (match := _NAME.fullmatch(name))}
     made: list[Matte] = []
     for name, items in groups.items():
         items.sort(key=lambda item: item.rank)
-        key = keys.get(plain(name))
+        key = keys.get(normalize_name(name))
         ids = _manifest(said, key, Path(found.header.info.path).parent) if key else {}
         role = items[0].role
         assert role is not None
-        made.append(Matte(_ROLES[role], tuple(item.layer.full for item in items), MappingProxyType(ids)))
+        made.append(Matte(_ROLES[role], tuple(item.layer.full_name for item in items), MappingProxyType(ids)))
     return tuple(made)
 
 
@@ -80,7 +80,7 @@ def id_map(path: str, first: str) -> IdMap:
     matte = next((matte for matte in mattes_of(survey(path)) if matte.layers[0] == first), None)
     if matte is None:
         raise InputError(f"{path}: '{first}' is no cryptomatte")
-    ranks = read(path, first, Kind.VECTOR, 4).array.astype(np.float32, copy=False)
+    ranks = read_layer(path, first, Kind.VECTOR, 4).array.astype(np.float32, copy=False)
     ids, covered = np.ascontiguousarray(ranks[..., 0::2]).view(np.uint32), ranks[..., 1::2]
     found = np.where(covered[..., 1] > covered[..., 0], ids[..., 1], ids[..., 0])
     found[~(covered.max(axis=2) > 0.0)] = 0

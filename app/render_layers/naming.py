@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from types import MappingProxyType
 
-from ..media.layers import DATA_NAMES, plain
+from ..media.layers import DATA_NAMES, normalize_name
 
 
 class Role(StrEnum):
@@ -118,7 +118,7 @@ class Scheme:
 
 
 def _scheme(marks: str, **names: str) -> Scheme:
-    table = {Role(role): tuple(plain(name) for name in words.split()) for role, words in names.items()}
+    table = {Role(role): tuple(normalize_name(name) for name in words.split()) for role, words in names.items()}
     return Scheme(re.compile(marks, re.IGNORECASE), MappingProxyType(table))
 
 

@@ -10,7 +10,7 @@ from halation.nodes import Matte
 
 from ..errors import InputError
 from ..media.info import find_layer
-from ..media.layers import nearest
+from ..media.layers import suggest_layers
 from .analysis import FoundCamera, Survey, survey
 from .conventions import Convention
 from .mattes import mattes_of
@@ -91,7 +91,7 @@ def _faults(found: Survey, named: Mapping[Role, str]) -> Iterator[tuple[Role, st
         try:
             find_layer(found.header.info, layer)
         except InputError:
-            near = nearest(found.header.info.layers, layer)
+            near = suggest_layers(found.header.info.layers, layer)
             yield role, f"no layer '{layer}' in this file{f': did you mean {either(near)}?' if near else ''}"
 
 

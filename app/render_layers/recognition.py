@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from enum import IntEnum
 from types import MappingProxyType
 
-from ..media.layers import Layer, is_depth, plain
+from ..media.layers import Layer, is_depth, normalize_name
 from .naming import HINTS, PATTERNS, SCHEMES, Renderer, Role
 
 _GROUP = re.compile(r"(?:combined|rgba?|beauty)_(.+)", re.IGNORECASE)
@@ -88,7 +88,7 @@ def passes_of(
     seen_by: Mapping[int, str] = MappingProxyType({}),
 ) -> tuple[Pass, ...]:
     """What every layer is; `seen_by` names the views of those parts that are of one."""
-    manifests = {plain(str(value)) for name, value in attributes.items() if _MANIFEST.fullmatch(name)}
+    manifests = {normalize_name(str(value)) for name, value in attributes.items() if _MANIFEST.fullmatch(name)}
     several = attributes.get("multiView")
     views = [str(view).casefold() for view in several] if isinstance(several, tuple) else []
     readings = [_read(layer, views, seen_by.get(layer.part, "")) for layer in layers]
@@ -129,12 +129,12 @@ def _read(layer: Layer, views: Sequence[str], view: str) -> tuple[str, str]:
     ending = re.compile(rf"(?<=.)[_ -]?{re.escape(view)}$" if view else r"(?!)", re.IGNORECASE)
     named = [ending.sub("", word) for word in words if word.casefold() not in known]
     last = named[-1] if named else "".join(layer.channels)
-    above = [word for word in named[:-1] if plain(word) != plain(last)]
+    above = [word for word in named[:-1] if normalize_name(word) != normalize_name(last)]
     return last, ".".join([*above, *(name for name in mine if name != (views or [""])[0])])
 
 
 def _pass(layer: Layer, name: str, renderer: Renderer | None, manifests: set[str]) -> Pass:
-    word = plain(name)
+    word = normalize_name(name)
     for found in (
         _cryptomatte(layer, manifests),
         _by_table(layer, word, renderer),
@@ -149,8 +149,8 @@ def _pass(layer: Layer, name: str, renderer: Renderer | None, manifests: set[str
 
 def _cryptomatte(layer: Layer, manifests: set[str]) -> Pass | None:
     """A layer of ids and coverages: its manifest names it, or its own name does."""
-    full, last = plain(layer.full), layer.name.rpartition(".")[2]
-    match = _RANKS.fullmatch(plain(last))
+    full, last = normalize_name(layer.full_name), layer.name.rpartition(".")[2]
+    match = _RANKS.fullmatch(normalize_name(last))
     listed = full[:-2] in manifests and full[-2:].isdigit()
     if match is None and not listed:
         return None
@@ -186,7 +186,7 @@ def _by_table(layer: Layer, word: str, renderer: Renderer | None) -> Pass | None
 
 def _light_group(layer: Layer, last: str) -> Pass | None:
     match = _GROUP.fullmatch(last)
-    if match is None or layer.data:
+    if match is None or layer.is_data:
         return None
     return Pass(layer, Role.LIGHT_GROUP, Grounds.PATTERN, f"named like the light of the group '{match[1]}'")
 
@@ -220,7 +220,7 @@ def _by_shape(layer: Layer, word: str) -> Pass | None:
 
 def _with_beauty(passes: Sequence[Pass]) -> Iterator[Pass]:
     """The same where nothing is called a picture: the first color layer without a role is."""
-    free = [item for item in passes if item.role is None and not item.candidates and not item.layer.data]
+    free = [item for item in passes if item.role is None and not item.candidates and not item.layer.is_data]
     for item in passes:
         if free and item is free[0]:
             only = "only" if len(free) == 1 else "first"
@@ -235,7 +235,7 @@ def _own_names(renderer: Renderer, layers: Sequence[Layer]) -> list[str]:
     found: list[str] = []
     for layer in layers:
         last = layer.name.rpartition(".")[2]
-        users = [other for other, scheme in SCHEMES.items() if scheme.role(plain(last))]
+        users = [other for other, scheme in SCHEMES.items() if scheme.role(normalize_name(last))]
         if users == [renderer]:
             found.append(last)
     return found

@@ -45,7 +45,7 @@ def find_render(path: str, named: Mapping[str, str] = MappingProxyType({})) -> R
     found = survey(path, named={Role(role): layer for role, layer in named.items()})
     layers = {role: layer for role in found.roles if (layer := found.layer(role))}
     return Render(
-        MappingProxyType({role.value: layer.full for role, layer in layers.items()}),
+        MappingProxyType({role.value: layer.full_name for role, layer in layers.items()}),
         MappingProxyType({role.value: len(layer.channels) for role, layer in layers.items()}),
         MappingProxyType(
             {role.value: Meaning(rule.kind, rule.scale, rule.offset) for role, rule in found.conventions.items()}

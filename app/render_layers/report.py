@@ -8,7 +8,7 @@ from typing import cast
 
 from halation.nodes import Camera
 
-from ..media.color_spaces import space_rows
+from ..media.color_spaces import describe_color_spaces
 from ..media.header import PartHeader
 from ..media.metadata import is_structural
 from .analysis import FoundCamera, Survey
@@ -36,7 +36,7 @@ def report(found: Survey) -> Iterator[str]:
             for item in found.passes
         ],
     )
-    yield from _section("color", space_rows(found.header.info.path))
+    yield from _section("color", describe_color_spaces(found.header.info.path))
     yield from _section("to be decided", _open_rows(found))
     yield from _section(
         "conventions",

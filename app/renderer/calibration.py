@@ -20,7 +20,7 @@ from ..compiler.devices import Measured
 from ..document.disk import read_text, write_text
 from ..errors import HalationError
 from ..graph import Graph, Port, Settings
-from ..inputs.provider import Pictures
+from ..inputs.provider import MediaProvider
 from ..resources.sandbox import outside
 from .execution.runner import Runner
 from .opengl.device import Device
@@ -64,7 +64,7 @@ def measured(device: Device, size: Size = SIZE, turns: int = TURNS) -> Measured:
     nodes = catalogue()
     graph = Graph(settings=Settings(size)).add("noise", nodes["noise"]()).add("blur", nodes["gaussian_blur"]())
     graph = graph.connect(Port("noise", "out"), Port("blur", "image"))
-    request, pictures = Request({"out": Port("blur", "out")}), Pictures()
+    request, pictures = Request({"out": Port("blur", "out")}), MediaProvider()
     fastest, spent = dict.fromkeys(get_args(Form), math.inf), 0.0
     runners = {
         form: Runner(replace(device, target=replace(device.target, form=form)), pictures.load, 0) for form in fastest

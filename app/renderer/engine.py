@@ -11,7 +11,7 @@ from msgspec import Struct, field
 
 from ..compiler import Library, Memory, Plan, Planner, Precision, Region, Request
 from ..graph import Graph, Port
-from ..inputs.provider import Pictures
+from ..inputs.provider import MediaProvider
 from .execution.decoding import Array
 from .execution.runner import Runner
 from .opengl.device import Device
@@ -75,7 +75,7 @@ class Renderer:
     ) -> None:
         self._owns_device = device is None
         self.device = device or open_device()
-        self.pictures = Pictures(ahead=ahead)
+        self.pictures = MediaProvider(ahead=ahead)
         self.runner = Runner(self.device, self.pictures.load, budget)
         self.library = library
         """The shaders of nodes; None for those that ship with Halation."""

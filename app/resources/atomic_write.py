@@ -31,7 +31,7 @@ _ABANDONED = 3600.0
 """Seconds after which an unfinished file is nobody's any more; other machines may be writing to the same folder."""
 
 
-def store(path: str | Path, encode: Callable[[str], None], room: int) -> None:
+def write_atomically(path: str | Path, encode: Callable[[str], None], room: int) -> None:
     """Replace the file by what `encode` writes to the name it is given; at most about `room` bytes.
 
     The encoders do not notice a full disk (PNG and WebP report success, JPEG ends the process: OpenImageIO 3.2), so
@@ -41,17 +41,17 @@ def store(path: str | Path, encode: Callable[[str], None], room: int) -> None:
     Raises:
         OutputError: the folder is missing or read-only, or the disk is full.
     """
-    with unfinished(path) as (part, target):
+    with replace_file(path) as (part, target):
         _fill(part, encode, room)
         part.replace(target)
 
 
-def part_prefix(process: int) -> str:
+def temporary_prefix(process: int) -> str:
     """How the names of unfinished files of a process begin: one that was killed cannot remove them itself."""
     return f"{_PART}{process}-"
 
 
-def sweep(folder: str | Path) -> None:
+def remove_abandoned_files(folder: str | Path) -> None:
     """Remove the unfinished files that processes left in a folder when they were killed."""
     for part in Path(folder).glob(f"{_PART}*"):
         with contextlib.suppress(OSError):
@@ -59,19 +59,19 @@ def sweep(folder: str | Path) -> None:
                 part.unlink()
 
 
-def check_room(path: str | Path) -> None:
+def check_writable(path: str | Path) -> None:
     """Find out whether the folder may be written, by making a name in it and taking that away. Raises OutputError."""
-    with unfinished(path):
+    with replace_file(path):
         pass
 
 
 @contextmanager
-def unfinished(path: str | Path) -> Generator[tuple[Path, Path]]:
+def replace_file(path: str | Path) -> Generator[tuple[Path, Path]]:
     """A new file that is gone afterwards, and the one that it may replace. Raises OutputError."""
     if said := outside(path):
         raise OutputError(f"{path}: {said}")
     target = Path(os.path.realpath(path))
-    part = target.with_name(f"{part_prefix(os.getpid())}{os.urandom(6).hex()}{target.suffix[:8]}")
+    part = target.with_name(f"{temporary_prefix(os.getpid())}{os.urandom(6).hex()}{target.suffix[:8]}")
     try:
         if target.is_dir():
             raise OutputError(f"{path}: is a folder: add the name of a file")
@@ -81,10 +81,10 @@ def unfinished(path: str | Path) -> Generator[tuple[Path, Path]]:
         finally:
             part.unlink(missing_ok=True)
     except OSError as error:
-        raise OutputError(f"{path}: cannot be written: {reason_of(error)}") from error
+        raise OutputError(f"{path}: cannot be written: {describe_write_error(error)}") from error
 
 
-def reason_of(error: Exception) -> str:
+def describe_write_error(error: Exception) -> str:
     """Why something cannot be written, as the rest of a sentence."""
     said = getattr(error, "strerror", None) or str(error) or "the encoder gave no reason"
     return _FAULTS.get(getattr(error, "errno", None) or 0, said)

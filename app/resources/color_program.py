@@ -8,7 +8,7 @@ from ..glsl import Text
 from .record import Record
 
 
-class Table(Record, frozen=True):
+class LookupTable(Record, frozen=True):
     """Numbers that GLSL reads through a sampler: float32 [height, width, channels] or [depth, height, width, channels].
 
     `linear` tables are interpolated by the sampler; all are clamped at their edges. Tables of the same sampler are the
@@ -30,6 +30,6 @@ class ColorProgram(Record, frozen=True):
 
     function: str
     text: Text
-    tables: tuple[Table, ...]
+    tables: tuple[LookupTable, ...]
 
     compare_exclude: ClassVar[frozenset[str]] = frozenset({"text"})

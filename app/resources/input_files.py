@@ -13,8 +13,8 @@ from .sandbox import outside
 
 def check_inside(path: str | Path) -> None:
     """Raise InputError for a file that `--root` forbids."""
-    if said := outside(path):
-        raise InputError(f"{_shown(path)}: {said}")
+    if refusal := outside(path):
+        raise InputError(f"{_printable(path)}: {refusal}")
 
 
 def check_file(path: str | Path) -> Path:
@@ -26,12 +26,16 @@ def check_file(path: str | Path) -> Path:
     except FileNotFoundError:
         pass
     except (OSError, ValueError) as error:
-        said = _missing(file) if not isinstance(error, PermissionError) else "may not be read: check its permissions"
-        raise InputError(f"{_shown(path)}: {said}") from error
+        reason = (
+            _describe_missing(file)
+            if not isinstance(error, PermissionError)
+            else "may not be read: check its permissions"
+        )
+        raise InputError(f"{_printable(path)}: {reason}") from error
     if file.is_dir():
         raise InputError(f"{path}: is a folder: name a picture inside it")
     if not file.is_file():
-        raise InputError(f"{path}: {_missing(file)}")
+        raise InputError(f"{path}: {_describe_missing(file)}")
     if not os.access(file, os.R_OK):
         raise InputError(f"{path}: may not be read: check its permissions")
     if file.stat().st_size == 0:
@@ -45,7 +49,7 @@ def fingerprint(path: str | Path) -> str:
     try:
         status = Path(path).stat()
     except (OSError, ValueError) as error:
-        raise InputError(f"{_shown(path)}: {_missing(Path(path))}") from error
+        raise InputError(f"{_printable(path)}: {_describe_missing(Path(path))}") from error
     return f"{Path(path).absolute()}:{status.st_mtime_ns}:{status.st_size}"
 
 
@@ -56,15 +60,15 @@ def content_hash(path: str | Path) -> str:
         with Path(path).open("rb") as file:
             return hashlib.file_digest(file, "sha256").hexdigest()
     except (OSError, ValueError) as error:
-        raise InputError(f"{_shown(path)}: cannot be read: {getattr(error, 'strerror', None) or error}") from error
+        raise InputError(f"{_printable(path)}: cannot be read: {getattr(error, 'strerror', None) or error}") from error
 
 
-def _shown(path: str | Path) -> str:
+def _printable(path: str | Path) -> str:
     """A path as a sentence can hold it."""
     return str(path).replace("\0", "\\0")
 
 
-def _missing(path: Path) -> str:
+def _describe_missing(path: Path) -> str:
     """What to say of a file that is not there."""
     try:
         if not path.parent.is_dir():

@@ -11,10 +11,10 @@ from msgspec import Struct
 from .color_program import ColorProgram
 from .mesh import Mesh
 from .picture import Picture
-from .working_space import Working
+from .working_space import WorkingSpace
 
 
-class Probed(Struct, frozen=True):
+class PictureProbe(Struct, frozen=True):
     """What is known of a picture before it is read."""
 
     size: Size
@@ -24,7 +24,7 @@ class Probed(Struct, frozen=True):
     """Whether rows of it can be read alone."""
 
 
-class Frame(Struct, frozen=True):
+class FrameFile(Struct, frozen=True):
     """The file that a frame shows. `black`: it has none, this one is as large, and black is to be seen.
 
     `number` is the frame of a video that is to be shown; of a picture it is 1.
@@ -38,11 +38,11 @@ class Frame(Struct, frozen=True):
 class ResourceProvider(Protocol):
     """Files, color libraries and meshes. Every method raises InputError for a file that cannot be read."""
 
-    def at(self, path: str, frame: int, missing: Missing) -> Frame:
+    def at(self, path: str, frame: int, missing: Missing) -> FrameFile:
         """Find the file of a frame, where a path stands for a sequence."""
         ...
 
-    def probe(self, picture: Picture) -> Probed:
+    def probe(self, picture: Picture) -> PictureProbe:
         """Look at a picture's header."""
         ...
 
@@ -50,7 +50,7 @@ class ResourceProvider(Protocol):
         """Write the program of a change of color. Raises UsageError for a space that nobody knows."""
         ...
 
-    def working(self, color: ColorSettings) -> Working | None:
+    def working(self, color: ColorSettings) -> WorkingSpace | None:
         """Look up the working space; None is linear Rec.709. Raises GraphError for one that nobody knows."""
         ...
 

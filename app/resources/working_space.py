@@ -16,7 +16,7 @@ vec3 from_rec709(vec3 rgb) {{ return rgb * mat3({back}); }}
 """
 
 
-class Working(Struct, frozen=True):
+class WorkingSpace(Struct, frozen=True):
     """A working space: the luminance of its red, green and blue, and matrices, by rows, that take its colors to linear
     Rec.709 and back."""
 

@@ -22,7 +22,7 @@ from halation import document
 from halation.compiler import Form
 from halation.errors import HalationError
 from halation.graph import Graph
-from halation.media.comparison.metrics import flip
+from halation.media.comparison.metrics import measure_flip
 from halation.renderer import Device, FrameRenderer, Renderer, RenderRequest
 from halation.renderer.bench import bench, held
 from msgspec import structs
@@ -135,9 +135,9 @@ def measure_presets(results: Results, device: Device, given: argparse.Namespace,
             say(f"presets by {device.target.renderer}, {precision}")
             for name, array in rendered(renderer, names, precision, scale):
                 there = np.load(file_of(folder, precision, name, scale))["image"]
-                found.setdefault(name, {})[precision] = flip(array, there)
+                found.setdefault(name, {})[precision] = measure_flip(array, there)
         for name, one in found.items():
             half, full = (np.load(file_of(folder, kind, name, scale))["image"] for kind in PRECISIONS)
-            one["rounding"] = flip(half, full)
+            one["rounding"] = measure_flip(half, full)
     renderer.close()
     results.extras["presets"] = found

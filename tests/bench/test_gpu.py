@@ -15,7 +15,7 @@ from bench.gpu_work import DRY, FITTING, UHD, WORK, counted, floor, picture
 from bench.results import Results
 from halation import document
 from halation.compiler import Request, Target, compile_graph
-from halation.inputs.provider import Pictures
+from halation.inputs.provider import MediaProvider
 from halation.renderer import RenderRequest, open_device
 
 HALF, FLOAT = 8, 16
@@ -81,7 +81,7 @@ def test_a_copy_that_does_not_arrive_is_seen(device, monkeypatch):
 
 def planned(name, precision):
     """A work as a card would be given it, its pictures 3840x2160."""
-    work, pictures = WORK[name], Pictures()
+    work, pictures = WORK[name], MediaProvider()
     inputs = {one: np.zeros((8, 8, 4), np.float16) for one in work.inputs}
     request = Request(bindings=pictures.bind(document.load(work.path), inputs), size=UHD)
     target = Target("a card", 460, software=False, precision="half")

@@ -329,8 +329,8 @@ def test_standard_input(cli, tidy, monkeypatch):
 
 def test_a_picture_is_looked_at_once_however_many_graphs_name_it(cli, tidy, shot, monkeypatch):
     headers, looked = importlib.import_module("halation.media.info"), []
-    real = headers.info
-    monkeypatch.setattr(headers, "info", lambda path: looked.append(path) or real(path))
+    real = headers.read_info
+    monkeypatch.setattr(headers, "read_info", lambda path: looked.append(path) or real(path))
     paths = [
         tidy(f"{number}.json", nodes={"light": {"type": "exposure", "values": {"stops": float(number)}}})
         for number in range(1, 6)

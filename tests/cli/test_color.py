@@ -8,7 +8,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from exr_files import header, read
-from halation.media import read as read_pixels
+from halation.media import read_layer as read_pixels
 from halation.nodes import ColorSettings, Kind
 from house_config import AP1_TO_REC709, HOUSE, write_house
 

@@ -286,11 +286,11 @@ def test_a_picture_says_how_to_make_it_again(cli, graphs, shot, tmp_path, ending
 
 
 def test_a_file_that_is_read_twice_is_hashed_once(cli, graphs, out, monkeypatch):
-    from halation import media
+    from halation.renderer.jobs import sources
 
     seen = []
-    real = media.content_hash
-    monkeypatch.setattr(media, "content_hash", lambda path: seen.append(path) or real(path))
+    real = sources.content_hash
+    monkeypatch.setattr(sources, "content_hash", lambda path: seen.append(path) or real(path))
     assert cli("render", graphs(**DEPTH), "-o", out).code == 0
     assert len(seen) == 1
     said = [header(out)[f"halation:input:inputs.{name}"].split()[1] for name in ("beauty", "depth")]

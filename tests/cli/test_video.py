@@ -111,8 +111,8 @@ def test_some_frames_backwards_beside_pictures(cli, movie, tmp_path):
     assert [Path(file).name for file in result.json["written"]] == ["a.0007.png", "a.0005.png", "a.0003.png", "a.mkv"]
     assert [number_in(frame) for frame in decoded(tmp_path / "a.mkv")] == [7, 5, 3]
     for place, frame in enumerate((7, 5, 3), 1):
-        still = media.read(tmp_path / f"a.{frame:04d}.png", "", Kind.IMAGE).array
-        assert np.array_equal(media.read(tmp_path / "a.mkv", "", Kind.IMAGE, frame=place).array, still)
+        still = media.read_layer(tmp_path / f"a.{frame:04d}.png", "", Kind.IMAGE).array
+        assert np.array_equal(media.read_layer(tmp_path / "a.mkv", "", Kind.IMAGE, frame=place).array, still)
 
 
 def test_the_rate_of_the_graph_counts(cli, graphs, clip, tmp_path):

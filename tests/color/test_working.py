@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from halation import document
 from halation.color.encoding import Encoding
-from halation.media import read, write
+from halation.media import read_layer, write_picture
 from halation.nodes import ColorSettings, Kind
 from house_config import AP1_LUMINANCE, AP1_TO_REC709, studio, through
 
@@ -20,10 +20,10 @@ def shot(tmp_path_factory):
     folder = tmp_path_factory.mktemp("shot")
     random = np.random.default_rng(2)
     codes = random.random((48, 64, 3)).astype(np.float32)
-    write(folder / "a.png", {"": codes}, kinds={"": Kind.IMAGE}, view="none", precision="float")
+    write_picture(folder / "a.png", {"": codes}, kinds={"": Kind.IMAGE}, view="none", precision="float")
     wide = np.exp2(random.uniform(-8.0, 4.0, (48, 64, 3))).astype(np.float32)
     encoding = Encoding(color=ColorSettings("", "ACEScg"))
-    write(folder / "b.exr", {"": wide}, kinds={"": Kind.IMAGE}, precision="float", encoding=encoding)
+    write_picture(folder / "b.exr", {"": wide}, kinds={"": Kind.IMAGE}, precision="float", encoding=encoding)
     return folder
 
 
@@ -76,17 +76,17 @@ def test_a_picture_for_rec709_is_for_rec709(shot, operator):
 
 
 def test_luminance_is_that_of_the_primaries(shot):
-    wide = read(shot / "b.exr", "", Kind.IMAGE, color=ColorSettings("", "ACEScg")).array[..., :3]
+    wide = read_layer(shot / "b.exr", "", Kind.IMAGE, color=ColorSettings("", "ACEScg")).array[..., :3]
     gray = rendered(shot, "ACEScg", *one("saturation", saturation=0.0), file="b.exr")
     np.testing.assert_allclose(gray, (wide @ np.array(AP1_LUMINANCE))[..., None].repeat(3, 2), rtol=1e-5)
-    plain = read(shot / "b.exr", "", Kind.IMAGE).array[..., :3]
+    plain = read_layer(shot / "b.exr", "", Kind.IMAGE).array[..., :3]
     gray = rendered(shot, "", *one("saturation", saturation=0.0), file="b.exr")
     np.testing.assert_allclose(gray[..., 0], plain @ np.array((0.2126, 0.7152, 0.0722)), rtol=1e-4, atol=1e-5)
 
 
 def test_the_house_names_its_own_spaces(tmp_path, house, reference):
     random = np.random.default_rng(4).random((16, 16, 3)).astype(np.float32)
-    write(
+    write_picture(
         tmp_path / "a.exr",
         {"": random},
         kinds={"": Kind.IMAGE},

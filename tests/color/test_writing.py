@@ -10,7 +10,7 @@ from halation.color.encoding import Encoding
 from halation.color.gpu_programs import gpu_view
 from halation.color.transforms import to_display
 from halation.errors import GraphError, UsageError
-from halation.media import read, write
+from halation.media import read_layer, write_picture
 from halation.nodes import ColorSettings, Kind
 from halation.renderer import Display, Look, open_device
 from house_config import AP1_TO_REC709, HOUSE, studio, through, write_house
@@ -115,15 +115,17 @@ def test_the_viewer_shows_the_same(color, light):
 
 def test_exr_says_what_it_is(tmp_path, light, color):
     plain, wide = tmp_path / "plain.exr", tmp_path / "wide.exr"
-    write(plain, {"": light}, kinds=IMAGE, precision="float")
-    write(wide, {"": light}, kinds=IMAGE, precision="float", encoding=Encoding(color=ACESCG))
+    write_picture(plain, {"": light}, kinds=IMAGE, precision="float")
+    write_picture(wide, {"": light}, kinds=IMAGE, precision="float", encoding=Encoding(color=ACESCG))
     assert header(plain).getattribute("chromaticities") is None
     assert header(plain).get_string_attribute("colorInteropID") == "lin_rec709_scene"
     assert header(wide).get_string_attribute("colorInteropID") == "lin_ap1_scene"
     assert header(wide).getattribute("chromaticities") == pytest.approx(AP1)
     np.testing.assert_array_equal(stored(wide), light)
-    np.testing.assert_allclose(read(wide, "", Kind.IMAGE).array[..., :3], light @ AP1_TO_REC709.T, rtol=1e-4, atol=1e-4)
-    np.testing.assert_array_equal(read(wide, "", Kind.IMAGE, color=color).array[..., :3], light)
+    np.testing.assert_allclose(
+        read_layer(wide, "", Kind.IMAGE).array[..., :3], light @ AP1_TO_REC709.T, rtol=1e-4, atol=1e-4
+    )
+    np.testing.assert_array_equal(read_layer(wide, "", Kind.IMAGE, color=color).array[..., :3], light)
 
 
 @pytest.mark.parametrize("settings", [ColorSettings(), ACESCG], ids=["rec709", "acescg"])
@@ -146,14 +148,14 @@ def test_there_and_back(tmp_path, settings, name, space, depth, says):
     light = (ramp * np.array([[[1.0, 1.0, 1.0]], [[1.0, 0.8, 0.7]], [[0.7, 0.8, 1.0]]])).astype(np.float32)
     working = settings.working or "lin_rec709_scene"
     path = tmp_path / name
-    write(path, {"": light}, kinds=IMAGE, precision=depth, encoding=Encoding(space=space, color=settings))
+    write_picture(path, {"": light}, kinds=IMAGE, precision=depth, encoding=Encoding(space=space, color=settings))
     known = "arri_logc3_ei800" if space == "arri logc3" else space
     expected = through(studio(), light, working, known)
     bits = {"half": 10 if name == "a.dpx" else 0, "float": 0 if name == "a.exr" else 16}[depth]
     step = 1.01 / (2**bits - 1) / 2 if bits else 0.0
     kept = expected if name == "a.exr" else expected.clip(0.0, 1.0)
     np.testing.assert_allclose(stored(path)[..., :3], kept, rtol=6e-4 if depth == "half" else 1e-6, atol=step + 1e-6)
-    again = read(path, "", Kind.IMAGE, color=settings, space="" if says else space).array[..., :3]
+    again = read_layer(path, "", Kind.IMAGE, color=settings, space="" if says else space).array[..., :3]
     codes = name == "a.dpx" and depth == "half"
     np.testing.assert_allclose(again, light, rtol=0.03 if depth == "half" else 2e-3, atol=1e-3 if codes else 1e-4)
     assert bool(header(path).get_string_attribute("colorInteropID")) == (name == "a.exr")
@@ -162,7 +164,7 @@ def test_there_and_back(tmp_path, settings, name, space, depth, says):
 def test_alpha_stays_and_color_is_premultiplied_after(tmp_path):
     color = np.array([[[0.5, 0.25, 0.125, 0.5], [0.3, 0.2, 0.1, 0.0], [1.0, 1.0, 1.0, 1.0]]], np.float32)
     path = tmp_path / "a.exr"
-    write(path, {"": color}, kinds=IMAGE, precision="float", encoding=Encoding(space="ARRI LogC4"))
+    write_picture(path, {"": color}, kinds=IMAGE, precision="float", encoding=Encoding(space="ARRI LogC4"))
     pixels = stored(path)
     np.testing.assert_array_equal(pixels[..., 3], color[..., 3])
     half = through(studio(), color[0, :1, :3] / 0.5, "lin_rec709_scene", "ARRI LogC4") * 0.5
@@ -172,27 +174,27 @@ def test_alpha_stays_and_color_is_premultiplied_after(tmp_path):
 def test_data_is_written_as_it_is(tmp_path, light):
     path = tmp_path / "a.exr"
     layers, kinds = {"rgba": light, "depth": light[..., :1]}, {"rgba": Kind.IMAGE, "depth": Kind.FIELD}
-    write(path, layers, kinds=kinds, encoding=Encoding(space="ARRI LogC4", color=ACESCG))
-    np.testing.assert_array_equal(read(path, "depth", Kind.FIELD).array, light[..., :1])
+    write_picture(path, layers, kinds=kinds, encoding=Encoding(space="ARRI LogC4", color=ACESCG))
+    np.testing.assert_array_equal(read_layer(path, "depth", Kind.FIELD).array, light[..., :1])
     buffer = oiio.ImageBuf(str(path), 1, 0)
     assert buffer.spec().get_string_attribute("colorInteropID") == "data"
 
 
 def test_radiance_files_hold_rec709(tmp_path, light):
     path = tmp_path / "a.hdr"
-    write(path, {"": light}, kinds=IMAGE, encoding=Encoding(color=ACESCG))
+    write_picture(path, {"": light}, kinds=IMAGE, encoding=Encoding(color=ACESCG))
     expected = np.maximum(light @ AP1_TO_REC709.T, 0.0)
     brightest = expected.max(axis=2, keepdims=True)  # its three channels share an exponent
     assert (np.abs(stored(path) - expected) / brightest).max() < 0.01
-    back = read(path, "", Kind.IMAGE, color=ACESCG).array[..., :3]
+    back = read_layer(path, "", Kind.IMAGE, color=ACESCG).array[..., :3]
     np.testing.assert_allclose(back @ AP1_TO_REC709.T, stored(path), rtol=1e-4, atol=1e-3)
 
 
 def test_a_screen_is_named_in_png(tmp_path, light):
     path = tmp_path / "a.png"
-    write(path, {"": light}, kinds=IMAGE, encoding=Encoding(display="Display P3 - Display"))
+    write_picture(path, {"": light}, kinds=IMAGE, encoding=Encoding(display="Display P3 - Display"))
     assert header(path).get_string_attribute("oiio:ColorSpace") == "srgb_p3d65_scene"
-    write(path, {"": light}, kinds=IMAGE)
+    write_picture(path, {"": light}, kinds=IMAGE)
     assert header(path).get_string_attribute("oiio:ColorSpace") == "srgb_rec709_scene"
 
 
@@ -207,7 +209,7 @@ def test_a_screen_is_named_in_png(tmp_path, light):
 )
 def test_what_there_is_not(tmp_path, light, encoding, said):
     with pytest.raises(UsageError, match=said):
-        write(tmp_path / "a.exr", {"": light}, kinds=IMAGE, encoding=encoding)
+        write_picture(tmp_path / "a.exr", {"": light}, kinds=IMAGE, encoding=encoding)
     assert not (tmp_path / "a.exr").exists()
 
 

@@ -6,25 +6,25 @@ import pytest
 from halation.compiler import Request, compile_graph, examine
 from halation.errors import HalationError, InputError
 from halation.graph import Graph
-from halation.inputs.provider import Pictures
+from halation.inputs.provider import MediaProvider
 from halation.resources.picture import Picture
-from halation.resources.provider import Probed
+from halation.resources.provider import PictureProbe
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_graphs import SIZE, random_graph
 
 
-class Outside(Pictures):
+class Outside(MediaProvider):
     """Pictures of one size, or none."""
 
     def __init__(self, lost: bool) -> None:
         super().__init__()
         self.lost = lost
 
-    def probe(self, picture: Picture) -> Probed:
+    def probe(self, picture: Picture) -> PictureProbe:
         if self.lost:
             raise InputError(f"{picture.path}: there is no such file")
-        return Probed(SIZE, False, picture.path)
+        return PictureProbe(SIZE, False, picture.path)
 
 
 def said(work, graph: Graph, request: Request, lost: bool) -> tuple[str, str]:

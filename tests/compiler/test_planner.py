@@ -19,14 +19,14 @@ from halation.compiler.planner import KEPT, graph_library
 from halation.compiler.scheduling.numbers import without
 from halation.errors import GraphError, HalationError
 from halation.graph import Control, Expression, Graph, Group, Input, Key, Keys, Output, Port, signature
-from halation.inputs.provider import Pictures
+from halation.inputs.provider import MediaProvider
 from halation.nodes import Kind
 from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.saturation import Saturation
 from halation.nodes.merge.mix_images import MixImages
 from halation.resources.picture import Picture
-from halation.resources.provider import Probed
+from halation.resources.provider import PictureProbe
 from headers import Headers
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -200,8 +200,8 @@ class World(Headers):
         super().__init__(SIZE)
         self.version = 1
 
-    def probe(self, picture: Picture) -> Probed:
-        return Probed(self.size, False, f"{picture.path} {self.version}")
+    def probe(self, picture: Picture) -> PictureProbe:
+        return PictureProbe(self.size, False, f"{picture.path} {self.version}")
 
 
 def test_files_are_looked_at_every_time():
@@ -225,7 +225,7 @@ def test_a_fault_is_said_and_forgotten():
 
 
 def test_pixels_are_not_held_on_to():
-    graph, planner, pictures = chain(Exposure(stops=1.0), GaussianBlur(sigma=3.0)), Planner(), Pictures()
+    graph, planner, pictures = chain(Exposure(stops=1.0), GaussianBlur(sigma=3.0)), Planner(), MediaProvider()
     array = np.zeros((*SIZE, 4), np.float32)
     plan = planner.plan(graph, Request(bindings=pictures.bind(graph, {"image": array})), pictures)
     assert plan.uploads[0].picture.pixels is array

@@ -13,7 +13,7 @@ import pytest
 from halation import document
 from halation.cli.specimen import drawn, planned
 from halation.compiler import NULL, Plan, Request, Target, compile_graph
-from halation.inputs.provider import Pictures
+from halation.inputs.provider import MediaProvider
 from halation.nodes import catalogue
 from halation.presets import paths
 
@@ -31,7 +31,7 @@ def plans(target: Target) -> Iterator[Plan]:
     for node in catalogue().values():
         if drawn(node):
             yield planned(node, (1920, 1080), target)
-    pictures = Pictures()
+    pictures = MediaProvider()
     for path in paths():
         yield compile_graph(document.load(path), Request(), pictures, target=target)
 

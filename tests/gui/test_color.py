@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from halation.media import read
+from halation.media import read_layer
 from halation.nodes import ColorSettings, Kind
 from house_config import HOUSE, write_house
 from OpenImageIO import ImageOutput, ImageSpec
@@ -53,7 +53,7 @@ def test_config_and_working_space(gui, file, tmp_path) -> None:
         ui.session.set_color(working="scene_linear")
         ui.settled()
         color = ColorSettings(str(tmp_path / "house.ocio"), "scene_linear")
-        expected = read(tmp_path / "plates_a.exr", "", Kind.IMAGE, color=color).array[18, 32, :3]
+        expected = read_layer(tmp_path / "plates_a.exr", "", Kind.IMAGE, color=color).array[18, 32, :3]
         assert np.allclose(middle(ui), expected, rtol=2e-3) and not np.allclose(before, expected, rtol=0.1)
         assert ui.editor.viewer.coloring.settings == color and not ui.editor.viewer.coloring.fault
         ui.editor.viewer.view, ui.editor.viewer.display = "Warm", "Screen"

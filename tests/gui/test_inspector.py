@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from halation import document
 from halation.graph import Graph, Group, Output, Port, Settings
-from halation.media import write
+from halation.media import write_picture
 from halation.nodes import Kind, catalogue
 from imgui_bundle import imgui
 from toy_nodes import Tint
@@ -231,7 +231,7 @@ def test_names_ends_and_groups(gui, file) -> None:
 
 def test_files(gui, tmp_path: Path) -> None:
     picture = tmp_path / "picture.exr"
-    write(
+    write_picture(
         picture,
         {"beauty": np.full((8, 16, 4), 0.5, np.float32), "depth": np.ones((8, 16, 1), np.float32)},
         kinds={"beauty": Kind.IMAGE, "depth": Kind.FIELD},

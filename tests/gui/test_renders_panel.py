@@ -12,7 +12,7 @@ from exr_files import write_exr
 from halation import presets
 from halation.document import load, save
 from halation.graph import OUTPUTS, Expression, Port, Settings
-from halation.media import read
+from halation.media import read_layer
 from halation.nodes import Kind
 
 PRESET = next(path for path in presets.paths() if path.stem == "soft_bloom")
@@ -250,7 +250,7 @@ def test_a_flipbook_follows_what_is_being_written(gui, shot: Path) -> None:
             book.session.seek(frame)
             ui.settled()
             seen = ui.ask(lambda: ui.editor.probe.small(ui.editor.preview.shown("A").texture, 480))
-            there = read(str(shot.parent / f"comp.{frame:04d}.exr"), "", Kind.IMAGE, 4).array
+            there = read_layer(str(shot.parent / f"comp.{frame:04d}.exr"), "", Kind.IMAGE, 4).array
             assert seen[..., :3].mean() == pytest.approx(there[..., :3].mean(), rel=0.01)
 
     gui(body, shot)

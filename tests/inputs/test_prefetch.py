@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from halation.graph import Graph, Input, Output, Port
 from halation.inputs.prefetch import MOST, Ahead
-from halation.inputs.provider import Pictures
-from halation.media import read, write
+from halation.inputs.provider import MediaProvider
+from halation.media import read_layer, write_picture
 from halation.nodes import ColorSettings, Kind
 from halation.resources.picture import Picture
 
@@ -26,15 +26,17 @@ def graph(**inputs: Input) -> Graph:
 def picture(tmp_path: Path) -> str:
     path = tmp_path / "picture.exr"
     pixels = np.random.default_rng(1).random((5, 7, 4), np.float32)
-    write(path, {"": pixels, "depth": pixels[..., :1]}, kinds={"": Kind.IMAGE, "depth": Kind.FIELD}, precision="float")
+    write_picture(
+        path, {"": pixels, "depth": pixels[..., :1]}, kinds={"": Kind.IMAGE, "depth": Kind.FIELD}, precision="float"
+    )
     return str(path)
 
 
 def test_it_is_what_would_be_read(picture: str) -> None:
     ahead = Ahead(graph(a=Input(), z=Input(Kind.FIELD)), {"a": picture, "z": f"{picture}:depth"})
-    pictures = Pictures(ahead=ahead)
+    pictures = MediaProvider(ahead=ahead)
     for what in (Picture(picture, "", Kind.IMAGE, 4), Picture(picture, "depth", Kind.FIELD, 1)):
-        alone = read(what.path, what.layer, what.kind, what.width).array
+        alone = read_layer(what.path, what.layer, what.kind, what.width).array
         for _ in range(2):  # read ahead, and read again
             np.testing.assert_array_equal(pictures.load(what), alone, strict=True)
 
@@ -49,7 +51,7 @@ def test_it_is_there_once(picture: str) -> None:
 def test_an_input_asks_for_a_layer_that_the_file_may_lack(picture: str) -> None:
     """As `Pictures.bind` has it: a plain picture stands for any layer of color."""
     made = graph(a=Input(layer="Combined"))
-    bound = Pictures().bind(made, {"a": picture})["a"]
+    bound = MediaProvider().bind(made, {"a": picture})["a"]
     assert Ahead(made, {"a": picture}).take((bound.path, bound.layer, *WANTED)) is not None
 
 

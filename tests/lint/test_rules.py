@@ -17,7 +17,7 @@ from halation.lint.rules import CHECKS
 from halation.lint.sheet import Sheet
 from halation.nodes import Kind
 from halation.resources.picture import Picture
-from halation.resources.provider import Probed
+from halation.resources.provider import PictureProbe
 from lint_graphs import BLOOM, DIM, DOUBLE, HALF, MOVE, NEAREST, NODES, SOFT, STILL, TONE, TURN, WRAPPED, chain
 
 ROOT = Path(__file__).parents[2]
@@ -76,8 +76,8 @@ def test_a_picture_that_others_read_as_well_is_needed_as_it_is() -> None:
 class Nowhere:
     """Every picture is half as large as HD."""
 
-    def probe(self, picture: Picture) -> Probed:
-        return Probed((960, 540), False, picture.path)
+    def probe(self, picture: Picture) -> PictureProbe:
+        return PictureProbe((960, 540), False, picture.path)
 
 
 def resamplings(graph: Graph) -> int:

@@ -9,7 +9,13 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation.errors import UsageError
-from halation.media.comparison.metrics import CODE, amplified, compare, flip, ssim
+from halation.media.comparison.metrics import (
+    EIGHT_BIT_STEP,
+    amplify_difference,
+    compare_pictures,
+    measure_flip,
+    measure_ssim,
+)
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -37,7 +43,7 @@ def buffer(array: Array) -> oiio.ImageBuf:
 def test_plain_measures_are_those_of_openimageio(rng: np.random.Generator, channels: int, top: float) -> None:
     expected = scene(rng, channels=channels, top=top)
     actual = nudged(rng, expected)
-    found = compare(actual, expected, threshold=0.06, perceptual=False)
+    found = compare_pictures(actual, expected, threshold=0.06, perceptual=False)
     reference = oiio.ImageBufAlgo.compare(buffer(actual), buffer(expected), 0.06, 0.06)
     assert found.max_abs == pytest.approx(reference.maxerror, rel=1e-5)
     assert found.rms == pytest.approx(reference.rms_error, rel=1e-5)
@@ -50,7 +56,7 @@ def test_plain_measures_are_those_of_openimageio(rng: np.random.Generator, chann
 def test_relative_differences_are_parts_of_the_expected_where_numbers_are_large(rng: np.random.Generator) -> None:
     expected = scene(rng, top=50.0) + np.float32(3.0)
     actual = nudged(rng, expected, 1.0)
-    found = compare(actual, expected, threshold=0.1, relative=True, perceptual=False)
+    found = compare_pictures(actual, expected, threshold=0.1, relative=True, perceptual=False)
     reference = np.abs(actual.astype(float) - expected) / expected
     assert found.max_rel == pytest.approx(reference.max(), rel=1e-6)
     assert found.failing == pytest.approx(np.mean(reference.max(axis=2) > 0.1))
@@ -62,14 +68,14 @@ def test_relative_differences_are_parts_of_the_expected_where_numbers_are_large(
 def test_relative_differences_are_absolute_up_to_one(rng: np.random.Generator, top: float) -> None:
     expected = scene(rng, top=top)
     actual = nudged(rng, expected)
-    plain, relative = (compare(actual, expected, relative=flag, perceptual=False) for flag in (False, True))
+    plain, relative = (compare_pictures(actual, expected, relative=flag, perceptual=False) for flag in (False, True))
     assert plain == relative and plain.max_rel == plain.max_abs
 
 
 def test_the_peak_of_psnr_is_that_of_opencv_where_pictures_end_at_one(rng: np.random.Generator) -> None:
     expected = scene(rng)
     actual = np.clip(nudged(rng, expected), 0.0, 1.0)
-    assert compare(actual, expected).psnr == pytest.approx(cv2.PSNR(actual, expected, 1.0), abs=1e-3)
+    assert compare_pictures(actual, expected).psnr == pytest.approx(cv2.PSNR(actual, expected, 1.0), abs=1e-3)
 
 
 def wang(x: Array, y: Array, span: float) -> float:
@@ -92,7 +98,7 @@ def test_ssim_is_that_of_the_paper(rng: np.random.Generator, top: float) -> None
     span = max(1.0, expected.max(), actual.max())
     reference = np.mean([wang(actual[..., c], expected[..., c], span) for c in range(3)])
     assert 0.2 < reference < 0.99
-    assert ssim(actual, expected, linear=False) == pytest.approx(reference, abs=1e-9)
+    assert measure_ssim(actual, expected, linear=False) == pytest.approx(reference, abs=1e-9)
 
 
 def test_ssim_of_linear_light_is_that_of_its_encoding(rng: np.random.Generator) -> None:
@@ -102,7 +108,7 @@ def test_ssim_of_linear_light_is_that_of_its_encoding(rng: np.random.Generator) 
         for item in (actual, expected)
     ]
     encoded = [item.get_pixels(oiio.FLOAT) for item in processor]
-    assert ssim(actual, expected) == pytest.approx(ssim(*encoded, linear=False), abs=1e-5)
+    assert measure_ssim(actual, expected) == pytest.approx(measure_ssim(*encoded, linear=False), abs=1e-5)
 
 
 @pytest.mark.parametrize(("mean", "contrast"), [(0.5, 1.2), (0.1, 1.0), (0.9, 0.5)])
@@ -111,7 +117,7 @@ def test_ssim_of_flat_pictures_has_a_closed_form(mean: float, contrast: float) -
     span = max(1.0, mean, mean * contrast)
     one = (0.01 * span) ** 2
     expected = (2 * mean**2 * contrast + one) / (mean**2 * (1 + contrast**2) + one)
-    assert ssim(second, first, linear=False) == pytest.approx(expected, abs=1e-9)
+    assert measure_ssim(second, first, linear=False) == pytest.approx(expected, abs=1e-9)
 
 
 def test_flip_is_openimageios(rng: np.random.Generator) -> None:
@@ -130,67 +136,67 @@ def test_flip_is_openimageios(rng: np.random.Generator) -> None:
         )
         reference = oiio.ImageBufAlgo.FLIP_diff(*map(buffer, pair), hdr=hdr)
         mean = reference.spec().getattribute("FLIP:meanerror")
-        assert flip(actual, expected, linear=linear) == pytest.approx(mean, abs=2e-5)
+        assert measure_flip(actual, expected, linear=linear) == pytest.approx(mean, abs=2e-5)
 
 
 def test_flip_of_green_and_blue_is_its_largest() -> None:
     """The largest color difference there is, by which the paper scales all others."""
     green, blue = np.zeros((24, 24, 3)), np.zeros((24, 24, 3))
     green[..., 1] = blue[..., 2] = 1.0
-    assert flip(blue, green, linear=False) == pytest.approx(1.0, abs=1e-4)
+    assert measure_flip(blue, green, linear=False) == pytest.approx(1.0, abs=1e-4)
 
 
 @pytest.mark.parametrize("channels", [0, 1, 2, 3, 4, 6])
 def test_equal_pictures(rng: np.random.Generator, channels: int) -> None:
     picture = scene(rng, channels=max(1, channels), top=9.0)
     picture = picture if channels else picture[..., 0]
-    found = compare(picture.copy(), picture)
+    found = compare_pictures(picture.copy(), picture)
     assert found.equal and (found.max_abs, found.rms, found.psnr, found.failing) == (0.0, 0.0, math.inf, 0.0)
     assert found.ssim == pytest.approx(1.0, abs=1e-9) and found.flip == pytest.approx(0.0, abs=1e-6)
     assert (found.worst, found.actual, found.expected) == (None, (), ())
-    assert not amplified(picture, picture).any()
+    assert not amplify_difference(picture, picture).any()
 
 
 @pytest.mark.parametrize("number", [np.nan, np.inf, -np.inf])
 def test_what_is_not_finite_equals_the_same_only(rng: np.random.Generator, number: float) -> None:
     expected = scene(rng)
     expected[20, 30, 1] = number
-    assert compare(expected.copy(), expected).equal
+    assert compare_pictures(expected.copy(), expected).equal
     for actual in (np.nan_to_num(expected, nan=0.0, posinf=0.0, neginf=0.0), np.where(expected == 0, 0, -expected)):
-        found = compare(actual, expected)
+        found = compare_pictures(actual, expected)
         if math.isnan(number) and np.isnan(actual).any():
             continue
         assert (found.max_abs, found.rms, found.psnr, found.broken) == (math.inf, math.inf, -math.inf, 1)
         assert found.worst == (30, 20)
     clean = np.nan_to_num(expected, nan=0.5, posinf=0.5, neginf=0.5)
-    found, pixels = compare(clean, expected), 40 * 56
+    found, pixels = compare_pictures(clean, expected), 40 * 56
     assert found.failing == pytest.approx(1 / pixels) and found.flip >= 1 / pixels
     assert found.ssim == pytest.approx(1.0 - 121 / (3 * 30 * 46), abs=1e-9)
-    light = amplified(clean, expected)
+    light = amplify_difference(clean, expected)
     assert tuple(light[20, 30]) == (1.0, 0.0, 1.0) and light.sum() == 2.0
 
 
 def test_sizes_and_channels_that_differ_are_told() -> None:
     small, large = np.zeros((4, 6, 3)), np.zeros((5, 6, 3))
-    found = compare(small, large)
+    found = compare_pictures(small, large)
     assert found.fault == "the size is 6x4, and 6x5 is expected"
     assert (found.max_abs, found.ssim, found.flip, found.failing) == (math.inf, 0.0, 1.0, 1.0)
-    assert "it has 1 channel, and 3 are expected" in compare(small[..., 0], small).fault
+    assert "it has 1 channel, and 3 are expected" in compare_pictures(small[..., 0], small).fault
     with pytest.raises(UsageError, match="6x4"):
-        ssim(small, large)
-    light = amplified(small, large)
+        measure_ssim(small, large)
+    light = amplify_difference(small, large)
     assert light.shape == (5, 6, 3) and (light[4] == (1, 0, 1)).all() and not light[:4].any()
 
 
 @pytest.mark.parametrize("array", [np.zeros((2, 2, 2, 2)), np.zeros(3), np.zeros((0, 4)), np.array([["a"]])])
 def test_what_is_no_picture_is_refused(array: Array) -> None:
     with pytest.raises(UsageError, match=r"the actual picture is .*\[height, width, channels\]"):
-        compare(array, np.zeros((2, 2)))
+        compare_pictures(array, np.zeros((2, 2)))
 
 
 def test_integers_fill_zero_to_one() -> None:
     expected = np.full((3, 3, 3), 100, np.uint8)
-    found = compare(expected + np.uint8(2), expected, threshold=1.5 * CODE)
+    found = compare_pictures(expected + np.uint8(2), expected, threshold=1.5 * EIGHT_BIT_STEP)
     assert found.max_abs == pytest.approx(2 / 255, rel=1e-5) and found.failing == 1.0
 
 
@@ -199,12 +205,12 @@ def test_the_picture_of_differences(rng: np.random.Generator) -> None:
     actual = expected.copy()
     actual[3, 5] += (0.25, 0.0, 0.0, 0.0)
     actual[9, 9, 3] -= np.float32(0.125)
-    assert amplified(actual, expected)[3, 5] == pytest.approx((1.0, 0.0, 0.0), abs=1e-5)
-    light = amplified(actual, expected, 2.0)
+    assert amplify_difference(actual, expected)[3, 5] == pytest.approx((1.0, 0.0, 0.0), abs=1e-5)
+    light = amplify_difference(actual, expected, 2.0)
     assert light[3, 5] == pytest.approx((0.5, 0.0, 0.0), abs=1e-5)
     assert light[9, 9] == pytest.approx((0.25, 0.25, 0.25), abs=1e-5)
     assert np.count_nonzero(light.any(axis=2)) == 2
-    assert amplified(actual, expected, 1000.0).max() == 1.0
+    assert amplify_difference(actual, expected, 1000.0).max() == 1.0
 
 
 NUMBERS = st.floats(-1e6, 1e6, width=32) | st.sampled_from([np.nan, np.inf, -np.inf])
@@ -217,10 +223,10 @@ PICTURES = st.tuples(st.integers(1, 14), st.integers(1, 14), st.integers(1, 5)).
 @given(PICTURES)
 def test_measures_stay_within_their_bounds(pair: tuple[Array, Array]) -> None:
     """Nothing warns (the tests make that an error), whatever the numbers; both ways round are the same."""
-    found, back = compare(*pair), compare(*pair[::-1])
+    found, back = compare_pictures(*pair), compare_pictures(*pair[::-1])
     assert 0.0 <= found.failing <= 1.0 and 0.0 <= found.flip <= 1.0 + 1e-6 and -1.0 - 1e-6 <= found.ssim <= 1.0 + 1e-6
     assert (found.max_abs, found.rms, found.psnr, found.failing) == (back.max_abs, back.rms, back.psnr, back.failing)
     assert found.rms <= found.max_abs
-    light = amplified(*pair)
+    light = amplify_difference(*pair)
     assert light.shape == (*pair[0].shape[:2], 3) and light.min() >= 0.0 and light.max() <= 1.0
-    assert compare(pair[0], pair[0].copy()).equal
+    assert compare_pictures(pair[0], pair[0].copy()).equal

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from halation.errors import InputError
-from halation.media import info, read, read_metadata
+from halation.media import read_info, read_layer, read_metadata
 from halation.nodes import Kind
 from halation.resources.input_files import content_hash, fingerprint
 
@@ -19,7 +19,7 @@ Make = Callable[..., Path]
 def said(path: Path) -> str:
     """The sentence about a file that cannot be read."""
     with pytest.raises(InputError) as caught:
-        read(path, "", Kind.IMAGE)
+        read_layer(path, "", Kind.IMAGE)
     text = str(caught.value)
     assert str(path) in text and "\n" not in text
     return text
@@ -29,7 +29,7 @@ def test_missing(tmp_path: Path) -> None:
     (tmp_path / "shot.0012.exr").touch()
     assert "there is no such file; did you mean 'shot.0012.exr'?" in said(tmp_path / "shot.0013.exr")
     assert "its folder is missing too" in said(tmp_path / "none/shot.exr")
-    for function in (info, fingerprint, content_hash, read_metadata):
+    for function in (read_info, fingerprint, content_hash, read_metadata):
         with pytest.raises(InputError, match="none"):
             function(tmp_path / "none.exr")
 
@@ -83,7 +83,7 @@ def test_flipped_bytes_never_crash(make: Make, rng: np.random.Generator) -> None
         broken[rng.integers(8, broken.size, 6)] = rng.integers(0, 256, 6)
         path.write_bytes(broken.tobytes())
         try:
-            read(path, "", Kind.IMAGE)
+            read_layer(path, "", Kind.IMAGE)
         except InputError:
             refused += 1
     assert refused > 10
@@ -122,7 +122,7 @@ def test_subsampled_color(tmp_path: Path) -> None:
 def test_fingerprint_follows_the_file(make: Make, rng: np.random.Generator) -> None:
     path = make("a.exr", rng.random((4, 4, 4), np.float32))
     before, content = fingerprint(path), content_hash(path)
-    assert before == fingerprint(path) == info(path).fingerprint
+    assert before == fingerprint(path) == read_info(path).fingerprint
     path.write_bytes(path.read_bytes() + b"x")
     assert fingerprint(path) != before and content_hash(path) != content
 

@@ -7,27 +7,27 @@ from pathlib import Path
 import numpy as np
 import pytest
 from halation.errors import InputError
-from halation.media import find_layer, info
+from halation.media import find_layer, read_info
 from halation.media.info import ImageInfo
-from halation.media.layers import Part, is_depth, layers_of
+from halation.media.layers import ChannelPart, group_channels, is_depth
 
 ROOT = Path(__file__).parents[2]
 NEON = ROOT / "presets/samples/neon.exr"
 SINGLE = ROOT / "tests/data/blender45_multilayer.exr"
 
 
-def header(*parts: Part) -> ImageInfo:
-    return ImageInfo("x.exr", (4, 4), layers_of(parts), "", "openexr")
+def header(*parts: ChannelPart) -> ImageInfo:
+    return ImageInfo("x.exr", (4, 4), group_channels(parts), "", "openexr")
 
 
-def one(*channels: str, tag: str = "", name: str = "", index: int = 0) -> Part:
-    return Part(index, name, channels, ("float32",) * len(channels), tag)
+def one(*channels: str, tag: str = "", name: str = "", index: int = 0) -> ChannelPart:
+    return ChannelPart(index, name, channels, ("float32",) * len(channels), tag)
 
 
 def test_parts_of_blender_5() -> None:
-    found = info(NEON)
+    found = read_info(NEON)
     assert found.size == (480, 270) and found.format == "openexr"
-    assert {layer.name: (layer.part, layer.channels, layer.half, layer.data) for layer in found.layers} == {
+    assert {layer.name: (layer.part, layer.channels, layer.is_half, layer.is_data) for layer in found.layers} == {
         "Combined": (0, tuple("RGBA"), True, False),
         "Depth": (1, ("Z",), False, True),
         "Position": (2, tuple("XYZ"), False, True),
@@ -44,7 +44,7 @@ def test_parts_of_blender_5() -> None:
 
 
 def test_one_part_of_blender_4() -> None:
-    found = info(SINGLE)
+    found = read_info(SINGLE)
     layers = {layer.name: layer for layer in found.layers}
     assert [*layers] == [
         "Combined",
@@ -62,7 +62,12 @@ def test_one_part_of_blender_4() -> None:
     ]
     assert {layer.part for layer in found.layers} == {0}
     assert [layer.first for layer in found.layers] == [0, 4, 8, 12, 16, 17, 20, 23, 24, 28, 31, 34]
-    assert {name for name, layer in layers.items() if not layer.data} == {"Combined", "DiffCol", "Emit", "Noisy Image"}
+    assert {name for name, layer in layers.items() if not layer.is_data} == {
+        "Combined",
+        "DiffCol",
+        "Emit",
+        "Noisy Image",
+    }
 
 
 @pytest.mark.parametrize("path", [NEON, SINGLE])
@@ -84,21 +89,21 @@ def test_one_part_of_blender_4() -> None:
     ],
 )
 def test_names_that_people_type(path: Path, name: str, layer: str) -> None:
-    found = find_layer(info(path), name)
+    found = find_layer(read_info(path), name)
     assert found.name == layer
     assert len(found.channels) == (1 if layer[-2:] == ".Z" or layer == "Depth" else 3 + ("o" in found.channels or 1))
 
 
 def test_a_channel_is_a_layer_of_one() -> None:
-    found = find_layer(info(SINGLE), "Position.Y")
-    assert (found.channels, found.indices, found.data) == (("Y",), (32,), True)
+    found = find_layer(read_info(SINGLE), "Position.Y")
+    assert (found.channels, found.indices, found.is_data) == (("Y",), (32,), True)
 
 
 def test_a_missing_layer_is_named_with_the_nearest() -> None:
     with pytest.raises(InputError, match=r"neon\.exr: has no layer 'Dpth': did you mean 'Depth'\? It holds Combined, "):
-        find_layer(info(NEON), "Dpth")
+        find_layer(read_info(NEON), "Dpth")
     with pytest.raises(InputError, match=r"has no layer 'qqq': it holds Combined, Depth"):
-        find_layer(info(NEON), "qqq")
+        find_layer(read_info(NEON), "qqq")
 
 
 def test_two_view_layers_are_told_apart() -> None:
@@ -128,7 +133,7 @@ def test_channels_in_natural_order(channels: tuple[str, ...], expected: dict[str
 
 def test_the_depth_of_a_view_is_a_layer_of_its_own() -> None:
     stereo = header(one(*"ABGRZ", *(f"left.{letter}" for letter in "ABGRZ"), "forward.u", "forward.v", "st.u", "st.w"))
-    assert {layer.name: (layer.indices, layer.data) for layer in stereo.layers} == {
+    assert {layer.name: (layer.indices, layer.is_data) for layer in stereo.layers} == {
         "RGBA": ((3, 2, 1, 0), False),
         "Z": ((4,), True),
         "left": ((8, 7, 6, 5), False),
@@ -141,23 +146,23 @@ def test_the_depth_of_a_view_is_a_layer_of_its_own() -> None:
 
 def test_parts_name_channels_that_have_no_prefix() -> None:
     parts = [one(*"RGB", name="left", index=0), one(*"RGBZ", name="right", index=1), one("Z", index=2)]
-    assert [(layer.name, layer.part) for layer in layers_of(parts)] == [
+    assert [(layer.name, layer.part) for layer in group_channels(parts)] == [
         ("left", 0),
         ("right", 1),
         ("right.Z", 1),
         ("Z", 2),
     ]
     same = [one("R", "G", "B", index=0), one("R", "G", "B", index=1)]
-    assert [layer.name for layer in layers_of(same)] == ["part0.RGB", "part1.RGB"]
+    assert [layer.name for layer in group_channels(same)] == ["part0.RGB", "part1.RGB"]
 
 
 def test_what_is_color_and_what_is_data() -> None:
     normal = one("normal.R", "normal.G", "normal.B", tag="lin_ap1_scene", index=1)
     tagged = header(one("N.R", "N.G", "N.B", tag="data"), normal)
-    assert [layer.data for layer in tagged.layers] == [True, False]
+    assert [layer.is_data for layer in tagged.layers] == [True, False]
     names = ("normal", "albedo", "CryptoMaterial00", "P", "diffuse", "motionvector", "valid", "objectID")
     bare = header(one(*(f"{name}.{letter}" for name in names for letter in "RGB")))
-    assert [layer.name for layer in bare.layers if not layer.data] == ["albedo", "diffuse", "valid"]
+    assert [layer.name for layer in bare.layers if not layer.is_data] == ["albedo", "diffuse", "valid"]
 
 
 def test_the_main_picture() -> None:

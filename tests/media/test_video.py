@@ -70,7 +70,7 @@ def test_frames_are_those_of_decoding_from_the_start_in_any_order(video: Path) -
 
 def test_frame_n_shows_n(video: Path) -> None:
     for number in (1, 2, 13, 30, COUNT):
-        assert number_in(media.read(video, "", Kind.VECTOR, 3, number).array) == number
+        assert number_in(media.read_layer(video, "", Kind.VECTOR, 3, number).array) == number
 
 
 def test_a_video_stands_where_a_sequence_does(video: Path) -> None:
@@ -83,7 +83,7 @@ def test_a_video_stands_where_a_sequence_does(video: Path) -> None:
     with pytest.raises(InputError, match=f"has no frame {COUNT + 1}, only 1-{COUNT}"):
         media.frame_file(str(video), COUNT + 1)
     with pytest.raises(InputError, match="has no frame 0"):
-        media.read(video, "", Kind.IMAGE, frame=0)
+        media.read_layer(video, "", Kind.IMAGE, frame=0)
 
 
 def test_reading_in_order_decodes_every_frame_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -129,7 +129,7 @@ def test_facts_are_those_of_the_file(tmp_path: Path) -> None:
     assert (facts.size, facts.count, facts.rate, facts.seconds) == ((80, 32), 10, Fraction(25), 0.4)
     assert (facts.codec, facts.pixels, facts.bits, facts.alpha) == ("ffv1", "yuv420p10le", 10, False)
     assert (facts.matrix, facts.range, facts.primaries, facts.transfer) == (9, 1, 9, 16)
-    info = media.info(path)
+    info = media.read_info(path)
     assert info.size == (80, 32) and info.layers[0].channels == ("R", "G", "B")
 
 
@@ -141,8 +141,8 @@ def test_a_picture_that_was_filmed_upright_is_upright(tmp_path: Path, turn: int)
     other = cv2.VideoCapture(str(path))
     other.set(cv2.CAP_PROP_ORIENTATION_AUTO, 1)
     _, expected = other.read()
-    found = media.read(path, "", Kind.VECTOR, 3, 1).array
-    assert media.info(path).size == found.shape[1::-1]
+    found = media.read_layer(path, "", Kind.VECTOR, 3, 1).array
+    assert media.read_info(path).size == found.shape[1::-1]
     assert found.shape == expected.shape
     assert np.abs(found - expected[..., ::-1] / 255.0).max() < 0.05
 
@@ -163,8 +163,8 @@ def test_transparency_is_kept(tmp_path: Path, name: str, codec: str, pixels: str
     tags = {"alpha_mode": "1"} if name.endswith("webm") else {}
     options = {"profile": "4"} if codec == "prores_ks" else {"crf": "4", "b": "0"} if "vp9" in codec else {}
     path = write_frames(tmp_path / name, [frame, frame], codec, options=options, tags=tags)
-    assert media.info(path).layers[0].channels == ("R", "G", "B", "A")
-    found = media.read(path, "", Kind.IMAGE, frame=2).array
+    assert media.read_info(path).layers[0].channels == ("R", "G", "B", "A")
+    found = media.read_layer(path, "", Kind.IMAGE, frame=2).array
     assert np.abs(found[..., 3] - straight[..., 3] / 255.0).max() < 0.02
     solid = found[:, 32:]
     light = ((200 / 255 + 0.055) / 1.055) ** 2.4
@@ -174,13 +174,13 @@ def test_transparency_is_kept(tmp_path: Path, name: str, codec: str, pixels: str
 def test_what_is_no_video_says_so(tmp_path: Path) -> None:
     path = tmp_path / "a.mp4"
     with pytest.raises(InputError, match="there is no such file"):
-        media.info(path)
+        media.read_info(path)
     path.write_bytes(b"")
     with pytest.raises(InputError, match="is empty"):
-        media.info(path)
+        media.read_info(path)
     path.write_bytes(random.Random(1).randbytes(3000))
     with pytest.raises(InputError, match="is no video, or is cut short"):
-        media.info(path)
+        media.read_info(path)
     good = write_numbers(tmp_path / "good.mp4", "libx264", "yuv420p", 20)
     path.write_bytes(good.read_bytes()[: good.stat().st_size // 2])
     with pytest.raises(InputError, match="is no video, or is cut short"):
@@ -193,10 +193,10 @@ def test_without_pyav_there_is_a_sentence(tmp_path: Path, monkeypatch: pytest.Mo
     path = write_numbers(tmp_path / "a.mkv", "ffv1", "bgr0", 2)
     monkeypatch.setattr(index, "library", lambda: None)
     with pytest.raises(InputError, match=r"a\.mkv: videos need PyAV: pip install halation\[video\]"):
-        media.info(path)
+        media.read_info(path)
 
 
 def test_pictures_are_what_was_drawn(tmp_path: Path) -> None:
     path = write_numbers(tmp_path / "a.mkv", "ffv1", "bgr0", 3)
-    read = media.read(path, "", Kind.VECTOR, 3, 3).array
+    read = media.read_layer(path, "", Kind.VECTOR, 3, 3).array
     assert np.array_equal(np.rint(read * 255.0), bars(3))

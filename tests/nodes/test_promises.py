@@ -127,7 +127,7 @@ def picture(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The sample without its brightest light, as sharp as half as many pixels can be: a proxy loses nothing."""
 
     def layer(name: str, kind: Kind, width: int, size: tuple[int, int]) -> Array:
-        pixels = media.read(sample(), name, kind, width).array.astype(np.float32)
+        pixels = media.read_layer(sample(), name, kind, width).array.astype(np.float32)
         pixels = np.minimum(pixels, BRIGHTEST) if kind is Kind.IMAGE else pixels
         return cv2.resize(pixels, size, interpolation=cv2.INTER_AREA if kind is Kind.IMAGE else cv2.INTER_NEAREST)
 

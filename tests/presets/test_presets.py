@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 from halation import document, media
 from halation.graph import Control, Graph, Group, problems, signature
-from halation.media.comparison.contact_sheet import sheet, shown
+from halation.media.comparison.contact_sheet import make_sheet, show_light
 from halation.nodes import Kind
 from halation.presets import paths
 from halation.presets import picture as thumbnail
@@ -97,7 +97,7 @@ def rendered(renderer: Renderer, graph: Graph, wanted: RenderRequest = PLAIN, pa
 
 def picture(renderer: Renderer, graph: Graph, scale: float = 1.0, part: float = 0.5) -> Array:
     """The output as light of the display, [h, w, 3] within 0..1."""
-    return shown(rendered(renderer, graph, RenderRequest(scale=scale), part), graph.outputs["image"].view)
+    return show_light(rendered(renderer, graph, RenderRequest(scale=scale), part), graph.outputs["image"].view)
 
 
 def encoded(light: Array) -> Array:
@@ -123,7 +123,7 @@ def raw(renderer: Renderer) -> dict[str, Array]:
 @pytest.fixture(scope="module")
 def full(raw: dict[str, Array]) -> dict[str, Array]:
     """The same as light of the display."""
-    return {name: shown(made, loaded(name).outputs["image"].view) for name, made in raw.items()}
+    return {name: show_light(made, loaded(name).outputs["image"].view) for name, made in raw.items()}
 
 
 @pytest.fixture(scope="module")
@@ -152,7 +152,7 @@ def test_file_is_sound(name: str) -> None:
     assert all(graph.inputs[end].layer == layer for end, layer in LAYERS.items() if end in graph.inputs)
     for end in graph.inputs.values():
         assert end.doc and not Path(end.file).is_absolute() and ".." not in Path(end.file).parts
-        file = media.info(PRESETS[name].parent / end.file)
+        file = media.read_info(PRESETS[name].parent / end.file)
         assert not end.layer or media.find_layer(file, end.layer).name == end.layer
 
 
@@ -283,7 +283,7 @@ def test_a_display_view_goes_with_tone_mapping(renderer: Renderer, raw: dict[str
     for view, expected in (("", "none"), ("ACES", "ACES")):
         file = tmp_path / f"night{view}.png"
         run_job(renderer, graph, RenderRequest(), Writing((("image", file),), view))
-        wanted = encoded(shown(renderer.render(graph)["image"], expected))
+        wanted = encoded(show_light(renderer.render(graph)["image"], expected))
         assert np.abs(cv2.imread(str(file))[..., ::-1] - wanted).max() < 1.5
 
 
@@ -295,9 +295,9 @@ def test_pictures_of_the_documentation_are_current(renderer: Renderer, full: dic
         folder=str(PRESETS["night_street"].parent),
     )
     hero = {"the render": picture(renderer, sample), "night_street": full["night_street"]}
-    made, file = sheet(hero, 2), IMAGES / "hero.png"
+    made, file = make_sheet(hero, 2), IMAGES / "hero.png"
     if RENEW:
-        media.write(file, {"image": made}, kinds={"image": Kind.IMAGE}, view="none")
+        media.write_picture(file, {"image": made}, kinds={"image": Kind.IMAGE}, view="none")
     assert file.stat().st_size <= 400_000
     there = cv2.imread(str(file))[..., ::-1].astype(np.float32)
     assert np.abs(there - encoded(made)).mean() < 2.0

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from halation.errors import OutputError, UsageError
 from halation.media.comparison.contact_sheet import (
-    captioned,
-    data_shown,
-    grouped_sheet,
-    light_shown,
-    sheet,
-    shown,
-    shown_over_checker,
+    make_caption,
+    make_grouped_sheet,
+    make_sheet,
+    show_any_light,
+    show_data,
+    show_light,
+    show_over_checker,
     write_sheet,
 )
 
@@ -31,7 +31,7 @@ def inner(made: np.ndarray, left: int, top: int, width: int = 80, height: int = 
 
 
 def test_pictures_fill_rows() -> None:
-    made = sheet(PICTURES, columns=2)
+    made = make_sheet(PICTURES, columns=2)
     assert made.shape == (2 * (40 + LABEL + GAP) - GAP + 2 * MARGIN, 2 * (80 + GAP) - GAP + 2 * MARGIN, 3)
     for index, color in enumerate(COLORS.values()):
         top, left = MARGIN + index // 2 * (40 + LABEL + GAP), MARGIN + index % 2 * (80 + GAP)
@@ -40,7 +40,7 @@ def test_pictures_fill_rows() -> None:
 
 
 def test_corners_are_round() -> None:
-    made, back = sheet(PICTURES), sheet(PICTURES)[0, 0]
+    made, back = make_sheet(PICTURES), make_sheet(PICTURES)[0, 0]
     cell = made[MARGIN : MARGIN + 40, MARGIN : MARGIN + 80]
     for corner in (cell[0, 0], cell[0, -1], cell[-1, 0], cell[-1, -1]):
         assert np.abs(corner - back).max() < 0.05
@@ -49,24 +49,24 @@ def test_corners_are_round() -> None:
 
 
 def test_names_are_written_below() -> None:
-    made = sheet(PICTURES, columns=3)
+    made = make_sheet(PICTURES, columns=3)
     below = made[MARGIN + 40 :]
     for index in range(3):
         left = MARGIN + index * (80 + GAP)
         assert below[:, left : left + 80].max() > 0.3
-    others = sheet({f"other {name}": one for name, one in PICTURES.items()}, columns=3)
+    others = make_sheet({f"other {name}": one for name, one in PICTURES.items()}, columns=3)
     assert np.array_equal(made[: MARGIN + 40], others[: MARGIN + 40])
     assert not np.array_equal(made, others)
 
 
 def test_a_long_name_stays_within_its_picture() -> None:
-    made = sheet({"a quite long name": PICTURES["red"], "b": PICTURES["red"]}, columns=2)
+    made = make_sheet({"a quite long name": PICTURES["red"], "b": PICTURES["red"]}, columns=2)
     gap = made[MARGIN + 40 :, MARGIN + 82 : MARGIN + 80 + GAP]
     assert np.ptp(gap, axis=(0, 1)).max() == 0.0
 
 
 def test_pictures_shrink_to_the_width() -> None:
-    made = sheet(PICTURES, columns=3, width=40)
+    made = make_sheet(PICTURES, columns=3, width=40)
     assert made.shape[1] == 3 * (40 + GAP) - GAP + 2 * MARGIN
     assert np.allclose(inner(made, MARGIN, MARGIN, 40, 20), COLORS["red"], atol=1e-5)
 
@@ -74,7 +74,7 @@ def test_pictures_shrink_to_the_width() -> None:
 def test_other_sizes_keep_their_scale_or_fit() -> None:
     """Half as large as the first is shown so, in the middle; twice as large fits."""
     small, large = np.ones((20, 40, 3), np.float32), np.ones((160, 160, 3), np.float32)
-    made = sheet({"first": PICTURES["red"], "small": small, "large": large}, columns=3)
+    made = make_sheet({"first": PICTURES["red"], "small": small, "large": large}, columns=3)
     for left, top, width, height in ((20, 10, 40, 20), (20, 0, 40, 40)):
         cell = made[MARGIN : MARGIN + 40, MARGIN + (1 + (height > 20)) * (80 + GAP) :][:, :80]
         assert np.allclose(cell[top : top + height, left : left + width], 1.0, atol=1e-4)
@@ -85,7 +85,7 @@ def test_groups_have_headings_in_their_color_and_share_rows() -> None:
     """Four columns: two groups of two stand side by side, one of three below."""
     red = PICTURES["red"]
     groups = {"one": {"a": red, "b": red}, "three": dict.fromkeys("cde", red), "two": {"f": red, "g": red}}
-    made = grouped_sheet(groups, columns=4, colors={"two": (0.0, 1.0, 0.0)})
+    made = make_grouped_sheet(groups, columns=4, colors={"two": (0.0, 1.0, 0.0)})
     row = HEAD + 40 + LABEL + GAP
     assert made.shape[:2] == (2 * row - GAP + 2 * MARGIN, 4 * (80 + GAP) - GAP + 2 * MARGIN)
     across = [MARGIN + column * (80 + GAP) for column in range(4)]
@@ -98,7 +98,9 @@ def test_groups_have_headings_in_their_color_and_share_rows() -> None:
 
 
 def test_a_large_group_takes_several_rows() -> None:
-    made = grouped_sheet({"many": dict.fromkeys("abcde", PICTURES["red"]), "one": {"f": PICTURES["white"]}}, columns=2)
+    made = make_grouped_sheet(
+        {"many": dict.fromkeys("abcde", PICTURES["red"]), "one": {"f": PICTURES["white"]}}, columns=2
+    )
     row = 40 + LABEL + GAP
     for index in range(5):
         left, top = MARGIN + index % 2 * (80 + GAP), MARGIN + HEAD + index // 2 * row
@@ -110,41 +112,41 @@ def test_light_of_the_display_is_what_srgb_says() -> None:
     """Without a tone map, 0..1 comes out as it went in; brighter light ends at 1, premultiplied color is straight."""
     light = np.linspace(0.0, 1.0, 256, dtype=np.float32).repeat(4).reshape(16, 16, 4)
     light[..., 3] = 1.0
-    assert np.abs(shown(light, "none") - light[..., :3]).max() < 1e-3
+    assert np.abs(show_light(light, "none") - light[..., :3]).max() < 1e-3
     bright = np.array([[[7.0, 0.25, 0.0, 0.5]]], np.float32)
-    assert np.allclose(shown(bright, "none"), (1.0, 0.5, 0.0), atol=1e-3)
+    assert np.allclose(show_light(bright, "none"), (1.0, 0.5, 0.0), atol=1e-3)
 
 
 def test_squares_show_through_what_is_transparent() -> None:
     picture = np.zeros((24, 48, 4), np.float32)
     picture[:, 24:] = (0.25, 0.25, 0.25, 0.5)
-    made = shown_over_checker(picture, "none")
+    made = show_over_checker(picture, "none")
     dark, bright = made[0, 0, 0], made[0, 12, 0]
     assert 0.02 < dark < bright < 0.1 and made[12, 0, 0] == bright
     assert np.allclose(made[0, 24], 0.5 * 0.5 + 0.5 * dark, atol=1e-3)
     picture[..., :3], picture[..., 3] = 0.3, 0.0
-    assert np.allclose(shown_over_checker(picture, "none")[0, 0], 0.3 + dark, atol=1e-3)
+    assert np.allclose(show_over_checker(picture, "none")[0, 0], 0.3 + dark, atol=1e-3)
 
 
 def test_data_is_shown_within_its_range() -> None:
     """Codes of the display, not light; infinities and NaN do no harm."""
     data = np.array([[[-2.0], [0.0], [2.0], [np.nan], [np.inf]]], np.float32)
-    assert np.allclose(data_shown(data, -2.0, 2.0)[0, :, 1], (0.0, 0.214, 1.0, 0.214, 1.0), atol=1e-3)
-    two = data_shown(np.ones((1, 1, 2), np.float32), 0.0, 1.0)
+    assert np.allclose(show_data(data, -2.0, 2.0)[0, :, 1], (0.0, 0.214, 1.0, 0.214, 1.0), atol=1e-3)
+    two = show_data(np.ones((1, 1, 2), np.float32), 0.0, 1.0)
     assert two.tolist() == [[[1.0, 1.0, 0.0]]]
-    gray = light_shown(np.full((1, 1, 1), 0.18, np.float32))
+    gray = show_any_light(np.full((1, 1, 1), 0.18, np.float32))
     assert np.ptp(gray) < 1e-3 and 0.05 < gray.mean() < 0.25
 
 
 def test_numbers_are_written_over_the_picture() -> None:
-    made = captioned(np.full((90, 160, 3), 0.5, np.float32), ("average 0.5", "maximum 7"))
+    made = make_caption(np.full((90, 160, 3), 0.5, np.float32), ("average 0.5", "maximum 7"))
     assert np.allclose(made[:15], 0.03, atol=1e-3) and made[25:65].max() > 0.6
     middle = np.flatnonzero(made.max((0, 2)) > 0.1).mean()
     assert abs(middle - 80) < 6
 
 
 def test_a_written_sheet_says_what_it_shows(tmp_path: Path) -> None:
-    made, file = sheet(PICTURES), tmp_path / "sheet.jpg"
+    made, file = make_sheet(PICTURES), tmp_path / "sheet.jpg"
     write_sheet(file, made, "red, green")
     there = cv2.imread(str(file))[..., ::-1]
     assert there.shape == made.shape and np.abs(there[MARGIN + 20, MARGIN + 40] - (231, 0, 0)).max() < 8
@@ -155,4 +157,4 @@ def test_a_written_sheet_says_what_it_shows(tmp_path: Path) -> None:
 
 def test_unknown_view() -> None:
     with pytest.raises(UsageError, match="there is no view 'sepia'"):
-        shown(PICTURES["red"], "sepia")
+        show_light(PICTURES["red"], "sepia")

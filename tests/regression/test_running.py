@@ -13,7 +13,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from halation.media.pictures.stored import Stored
+from halation.media.pictures.stored import StoredPart
 from halation.regression import crew
 from halation.regression.cases import Case
 from halation.regression.judging import unusable
@@ -251,7 +251,7 @@ def test_what_is_not_finite_is_counted(value: float, letters: tuple[str, ...], c
     """Infinity is what depth is where nothing is."""
     array = np.ones((3, 3, len(letters)), np.float32)
     array[1, 1, 0] = array[2, 0, -1] = value
-    parts = {"": Stored(array, letters, encoded=False)}
+    parts = {"": StoredPart(array, letters, encoded=False)}
     case = Case(Path("a.suite.toml"), "a", Path("graph.json"))
     assert parts[""].unusable == count
     said = f'{count} pixels are not finite; allow = ["nonfinite"] if they may be'

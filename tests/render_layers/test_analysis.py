@@ -11,7 +11,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation.errors import InputError
-from halation.media.pixels import Want, read_many
+from halation.media.pixels import LayerRequest, read_layers
 from halation.nodes import Camera, Kind
 from halation.nodes._declare.camera import look_at
 from halation.render_layers.analysis import Survey, survey
@@ -88,7 +88,9 @@ def test_the_motion_of_blender_is_proved_by_a_crop_of_the_frame_before() -> None
     assert (motion.kind, motion.measured, motion.scale) == ("from_previous", True, (-1.0, 1.0, -1.0, 1.0))
     position, vector = (
         pixels.array.astype(np.float64)
-        for pixels in read_many(NEON, [Want("Position", Kind.VECTOR, 3), Want("Vector", Kind.VECTOR, 4)])
+        for pixels in read_layers(
+            NEON, [LayerRequest("Position", Kind.VECTOR, 3), LayerRequest("Vector", Kind.VECTOR, 4)]
+        )
     )
     rows = np.reshape(survey(NEON_BEFORE).camera.camera.rows, (3, 4))
     then = position @ rows[:, :3].T + rows[:, 3]
@@ -103,7 +105,9 @@ def test_motion_of_any_sign_and_unit_is_found_in_flipped_copies_of_the_sample(tm
     """Under a name that says nothing: the cameras of both frames tell, to a ten thousandth of a pixel."""
     position, vector = (
         pixels.array.astype(np.float64)
-        for pixels in read_many(NEON, [Want("Position", Kind.VECTOR, 3), Want("Vector", Kind.VECTOR, 4)])
+        for pixels in read_layers(
+            NEON, [LayerRequest("Position", Kind.VECTOR, 3), LayerRequest("Vector", Kind.VECTOR, 4)]
+        )
     )
     moved = vector[..., :2] * (-1.0, 1.0)
     for number, unit in enumerate(((1.0, 1.0), (480.0, 270.0), (240.0, 135.0))):  # pixels, pictures, half pictures

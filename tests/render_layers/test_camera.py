@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from halation.errors import InputError
-from halation.media.pixels import Want, read_many
+from halation.media.pixels import LayerRequest, read_layers
 from halation.nodes import Camera, Kind
 from halation.nodes._declare.camera import look_at
 from halation.render_layers.camera import header_camera, residual_of, solve_camera
@@ -41,8 +41,8 @@ def rolled(camera: Camera) -> Camera:
 
 
 def layers(path: Path) -> list[np.ndarray]:
-    wants = [Want("Position", Kind.VECTOR, 3), Want("Depth", Kind.FIELD)]
-    return [pixels.array for pixels in read_many(path, wants)]
+    wants = [LayerRequest("Position", Kind.VECTOR, 3), LayerRequest("Depth", Kind.FIELD)]
+    return [pixels.array for pixels in read_layers(path, wants)]
 
 
 @pytest.mark.parametrize("camera", [CAMERA, off_center(CAMERA), rolled(CAMERA)], ids=["plain", "crop", "rolled"])

@@ -271,7 +271,7 @@ def test_of_view_layers_that_of_the_picture_counts(tmp_path: Path) -> None:
         "Main.Combined:rgba Main.Depth:z Other.Combined:rgba Other.Depth:z",
         {"Software": "Blender 4.2"},
     )
-    assert found.layer(Role.BEAUTY).full == "Main.Combined" and found.layer(Role.DEPTH).full == "Main.Depth"
+    assert found.layer(Role.BEAUTY).full_name == "Main.Combined" and found.layer(Role.DEPTH).full_name == "Main.Depth"
 
 
 def test_equal_claims_are_left_to_the_user(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from halation import document
 from halation.graph import Graph
-from halation.media.pictures.finite import as_half
+from halation.media.pictures.finite import to_half
 from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.jobs.destinations import Writing, destinations, halves
 from halation.renderer.jobs.job import run_job
@@ -75,15 +75,15 @@ def test_in_a_file_not_a_number_is_always_the_same(engine):
     whole, found = (
         engine.render(through(), RenderRequest(given, halves=kept))["image"] for kept in (frozenset(), ONLY)
     )
-    assert as_half(whole).tobytes() == as_half(found).tobytes()
+    assert to_half(whole).tobytes() == to_half(found).tobytes()
     numbers = np.array([[[0x7F800001, 0xFFC00000, 0x7FFFFFFF]]], np.uint32).view(np.float32)
-    assert set(as_half(numbers).view(np.uint16).flat) == {0x7E00}
+    assert set(to_half(numbers).view(np.uint16).flat) == {0x7E00}
 
 
 def test_infinite_halves_are_clamped_in_files():
-    assert as_half(np.array([[[np.inf, -np.inf, 1.0]]], np.float16)).tolist() == [[[65504.0, -65504.0, 1.0]]]
+    assert to_half(np.array([[[np.inf, -np.inf, 1.0]]], np.float16)).tolist() == [[[65504.0, -65504.0, 1.0]]]
     plain = np.ones((4, 3, 2), np.float16)
-    assert as_half(plain) is plain
+    assert to_half(plain) is plain
 
 
 @pytest.mark.parametrize("code", ["image", "vec4(sin(image.rgb * 3e4) * 7e4, image.a)", "image / 3.0"])

@@ -58,7 +58,7 @@ def values(folder: Path, frames=FRAMES) -> list[float]:
 def test_the_next_frame_is_read_while_this_one_is_written(engine, graph, shot, monkeypatch):
     """The first write waits until the third frame has been decoded; one after the other, it would wait in vain."""
     decoded, waited = threading.Event(), []
-    load, write = engine.pictures.load, media.write
+    load, write = engine.pictures.load, media.write_picture
 
     def loading(picture):
         pixels = load(picture)
@@ -72,7 +72,7 @@ def test_the_next_frame_is_read_while_this_one_is_written(engine, graph, shot, m
         write(path, *rest, **options)
 
     engine.runner._load = loading
-    monkeypatch.setattr(media, "write", slow)
+    monkeypatch.setattr(media, "write_picture", slow)
     run_job(engine, graph, RenderRequest(), writing(shot), tuple(FRAMES))
     assert waited == [True] and values(shot) == [2.0 * frame for frame in FRAMES]
 
@@ -80,7 +80,7 @@ def test_the_next_frame_is_read_while_this_one_is_written(engine, graph, shot, m
 def test_what_waits_is_bounded(engine, graph, shot, monkeypatch):
     """A slow disk holds the rendering up; a fast one would not be read far ahead either."""
     loaded, written, most_read, most_waiting = [], [], [], []
-    load, write = engine.pictures.load, media.write
+    load, write = engine.pictures.load, media.write_picture
 
     def loading(picture):
         loaded.append(picture.path)
@@ -100,7 +100,7 @@ def test_what_waits_is_bounded(engine, graph, shot, monkeypatch):
             pass
 
     engine.runner._load = loading
-    monkeypatch.setattr(media, "write", counted)
+    monkeypatch.setattr(media, "write_picture", counted)
     run_job(engine, graph, RenderRequest(), writing(shot), tuple(FRAMES), progress=Ends())
     assert max(most_read + most_waiting) <= AHEAD + BEHIND + 2 and len(written) == len(FRAMES)
     assert engine.runner.textures.allocated <= engine.runner.textures.budget
@@ -115,14 +115,14 @@ def test_a_fault_comes_after_what_was_begun(engine, graph, shot):
 
 
 def test_a_frame_that_cannot_be_written_ends_the_job(engine, graph, shot, monkeypatch):
-    write = media.write
+    write = media.write_picture
 
     def full(path, *rest, **options):
         if path.name == "out.04.exr":
             raise OSError("disk full")
         write(path, *rest, **options)
 
-    monkeypatch.setattr(media, "write", full)
+    monkeypatch.setattr(media, "write_picture", full)
     with pytest.raises(OSError, match="disk full"):
         run_job(engine, graph, RenderRequest(), writing(shot), tuple(FRAMES))
     assert values(shot, range(1, 4)) == [2.0, 4.0, 6.0]
@@ -200,7 +200,7 @@ def test_a_still_sequence_is_computed_once(graph, shot):
 
 def test_arrays_are_used_again(engine, graph, shot, monkeypatch):
     """A handful for all frames, and none while it is still to be written."""
-    taken, lent, take, write = dict[int, np.ndarray](), set[int](), Arrays.take, media.write
+    taken, lent, take, write = dict[int, np.ndarray](), set[int](), Arrays.take, media.write_picture
 
     def counted(self, shape, dtype):
         array = take(self, shape, dtype)
@@ -215,7 +215,7 @@ def test_arrays_are_used_again(engine, graph, shot, monkeypatch):
         lent.difference_update(id(array if array.base is None else array.base) for array in layers.values())
 
     monkeypatch.setattr(Arrays, "take", counted)
-    monkeypatch.setattr(media, "write", slow)
+    monkeypatch.setattr(media, "write_picture", slow)
     run_job(engine, graph, RenderRequest(), writing(shot), tuple(FRAMES))
     assert len(taken) <= BEHIND + 2 and values(shot) == [2.0 * frame for frame in FRAMES]
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from halation.errors import HalationError, OutputError
 from halation.graph import Graph, Input, Output, Port
-from halation.media import row_file
+from halation.media.pictures import row_writer
 from halation.nodes import Kind, catalogue
 from halation.renderer import Renderer, RenderRequest, open_device
 from halation.renderer.jobs.job import Writing, run_job
@@ -55,7 +55,7 @@ def test_what_is_not_finished_leaves_nothing_behind(tmp_path, picture, monkeypat
     def full(*_: object) -> None:
         raise OutputError("no room")
 
-    monkeypatch.setattr(row_file.RowFile, "add", full)
+    monkeypatch.setattr(row_writer.ScanlineFile, "add", full)
     before = set(tmp_path.iterdir())
     with pytest.raises(HalationError, match="no room"):
         written(tmp_path, picture, MEMORY)

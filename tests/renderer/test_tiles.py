@@ -15,7 +15,7 @@ from halation.compiler import Region, Request, examine, explain
 from halation.compiler.tiling import tiling
 from halation.errors import DeviceError
 from halation.graph import Graph, Input, Output, Port
-from halation.inputs.provider import Pictures
+from halation.inputs.provider import MediaProvider
 from halation.nodes import Camera, Filter, Kind, Reader, Temporal, catalogue, look_at
 from halation.presets import paths
 from halation.renderer import FrameRenderer, Renderer, RenderRequest, open_device
@@ -160,7 +160,7 @@ def test_what_looks_far_has_the_same_bits(fitting, in_pieces, monkeypatch, name)
 
 @pytest.mark.parametrize("name", FAR_LOOKING)
 def test_what_looks_far_goes_beyond_the_device(name):
-    node, outside = FAR_LOOKING[name], Pictures()
+    node, outside = FAR_LOOKING[name], MediaProvider()
     given = {
         socket: np.ones((32, 32, item.channels), np.float32)
         for socket, item in type(node).inputs.items()
@@ -172,7 +172,7 @@ def test_what_looks_far_goes_beyond_the_device(name):
 
 def refused(node) -> str:
     """Why a node cannot be made of larger pictures than a device holds; "" if it can."""
-    outside, sockets = Pictures(), type(node).inputs
+    outside, sockets = MediaProvider(), type(node).inputs
     given = {
         name: np.ones((32, 32, item.channels), np.float32)
         for name, item in sockets.items()

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from ...graph import Graph
-from ...resources.atomic_write import part_prefix
+from ...resources.atomic_write import temporary_prefix
 
 State = Literal["waiting", "running", "done", "failed", "cancelled"]
 
@@ -206,7 +206,7 @@ class Export:
         """Remove what the processes had not finished when they were killed."""
         for folder in {Path(os.path.realpath(path)).parent for _, path in self.destinations}:
             for number in (process, *self._helpers):
-                for part in folder.glob(f"{part_prefix(number)}*"):
+                for part in folder.glob(f"{temporary_prefix(number)}*"):
                     with contextlib.suppress(OSError):
                         part.unlink()
 

@@ -12,8 +12,8 @@ from ...graph import Graph, Port
 from ...resources.color_program import ColorProgram
 from ...resources.mesh import Mesh
 from ...resources.picture import Picture
-from ...resources.provider import Frame, Probed, ResourceProvider
-from ...resources.working_space import Working
+from ...resources.provider import FrameFile, PictureProbe, ResourceProvider
+from ...resources.working_space import WorkingSpace
 from .. import graph_library
 from ..fusion.fuse import fuse
 from ..ir import Program, Read, Ref
@@ -47,16 +47,16 @@ class _Bound:
     outside: ResourceProvider
     size: Size
 
-    def at(self, path: str, frame: int, missing: Missing) -> Frame:
+    def at(self, path: str, frame: int, missing: Missing) -> FrameFile:
         return self.outside.at(path, frame, missing)
 
-    def probe(self, picture: Picture) -> Probed:
-        return Probed(self.size, False, picture.path) if picture.in_memory else self.outside.probe(picture)
+    def probe(self, picture: Picture) -> PictureProbe:
+        return PictureProbe(self.size, False, picture.path) if picture.in_memory else self.outside.probe(picture)
 
     def recolor(self, change: ColorChange) -> ColorProgram:
         return self.outside.recolor(change)
 
-    def working(self, color: ColorSettings) -> Working | None:
+    def working(self, color: ColorSettings) -> WorkingSpace | None:
         return self.outside.working(color)
 
     def render(self, path: str, named: Mapping[str, str]) -> Render:

@@ -13,7 +13,7 @@ from ...graph import Graph, color_settings, make_socket
 from ...resources.color_program import ColorProgram
 from ...resources.mesh import Mesh
 from ...resources.picture import Picture
-from ...resources.provider import Probed, ResourceProvider
+from ...resources.provider import PictureProbe, ResourceProvider
 from ..areas import Around, scaled
 from ..ir import Accessor, Builder, Call, Constant, Gather, Operand, Parameter, Read, Ref, Shape
 from ..request import Request
@@ -50,7 +50,7 @@ class Pictures:
         path = self._outside.at(picture.path, self._request.frame, "nearest").path if not picture.in_memory else ""
         return self._probed(replace(picture, path=path) if path else picture, owner).size
 
-    def _probed(self, picture: Picture, owner: str) -> Probed:
+    def _probed(self, picture: Picture, owner: str) -> PictureProbe:
         try:
             return self._outside.probe(replace(picture, color=self._color))
         except HalationError as error:

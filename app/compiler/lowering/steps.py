@@ -11,8 +11,8 @@ from ...graph import Port
 from ...resources.color_program import ColorProgram
 from ...resources.mesh import Mesh
 from ...resources.picture import Picture
-from ...resources.provider import Frame, Probed, ResourceProvider
-from ...resources.working_space import Working
+from ...resources.provider import FrameFile, PictureProbe, ResourceProvider
+from ...resources.working_space import WorkingSpace
 from ..ir import Builder, Operand, Program, Ref
 from ..library import Library
 from .moments import Moments
@@ -64,16 +64,16 @@ class Watched:
         self._outside = outside
         self.asked = False
 
-    def at(self, path: str, frame: int, missing: Missing) -> Frame:
+    def at(self, path: str, frame: int, missing: Missing) -> FrameFile:
         return self._seen().at(path, frame, missing)
 
-    def probe(self, picture: Picture) -> Probed:
+    def probe(self, picture: Picture) -> PictureProbe:
         return self._seen().probe(picture)
 
     def recolor(self, change: ColorChange) -> ColorProgram:
         return self._seen().recolor(change)
 
-    def working(self, color: ColorSettings) -> Working | None:
+    def working(self, color: ColorSettings) -> WorkingSpace | None:
         return self._seen().working(color)
 
     def render(self, path: str, named: Mapping[str, str]) -> Render:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from ...color.gpu_programs import table_endings
 from ...graph.frames import VIDEO_ENDINGS
 from ...media.meshes.load import MESH_ENDINGS
-from ...media.pictures.thumbnail import readable
+from ...media.pictures.thumbnail import list_readable_endings
 from ..shared.dialogs import Browse
 from .listing import Item, Listing, Order
 from .places import Place, places
@@ -110,7 +110,7 @@ def begun(editor: Editor, browse: Browse) -> Browsing:
 def endings(browse: Browse) -> frozenset[str]:
     """Which files are listed."""
     if browse.purpose == "image":
-        return readable() | VIDEO_ENDINGS
+        return list_readable_endings() | VIDEO_ENDINGS
     if browse.purpose == "table":
         return table_endings()
     if browse.purpose == "scene":

@@ -13,8 +13,8 @@ from ...color.file_space import FileSpace
 from ...color.management import color_mark
 from ...color.transforms import NO_VIEW, Array, to_display
 from ...errors import HalationError
-from ...media import ImageInfo, find_layer, info, read
-from ...media.color_spaces import layer_spaces
+from ...media import ImageInfo, find_layer, read_info, read_layer
+from ...media.color_spaces import find_layer_spaces
 from ...watch.versions import Versions
 
 WIDTH, HEIGHT = 96, 54
@@ -60,7 +60,7 @@ class Layers:
         if found is None or isinstance(found, str) or not isinstance(header, ImageInfo):
             return (found, True) if isinstance(found, str) else ("", False)
         try:
-            known = found.get(find_layer(header, layer).full)
+            known = found.get(find_layer(header, layer).full_name)
         except HalationError:
             return "", False
         return (f"{known.name}: {known.reason}", False) if known else ("", False)
@@ -83,7 +83,7 @@ class Layers:
 def _made(key: Key) -> ImageInfo | Array | str:
     path, _, layer = key
     try:
-        header = info(path)
+        header = read_info(path)
         return header if layer is None else small_picture(path, layer, header)
     except HalationError as fault:
         return str(fault)
@@ -94,7 +94,7 @@ def _made(key: Key) -> ImageInfo | Array | str:
 def _spaces(key: SpaceKey) -> Mapping[str, FileSpace] | str:
     path, _, color, _, wanted = key
     try:
-        return layer_spaces(path, color, wanted)
+        return find_layer_spaces(path, color, wanted)
     except HalationError as fault:
         return str(fault)
     except Exception as fault:
@@ -107,10 +107,10 @@ def small_picture(path: str, layer: str, header: ImageInfo) -> Array:
     Raises InputError.
     """
     found = find_layer(header, layer)
-    array = read(path, layer, Kind.IMAGE).array
+    array = read_layer(path, layer, Kind.IMAGE).array
     step = max(1, -(-array.shape[1] // WIDTH), -(-array.shape[0] // HEIGHT))
     small = np.ascontiguousarray(array[::step, ::step, :3], dtype=np.float32)
-    if found.data:
+    if found.is_data:
         finite = small[np.isfinite(small) & (np.abs(small) < _NOTHING)]
         low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
         small = np.nan_to_num((small - low) / max(high - low, 1e-12), nan=0.0, posinf=1.0, neginf=0.0)
@@ -125,5 +125,5 @@ def described(header: ImageInfo, layer: str) -> str:
     except HalationError as fault:
         return str(fault).removeprefix(f"{header.path}: ")
     channels = "".join(found.channels) if all(len(name) == 1 for name in found.channels) else ", ".join(found.channels)
-    kind = "data" if found.data else "color"
+    kind = "data" if found.is_data else "color"
     return f"{header.size[0]} x {header.size[1]}, {channels}, {found.format}, {kind}"

@@ -116,7 +116,7 @@ class RenderRows:
         room = imgui.calc_text_size(button).x + 2 * imgui.get_style().frame_padding.x
         rect = place(rows.width - room - rows.gap)
         imgui.dummy((rect[2] - rect[0], rect[3] - rect[1]))
-        tip(f"{item.layer.full}: {', '.join(item.layer.channels)}, {item.layer.format}")
+        tip(f"{item.layer.full_name}: {', '.join(item.layer.channels)}, {item.layer.format}")
         write(rect, item.layer.name, rows.palette.text)
         imgui.same_line(0.0, rows.gap)
 

@@ -48,7 +48,7 @@ class Pictures:
         self._decoded.close()
 
     def _made(self, key: tuple[Path, float]) -> Array | str:
-        from ...media.pictures.thumbnail import load_thumbnail, save_thumbnail, thumbnail
+        from ...media.pictures.thumbnail import load_thumbnail, make_thumbnail, save_thumbnail
 
         path, time = key
         name = hashlib.sha256(f"{path.absolute()}\n{time}".encode(errors="surrogatepass")).hexdigest()[:32]
@@ -56,7 +56,7 @@ class Pictures:
         with contextlib.suppress(HalationError):
             return load_thumbnail(kept)
         try:
-            made = thumbnail(path, WIDTH, HEIGHT)
+            made = make_thumbnail(path, WIDTH, HEIGHT)
         except HalationError as fault:
             return str(fault)
         except Exception as fault:

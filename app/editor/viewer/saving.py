@@ -9,7 +9,7 @@ import numpy as np
 from halation.nodes import Kind
 
 from ...color.transforms import decode_srgb
-from ...media import write
+from ...media import write_picture
 from ..shared.dialogs import Browse
 from .looking import picture_only
 
@@ -39,5 +39,5 @@ def ask_to_save(editor: Editor, a: Shown, b: Shown | None, look: Look) -> None:
 
 def _save(editor: Editor, path: Path, pixels: np.ndarray) -> None:
     """Display-referred pixels 0..1: decoded, so that the view of the file encodes them as they are."""
-    write(path, {"image": decode_srgb(pixels).astype(np.float32)}, kinds={"image": Kind.IMAGE}, view="none")
+    write_picture(path, {"image": decode_srgb(pixels).astype(np.float32)}, kinds={"image": Kind.IMAGE}, view="none")
     editor.say(f"saved {path}")

@@ -14,7 +14,7 @@ from ...authoring.services.recovery import Recovery
 from ...authoring.services.renders import Renders
 from ...authoring.session import Session
 from ...graph import Graph
-from ...inputs.provider import Pictures
+from ...inputs.provider import MediaProvider
 from ...renderer import Device, Renderer
 from ...renderer.viewing.display import Display
 from ...renderer.viewing.probe import Probe
@@ -59,7 +59,7 @@ def assemble(device: Device, state: Path | None = None) -> Editor:
 
 
 def _measure(graph: Graph, bindings: Mapping[str, str]) -> tuple[int, int]:
-    pictures = Pictures()
+    pictures = MediaProvider()
     return pictures.frames(graph, pictures.bind(graph, bindings))
 
 

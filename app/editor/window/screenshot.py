@@ -14,4 +14,4 @@ from ...color.transforms import NO_VIEW, decode_srgb
 def save_screenshot(path: Path, pixels: np.ndarray) -> None:
     """Write [height, width, 3] of 8 bits, the same bits in a PNG. Raises OutputError."""
     named = path if path.suffix else path.with_suffix(".png")
-    media.write(named, {"image": decode_srgb(pixels / 255.0)}, kinds={"image": Kind.IMAGE}, view=NO_VIEW)
+    media.write_picture(named, {"image": decode_srgb(pixels / 255.0)}, kinds={"image": Kind.IMAGE}, view=NO_VIEW)

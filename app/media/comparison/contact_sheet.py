@@ -12,7 +12,7 @@ import OpenImageIO as oiio
 
 from ...color.transforms import Array, decode_srgb, to_display
 from ...errors import OutputError
-from ...resources.atomic_write import store
+from ...resources.atomic_write import write_atomically
 
 RGB = tuple[float, float, float]
 
@@ -20,8 +20,8 @@ _MARGIN = 16
 _GAP = 12
 _RADIUS = 5.0
 _RULE = 2
-_BACK = (0.08, 0.08, 0.086)
-_NEST = (0.115, 0.115, 0.125)
+_BACKGROUND = (0.08, 0.08, 0.086)
+_TILE_COLOR = (0.115, 0.115, 0.125)
 _DIM = (0.70, 0.70, 0.73)
 _TEXT = (0.90, 0.90, 0.91)
 _CHECKER = (0.20, 0.28)
@@ -30,7 +30,7 @@ _BOLD = "DroidSans-Bold"
 _QUALITY = 84
 
 
-def shown(array: Array, view: str = "") -> Array:
+def show_light(array: Array, view: str = "") -> Array:
     """Scene-linear pixels as light of the display, [h, w, 3] of float32 within 0..1: what sheets take.
 
     Raises:
@@ -39,30 +39,30 @@ def shown(array: Array, view: str = "") -> Array:
     return decode_srgb(np.clip(to_display(array, view, bits=32)[..., :3], 0.0, 1.0))
 
 
-def light_shown(array: Array) -> Array:
+def show_any_light(array: Array) -> Array:
     """The same of light in any number of channels: one is gray, two are red and green."""
-    return shown(_three(array.astype(np.float32)))
+    return show_light(_three(array.astype(np.float32)))
 
 
-def shown_over_checker(array: Array, view: str = "") -> Array:
+def show_over_checker(array: Array, view: str = "") -> Array:
     """The same of RGBA, with squares behind what is transparent. Light without alpha lies on top of them."""
-    light, alpha = shown(array, view), np.clip(np.nan_to_num(array[..., 3:4].astype(np.float32)), 0.0, 1.0)
+    light, alpha = show_light(array, view), np.clip(np.nan_to_num(array[..., 3:4].astype(np.float32)), 0.0, 1.0)
     row, column = np.indices(light.shape[:2]) // _SQUARE
     behind = decode_srgb(np.array(_CHECKER, np.float32))[(row + column) % 2][..., None]
     over = light * np.where(alpha > 0.0, alpha, 1.0) + behind * (1.0 - alpha)
     return np.clip(over, 0.0, 1.0).astype(np.float32)
 
 
-def data_shown(array: Array, low: float, high: float) -> Array:
+def show_data(array: Array, low: float, high: float) -> Array:
     """Data as such light: `low` is black and `high` is white; one channel is gray, two are red and green."""
     codes = np.clip((np.nan_to_num(array.astype(np.float32)) - low) / (high - low), 0.0, 1.0)
     return decode_srgb(_three(codes)).astype(np.float32)
 
 
-def captioned(light: Array, lines: Sequence[str]) -> Array:
+def make_caption(light: Array, lines: Sequence[str]) -> Array:
     """A picture pushed back behind lines of text: for results that are numbers."""
     height, width = light.shape[:2]
-    paper, letters = oiio.ImageBuf(_encoded(light * 0.06)), height // 9
+    paper, letters = oiio.ImageBuf(_encode_srgb(light * 0.06)), height // 9
     top = height / 2 - (len(lines) - 1) * letters * 0.75
     for index, line in enumerate(lines):
         at = (width // 2, round(top + index * letters * 1.5))
@@ -70,15 +70,15 @@ def captioned(light: Array, lines: Sequence[str]) -> Array:
     return decode_srgb(_pixels(paper)).astype(np.float32)
 
 
-def sheet(pictures: Mapping[str, Array], columns: int = 4, width: int = 0) -> Array:
+def make_sheet(pictures: Mapping[str, Array], columns: int = 4, width: int = 0) -> Array:
     """Light of the display, [h, w, 3] of float32. `pictures` are such light too, by name.
 
     The first is made `width` pixels wide, if that is not 0; the others have its scale, or fit where it would.
     """
-    return grouped_sheet({"": pictures}, columns, width)
+    return make_grouped_sheet({"": pictures}, columns, width)
 
 
-def grouped_sheet(
+def make_grouped_sheet(
     groups: Mapping[str, Mapping[str, Array]],
     columns: int = 4,
     width: int = 0,
@@ -92,25 +92,27 @@ def grouped_sheet(
     """
     first = next(picture for group in groups.values() for picture in group.values())
     width = width or first.shape[1]
-    plan = _Plan({name: len(group) for name, group in groups.items()}, columns, (width, _height(first, width)), letters)
-    made = np.full((*plan.size[::-1], 3), _BACK, np.float32)
+    layout = _SheetLayout(
+        {name: len(group) for name, group in groups.items()}, columns, (width, _height_at(first, width)), letters
+    )
+    canvas = np.full((*layout.size[::-1], 3), _BACKGROUND, np.float32)
     for name, group in groups.items():
-        for (left, top), picture in zip(plan.cells(name), group.values(), strict=True):
-            _paste(made, _fitted(picture, plan.cell, width / first.shape[1]), left, top, plan.cell)
+        for (left, top), picture in zip(layout.cells(name), group.values(), strict=True):
+            _paste(canvas, _scale_to_fit(picture, layout.cell, width / first.shape[1]), left, top, layout.cell)
         if name:
-            left, top, across = plan.rule(name)
-            made[top : top + _RULE, left : left + across] = colors.get(name, _DIM)
-    paper = oiio.ImageBuf(made)
+            left, top, across = layout.rule(name)
+            canvas[top : top + _RULE, left : left + across] = colors.get(name, _DIM)
+    paper = oiio.ImageBuf(canvas)
     for name, group in groups.items():
-        for (left, top), title in zip(plan.cells(name), group, strict=True):
-            _label(paper, title, left, top + plan.cell[1] + round(1.3 * letters), plan.cell[0], letters)
+        for (left, top), title in zip(layout.cells(name), group, strict=True):
+            _label(paper, title, left, top + layout.cell[1] + round(1.3 * letters), layout.cell[0], letters)
         if name:
-            left, top, _ = plan.rule(name)
-            oiio.ImageBufAlgo.render_text(paper, left, top - letters // 2, _words(name), letters + 3, _BOLD, _TEXT)
+            left, top, _ = layout.rule(name)
+            oiio.ImageBufAlgo.render_text(paper, left, top - letters // 2, _spell_out(name), letters + 3, _BOLD, _TEXT)
     return decode_srgb(_pixels(paper)).astype(np.float32)
 
 
-def grid_sheet(
+def make_grid_sheet(
     rows: Sequence[Sequence[Array]],
     down: Sequence[str],
     across: Sequence[str],
@@ -122,32 +124,32 @@ def grid_sheet(
     """The same for pictures by row and column, which have headings: `down` and `across`."""
     first = rows[0][0]
     width = width or first.shape[1]
-    cell = (width, _height(first, width))
-    room = max(oiio.ImageBufAlgo.text_size(_words(text), letters).width for text in down) + 2 * _GAP
+    cell = (width, _height_at(first, width))
+    room = max(oiio.ImageBufAlgo.text_size(_spell_out(text), letters).width for text in down) + 2 * _GAP
     head = _MARGIN + (3 * letters if title else 0) + 2 * letters
     left, top = _MARGIN + room, head + _GAP // 2
     size = (left + len(across) * (cell[0] + _GAP) - _GAP + _MARGIN, top + len(down) * (cell[1] + _GAP) - _GAP + _MARGIN)
-    made = np.full((*size[::-1], 3), _BACK, np.float32)
+    canvas = np.full((*size[::-1], 3), _BACKGROUND, np.float32)
     x_at = [left + column * (cell[0] + _GAP) for column in range(len(across))]
     y_at = [top + row * (cell[1] + _GAP) for row in range(len(down))]
     for y, row in zip(y_at, rows, strict=True):
         for x, picture in zip(x_at, row, strict=True):
-            _paste(made, _fitted(picture, cell, width / first.shape[1]), x, y, cell)
+            _paste(canvas, _scale_to_fit(picture, cell, width / first.shape[1]), x, y, cell)
     if title:
-        made[_MARGIN + 2 * letters : _MARGIN + 2 * letters + _RULE, _MARGIN : size[0] - _MARGIN] = _DIM
-    paper, draw = oiio.ImageBuf(made), oiio.ImageBufAlgo.render_text
+        canvas[_MARGIN + 2 * letters : _MARGIN + 2 * letters + _RULE, _MARGIN : size[0] - _MARGIN] = _DIM
+    paper, draw = oiio.ImageBuf(canvas), oiio.ImageBufAlgo.render_text
     if title:
-        draw(paper, _MARGIN, _MARGIN + round(1.3 * letters), _words(title), letters + 3, _BOLD, _TEXT)
+        draw(paper, _MARGIN, _MARGIN + round(1.3 * letters), _spell_out(title), letters + 3, _BOLD, _TEXT)
     for text, x in zip(across, x_at, strict=True):
         _label(paper, text, x, head - letters // 3, cell[0], letters)
     for text, y in zip(down, y_at, strict=True):
-        draw(paper, left - _GAP, y + cell[1] // 2, _words(text), letters, "", _DIM, "right", "center")
+        draw(paper, left - _GAP, y + cell[1] // 2, _spell_out(text), letters, "", _DIM, "right", "center")
     return decode_srgb(_pixels(paper)).astype(np.float32)
 
 
 def write_sheet(path: str | Path, light: Array, description: str = "") -> None:
     """Keep a sheet as JPEG, small enough for a page. Raises OutputError."""
-    pixels = np.ascontiguousarray((_encoded(light) * 255.0 + 0.5).astype(np.uint8))
+    pixels = np.ascontiguousarray((_encode_srgb(light) * 255.0 + 0.5).astype(np.uint8))
     spec = oiio.ImageSpec(pixels.shape[1], pixels.shape[0], 3, "uint8")
     spec.attribute("compression", f"jpeg:{_QUALITY}")
     spec.attribute("jpeg:subsampling", "4:2:0")
@@ -155,15 +157,15 @@ def write_sheet(path: str | Path, light: Array, description: str = "") -> None:
 
     def encode(file: str) -> None:
         output = oiio.ImageOutput.create("jpeg")
-        done = output is not None and output.open(file, spec) and output.write_image(pixels)
-        if output is None or not (output.close() and done):
+        succeeded = output is not None and output.open(file, spec) and output.write_image(pixels)
+        if output is None or not (output.close() and succeeded):
             raise OutputError(f"{path}: cannot be written: {oiio.geterror() or 'the encoder gave no reason'}")
 
-    store(path, encode, pixels.nbytes)
+    write_atomically(path, encode, pixels.nbytes)
 
 
 @dataclass(frozen=True)
-class _Plan:
+class _SheetLayout:
     """Where everything lies, as (left, top) in pixels. `counts` are pictures by group, `cell` is the size of one."""
 
     counts: Mapping[str, int]
@@ -175,19 +177,19 @@ class _Plan:
     def size(self) -> tuple[int, int]:
         """Width and height of the sheet."""
         across = min(self.columns, max(first + self.counts[name] for shelf in self._shelves() for name, first in shelf))
-        down = _MARGIN + sum(self._depth(shelf) for shelf in self._shelves())
+        down = _MARGIN + sum(self._shelf_height(shelf) for shelf in self._shelves())
         return 2 * _MARGIN + across * (self.cell[0] + _GAP) - _GAP, down + _MARGIN - _GAP
 
     def cells(self, group: str) -> Iterator[tuple[int, int]]:
         """Of every picture of a group."""
-        first, top = self._place(group)
+        first, top = self._find_shelf(group)
         for index in range(self.counts[group]):
             row, column = divmod(first + index, self.columns) if not first else (0, first + index)
             yield _MARGIN + column * (self.cell[0] + _GAP), top + self._head + row * self._row
 
     def rule(self, group: str) -> tuple[int, int, int]:
         """Left end, top and length of the line under a heading."""
-        first, top = self._place(group)
+        first, top = self._find_shelf(group)
         pictures = min(self.counts[group], self.columns)
         left = _MARGIN + first * (self.cell[0] + _GAP)
         return left, top + self._head - self.letters, pictures * (self.cell[0] + _GAP) - _GAP
@@ -204,49 +206,49 @@ class _Plan:
         """Groups side by side, each with its first column; one that takes several rows has its shelf for itself."""
         shelves: list[list[tuple[str, int]]] = []
         for name, count in self.counts.items():
-            taken = [sum(self.counts[other] for other, _ in shelf) for shelf in shelves]
-            free = next((index for index, part in enumerate(taken) if part + count <= self.columns), None)
+            columns_used = [sum(self.counts[member] for member, _ in shelf) for shelf in shelves]
+            free = next((index for index, part in enumerate(columns_used) if part + count <= self.columns), None)
             if free is None:
                 shelves.append([(name, 0)])
             else:
-                shelves[free].append((name, taken[free]))
+                shelves[free].append((name, columns_used[free]))
         return shelves
 
-    def _depth(self, shelf: Sequence[tuple[str, int]]) -> int:
+    def _shelf_height(self, shelf: Sequence[tuple[str, int]]) -> int:
         return self._head + -(-self.counts[shelf[0][0]] // self.columns) * self._row
 
-    def _place(self, group: str) -> tuple[int, int]:
+    def _find_shelf(self, group: str) -> tuple[int, int]:
         """First column of a group, and the top of its shelf."""
         top = _MARGIN
         for shelf in self._shelves():
             if group in dict(shelf):
                 return dict(shelf)[group], top
-            top += self._depth(shelf)
+            top += self._shelf_height(shelf)
         raise KeyError(group)
 
 
-def _paste(made: Array, picture: Array, left: int, top: int, cell: tuple[int, int]) -> None:
+def _paste(canvas: Array, picture: Array, left: int, top: int, cell: tuple[int, int]) -> None:
     """Put a picture into the middle of its cell, whose corners are round."""
-    nest = np.full((cell[1], cell[0], 3), _NEST, np.float32)
+    tile = np.full((cell[1], cell[0], 3), _TILE_COLOR, np.float32)
     height, width = picture.shape[:2]
     y, x = (cell[1] - height) // 2, (cell[0] - width) // 2
-    nest[y : y + height, x : x + width] = _encoded(picture)
+    tile[y : y + height, x : x + width] = _encode_srgb(picture)
     inside = [np.minimum(np.arange(side), np.arange(side)[::-1]) + 0.5 for side in (cell[1], cell[0])]
     dy, dx = np.meshgrid(*(np.maximum(_RADIUS - distance, 0.0) for distance in inside), indexing="ij")
     cover = np.clip(_RADIUS + 0.5 - np.hypot(dx, dy), 0.0, 1.0).astype(np.float32)[..., None]
-    there = made[top : top + cell[1], left : left + cell[0]]
-    there += (nest - there) * cover
+    region = canvas[top : top + cell[1], left : left + cell[0]]
+    region += (tile - region) * cover
 
 
 def _label(paper: oiio.ImageBuf, title: str, left: int, baseline: int, room: int, letters: int) -> None:
     """A name, in smaller letters where it is long."""
-    text = _words(title)
+    text = _spell_out(title)
     while letters > 8 and oiio.ImageBufAlgo.text_size(text, letters).width > room:
         letters -= 1
     oiio.ImageBufAlgo.render_text(paper, left, baseline, text, letters, "", _DIM)
 
 
-def _fitted(light: Array, cell: tuple[int, int], scale: float) -> Array:
+def _scale_to_fit(light: Array, cell: tuple[int, int], scale: float) -> Array:
     """The picture at this scale, or the largest that fits into the cell."""
     scale = min(scale, cell[0] / light.shape[1], cell[1] / light.shape[0])
     width, height = (max(1, round(scale * side)) for side in light.shape[1::-1])
@@ -254,8 +256,10 @@ def _fitted(light: Array, cell: tuple[int, int], scale: float) -> Array:
     source = np.ascontiguousarray(light, np.float32)
     if source.shape[:2] == (height, width):
         return source
-    made = oiio.ImageBufAlgo.resize(oiio.ImageBuf(source), filtername="catmull-rom", roi=oiio.ROI(0, width, 0, height))
-    return np.clip(_pixels(made), 0.0, 1.0)
+    resized = oiio.ImageBufAlgo.resize(
+        oiio.ImageBuf(source), filtername="catmull-rom", roi=oiio.ROI(0, width, 0, height)
+    )
+    return np.clip(_pixels(resized), 0.0, 1.0)
 
 
 def _three(array: Array) -> Array:
@@ -264,15 +268,15 @@ def _three(array: Array) -> Array:
     return array[..., [0, 0, 0]] if array.shape[2] == 1 else array[..., :3]
 
 
-def _height(picture: Array, width: int) -> int:
+def _height_at(picture: Array, width: int) -> int:
     return round(width * picture.shape[0] / picture.shape[1])
 
 
-def _words(name: str) -> str:
+def _spell_out(name: str) -> str:
     return name.replace("_", " ")
 
 
-def _encoded(light: Array) -> Array:
+def _encode_srgb(light: Array) -> Array:
     """sRGB codes of light (IEC 61966-2-1)."""
     light = np.clip(light, 0.0, 1.0)
     codes = np.where(light <= 0.0031308, 12.92 * light, 1.055 * np.maximum(light, 0.0031308) ** (1 / 2.4) - 0.055)

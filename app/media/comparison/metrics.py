@@ -11,17 +11,17 @@ import OpenImageIO as oiio
 from ...color.transforms import Array, as_float, decode_srgb
 from ...errors import UsageError
 
-CODE = 1.0 / 255.0
+EIGHT_BIT_STEP = 1.0 / 255.0
 """One step of an 8-bit picture."""
 
 _TAPS = 11
 _SIGMA = 1.5
 _K1, _K2 = 0.01, 0.03
-_ODD = (1.0, 0.0, 1.0)
+_BROKEN_COLOR = (1.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True)
-class Compared:
+class PictureDifference:
     """How far a picture is from the one that was expected.
 
     `max_abs` and `rms` are in the units of the pixels, over all channels; `max_rel` is the largest difference in
@@ -55,15 +55,15 @@ class Compared:
         return self.max_abs == 0.0
 
 
-def compare(
+def compare_pictures(
     actual: Array,
     expected: Array,
     *,
-    threshold: float = CODE,
+    threshold: float = EIGHT_BIT_STEP,
     relative: bool = False,
     linear: bool = True,
     perceptual: bool = True,
-) -> Compared:
+) -> PictureDifference:
     """Measure two pictures [h, w] or [h, w, c] of floats; integers fill 0..1.
 
     With `relative` the threshold, and what is worst, grow with the expected number where that is beyond 1.
@@ -73,34 +73,36 @@ def compare(
     Raises:
         UsageError: an array that is no picture.
     """
-    one, other = _picture(actual, "actual"), _picture(expected, "expected")
-    if fault := _mismatch(one, other):
-        return Compared(fault=fault)
-    first, second = one.astype(np.float64), other.astype(np.float64)
-    broken = _broken(first, second)
-    finite = np.isfinite(first) & np.isfinite(second)
-    difference = np.where(finite, np.abs(np.where(finite, first, 0.0) - np.where(finite, second, 0.0)), 0.0)
+    actual_picture, expected_picture = _check_picture(actual, "actual"), _check_picture(expected, "expected")
+    if fault := _describe_mismatch(actual_picture, expected_picture):
+        return PictureDifference(fault=fault)
+    actual_numbers, expected_numbers = actual_picture.astype(np.float64), expected_picture.astype(np.float64)
+    broken = _find_broken(actual_numbers, expected_numbers)
+    finite = np.isfinite(actual_numbers) & np.isfinite(expected_numbers)
+    difference = np.where(
+        finite, np.abs(np.where(finite, actual_numbers, 0.0) - np.where(finite, expected_numbers, 0.0)), 0.0
+    )
     difference[broken] = inf
-    parts = difference / np.maximum(1.0, np.where(finite, np.abs(second), 1.0))
-    per_pixel = (parts if relative else difference).max(axis=2)
+    relative_difference = difference / np.maximum(1.0, np.where(finite, np.abs(expected_numbers), 1.0))
+    per_pixel = (relative_difference if relative else difference).max(axis=2)
     max_abs, rms = float(difference.max()), float(np.sqrt(np.mean(difference**2)))
     y, x = (int(place) for place in np.unravel_index(per_pixel.argmax(), per_pixel.shape))
-    return Compared(
+    return PictureDifference(
         max_abs,
         rms,
-        _psnr(rms, first[finite], second[finite]),
-        ssim(one, other, linear=linear) if perceptual else nan,
-        flip(one, other, linear=linear) if perceptual else nan,
+        _psnr(rms, actual_numbers[finite], expected_numbers[finite]),
+        measure_ssim(actual_picture, expected_picture, linear=linear) if perceptual else nan,
+        measure_flip(actual_picture, expected_picture, linear=linear) if perceptual else nan,
         float(np.mean(per_pixel > threshold)),
         (x, y) if max_abs else None,
-        tuple(map(float, one[y, x])) if max_abs else (),
-        tuple(map(float, other[y, x])) if max_abs else (),
+        tuple(map(float, actual_picture[y, x])) if max_abs else (),
+        tuple(map(float, expected_picture[y, x])) if max_abs else (),
         int(broken.any(axis=2).sum()),
-        max_rel=float(parts.max()),
+        max_rel=float(relative_difference.max()),
     )
 
 
-def ssim(actual: Array, expected: Array, *, linear: bool = True) -> float:
+def measure_ssim(actual: Array, expected: Array, *, linear: bool = True) -> float:
     """Structural similarity, the mean over pixels and channels, 1 for equal pictures (Wang et al. 2004).
 
     An 11x11 Gaussian of sigma 1.5, K1 0.01, K2 0.03, where the window fits in; a side shorter than that is continued
@@ -111,27 +113,32 @@ def ssim(actual: Array, expected: Array, *, linear: bool = True) -> float:
     Raises:
         UsageError: the sizes differ.
     """
-    one, other = _pair(actual, expected)
-    broken = _broken(one, other)
-    first, second = (_encoded(_finite(item)) if linear else _finite(item) for item in (one, other))
+    actual_numbers, expected_numbers = _check_pair(actual, expected)
+    broken = _find_broken(actual_numbers, expected_numbers)
+    first, second = (
+        _encode_srgb(_zero_non_finite(item)) if linear else _zero_non_finite(item)
+        for item in (actual_numbers, expected_numbers)
+    )
     first, second = np.where(broken, 0.0, first), np.where(broken, 0.0, second)
     span = max(1.0, float(np.abs(first).max()), float(np.abs(second).max()))
     low, high = (_K1 * span) ** 2, (_K2 * span) ** 2
     total, count = 0.0, 0
     for channel in range(first.shape[2]):
         a, b = first[..., channel], second[..., channel]
-        mean_a, mean_b = _windowed(a), _windowed(b)
-        square = mean_a**2 + mean_b**2
-        both = _windowed(a * b) - mean_a * mean_b
-        spread = _windowed(a**2 + b**2) - square
-        found = (2.0 * mean_a * mean_b + low) * (2.0 * both + high) / ((square + low) * (spread + high))
+        mean_a, mean_b = _gaussian_mean(a), _gaussian_mean(b)
+        squared_means = mean_a**2 + mean_b**2
+        covariance = _gaussian_mean(a * b) - mean_a * mean_b
+        variances = _gaussian_mean(a**2 + b**2) - squared_means
+        similarity = (
+            (2.0 * mean_a * mean_b + low) * (2.0 * covariance + high) / ((squared_means + low) * (variances + high))
+        )
         if broken[..., channel].any():
-            found[_windowed(broken[..., channel].astype(np.float64)) > 0.0] = 0.0
-        total, count = total + float(found.sum()), count + found.size
+            similarity[_gaussian_mean(broken[..., channel].astype(np.float64)) > 0.0] = 0.0
+        total, count = total + float(similarity.sum()), count + similarity.size
     return total / count
 
 
-def flip(actual: Array, expected: Array, *, linear: bool = True) -> float:
+def measure_flip(actual: Array, expected: Array, *, linear: bool = True) -> float:
     """The mean of FLIP's map, 0 for equal pictures and at most 1, as OpenImageIO computes it.
 
     Scene-linear Rec.709 goes through HDR-FLIP (Andersson et al. 2021) at its fixed range of exposures, so that numbers
@@ -142,79 +149,89 @@ def flip(actual: Array, expected: Array, *, linear: bool = True) -> float:
     Raises:
         UsageError: the sizes differ, or this OpenImageIO is older than FLIP in it.
     """
-    one, other = _pair(actual, expected)
+    actual_numbers, expected_numbers = _check_pair(actual, expected)
     if not hasattr(oiio.ImageBufAlgo, "FLIP_diff"):
         raise UsageError(f"OpenImageIO {oiio.__version__} has no FLIP: use 3.2, or measure with another metric")
-    broken = np.any(_broken(one, other), axis=2)
-    pair = [three(np.where(broken[..., None], 0.0, _finite(item))).astype(np.float32) for item in (other, one)]
+    broken = np.any(_find_broken(actual_numbers, expected_numbers), axis=2)
+    pair = [
+        to_three_channels(np.where(broken[..., None], 0.0, _zero_non_finite(item))).astype(np.float32)
+        for item in (expected_numbers, actual_numbers)
+    ]
     pair = pair if linear else [decode_srgb(np.clip(item, 0.0, 1.0)).astype(np.float32) for item in pair]
     buffers = [oiio.ImageBuf(np.ascontiguousarray(item)) for item in pair]
-    found = oiio.ImageBufAlgo.FLIP_diff(*buffers, hdr=int(linear))
-    if found.has_error:
-        raise UsageError(f"FLIP cannot be computed ({found.geterror()}); measure with another metric")
-    each = np.asarray(found.get_pixels(oiio.FLOAT), np.float64)[..., 0]
-    return float(np.where(broken, 1.0, each).mean())
+    flip_map = oiio.ImageBufAlgo.FLIP_diff(*buffers, hdr=int(linear))
+    if flip_map.has_error:
+        raise UsageError(f"FLIP cannot be computed ({flip_map.geterror()}); measure with another metric")
+    errors = np.asarray(flip_map.get_pixels(oiio.FLOAT), np.float64)[..., 0]
+    return float(np.where(broken, 1.0, errors).mean())
 
 
-def amplified(actual: Array, expected: Array, gain: float | None = None) -> Array:
+def amplify_difference(actual: Array, expected: Array, gain: float | None = None) -> Array:
     """The absolute difference times `gain`, as [h, w, 3] of float32 within 0..1, to be shown as it is.
 
     Without a gain the largest difference is made 1. A difference of alpha is added as gray. Magenta is where one
     picture is larger than the other, or not finite where the other is.
     """
-    one, other = _picture(actual, "actual").astype(np.float64), _picture(expected, "expected").astype(np.float64)
-    height, width = (max(sides) for sides in zip(one.shape[:2], other.shape[:2], strict=True))
-    first, second = (_widened(item, height, width) for item in (one, other))
-    odd = np.any(_broken(first, second), axis=2)
-    difference = np.where(odd[..., None], 0.0, np.abs(_finite(first) - _finite(second)))
-    light = three(difference)
+    actual_numbers, expected_numbers = (
+        _check_picture(actual, "actual").astype(np.float64),
+        _check_picture(expected, "expected").astype(np.float64),
+    )
+    height, width = (max(sides) for sides in zip(actual_numbers.shape[:2], expected_numbers.shape[:2], strict=True))
+    first, second = (_pad_to(item, height, width) for item in (actual_numbers, expected_numbers))
+    broken = np.any(_find_broken(first, second), axis=2)
+    difference = np.where(broken[..., None], 0.0, np.abs(_zero_non_finite(first) - _zero_non_finite(second)))
+    light = to_three_channels(difference)
     if difference.shape[2] == 4:
         light = light + difference[..., 3:]
     largest = float(light.max(initial=0.0))
     factor = (1.0 / largest if largest else 1.0) if gain is None else gain
     light = np.clip(light * factor, 0.0, 1.0)
-    light[odd] = _ODD
+    light[broken] = _BROKEN_COLOR
     return light.astype(np.float32)
 
 
-def three(array: Array) -> Array:
+def to_three_channels(array: Array) -> Array:
     """[h, w, c] as three channels: one is gray, two are red and green, of more the first three."""
     if array.shape[2] == 1:
         return np.repeat(array, 3, axis=2)
     return np.pad(array, ((0, 0), (0, 0), (0, max(0, 3 - array.shape[2]))))[..., :3]
 
 
-def _picture(array: Array, name: str) -> Array:
-    found = as_float(np.asarray(array))
-    if found.ndim not in (2, 3) or not found.size or found.dtype.kind != "f":
+def _check_picture(array: Array, name: str) -> Array:
+    picture = as_float(np.asarray(array))
+    if picture.ndim not in (2, 3) or not picture.size or picture.dtype.kind != "f":
         raise UsageError(
-            f"the {name} picture is {found.dtype} {list(found.shape)}; give numbers as [height, width, channels]"
+            f"the {name} picture is {picture.dtype} {list(picture.shape)}; give numbers as [height, width, channels]"
         )
-    return found if found.ndim == 3 else found[..., None]
+    return picture if picture.ndim == 3 else picture[..., None]
 
 
-def _pair(actual: Array, expected: Array) -> tuple[Array, Array]:
-    one, other = _picture(actual, "actual"), _picture(expected, "expected")
-    if fault := _mismatch(one, other):
+def _check_pair(actual: Array, expected: Array) -> tuple[Array, Array]:
+    actual_picture, expected_picture = _check_picture(actual, "actual"), _check_picture(expected, "expected")
+    if fault := _describe_mismatch(actual_picture, expected_picture):
         raise UsageError(f"these pictures cannot be compared: {fault}")
-    return one.astype(np.float64), other.astype(np.float64)
+    return actual_picture.astype(np.float64), expected_picture.astype(np.float64)
 
 
-def _mismatch(one: Array, other: Array) -> str:
-    (height, width, channels), (wanted_height, wanted_width, wanted) = one.shape, other.shape
-    if (height, width) != (wanted_height, wanted_width):
-        return f"the size is {width}x{height}, and {wanted_width}x{wanted_height} is expected"
+def _describe_mismatch(actual: Array, expected: Array) -> str:
+    (height, width, channels), (expected_height, expected_width, expected_channels) = actual.shape, expected.shape
+    if (height, width) != (expected_height, expected_width):
+        return f"the size is {width}x{height}, and {expected_width}x{expected_height} is expected"
     plural = "" if channels == 1 else "s"
-    return "" if channels == wanted else f"it has {channels} channel{plural}, and {wanted} are expected"
+    return (
+        ""
+        if channels == expected_channels
+        else f"it has {channels} channel{plural}, and {expected_channels} are expected"
+    )
 
 
-def _broken(one: Array, other: Array) -> Array:
+def _find_broken(actual: Array, expected: Array) -> Array:
     """Where a number is not finite and the other is not the same."""
-    same = (one == other) | (np.isnan(one) & np.isnan(other))
-    return ~same & ~(np.isfinite(one) & np.isfinite(other))
+    same = (actual == expected) | (np.isnan(actual) & np.isnan(expected))
+    return ~same & ~(np.isfinite(actual) & np.isfinite(expected))
 
 
-def _finite(array: Array) -> Array:
+def _zero_non_finite(array: Array) -> Array:
     return np.where(np.isfinite(array), array, 0.0)
 
 
@@ -225,12 +242,12 @@ def _psnr(rms: float, *numbers: Array) -> float:
     return -inf if rms == inf else 20.0 * log10(peak / rms)
 
 
-def _encoded(linear: Array) -> Array:
+def _encode_srgb(linear: Array) -> Array:
     size = np.abs(linear)
     return np.copysign(np.where(size <= 0.0031308, 12.92 * size, 1.055 * size ** (1.0 / 2.4) - 0.055), linear)
 
 
-def _windowed(channel: Array) -> Array:
+def _gaussian_mean(channel: Array) -> Array:
     """The Gaussian mean around every pixel whose window fits in."""
     place = np.arange(_TAPS) - _TAPS // 2
     weights = np.exp(-(place**2) / (2.0 * _SIGMA**2))
@@ -245,7 +262,7 @@ def _windowed(channel: Array) -> Array:
     return channel
 
 
-def _widened(array: Array, height: int, width: int) -> Array:
+def _pad_to(array: Array, height: int, width: int) -> Array:
     """The same on a larger canvas, NaN where there is nothing."""
     around = ((0, height - array.shape[0]), (0, width - array.shape[1]), (0, 0))
     return np.pad(array, around, constant_values=nan)

@@ -13,7 +13,7 @@ from halation.nodes import BuiltInScene, Scene
 from ...errors import InputError
 from ...resources.input_files import check_inside, fingerprint
 from ...resources.mesh import ATTRIBUTES, Mesh
-from .built_in import BUILT_IN, Piece
+from .built_in import BUILT_IN, MeshPart
 
 Array = np.ndarray
 MESH_ENDINGS = frozenset({".glb", ".gltf", ".obj", ".ply", ".stl"})
@@ -36,68 +36,68 @@ def load_mesh(scene: Scene) -> Mesh:
 @lru_cache(maxsize=8)
 def _load(scene: Scene, mark: str) -> Mesh:
     if isinstance(scene, BuiltInScene):
-        return _joined(BUILT_IN[scene.name]())
-    pieces = _pieces(scene.path)
+        return _join_parts(BUILT_IN[scene.name]())
+    parts = _read_parts(scene.path)
     if scene.up == "y":
-        pieces = [piece.turned(_Y_UP) for piece in pieces]
-    return _joined(pieces)
+        parts = [part.rotate(_Y_UP) for part in parts]
+    return _join_parts(parts)
 
 
-def _joined(pieces: list[Piece]) -> Mesh:
+def _join_parts(parts: list[MeshPart]) -> Mesh:
     """All pieces as one; objects and materials count from 1."""
     vertices: list[Array] = []
     indices: list[Array] = []
     materials: dict[tuple[float, ...], int] = {}
     start = 0
-    for number, piece in enumerate(pieces, 1):
-        material = materials.setdefault(piece.material, len(materials) + 1)
-        block = np.empty((len(piece.places), _COLUMNS), np.float32)
-        constant = (*piece.albedo, *piece.emission, piece.metal, piece.rough, number, material, float(piece.moving))
-        block[:, 0:3], block[:, 3:6], block[:, 6:8], block[:, 8:] = piece.places, piece.normals, piece.uvs, constant
+    for number, part in enumerate(parts, 1):
+        material = materials.setdefault(part.material, len(materials) + 1)
+        block = np.empty((len(part.positions), _COLUMNS), np.float32)
+        constant = (*part.albedo, *part.emission, part.metal, part.rough, number, material, float(part.is_moving))
+        block[:, 0:3], block[:, 3:6], block[:, 6:8], block[:, 8:] = part.positions, part.normals, part.uvs, constant
         vertices.append(block)
-        indices.append(piece.triangles.astype(np.uint32).ravel() + np.uint32(start))
+        indices.append(part.triangles.astype(np.uint32).ravel() + np.uint32(start))
         start += len(block)
-    whole, order = np.concatenate(vertices), np.concatenate(indices)
-    digest = blake2b(whole.tobytes(), digest_size=16)
-    digest.update(order.tobytes())
-    return Mesh(digest.hexdigest(), whole, order)
+    all_vertices, all_indices = np.concatenate(vertices), np.concatenate(indices)
+    digest = blake2b(all_vertices.tobytes(), digest_size=16)
+    digest.update(all_indices.tobytes())
+    return Mesh(digest.hexdigest(), all_vertices, all_indices)
 
 
-def _pieces(path: str) -> list[Piece]:
+def _read_parts(path: str) -> list[MeshPart]:
     """The meshes of a file where they stand."""
     import trimesh
 
     if not Path(path).is_file():
         raise InputError(f"{path}: there is no such file: choose a .glb, .gltf, .obj, .ply or .stl")
     try:
-        scene: Any = trimesh.load_scene(path, resolver=_resolver(path))
-        found = [_piece(scene, name) for name in scene.graph.nodes_geometry]
+        scene: Any = trimesh.load_scene(path, resolver=_make_resolver(path))
+        nodes = [_read_part(scene, name) for name in scene.graph.nodes_geometry]
     except InputError:
         raise
     except Exception as fault:
         reason = (str(fault).strip() or type(fault).__name__).splitlines()[0]
         raise InputError(f"{path}: is no mesh that can be read: {reason}") from fault
-    pieces = [piece for piece in found if piece is not None]
-    if not pieces:
+    parts = [part for part in nodes if part is not None]
+    if not parts:
         raise InputError(f"{path}: holds no triangles")
-    if sum(len(piece.triangles) for piece in pieces) > _MOST_TRIANGLES:
+    if sum(len(piece.triangles) for piece in parts) > _MOST_TRIANGLES:
         raise InputError(f"{path}: holds more than {_MOST_TRIANGLES:,} triangles: thin it out first")
-    return pieces
+    return parts
 
 
-def _resolver(path: str) -> Any:
+def _make_resolver(path: str) -> Any:
     """Finds the files that a mesh names, such as buffers and materials, as far as they may be read."""
     from trimesh.resolvers import FilePathResolver
 
-    class Fenced(FilePathResolver):
+    class SandboxedResolver(FilePathResolver):
         def get(self, name: str) -> bytes:
             check_inside(Path(self.parent, name.strip()))
             return super().get(name)
 
-    return Fenced(path)
+    return SandboxedResolver(path)
 
 
-def _piece(scene: Any, node: str) -> Piece | None:
+def _read_part(scene: Any, node: str) -> MeshPart | None:
     matrix, geometry = scene.graph[node]
     mesh = scene.geometry[geometry]
     if len(getattr(mesh, "faces", ())) == 0:
@@ -106,20 +106,20 @@ def _piece(scene: Any, node: str) -> Piece | None:
     mesh.apply_transform(matrix)
     visual = getattr(mesh, "visual", None)
     uvs, material = getattr(visual, "uv", None), getattr(visual, "material", None)
-    return Piece(
+    return MeshPart(
         np.asarray(mesh.vertices),
         np.asarray(mesh.vertex_normals),
         np.asarray(mesh.faces),
         np.zeros((len(mesh.vertices), 2)) if uvs is None else np.asarray(uvs)[:, :2],
-        albedo=_color(visual, material),
-        emission=_factor(material, "emissiveFactor", (0.0, 0.0, 0.0)),
-        metal=_number(material, "metallicFactor", 0.0),
-        rough=_number(material, "roughnessFactor", 0.6),
-        moving=True,
+        albedo=_base_color(visual, material),
+        emission=_color_factor(material, "emissiveFactor", (0.0, 0.0, 0.0)),
+        metal=_number_factor(material, "metallicFactor", 0.0),
+        rough=_number_factor(material, "roughnessFactor", 0.6),
+        is_moving=True,
     )
 
 
-def _color(visual: Any, material: Any) -> tuple[float, float, float]:
+def _base_color(visual: Any, material: Any) -> tuple[float, float, float]:
     """The base color: scene-linear in glTF; the other formats mean sRGB."""
     from ...color.transforms import as_float, decode_srgb
 
@@ -133,14 +133,14 @@ def _color(visual: Any, material: Any) -> tuple[float, float, float]:
     return red, green, blue
 
 
-def _factor(material: Any, name: str, default: tuple[float, float, float]) -> tuple[float, float, float]:
-    given = getattr(material, name, None)
-    if given is None:
+def _color_factor(material: Any, name: str, default: tuple[float, float, float]) -> tuple[float, float, float]:
+    factor = getattr(material, name, None)
+    if factor is None:
         return default
-    red, green, blue = (float(part) for part in np.asarray(given)[:3])
+    red, green, blue = (float(part) for part in np.asarray(factor)[:3])
     return red, green, blue
 
 
-def _number(material: Any, name: str, default: float) -> float:
-    given = getattr(material, name, None)
-    return default if given is None else float(given)
+def _number_factor(material: Any, name: str, default: float) -> float:
+    factor = getattr(material, name, None)
+    return default if factor is None else float(factor)

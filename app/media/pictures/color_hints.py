@@ -6,11 +6,11 @@ import OpenImageIO as oiio
 
 from ...color.file_space import SRGB, Hints
 from ...color.management import LINEAR_REC709
-from ..info import space as tag_of
-from ..info import text
+from ..info import make_printable
+from ..info import read_color_tag as tag_of
 
 
-def hints_of(spec: oiio.ImageSpec, format: str, integer: bool) -> Hints:
+def read_color_hints(spec: oiio.ImageSpec, format: str, integer: bool) -> Hints:
     """What a header says of its color."""
     tag, usual = tag_of(spec), ""
     if format != "openexr" and tag in (SRGB, "sRGB"):  # as good as nothing: readers say so of any picture
@@ -21,7 +21,7 @@ def hints_of(spec: oiio.ImageSpec, format: str, integer: bool) -> Hints:
     return Hints(
         tag,
         usual,
-        text(spec.get_string_attribute("ICCProfile:profile_description")),
+        make_printable(spec.get_string_attribute("ICCProfile:profile_description")),
         tuple(primaries) if isinstance(primaries, tuple) else (),
         integer,
     )

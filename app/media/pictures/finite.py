@@ -14,30 +14,30 @@ _BAND = 1 << 17
 """Numbers that are looked at together: they stay in the caches of a processor."""
 
 
-def not_finite(array: Array) -> Array:
+def find_non_finite(array: Array) -> Array:
     """Where an array is NaN or infinite; bits are compared, since numpy is slow on halves."""
     if array.dtype == np.float16:
         return (array.view(np.uint16) & _INFINITE) == _INFINITE
     return ~np.isfinite(array)
 
 
-def has_bad(array: Array) -> bool:
+def has_non_finite(array: Array) -> bool:
     """True if anything is NaN or infinite."""
-    return any(not_finite(array[rows]).any() for rows in _bands(array))
+    return any(find_non_finite(array[rows]).any() for rows in _row_slices(array))
 
 
-def as_half(array: Array) -> Array:
+def to_half(array: Array) -> Array:
     """Half floats, rounded to nearest even; what is beyond their range is clamped, and NaN is always the same NaN."""
-    if array.dtype == np.float16 and not has_bad(array):
+    if array.dtype == np.float16 and not has_non_finite(array):
         return array
-    made = np.empty(array.shape, np.float16)
-    for rows in _bands(array):
-        np.clip(array[rows], -HALF_MAX, HALF_MAX, out=made[rows], casting="same_kind")
+    halves = np.empty(array.shape, np.float16)
+    for rows in _row_slices(array):
+        np.clip(array[rows], -HALF_MAX, HALF_MAX, out=halves[rows], casting="same_kind")
         if np.isnan(array[rows]).any():
-            made[rows][np.isnan(array[rows])] = np.nan
-    return made
+            halves[rows][np.isnan(array[rows])] = np.nan
+    return halves
 
 
-def _bands(array: Array) -> Iterator[slice]:
+def _row_slices(array: Array) -> Iterator[slice]:
     step = max(1, _BAND * len(array) // max(1, array.size))
     return (slice(row, row + step) for row in range(0, len(array), step))

@@ -13,15 +13,15 @@ from halation.nodes import Kind, Size
 from ...color.encoding import Encoding
 from ...color.transforms import Array
 from ...errors import OutputError
-from ...resources.atomic_write import reason_of, unfinished
+from ...resources.atomic_write import describe_write_error, replace_file
 from ..metadata import add_metadata
-from .writer import Precision, encoder_of, exr_parts, refusal
+from .writer import Precision, encode_exr_parts, encoder_error, open_encoder
 
 _BLOCK = 2**16
 """Bytes that a disk should have left."""
 
 
-class RowFile:
+class ScanlineFile:
     """An EXR of one layer of `size` and `kind`, the same that `write` makes of all rows together.
 
     It is there when it is closed, and not before. Raises OutputError.
@@ -42,15 +42,15 @@ class RowFile:
         self._path, self._size, self._name, self._kind, self._metadata = path, size, name, kind, metadata
         self._precision: Precision = precision
         self._compression, self._encoding = compression, encoding
-        self._output = encoder_of(path, "openexr")
+        self._output = open_encoder(path, "openexr")
         self._row = 0
         self._open = ExitStack()
-        self._part, self._target = self._open.enter_context(unfinished(path))
+        self._part, self._target = self._open.enter_context(replace_file(path))
 
     def add(self, rows: Array) -> None:
         """Write the next rows: [rows, width, channels]."""
         layers, kinds = {self._name: rows}, {self._name: self._kind}
-        (part,) = exr_parts(layers, kinds, self._precision, self._compression, self._encoding)
+        (part,) = encode_exr_parts(layers, kinds, self._precision, self._compression, self._encoding)
         if not self._row:
             part.spec.height = part.spec.full_height = self._size[1]
             add_metadata(part.spec, self._metadata, "openexr")
@@ -69,7 +69,7 @@ class RowFile:
                 os.fsync(file.fileno())
             self._part.replace(self._target)
         except OSError as error:
-            raise OutputError(f"{self._path}: cannot be written: {reason_of(error)}") from error
+            raise OutputError(f"{self._path}: cannot be written: {describe_write_error(error)}") from error
         finally:
             self.abort()
 
@@ -85,5 +85,5 @@ class RowFile:
             with self._part.open("ab") as file:  # the encoder does not know why, but the system does
                 file.write(bytes(_BLOCK))
         except OSError as error:
-            raise OutputError(f"{self._path}: cannot be written: {reason_of(error)}") from error
-        raise refusal(self._path, said)
+            raise OutputError(f"{self._path}: cannot be written: {describe_write_error(error)}") from error
+        raise encoder_error(self._path, said)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...color.transforms import Array
 from ...errors import InputError
-from ..info import described, fault, opened
+from ..info import describe_fault, describe_picture, open_picture
 
 
 def stored(path: str | Path) -> Mapping[str, Array]:
@@ -19,13 +19,13 @@ def stored(path: str | Path) -> Mapping[str, Array]:
         InputError: the file cannot be read.
     """
     found: dict[str, Array] = {}
-    with opened(path) as handle:
-        described(handle, str(path))
+    with open_picture(path) as handle:
+        describe_picture(handle, str(path))
         while handle.seek_subimage(len(found), 0):
             spec = handle.spec()
             block = handle.read_image(len(found), 0, 0, spec.nchannels, str(spec.format))
             if block is None:
-                raise InputError(f"{path}: {fault(handle.geterror() or 'corrupt')}")
+                raise InputError(f"{path}: {describe_fault(handle.geterror() or 'corrupt')}")
             name = spec.get_string_attribute("oiio:subimagename") or spec.get_string_attribute("name")
             found[name if name and name not in found else f"part {len(found) + 1}" if found else ""] = np.asarray(block)
     return found

@@ -14,18 +14,18 @@ from halation.nodes import Kind
 
 from ...color.transforms import Array, to_display
 from ...errors import InputError, OutputError
-from ...resources.atomic_write import store
-from ..comparison.metrics import three
-from ..info import fault, opened
+from ...resources.atomic_write import write_atomically
+from ..comparison.metrics import to_three_channels
+from ..info import describe_fault, open_picture
 from ..metadata import read_metadata
-from .writer import write
+from .writer import write_picture
 
 _MAKER = ("halation:renderer", "halation:driver", "halation:version")
 _FLOATS = ("half", "float", "double")
 
 
 @dataclass(frozen=True)
-class Stored:
+class StoredPart:
     """One part of a file: [h, w, c] of float32 over its display window. Integers fill 0..1, alpha is as stored.
 
     `encoded` are integers, which are meant for a display as they are; `data` are numbers that are no color.
@@ -52,28 +52,28 @@ class Stored:
         return int(np.count_nonzero(np.any(wrong, axis=2)))
 
 
-def read_stored(path: str | Path) -> dict[str, Stored]:
+def read_stored(path: str | Path) -> dict[str, StoredPart]:
     """The parts of a file by name. Nothing is repaired or converted. Raises InputError."""
     count = 0
-    with opened(path) as handle:
+    with open_picture(path) as handle:
         while handle.seek_subimage(count, 0):
             count += 1
     wish = oiio.ImageSpec()
     wish.attribute("oiio:UnassociatedAlpha", 1)
-    found: dict[str, Stored] = {}
+    found: dict[str, StoredPart] = {}
     for index in range(count):
         buffer = oiio.ImageBuf(str(path), index, 0, wish)
         pixels = buffer.get_pixels(oiio.FLOAT, roi=buffer.roi_full) if buffer.read(index, 0, True, oiio.FLOAT) else None
         if pixels is None:
-            raise InputError(f"{path}: {fault(buffer.geterror() or 'corrupt')}")
+            raise InputError(f"{path}: {describe_fault(buffer.geterror() or 'corrupt')}")
         spec = buffer.spec()
         name = str(spec.get_string_attribute("oiio:subimagename")) or str(index or "")
         integers = str(buffer.nativespec().format) not in _FLOATS
-        found[name] = Stored(np.asarray(pixels), tuple(spec.channelnames), integers)
+        found[name] = StoredPart(np.asarray(pixels), tuple(spec.channelnames), integers)
     return found
 
 
-def maker(path: str | Path) -> str:
+def describe_maker(path: str | Path) -> str:
     """What rendered a picture: renderer, driver and version as its header has them, "" where it does not say."""
     said = read_metadata(path)
     parts = [str(said[key]) for key in _MAKER if said.get(key)]
@@ -82,7 +82,7 @@ def maker(path: str | Path) -> str:
     return ", ".join(parts)
 
 
-def keep(path: Path, source: Path) -> None:
+def copy_picture(path: Path, source: Path) -> None:
     """Replace a file by a copy of another, whole or not at all; its folder is made. Raises OutputError."""
 
     def copy(name: str) -> None:
@@ -92,21 +92,21 @@ def keep(path: Path, source: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as refusal:
         raise OutputError(f"{path}: its folder cannot be made ({refusal.strerror}); choose another") from None
-    store(path, copy, source.stat().st_size)
+    write_atomically(path, copy, source.stat().st_size)
 
 
-def codes_of(part: Stored, view: str = "", span: tuple[float, float] = (0.0, 1.0)) -> Array:
+def encode_for_viewing(part: StoredPart, view: str = "", span: tuple[float, float] = (0.0, 1.0)) -> Array:
     """[h, w, 3] of uint8 for people: light through a view over black, data with the ends of `span` black and white."""
     if part.encoded:
-        return _codes(three(part.array))
+        return _codes(to_three_channels(part.array))
     if part.data:
         low, high = span
         finite = np.nan_to_num(part.array, nan=low, posinf=high, neginf=low)
-        return _codes(three((finite - low) / ((high - low) or 1.0)))
+        return _codes(to_three_channels((finite - low) / ((high - low) or 1.0)))
     return to_display(np.ascontiguousarray(part.array[..., :3]), view)
 
 
-def png(codes: Array) -> bytes:
+def encode_png(codes: Array) -> bytes:
     """[h, w, 3] of uint8, or of numbers within 0..1, as the bytes of a PNG file."""
     buffer = oiio.ImageBuf(np.ascontiguousarray(codes if codes.dtype == np.uint8 else _codes(codes)))
     with tempfile.TemporaryDirectory(prefix="halation-") as folder:
@@ -118,7 +118,7 @@ def png(codes: Array) -> bytes:
 
 def write_difference(path: Path, differences: Mapping[str, Array]) -> None:
     """Absolute differences of layers as an EXR of 32 bits. Raises OutputError."""
-    write(path, differences, kinds=dict.fromkeys(differences, Kind.IMAGE), precision="float")
+    write_picture(path, differences, kinds=dict.fromkeys(differences, Kind.IMAGE), precision="float")
 
 
 def _codes(numbers: Array) -> Array:

@@ -10,14 +10,14 @@ from halation.nodes import Kind
 
 from ...color.transforms import NO_VIEW, Array, to_display
 from ...errors import InputError
-from ...resources.atomic_write import store
-from ..info import find_layer, info
-from ..pixels import read
+from ...resources.atomic_write import write_atomically
+from ..info import find_layer, read_info
+from ..pixels import read_layer
 
 _NO_PICTURES = ("null", "term", "ffmpeg", "openvdb", "ptex")
 
 
-def thumbnail(path: str | Path, width: int, height: int) -> Array:
+def make_thumbnail(path: str | Path, width: int, height: int) -> Array:
     """The first color layer within `width` x `height` pixels over black, as [h, w, 3] of uint8, sRGB.
 
     Floating-point color is seen through the default view; data and what is encoded already are shown as they are.
@@ -25,20 +25,20 @@ def thumbnail(path: str | Path, width: int, height: int) -> Array:
     Raises:
         InputError: as `media.read`.
     """
-    layer = find_layer(info(path), "")
-    pixels = read(path, "", Kind.IMAGE).array
+    layer = find_layer(read_info(path), "")
+    pixels = read_layer(path, "", Kind.IMAGE).array
     step = max(1, min(pixels.shape[1] // (2 * width), pixels.shape[0] // (2 * height)))
     small = np.ascontiguousarray(pixels[::step, ::step, :3], dtype=np.float32)
     scale = min(width / small.shape[1], height / small.shape[0], 1.0)
     if scale < 1.0:
         across, down = (max(1, round(side * scale)) for side in (small.shape[1], small.shape[0]))
         roi = oiio.ROI(0, across, 0, down)
-        made = oiio.ImageBufAlgo.resize(oiio.ImageBuf(small), filtername="box", roi=roi)
-        small = np.asarray(made.get_pixels(oiio.FLOAT), np.float32)
-    return to_display(small, "" if layer.format.startswith("float") and not layer.data else NO_VIEW)
+        resized = oiio.ImageBufAlgo.resize(oiio.ImageBuf(small), filtername="box", roi=roi)
+        small = np.asarray(resized.get_pixels(oiio.FLOAT), np.float32)
+    return to_display(small, "" if layer.format.startswith("float") and not layer.is_data else NO_VIEW)
 
 
-def readable() -> frozenset[str]:
+def list_readable_endings() -> frozenset[str]:
     """Endings of names of pictures that can be read, such as `.exr`."""
     formats = oiio.get_string_attribute("extension_list").split(";")
     entries = [entry.partition(":") for entry in formats if not entry.startswith(_NO_PICTURES)]
@@ -60,9 +60,9 @@ def save_thumbnail(path: str | Path, pixels: Array) -> None:
     height, width = pixels.shape[:2]
 
     def encode(name: str) -> None:
-        made = oiio.ImageOutput.create("png")
-        if made is not None and made.open(name, oiio.ImageSpec(width, height, 3, "uint8")):
-            made.write_image(np.ascontiguousarray(pixels))
-            made.close()
+        output = oiio.ImageOutput.create("png")
+        if output is not None and output.open(name, oiio.ImageSpec(width, height, 3, "uint8")):
+            output.write_image(np.ascontiguousarray(pixels))
+            output.close()
 
-    store(path, encode, pixels.nbytes)
+    write_atomically(path, encode, pixels.nbytes)

@@ -15,11 +15,11 @@ from msgspec import Struct
 from ...color.encoding import Encoding, png_space
 from ...color.transforms import Array
 from ...errors import OutputError, UsageError
-from ...resources.atomic_write import check_room, store
+from ...resources.atomic_write import check_writable, write_atomically
 from ..info import TAG
 from ..layers import is_depth
 from ..metadata import add_metadata
-from .finite import as_half
+from .finite import to_half
 
 _FORMATS = {
     ".exr": "openexr",
@@ -42,14 +42,14 @@ _STORED = {"uint8": "uint8", "uint16": "uint16", "float32": "float"}
 Precision = Literal["half", "float"]
 
 
-class Part(Struct, frozen=True):
+class EncodedPart(Struct, frozen=True):
     """What one part of a file will be."""
 
     spec: oiio.ImageSpec
     array: Array
 
 
-def write(
+def write_picture(
     path: str | Path,
     layers: Mapping[str, Array],
     *,
@@ -77,22 +77,22 @@ def write(
     layers = {name: array if array.ndim == 3 else array[..., None] for name, array in layers.items()}
     sizes = {name: (array.shape[1], array.shape[0]) for name, array in layers.items()}
     encoding = encoding or Encoding(view)
-    format = _checked(path, {name: kinds[name] for name in layers}, sizes, compression, encoding)
+    format = _check_layers(path, {name: kinds[name] for name in layers}, sizes, compression, encoding)
     metadata = metadata or {}
     if format == "openexr":
-        parts = exr_parts(layers, kinds, precision, compression, encoding)
+        parts = encode_exr_parts(layers, kinds, precision, compression, encoding)
     else:
-        shown = shown_layer(path, {name: kinds[name] for name in layers})
-        parts = [_picture(layers[shown], format, precision, compression, encoding)]
+        layer_name = choose_shown_layer(path, {name: kinds[name] for name in layers})
+        parts = [_encode_picture(layers[layer_name], format, precision, compression, encoding)]
     for part in parts:
         add_metadata(part.spec, metadata if part is parts[0] else {}, format)
     room = sum(part.array.nbytes for part in parts) + sum(len(str(value)) for value in metadata.values())
-    store(path, _encoder(path, format, parts), room)
+    write_atomically(path, _make_encoder(path, format, parts), room)
 
 
-def rounds(path: str | Path, kind: Kind, *, precision: Precision, encoding: Encoding) -> bool:
+def stores_halves(path: str | Path, kind: Kind, *, precision: Precision, encoding: Encoding) -> bool:
     """True if `write` stores the numbers of a layer as they are, but rounded to half floats."""
-    return _halved(kind, precision) and not encoding.space and Path(path).suffix.casefold() == ".exr"
+    return _is_stored_as_half(kind, precision) and not encoding.space and Path(path).suffix.casefold() == ".exr"
 
 
 def check_destination(
@@ -105,69 +105,71 @@ def check_destination(
     encoding: Encoding | None = None,
 ) -> None:
     """Refuse, before there are pixels, what `write` would refuse: the same errors, a full disk aside."""
-    _checked(path, kinds, sizes, compression, encoding or Encoding(view))
-    check_room(path)
+    _check_layers(path, kinds, sizes, compression, encoding or Encoding(view))
+    check_writable(path)
 
 
-def _checked(
+def _check_layers(
     path: str | Path, kinds: Mapping[str, Kind], sizes: Mapping[str, Size], compression: str, encoding: Encoding
 ) -> str:
     """The format, if the file can hold layers of these kinds and sizes. Raises UsageError."""
-    format = _format(Path(path))
+    format = _choose_format(Path(path))
     if not kinds:
         raise UsageError(f"{path}: there is nothing to write: the graph has no outputs")
     encoding.check()
     choices = _COMPRESSIONS.get(format, (compression,))
     if compression not in choices:
-        guess = difflib.get_close_matches(compression.casefold(), choices, 1, 0.4)
-        hint = f"did you mean '{guess[0]}'? Choose" if guess else "choose"
+        close_names = difflib.get_close_matches(compression.casefold(), choices, 1, 0.4)
+        hint = f"did you mean '{close_names[0]}'? Choose" if close_names else "choose"
         raise UsageError(f"{path}: there is no compression '{compression}': {hint} from {', '.join(choices)}")
     if format != "openexr":
-        shown_layer(path, kinds)
+        choose_shown_layer(path, kinds)
     elif len(set(sizes.values())) > 1:
-        said = ", ".join(f"'{name}' {width}x{height}" for name, (width, height) in sizes.items())
-        raise UsageError(f"{path}: one EXR holds layers of one size, but there are {said}: write them to several files")
+        sizes_text = ", ".join(f"'{name}' {width}x{height}" for name, (width, height) in sizes.items())
+        raise UsageError(
+            f"{path}: one EXR holds layers of one size, but there are {sizes_text}: write them to several files"
+        )
     return format
 
 
-def _format(path: Path) -> str:
+def _choose_format(path: Path) -> str:
     ending = path.suffix.casefold()
     if ending in _FORMATS:
         return _FORMATS[ending]
-    said = f"cannot write '{ending}' files" if ending else "its name has no ending that says what to write"
-    raise UsageError(f"{path}: {said}: use one of {', '.join(_FORMATS)}")
+    reason = f"cannot write '{ending}' files" if ending else "its name has no ending that says what to write"
+    raise UsageError(f"{path}: {reason}: use one of {', '.join(_FORMATS)}")
 
 
-def exr_parts(
+def encode_exr_parts(
     layers: Mapping[str, Array], kinds: Mapping[str, Kind], precision: Precision, compression: str, encoding: Encoding
-) -> list[Part]:
+) -> list[EncodedPart]:
     """The parts of an EXR that holds these layers, and the numbers that go into them."""
-    parts: list[Part] = []
+    parts: list[EncodedPart] = []
     for name, array in layers.items():
         color = kinds[name] in (Kind.IMAGE, Kind.COLOR)
-        half = _halved(kinds[name], precision)
+        half = _is_stored_as_half(kinds[name], precision)
         height, width, count = array.shape
         spec = oiio.ImageSpec(width, height, count, "half" if half else "float")
         prefix = f"{name}." if name and len(layers) > 1 else ""
-        spec.channelnames = tuple(prefix + letter for letter in _letters(name, kinds[name], count))
+        spec.channelnames = tuple(prefix + letter for letter in _channel_names(name, kinds[name], count))
         spec.alpha_channel = 3 if color and count == 4 else -1
         spec.attribute("compression", "zip" if compression in _EXR_LOSSY and not color else compression)
-        _tag(spec, encoding, color)
+        _tag_color(spec, encoding, color)
         if len(layers) > 1:
             spec.attribute("oiio:subimagename", name or "rgba")
         if color:
             array = encoding.numbers(array)
         if half:
-            array = as_half(array)
-        parts.append(Part(spec, np.ascontiguousarray(array)))
+            array = to_half(array)
+        parts.append(EncodedPart(spec, np.ascontiguousarray(array)))
     return parts
 
 
-def _halved(kind: Kind, precision: Precision) -> bool:
+def _is_stored_as_half(kind: Kind, precision: Precision) -> bool:
     return kind in (Kind.IMAGE, Kind.COLOR) and precision == "half"
 
 
-def _tag(spec: oiio.ImageSpec, encoding: Encoding, color: bool) -> None:
+def _tag_color(spec: oiio.ImageSpec, encoding: Encoding, color: bool) -> None:
     """Say in an EXR header what the numbers are."""
     spec.attribute("oiio:ColorSpace", encoding.header if color else "data")
     if not color or encoding.plain:
@@ -177,7 +179,7 @@ def _tag(spec: oiio.ImageSpec, encoding: Encoding, color: bool) -> None:
         spec.attribute("chromaticities", oiio.TypeDesc("float[8]"), encoding.gamut)
 
 
-def _letters(name: str, kind: Kind, count: int) -> str:
+def _channel_names(name: str, kind: Kind, count: int) -> str:
     if kind in (Kind.IMAGE, Kind.COLOR):
         return "RGBA"[:count] if count > 2 else "YA"[:count]
     if kind is Kind.VECTOR:
@@ -185,16 +187,18 @@ def _letters(name: str, kind: Kind, count: int) -> str:
     return "Z" if is_depth(name) else "Y"
 
 
-def shown_layer(path: str | Path, kinds: Mapping[str, Kind]) -> str:
+def choose_shown_layer(path: str | Path, kinds: Mapping[str, Kind]) -> str:
     """Which layer a format without layers shows: the first of color, else the first field."""
-    shown = [name for name in kinds if kinds[name] in (Kind.IMAGE, Kind.COLOR)]
-    shown = shown or [name for name in kinds if kinds[name] is not Kind.VECTOR]
-    if not shown:
+    candidates = [name for name in kinds if kinds[name] in (Kind.IMAGE, Kind.COLOR)]
+    candidates = candidates or [name for name in kinds if kinds[name] is not Kind.VECTOR]
+    if not candidates:
         raise UsageError(f"{path}: vectors are data, not a picture: write them to an .exr file")
-    return shown[0]
+    return candidates[0]
 
 
-def _picture(array: Array, format: str, precision: Precision, compression: str, encoding: Encoding) -> Part:
+def _encode_picture(
+    array: Array, format: str, precision: Precision, compression: str, encoding: Encoding
+) -> EncodedPart:
     """The one picture of a format that holds no layers."""
     if array.shape[2] < 3:
         array = array[..., :1].repeat(3, axis=2)
@@ -218,24 +222,26 @@ def _picture(array: Array, format: str, precision: Precision, compression: str, 
         spec.attribute("oiio:UnassociatedAlpha", 1)
     if format == "png" and encoding.shown_as != "srgb_rec709_scene":
         spec.attribute(TAG, encoding.shown_as)
-    return Part(spec, np.ascontiguousarray(array))
+    return EncodedPart(spec, np.ascontiguousarray(array))
 
 
-def _encoder(path: str | Path, format: str, parts: Sequence[Part]) -> Callable[[str], None]:
+def _make_encoder(path: str | Path, format: str, parts: Sequence[EncodedPart]) -> Callable[[str], None]:
     def encode(file: str) -> None:
-        output, first = encoder_of(path, format), parts[0].spec
-        done = output.open(file, tuple(part.spec for part in parts)) if len(parts) > 1 else output.open(file, first)
+        output, first = open_encoder(path, format), parts[0].spec
+        succeeded = (
+            output.open(file, tuple(part.spec for part in parts)) if len(parts) > 1 else output.open(file, first)
+        )
         for index, part in enumerate(parts):
-            done = done and (index == 0 or output.open(file, part.spec, "AppendSubimage"))
-            done = done and output.write_image(part.array)
-        said = output.geterror()
-        if not (output.close() and done):
-            raise refusal(path, said or output.geterror())
+            succeeded = succeeded and (index == 0 or output.open(file, part.spec, "AppendSubimage"))
+            succeeded = succeeded and output.write_image(part.array)
+        message = output.geterror()
+        if not (output.close() and succeeded):
+            raise encoder_error(path, message or output.geterror())
 
     return encode
 
 
-def encoder_of(path: str | Path, format: str) -> oiio.ImageOutput:
+def open_encoder(path: str | Path, format: str) -> oiio.ImageOutput:
     """What writes files of a format. Raises OutputError where there is nothing."""
     output = oiio.ImageOutput.create(format)
     if output is None:
@@ -243,7 +249,7 @@ def encoder_of(path: str | Path, format: str) -> oiio.ImageOutput:
     return output
 
 
-def refusal(path: str | Path, said: str) -> OutputError:
+def encoder_error(path: str | Path, message: str) -> OutputError:
     """What an encoder said when it could not write a file."""
-    lines = said.strip().splitlines()
+    lines = message.strip().splitlines()
     return OutputError(f"{path}: cannot be written: {lines[0] if lines else 'the encoder gave no reason'}")

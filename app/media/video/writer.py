@@ -15,8 +15,8 @@ from halation.nodes import Kind, Size
 
 from ...color.encoding import Encoding
 from ...errors import OutputError
-from ...resources.atomic_write import check_room, reason_of, unfinished
-from ..pictures.writer import shown_layer
+from ...resources.atomic_write import check_writable, describe_write_error, replace_file
+from ..pictures.writer import choose_shown_layer
 from .codecs import find_codec
 from .library import library
 from .signals import Array, from_rgb, scales
@@ -45,8 +45,8 @@ def check_video(
 ) -> None:
     """Refuse, before there are pixels, what a `VideoFile` would refuse. Raises UsageError, OutputError."""
     encoding.check()
-    find_codec(path, codec, sizes[shown_layer(path, kinds)])
-    check_room(path)
+    find_codec(path, codec, sizes[choose_shown_layer(path, kinds)])
+    check_writable(path)
 
 
 class VideoFile:
@@ -73,7 +73,7 @@ class VideoFile:
         self._codec, self._encoding = find_codec(path, codec, size), encoding or Encoding()
         self._format, self._count = self._codec.pixels[deep], 0
         self._av, self._open = library(), ExitStack()
-        self._part, self._target = self._open.enter_context(unfinished(path))
+        self._part, self._target = self._open.enter_context(replace_file(path))
         try:
             self._container, self._stream = self._opened(_tags(metadata or {}))
         except BaseException:
@@ -82,7 +82,7 @@ class VideoFile:
 
     def add(self, layers: Mapping[str, Array], kinds: Mapping[str, Kind]) -> None:
         """Write one more frame: the first picture among the layers, [h, w, c]. Raises OutputError."""
-        picture = layers[shown_layer(self.path, kinds)]
+        picture = layers[choose_shown_layer(self.path, kinds)]
         height, width = picture.shape[:2]
         if (width, height) != self.size:
             here, there = f"{width}x{height}", f"{self.size[0]}x{self.size[1]}"
@@ -101,7 +101,7 @@ class VideoFile:
                 os.fsync(file.fileno())
             self._part.replace(self._target)
         except OSError as error:
-            raise OutputError(f"{self.path}: cannot be written: {reason_of(error)}") from error
+            raise OutputError(f"{self.path}: cannot be written: {describe_write_error(error)}") from error
         finally:
             self.abort()
 
@@ -147,7 +147,7 @@ class VideoFile:
         try:
             return act()
         except (self._av.FFmpegError, OSError, MemoryError) as error:
-            raise OutputError(f"{self.path}: cannot be written: {reason_of(error)}") from error
+            raise OutputError(f"{self.path}: cannot be written: {describe_write_error(error)}") from error
 
     def _quietly(self, container: Any) -> None:
         try:

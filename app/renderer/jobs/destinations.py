@@ -119,7 +119,9 @@ def halves(files: Sequence[Destination], writing: Writing) -> frozenset[str]:
     found, rest = set[str](), set[str]()
     for file in files:
         for layer, name in file.layers.items():
-            rounds = media.rounds(file.path, file.kinds[layer], precision=writing.precision, encoding=file.encoding)
+            rounds = media.stores_halves(
+                file.path, file.kinds[layer], precision=writing.precision, encoding=file.encoding
+            )
             (found if rounds else rest).add(name)
     return frozenset(found - rest)
 

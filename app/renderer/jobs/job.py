@@ -19,7 +19,7 @@ from ... import media
 from ...compiler import Pass, Plan
 from ...errors import HalationError, UsageError
 from ...graph import Graph
-from ...resources.atomic_write import sweep
+from ...resources.atomic_write import remove_abandoned_files
 from ..engine import Renderer, RenderRequest
 from ..execution.decoding import Array
 from ..frame_renderer import FrameRenderer
@@ -157,7 +157,7 @@ class _Job:
             )
         if self._resume:
             for folder in {file.path.parent for files in self._files.values() for file in files}:
-                sweep(folder)
+                remove_abandoned_files(folder)
         todo = deque(self._frames)
         task = self._next(todo)
         if task is not None:
@@ -283,7 +283,7 @@ class _Job:
                 if file.path in self._writing.videos:
                     self._films.add(file, layers, said)
                     continue
-                media.write(
+                media.write_picture(
                     file.path,
                     layers,
                     kinds=file.kinds,

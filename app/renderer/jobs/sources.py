@@ -24,7 +24,7 @@ from ...resources.picture import Picture
 if TYPE_CHECKING:
     from halation.nodes import Missing
 
-    from ...inputs.provider import Pictures
+    from ...inputs.provider import MediaProvider
 
 
 class Source(Struct, frozen=True):
@@ -88,7 +88,7 @@ class Hashes:
 class Sources:
     """Finds what the frames of a graph read."""
 
-    def __init__(self, pictures: Pictures, graph: Graph, bound: Mapping[str, Picture]) -> None:
+    def __init__(self, pictures: MediaProvider, graph: Graph, bound: Mapping[str, Picture]) -> None:
         self._pictures, self._graph, self._bound = pictures, graph, bound
         self._led: dict[str, dict[int, str]] = {}
 

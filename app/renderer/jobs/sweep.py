@@ -15,7 +15,7 @@ from msgspec import structs
 
 from ...errors import UsageError
 from ...graph import OUTPUTS, Graph, Port
-from ...media.comparison.contact_sheet import data_shown, grid_sheet, grouped_sheet, shown_over_checker
+from ...media.comparison.contact_sheet import make_grid_sheet, make_grouped_sheet, show_data, show_over_checker
 from ..engine import Renderer, RenderRequest
 from ..execution.decoding import Array
 from ..frame_renderer import FrameRenderer
@@ -136,10 +136,10 @@ def sweep(
         heads = [[f"{axis.label} {step.text}" for step in axis.steps] for axis in axes]
         across = len(heads[1])
         rows = [light[start : start + across] for start in range(0, len(light), across)]
-        return Sheet(grid_sheet(rows, *heads, width=swept.width, title=swept.title), found, tuple(files))
+        return Sheet(make_grid_sheet(rows, *heads, width=swept.width, title=swept.title), found, tuple(files))
     named = dict(zip((cell.label for cell in found), light, strict=True))
     columns = swept.columns or _columns(len(named), light[0])
-    sheet = grouped_sheet({swept.title: named}, columns, swept.width, letters=LETTERS)
+    sheet = make_grouped_sheet({swept.title: named}, columns, swept.width, letters=LETTERS)
     return Sheet(sheet, found, tuple(files))
 
 
@@ -172,11 +172,11 @@ def _lights(graph: Graph, pictures: Sequence[Array], swept: Swept) -> list[Array
     socket = graph.target(port) if port.node == OUTPUTS else graph.source(port)
     kind = socket.kind if isinstance(socket, Socket) else Kind.IMAGE
     if kind in (Kind.IMAGE, Kind.COLOR):
-        return [shown_over_checker(_wide(array), swept.view) for array in pictures]
+        return [show_over_checker(_wide(array), swept.view) for array in pictures]
     finite = [array[np.isfinite(array)].astype(np.float64) for array in pictures]
     low = min((float(part.min()) for part in finite if part.size), default=0.0)
     high = max((float(part.max()) for part in finite if part.size), default=1.0)
-    return [data_shown(_wide(array), min(low, 0.0), high if high > low else low + 1.0) for array in pictures]
+    return [show_data(_wide(array), min(low, 0.0), high if high > low else low + 1.0) for array in pictures]
 
 
 def _wide(array: Array) -> Array:

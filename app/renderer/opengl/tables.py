@@ -5,12 +5,12 @@ from __future__ import annotations
 import moderngl
 import numpy as np
 
-from ...resources.color_program import Table
+from ...resources.color_program import LookupTable
 
 MAX_TABLES = 64
 
 
-def table_texture(context: moderngl.Context, table: Table) -> moderngl.Texture | moderngl.Texture3D:
+def table_texture(context: moderngl.Context, table: LookupTable) -> moderngl.Texture | moderngl.Texture3D:
     """A table on the device, clamped at its edges."""
     values = np.ascontiguousarray(table.values, np.float32)
     *depth, height, width, channels = values.shape
@@ -30,9 +30,9 @@ class Tables:
 
     def __init__(self, context: moderngl.Context) -> None:
         self._context = context
-        self._known: dict[Table, moderngl.Texture | moderngl.Texture3D] = {}
+        self._known: dict[LookupTable, moderngl.Texture | moderngl.Texture3D] = {}
 
-    def use(self, table: Table, unit: int) -> None:
+    def use(self, table: LookupTable, unit: int) -> None:
         """Bind a table to a texture unit."""
         known = self._known.pop(table, None)
         if known is None:

@@ -13,7 +13,7 @@ import numpy as np
 from ...color.management import color_digest
 from ...errors import DeviceError, UsageError
 from ...graph import Graph, color_settings, node_output
-from ...media.comparison.metrics import CODE, Compared, compare
+from ...media.comparison.metrics import EIGHT_BIT_STEP, PictureDifference, compare_pictures
 from ...media.pictures.same_numbers import stored
 from ...resources.sandbox import ROOT
 from ...version import VERSION
@@ -27,7 +27,7 @@ from ..pinned import open_pinned
 from .finding import Found, pointed
 from .recipe import Recipe
 
-ELSEWHERE = CODE
+ELSEWHERE = EIGHT_BIT_STEP
 """How far pictures of different renderers may be apart: one step of 8 bits, of the light itself where it is over 1."""
 
 _PINNED = "128 bits)"
@@ -50,7 +50,7 @@ class Layer:
 
     name: str
     farthest: float
-    compared: Compared
+    compared: PictureDifference
 
 
 @dataclass(frozen=True)
@@ -118,13 +118,13 @@ def compared(actual: Mapping[str, Array], expected: Mapping[str, Array]) -> tupl
     for name in dict.fromkeys((*expected, *actual)):
         if name not in actual or name not in expected:
             gone = "it was not made again" if name in expected else "it was not there before"
-            layers.append(Layer(name, np.inf, Compared(fault=gone)))
+            layers.append(Layer(name, np.inf, PictureDifference(fault=gone)))
             continue
         one, other = actual[name], expected[name]
         if one.dtype != other.dtype:
-            layers.append(Layer(name, np.inf, Compared(fault=f"it is {one.dtype} now, and was {other.dtype}")))
+            layers.append(Layer(name, np.inf, PictureDifference(fault=f"it is {one.dtype} now, and was {other.dtype}")))
             continue
-        measured = compare(one, other, perceptual=False, threshold=0.0)
+        measured = compare_pictures(one, other, perceptual=False, threshold=0.0)
         layers.append(Layer(name, np.inf if measured.fault else _farthest(one, other), measured))
     return tuple(layers)
 

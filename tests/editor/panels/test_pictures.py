@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from halation.editor.toolkit.thumbnails import Pictures
 from halation.errors import InputError
-from halation.media import write
-from halation.media.pictures.thumbnail import load_thumbnail, readable, save_thumbnail, thumbnail
+from halation.media import write_picture
+from halation.media.pictures.thumbnail import list_readable_endings, load_thumbnail, make_thumbnail, save_thumbnail
 from halation.nodes import Kind
 
 
 def picture(path: Path, value: float, width: int = 400, height: int = 100) -> Path:
     array = np.full((height, width, 4), value, np.float32)
     array[..., 3] = 1.0
-    write(path, {"image": array}, kinds={"image": Kind.IMAGE}, view="none")
+    write_picture(path, {"image": array}, kinds={"image": Kind.IMAGE}, view="none")
     return path
 
 
@@ -30,18 +30,18 @@ def ready(pictures: Pictures, path: Path, at: float = 1.0):
 
 
 def test_a_thumbnail_keeps_the_shape_and_the_color(tmp_path: Path) -> None:
-    small = thumbnail(picture(tmp_path / "a.png", 0.2140), 64, 64)
+    small = make_thumbnail(picture(tmp_path / "a.png", 0.2140), 64, 64)
     assert small.shape == (16, 64, 3)
     assert np.abs(small.astype(int) - 128).max() <= 1
 
 
 def test_small_pictures_are_not_enlarged(tmp_path: Path) -> None:
-    assert thumbnail(picture(tmp_path / "a.png", 0.5, 8, 4), 64, 64).shape == (4, 8, 3)
+    assert make_thumbnail(picture(tmp_path / "a.png", 0.5, 8, 4), 64, 64).shape == (4, 8, 3)
 
 
 def test_light_is_seen_through_the_view(tmp_path: Path) -> None:
     """Light eight times as bright as white is still told from white."""
-    bright, white = (thumbnail(picture(tmp_path / f"{at}.exr", at), 64, 64) for at in (8.0, 1.0))
+    bright, white = (make_thumbnail(picture(tmp_path / f"{at}.exr", at), 64, 64) for at in (8.0, 1.0))
     assert bright.mean() > white.mean() + 10
     assert white.mean() < 254
 
@@ -90,5 +90,5 @@ def test_only_what_was_asked_for_last_waits(tmp_path: Path) -> None:
 
 
 def test_pictures_are_told_by_their_endings() -> None:
-    assert {".exr", ".png", ".jpg", ".tif", ".hdr", ".webp"} <= readable()
-    assert not {".json", ".null", ".py", ""} & readable()
+    assert {".exr", ".png", ".jpg", ".tif", ".hdr", ".webp"} <= list_readable_endings()
+    assert not {".json", ".null", ".py", ""} & list_readable_endings()

@@ -14,7 +14,7 @@ from exr_files import write_exr
 from halation.authoring.services.exporting import Exports, Options
 from halation.errors import UsageError
 from halation.graph import Expression, Graph, Group, Input, Output, Port, Settings
-from halation.media import read
+from halation.media import read_layer
 from halation.nodes import Kind, catalogue
 
 LEVEL = 0.5
@@ -55,7 +55,7 @@ def test_an_unsaved_graph_is_written_with_progress(exports, folder, tmp_path):
     assert one.written == (out, tmp_path / "out.png") and (one.done, one.total, one.node) == (1, 1, "n2")
     assert one.fraction == 1.0 and one.seconds > 0.0 and one.seconds_left is None
     assert any("OpenGL" in note for note in one.notes)
-    np.testing.assert_allclose(read(str(out), "", Kind.IMAGE, 4).array, LEVEL, rtol=1e-3)
+    np.testing.assert_allclose(read_layer(str(out), "", Kind.IMAGE, 4).array, LEVEL, rtol=1e-3)
     exports.clear()
     assert exports.all == ()
 
@@ -71,7 +71,7 @@ def test_bindings_options_and_groups(exports, folder, tmp_path, monkeypatch):
     one = exports.start(graph, [("", Path("b out.exr"))], {"beauty": "b.exr:Combined"}, options)
     one.wait()
     assert one.state == "done", one.sentence
-    array = read(str(tmp_path / "b out.exr"), "", Kind.IMAGE, 4).array
+    array = read_layer(str(tmp_path / "b out.exr"), "", Kind.IMAGE, 4).array
     assert array.shape == (3, 4, 4)
     np.testing.assert_allclose(array[..., 0], 0.5)
 
@@ -124,8 +124,8 @@ def test_one_that_does_not_listen_is_killed_and_its_part_removed(exports, folder
     """A render that is stuck while it writes."""
     code = (
         "import os, signal, sys, time; from pathlib import Path; from halation.resources.atomic_write import "
-        "part_prefix;"
-        "signal.signal(signal.SIGINT, signal.SIG_IGN); Path(part_prefix(os.getpid()) + 'x.exr').touch();"
+        "temporary_prefix;"
+        "signal.signal(signal.SIGINT, signal.SIG_IGN); Path(temporary_prefix(os.getpid()) + 'x.exr').touch();"
         "print('ready', file=sys.stderr, flush=True); time.sleep(60)"
     )
     script = tmp_path / "stuck"
@@ -190,7 +190,7 @@ def test_many_frames_are_counted_and_shared(exports, folder, tmp_path, jobs):
     assert one.wait(90) and one.state == "done", one.sentence
     assert names(out) == ["s.0001.exr", "s.0002.exr", "s.0005.exr"]
     assert [path.name for path in one.written] == names(out) and (one.done, one.kept) == (3, 0)
-    np.testing.assert_allclose(read(str(out / "s.0002.exr"), "", Kind.IMAGE, 4).array[..., 0], 1.0)
+    np.testing.assert_allclose(read_layer(str(out / "s.0002.exr"), "", Kind.IMAGE, 4).array[..., 0], 1.0)
 
 
 def test_renders_wait_for_each_other_in_an_order_that_can_change(exports, folder, tmp_path):
