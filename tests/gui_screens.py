@@ -17,6 +17,7 @@ from halation.editor.window.editor import Editor
 from halation.graph import Control, Graph, Input, Output, Port, Settings
 from halation.nodes import Kind, Light, LightKind, catalogue, numbers_of
 from halation.nodes.input.read_image import ReadImage
+from halation.renderer.jobs.render_job import RenderJob
 from toy_nodes import Lamps, Tint
 
 SAMPLES = presets.paths()[0].parent / "samples"
@@ -242,7 +243,7 @@ def panels(ui: Ui) -> Screens:
 
 def render(place: Path, state: State, done: int = 0, total: int = 24, **facts: object) -> Export:
     """A render to files as the panel sees it, without a process."""
-    made = Export(Job((), "", Graph(), (("image", place),), tuple(range(1, total + 1))))
+    made = Export(Job(RenderJob(destinations=(("image", str(place)),), frames=tuple(range(1, total + 1))), Graph()))
     made.state, made.done = state, done
     made.began, made.ended = 1.0, 0.0 if state in ("running", "waiting") else 43.0
     made.written = tuple(place.with_name(f"{place.stem}.{frame:04d}.exr") for frame in range(1, done + 1))

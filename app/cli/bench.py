@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..resources.render_choices import DEFAULT_TIMEOUT
 from . import parsing
 from .batch import shown
 from .options import (
@@ -16,7 +17,6 @@ from .options import (
     Form,
     GraphFile,
     Inputs,
-    LazyResourceProvider,
     Node,
     Scale,
     Sets,
@@ -26,8 +26,7 @@ from .options import (
     report_problems,
 )
 from .outcome import print_json
-from .sharing import piped
-from .watchdog import PATIENCE, Timeout, watched
+from .watchdog import Timeout, rerun_watched
 
 if TYPE_CHECKING:
     from ..renderer.baseline import Against, Ratio
@@ -57,7 +56,7 @@ def bench(
     ] = None,
     precision: Annotated[str | None, typer.Option(metavar="half|float", help="Precision of intermediates.")] = None,
     form: Form = None,
-    timeout: Timeout = PATIENCE,
+    timeout: Timeout = DEFAULT_TIMEOUT,
     as_json: AsJson = False,
 ) -> int:
     """Measure what each node and pass takes on this device: the median of several runs after warming up.
@@ -65,6 +64,7 @@ def bench(
     Nodes that were fused into one pass have one time together.
     """
     from ..errors import UsageError
+    from ..inputs.lazy_provider import LazyResourceProvider
     from ..renderer import Renderer, RenderRequest, open_device
     from ..renderer.baseline import against
     from ..renderer.bench import bench as measured
@@ -75,12 +75,12 @@ def bench(
     depth = parsing.precision(precision) if precision is not None else None
     way = parsing.form(form) if form is not None else None
     canvas, proxy, chosen = parsing.size(size), parsing.scale(scale), parsing.frames(frame, frames)
-    whole = opened(graph, sets or ())
+    whole = opened(graph, parsing.sets(sets))
     report_problems(graph, whole)
-    if (code := watched(context, whole, timeout, piped(graph, whole))) is not None:
+    if (code := rerun_watched(context, graph, whole, timeout)) is not None:
         return code
-    bindings, targets = bound(whole, inputs or ()), parsing.targets(whole, node)
-    at = chosen or (LazyResourceProvider().frames(whole, inputs or ())[0],)
+    bindings, targets = bound(whole, parsing.inputs(inputs)), parsing.targets(whole, node)
+    at = chosen or (LazyResourceProvider().frames(whole, bindings)[0],)
     renderer = Renderer(open_device(way), budget=0)
     wanted = RenderRequest(bindings, targets, canvas, proxy, precision=depth)
     with shown(renderer, len(at)) as work:

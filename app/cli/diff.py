@@ -59,7 +59,7 @@ def diff(
     if render:
         from .picture_diff import compared
 
-        wanted = (inputs or (), parsing.size(size), parsing.scale(scale), frame)
+        wanted = (parsing.inputs(inputs), parsing.size(size), parsing.scale(scale), frame)
         try:
             report["pictures"] = compared(a, b, wanted, output)
         except RenderError as fault:

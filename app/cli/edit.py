@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from . import parsing
 from .options import Inputs, bound
 
 
@@ -23,7 +24,7 @@ def edit(
     if graph is not None:
         from .. import document
 
-        bindings = bound(document.load(graph), inputs or ())
+        bindings = bound(document.load(graph), parsing.inputs(inputs))
     from ..editor import edit as open_editor
 
     open_editor(graph, bindings)

@@ -11,12 +11,12 @@ from .options import (
     AsJson,
     GraphFile,
     Inputs,
-    LazyResourceProvider,
     Memory,
     Node,
     Scale,
     Sets,
     SizeText,
+    bound,
     opened,
     report_problems,
 )
@@ -56,20 +56,22 @@ def explain(
 
     from .. import compiler
     from ..errors import UsageError
+    from ..inputs.lazy_provider import LazyResourceProvider
 
     if dot and as_json:
         raise UsageError("--dot and --json: choose one")
     way, most = parsing.form_or_device(form), parsing.memory(memory)
     depth = parsing.precision(precision) if precision is not None else None
-    opened_graph = opened(graph, sets or ())
+    opened_graph = opened(graph, parsing.sets(sets))
     report_problems(graph, opened_graph)
     lazy = LazyResourceProvider()
+    bindings = bound(opened_graph, parsing.inputs(inputs))
     request = compiler.Request(
         parsing.targets(opened_graph, node),
-        lazy.bind(opened_graph, inputs or ()),
+        lazy.bind(opened_graph, bindings),
         parsing.size(size),
         parsing.scale(scale),
-        frame if frame is not None else lazy.frames(opened_graph, inputs or ())[0],
+        frame if frame is not None else lazy.frames(opened_graph, bindings)[0],
     )
     target = replace(_target(way), memory=most)
     # As if each went into an EXR of its own.

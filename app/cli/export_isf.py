@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from . import parsing
-from .options import AsJson, GraphFile, LazyResourceProvider, Node, Sets, SizeText, opened, report_problems
+from .options import AsJson, GraphFile, Node, Sets, SizeText, opened, report_problems
 from .outcome import note, print_json
 
 if TYPE_CHECKING:
@@ -34,10 +34,11 @@ def export_isf(
     """
     from ..compiler.isf import export_isf as exported
     from ..errors import GraphError, UsageError
+    from ..inputs.lazy_provider import LazyResourceProvider
 
     if as_json and output is None:
         raise UsageError("--json and a shader would both go to standard output: write the shader to a file with -o")
-    opened_graph = opened(graph, sets or ())
+    opened_graph = opened(graph, parsing.sets(sets))
     report_problems(graph, opened_graph)
     if selection:
         from ..graph.selection import selected

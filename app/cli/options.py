@@ -5,9 +5,9 @@ from __future__ import annotations
 import functools
 import inspect
 import sys
-from collections.abc import Callable, Mapping, Sequence
-from functools import cached_property
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -16,15 +16,7 @@ from . import parsing
 from .outcome import note
 
 if TYPE_CHECKING:
-    from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene
-
     from ..graph import Graph
-    from ..inputs.provider import MediaProvider
-    from ..resources.color_program import ColorProgram
-    from ..resources.mesh import Mesh
-    from ..resources.picture import Picture
-    from ..resources.provider import FrameFile, PictureProbe
-    from ..resources.working_space import WorkingSpace
 
 Inputs = Annotated[
     list[str] | None,
@@ -87,16 +79,16 @@ def rooted(command: Callable[..., int]) -> Callable[..., int]:
     return run
 
 
-def opened(path: Path, sets: Sequence[str]) -> Graph:
-    """A graph with the values from the command line. Raises DocumentError, UsageError.
+def opened(path: Path, sets: Mapping[str, str] = MappingProxyType({}), document: str = "") -> Graph:
+    """A graph with the values of `--set` in it. Raises DocumentError, UsageError.
 
-    The paths in one from standard input start at the current folder.
+    For the path "-" it is the one in `document`, or in standard input if that is empty. Relative paths in it start at
+    the current folder.
     """
-    from .. import document
+    from ..document import load, loads
 
-    piped = str(path) == "-"
-    graph = document.loads(standard_input(), "-") if piped else document.load(path)
-    for name, text in parsing.assignments(sets, "--set").items():
+    graph = loads(document or standard_input(), "-") if str(path) == "-" else load(path)
+    for name, text in sets.items():
         graph = changed(graph, name, text)
     return graph
 
@@ -127,26 +119,25 @@ def standard_input() -> str:
         raise DocumentError("-", "", f"the text is not UTF-8 (byte {error.start}); save it as UTF-8") from None
 
 
-def bound(graph: Graph, inputs: Sequence[str]) -> dict[str, str]:
-    """Pictures by input name; a bare path goes to the only input."""
+def bound(graph: Graph, inputs: Mapping[str, str]) -> dict[str, str]:
+    """Files by the name of the input that they fill; the one named "" fills the only input. Raises UsageError."""
     from ..errors import UsageError
     from ..graph import did_you_mean
 
-    named: list[str] = []
-    for item in inputs:
-        if "=" in item:
-            named.append(item)
-        elif len(graph.inputs) == 1:
-            named.append(f"{next(iter(graph.inputs))}={item}")
-        else:
-            known = ", ".join(graph.inputs) or "none"
-            raise UsageError(f"-i {item}: write -i NAME=FILE; the inputs of this graph are {known}")
-    found = parsing.assignments(named, "-i")
-    for name, text in found.items():
+    files = dict(inputs)
+    if file := files.pop("", ""):
+        if len(graph.inputs) != 1:
+            names = ", ".join(graph.inputs) or "none"
+            raise UsageError(f"-i {file}: write -i NAME=FILE; the inputs of this graph are {names}")
+        (name,) = graph.inputs
+        if name in files:
+            raise UsageError(f"-i {name}={file}: '{name}' is given twice")
+        files[name] = file
+    for name, file in files.items():
         if name not in graph.inputs:
             hint = did_you_mean(name, graph.inputs) or "; it has none"
-            raise UsageError(f"-i {name}={text}: the graph has no input '{name}'{hint}")
-    return found
+            raise UsageError(f"-i {name}={file}: the graph has no input '{name}'{hint}")
+    return files
 
 
 def report_problems(path: Path, graph: Graph) -> None:
@@ -162,61 +153,3 @@ def report_problems(path: Path, graph: Graph) -> None:
         raise GraphError(f"{path}: {errors[0].sentence}{more}")
     for problem in found:
         note(f"{path}: {problem.sentence}")
-
-
-class LazyResourceProvider:
-    """The world outside of graphs that may not need it: what reads files is loaded when the first is asked for."""
-
-    @cached_property
-    def pictures(self) -> MediaProvider:
-        """The real ones."""
-        from ..inputs.provider import MediaProvider
-
-        return MediaProvider()
-
-    def bind(self, graph: Graph, inputs: Sequence[str]) -> dict[str, Picture]:
-        """Pictures for the graph inputs that the command line names."""
-        found = bound(graph, inputs)
-        return self.pictures.bind(graph, found) if found else {}
-
-    def frames(self, graph: Graph, inputs: Sequence[str]) -> tuple[int, int]:
-        """The first and last frame of a graph, without reading any file where it says so itself."""
-        from ..compiler import named_files
-        from ..graph import keyed_range
-
-        if graph.settings.frames:
-            return graph.settings.frames
-        if not inputs and not named_files(graph, {}):
-            return keyed_range(graph)
-        return self.pictures.frames(graph, self.bind(graph, inputs))
-
-    def check_frames(self, graph: Graph, frames: range) -> None:
-        """Raise InputError for a file that is missing in a sequence."""
-        from ..compiler import named_files
-
-        if named_files(graph, {}):
-            self.pictures.check_frames(graph, frames)
-
-    def at(self, path: str, frame: int, missing: Missing) -> FrameFile:
-        """The file of a frame."""
-        return self.pictures.at(path, frame, missing)
-
-    def probe(self, picture: Picture) -> PictureProbe:
-        """Size and precision of a picture."""
-        return self.pictures.probe(picture)
-
-    def recolor(self, change: ColorChange) -> ColorProgram:
-        """The program of a change of color."""
-        return self.pictures.recolor(change)
-
-    def working(self, color: ColorSettings) -> WorkingSpace | None:
-        """What shaders know of the working space."""
-        return self.pictures.working(color)
-
-    def render(self, path: str, named: Mapping[str, str]) -> Render:
-        """What the file of a render holds."""
-        return self.pictures.render(path, named)
-
-    def mesh(self, scene: Scene) -> Mesh:
-        """The triangles of a scene."""
-        return self.pictures.mesh(scene)

@@ -30,6 +30,22 @@ def assignments(items: Sequence[str], flag: str) -> dict[str, str]:
     return found
 
 
+def inputs(items: Sequence[str] | None) -> dict[str, str]:
+    """Files of `-i` by the name of the input; a file without a name has the name "". Raises UsageError."""
+    files = assignments([item for item in items or () if "=" in item], "-i")
+    for item in items or ():
+        if "=" not in item:
+            if "" in files:
+                raise UsageError(f"-i {item}: '{files['']}' is given already: write -i NAME=FILE for each input")
+            files[""] = item
+    return files
+
+
+def sets(items: Sequence[str] | None) -> dict[str, str]:
+    """The texts of `--set` by what they set. Raises UsageError."""
+    return assignments(items or (), "--set")
+
+
 def paths(items: Sequence[str]) -> tuple[tuple[str, Path], ...]:
     """`-o out.exr` or `-o name=out.exr` as names and files; the name of a bare path is empty."""
     found: list[tuple[str, Path]] = []

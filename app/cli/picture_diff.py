@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 Pictures = Mapping[str, Any]
 """Arrays [h, w, c] by output."""
 
-How = tuple[Sequence[str], tuple[int, int] | None, float, int | None]
-"""Inputs as typed, size, scale and frame, of which the last may be left open."""
+How = tuple[Mapping[str, str], tuple[int, int] | None, float, int | None]
+"""Files of inputs, size, scale and frame, of which the last may be left open."""
 
 
 def compared(a: str, b: str, how: How, output: Path | None) -> list[dict[str, Any]]:
@@ -56,16 +56,14 @@ def compared(a: str, b: str, how: How, output: Path | None) -> list[dict[str, An
     return found
 
 
-def _bindings(graphs: Sequence[Graph], inputs: Sequence[str]) -> list[dict[str, str]]:
-    """What is bound to the inputs of both: an input that only one of them has is bound there."""
-    names = {item.partition("=")[0] for item in inputs if "=" in item}
-    known = set[str]().union(*(graph.inputs for graph in graphs))
-    if names - known:
+def _bindings(graphs: Sequence[Graph], inputs: Mapping[str, str]) -> list[dict[str, str]]:
+    """The files for the inputs of both: an input that only one of them has is filled there."""
+    if set(inputs) - {""} - set[str]().union(*(graph.inputs for graph in graphs)):
         bound(graphs[0], inputs)
-    fitting = (
-        [item for item in inputs if "=" not in item or item.partition("=")[0] in graph.inputs] for graph in graphs
-    )
-    return [bound(graph, items) for graph, items in zip(graphs, fitting, strict=True)]
+    return [
+        bound(graph, {name: file for name, file in inputs.items() if not name or name in graph.inputs})
+        for graph in graphs
+    ]
 
 
 def _rendered(

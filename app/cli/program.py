@@ -37,7 +37,7 @@ _SHOWN = (
     "bench",
     "export-isf",
 )
-_HIDDEN = ("git-driver",)
+_HIDDEN = ("git-driver", "worker")
 _FENCED = ("render", "check", "explain", "export-isf", "info", "diff", "test", "reproduce", "watch", "sweep", "bench")
 """Commands that take graphs and pictures from people who may not be trusted."""
 

@@ -14,7 +14,6 @@ from .outcome import note
 if TYPE_CHECKING:
     from rich.progress import Progress as RichProgress
 
-    from ..compiler import Pass
     from ..renderer.jobs.job import FrameReport
 
 _PATIENCE = 0.3
@@ -22,10 +21,10 @@ _PATIENCE = 0.3
 
 
 @contextmanager
-def told_to(kind: Literal["bar", "json"], frames: int) -> Iterator[Told]:
-    """What a job reports to."""
+def progress_reporter(kind: Literal["bar", "json"], frames: int) -> Iterator[ProgressReporter]:
+    """What a job reports to: a bar, or lines of JSON."""
     if kind == "json":
-        yield Lines()
+        yield JsonLines()
         return
     bar = Bar(frames)
     try:
@@ -34,16 +33,16 @@ def told_to(kind: Literal["bar", "json"], frames: int) -> Iterator[Told]:
         bar.close()
 
 
-class Lines:
+class JsonLines:
     """One JSON object on standard error for every pass and every frame."""
 
     def shared(self, processes: Sequence[int]) -> None:
         """Say which processes share the frames: who kills this one has to kill them too."""
         note(json.dumps({"processes": list(processes)}))
 
-    def passed(self, frame: int, done: int, total: int, one: Pass) -> None:
+    def passed(self, frame: int, done: int, total: int, nodes: Sequence[str]) -> None:
         """Say which pass is through."""
-        note(json.dumps({"frame": frame, "pass": done, "passes": total, "nodes": one.nodes}))
+        note(json.dumps({"frame": frame, "pass": done, "passes": total, "nodes": nodes}))
 
     def finished(self, report: FrameReport, done: int, total: int) -> None:
         """Say which frame is there."""
@@ -77,12 +76,12 @@ class Bar:
     def shared(self, processes: Sequence[int]) -> None:
         """A bar has nothing to say of processes."""
 
-    def passed(self, frame: int, done: int, total: int, one: Pass) -> None:
+    def passed(self, frame: int, done: int, total: int, nodes: Sequence[str]) -> None:
         """Show what is computed."""
         if self._frames == 1:
-            self._show(one.nodes[-1], done, total)
+            self._show(nodes[-1], done, total)
         else:
-            self._show(f"frame {frame}  {one.nodes[-1]}", None, self._frames)
+            self._show(f"frame {frame}  {nodes[-1]}", None, self._frames)
 
     def finished(self, report: FrameReport, done: int, total: int) -> None:
         """Show how many frames are there."""
@@ -111,5 +110,5 @@ class Bar:
         self._progress.update(self._progress.task_ids[0], completed=done, description=word)
 
 
-Told = Lines | Bar
+ProgressReporter = JsonLines | Bar
 """What hears of frames, and of the processes that share them."""

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..resources.render_choices import DEFAULT_TIMEOUT
 from . import parsing
 from .options import AsJson, report_problems
 from .outcome import note, print_json
-from .watchdog import PATIENCE, Timeout, watched
+from .watchdog import Timeout, rerun_watched
 
 if TYPE_CHECKING:
     from ..renderer.provenance.finding import Found
@@ -42,7 +43,7 @@ def reproduce(
         float | None,
         typer.Option(metavar="X", min=0.0, help="How far numbers may be apart; by default 0 on the same renderer."),
     ] = None,
-    timeout: Timeout = PATIENCE,
+    timeout: Timeout = DEFAULT_TIMEOUT,
     as_json: AsJson = False,
 ) -> int:
     """Rebuild a picture from its own header, and say what differs: 0 if the pixels are the same, 1 if not."""
@@ -60,7 +61,7 @@ def reproduce(
     if fault := missing(found, picture):
         raise fault
     report_problems(picture, recipe.graph)
-    if (code := watched(context, recipe.graph, timeout)) is not None:
+    if (code := rerun_watched(context, picture, recipe.graph, timeout)) is not None:
         return code
     from ..renderer import Renderer
     from ..renderer.provenance.reproduction import open_alike, reproduce

@@ -11,9 +11,9 @@ from halation.nodes import ColorSettings, Kind, Matte, Missing, Node, Render, Si
 
 from ..compiler import NULL, Plan, Request, Target, compile_graph
 from ..graph import Graph, Input, Output, Port, Settings
+from ..inputs.lazy_provider import LazyResourceProvider
 from ..resources.picture import Picture
 from ..resources.provider import FrameFile, PictureProbe
-from .options import LazyResourceProvider
 
 NODE = "node"
 """The id that the node has in these graphs."""

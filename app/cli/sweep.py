@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..resources.render_choices import DEFAULT_TIMEOUT
 from . import parsing
 from .batch import batch
 from .options import (
     AsJson,
     GraphFile,
     Inputs,
-    LazyResourceProvider,
     Node,
     Precision,
     Scale,
@@ -24,9 +24,8 @@ from .options import (
     report_problems,
 )
 from .outcome import note, print_json
-from .sharing import piped
 from .sweeping import axes
-from .watchdog import PATIENCE, Timeout, watched
+from .watchdog import Timeout, rerun_watched
 
 if TYPE_CHECKING:
     from ..graph import Graph
@@ -63,7 +62,7 @@ def sweep(
     ] = None,
     ending: Annotated[str, typer.Option(metavar=".png|.exr|...", help="What kind of files --cells writes.")] = ".png",
     precision: Precision = None,
-    timeout: Timeout = PATIENCE,
+    timeout: Timeout = DEFAULT_TIMEOUT,
     as_json: AsJson = False,
 ) -> int:
     """Render a graph at many values, onto one sheet with labels.
@@ -74,6 +73,7 @@ def sweep(
 
     from .. import media
     from ..errors import UsageError
+    from ..inputs.lazy_provider import LazyResourceProvider
     from ..renderer import DEFAULT_BUDGET, RenderRequest
     from ..renderer.jobs import sweep as sweeping
     from ..renderer.jobs.job import Writing
@@ -82,12 +82,12 @@ def sweep(
     depth = parsing.precision(precision) if precision is not None else None
     chosen = parsing.frames(frame, frames) or ()
     canvas, proxy = parsing.size(size), parsing.scale(scale)
-    whole, swept = axes(opened(graph, ()), sets or (), chosen)
+    whole, swept = axes(opened(graph), sets or (), chosen)
     report_problems(graph, whole)
-    if (code := watched(context, whole, timeout, piped(graph, whole))) is not None:
+    if (code := rerun_watched(context, graph, whole, timeout)) is not None:
         return code
-    bindings, targets = bound(whole, inputs or ()), parsing.targets(whole, node)
-    at = chosen[0] if chosen else LazyResourceProvider().frames(whole, inputs or ())[0]
+    bindings, targets = bound(whole, parsing.inputs(inputs)), parsing.targets(whole, node)
+    at = chosen[0] if chosen else LazyResourceProvider().frames(whole, bindings)[0]
     name = _output(whole, show, node)
     look = view or ("" if node else whole.outputs[name].view)
     count = len(sweeping.cells(whole, swept, at))

@@ -15,7 +15,6 @@ from .options import (
     Frames,
     GraphFile,
     Inputs,
-    LazyResourceProvider,
     Node,
     OneFrame,
     Precision,
@@ -57,6 +56,7 @@ def watch(
 
     What is broken is said in a sentence, and waited for.
     """
+    from ..inputs.lazy_provider import LazyResourceProvider
     from ..renderer import Renderer, RenderRequest, open_device
     from ..renderer.jobs.job import Writing, run_job
     from ..watch.rerendering import Rerendering
@@ -70,20 +70,20 @@ def watch(
     note(renderer.device.description)
 
     def load() -> Graph:
-        found = opened(graph, sets or ())
+        found = opened(graph, parsing.sets(sets))
         report_problems(graph, found)
         return found
 
     def render(found: Graph, progress: Progress) -> Report:
-        bindings, targets = bound(found, inputs or ()), parsing.targets(found, node)
-        first, last = (0, 0) if chosen else LazyResourceProvider().frames(found, inputs or ())
+        bindings, targets = bound(found, parsing.inputs(inputs)), parsing.targets(found, node)
+        first, last = (0, 0) if chosen else LazyResourceProvider().frames(found, bindings)
         every = chosen or (tuple(range(first, last + 1)) if parsing.numbered(files) else (first,))
         wanted = RenderRequest(bindings, targets, canvas, proxy, precision=depth)
         return run_job(
             renderer, found, wanted, Writing(files, view, compression, depth or "half"), every, progress=progress
         )
 
-    turns = Rerendering(graph, lambda found: bound(found, inputs or ()), load, render)
+    turns = Rerendering(graph, lambda found: bound(found, parsing.inputs(inputs)), load, render)
     begun = False
     try:
         for turn in turns:

@@ -1,4 +1,8 @@
-"""The watchdog: code of a graph runs in a process that another one ends if it never comes back."""
+"""The watchdog: code of a graph runs in a process that another one ends if the code never comes back.
+
+The renderer writes into a file which code begins to run and when it has ended: its heartbeat. A device that is stuck
+blocks the process that uses it, so only another process can notice.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +10,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -14,12 +19,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ..errors import DeviceError
+
 if TYPE_CHECKING:
     from ..graph import Graph
 
-PATIENCE = 60.0
-_LOOK = 0.2
-"""Seconds between two looks at the other process."""
+LOOK = 0.2
+"""Seconds between two looks at the other process: short enough that nobody notices them after the process ends."""
 
 Timeout = Annotated[
     float,
@@ -27,31 +33,50 @@ Timeout = Annotated[
         "--timeout",
         min=0.0,
         metavar="SECONDS",
-        help="How long a pass of code that is written in the graph may take; 0 for as long as it likes.",
+        help="How long a pass of code that is written in the graph may take; 0 for no limit.",
     ),
 ]
 
 
-def watched(context: typer.Context, graph: Graph, timeout: float, text: str = "") -> int | None:
-    """Run this very command in another process, if code of the graph could keep it for ever; its exit code.
+class Watchdog:
+    """Watches the heartbeat of one process. `timeout` is how many seconds code may run."""
 
-    None if there is nothing to fear, or this is that process: then go on. `context` holds the words of the command,
-    `text` is what it reads from standard input. Raises DeviceError once a pass has taken longer than `timeout` seconds.
-    """
+    def __init__(self, file: Path, timeout: float) -> None:
+        self._file, self._timeout = file, timeout
+        self._beat, self._since = "", time.monotonic()
+        file.touch()
+
+    @property
+    def environment(self) -> dict[str, str]:
+        """The variables of the environment that the process needs."""
+        from ..renderer.opengl.heartbeat import HEARTBEAT
+
+        return {HEARTBEAT: str(self._file)}
+
+    def check(self) -> DeviceError | None:
+        """The error to raise once code has run for too long, else None."""
+        beat = self._file.read_text(encoding="utf-8")
+        if beat != self._beat:
+            self._beat, self._since = beat, time.monotonic()
+        elif beat and time.monotonic() - self._since > self._timeout:
+            nodes = beat.partition(" ")[2]
+            return DeviceError(
+                f"node '{nodes}': its code has not ended after {self._timeout:g} seconds, so the rendering was "
+                "stopped: look for a loop without an end, or allow more with --timeout",
+                node=nodes,
+            )
+        return None
+
+
+def needs_watchdog(graph: Graph, timeout: float) -> bool:
+    """True if code of the graph could run for ever, and no other process watches this one."""
     from ..renderer.opengl.heartbeat import HEARTBEAT
 
-    if not timeout or os.environ.get(HEARTBEAT) or not has_loops(graph):
-        return None
-    import tempfile
-
-    with tempfile.TemporaryDirectory(prefix="halation-") as folder:
-        beat = Path(folder, "heartbeat")
-        beat.touch()
-        return _watch([sys.executable, "-P", "-m", "halation.cli", *context.obj], beat, timeout, text)
+    return timeout > 0.0 and not os.environ.get(HEARTBEAT) and has_loops(graph)
 
 
 def has_loops(graph: Graph) -> bool:
-    """True if somebody wrote code with loops in it, or in one of its groups: only those can take for ever."""
+    """True if a node has code with loops, or one in a group has: only those can run for ever."""
     from ..custom_nodes import Written
     from ..glsl import words
     from ..graph import Group
@@ -64,35 +89,43 @@ def has_loops(graph: Graph) -> bool:
     )
 
 
-def _watch(command: list[str], beat: Path, timeout: float, text: str) -> int:
-    from ..errors import DeviceError
-    from ..renderer.opengl.heartbeat import HEARTBEAT
+def rerun_watched(context: typer.Context, path: Path, graph: Graph, timeout: float) -> int | None:
+    """Run this very command again in a process that is watched, if code of the graph could run for ever; its exit code.
 
-    environment = {**os.environ, HEARTBEAT: str(beat)}
-    with _undisturbed(), subprocess.Popen(command, stdin=subprocess.PIPE if text else None, env=environment) as process:
+    None if there is no such code, or if this is that process: then the caller goes on. `context` holds the words of the
+    command. A graph that came from standard input (`path` is "-") is handed on there. Raises DeviceError once a pass
+    has taken longer than `timeout` seconds.
+    """
+    if not needs_watchdog(graph, timeout):
+        return None
+    from .. import document
+
+    text = document.dumps(graph) if str(path) == "-" else ""
+    command = [sys.executable, "-P", "-m", "halation.cli", *context.obj]
+    with tempfile.TemporaryDirectory(prefix="halation-") as folder:
+        return _watch(command, Watchdog(Path(folder, "heartbeat"), timeout), text)
+
+
+def _watch(command: list[str], watchdog: Watchdog, text: str) -> int:
+    environment = {**os.environ, **watchdog.environment}
+    with (
+        _ignored_interrupts(),
+        subprocess.Popen(command, stdin=subprocess.PIPE if text else None, env=environment) as process,
+    ):
         if process.stdin:
             process.stdin.write(text.encode())
             process.stdin.close()
-        said, since = "", time.monotonic()
         while True:
             try:
-                return process.wait(_LOOK)
+                return process.wait(LOOK)
             except subprocess.TimeoutExpired:
-                now = beat.read_text(encoding="utf-8")
-            if now != said:
-                said, since = now, time.monotonic()
-            elif said and time.monotonic() - since > timeout:
-                process.kill()
-                nodes = said.partition(" ")[2]
-                raise DeviceError(
-                    f"node '{nodes}': its code has not ended after {timeout:g} seconds, so the rendering was stopped: "
-                    "look for a loop without an end, or allow more with --timeout",
-                    node=nodes,
-                )
+                if fault := watchdog.check():
+                    process.kill()
+                    raise fault from None
 
 
 @contextmanager
-def _undisturbed() -> Iterator[None]:
+def _ignored_interrupts() -> Iterator[None]:
     """An interrupt is for the other process, which hears it too, and ends as it should."""
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Literal
+from typing import ClassVar
 
 from ..resources.record import Record
+from ..resources.render_choices import Form, Precision
 
-Form = Literal["fragment", "compute"]
-Precision = Literal["half", "float"]
+__all__ = ["NULL", "Form", "Precision", "Target"]
 
 
 class Target(Record, frozen=True):

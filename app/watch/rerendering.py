@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, cast
 
-from ..compiler import Pass, installed
+from ..compiler import installed
 from ..errors import GraphError, HalationError
 from ..graph import Graph
 from ..renderer.jobs.job import FrameReport, Progress, Report
@@ -137,7 +137,7 @@ class _Ends:
     def __init__(self, is_outdated: Callable[[], bool]) -> None:
         self._is_outdated = is_outdated
 
-    def passed(self, frame: int, done: int, total: int, one: Pass) -> None:
+    def passed(self, frame: int, done: int, total: int, nodes: Sequence[str]) -> None:
         """A pass is through."""
         if self._is_outdated():
             raise _Outdated

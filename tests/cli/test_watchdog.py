@@ -78,3 +78,28 @@ def test_an_interrupt_reaches_the_code(tmp_path: Path) -> None:
     _, said = started.communicate(timeout=60)
     # Where the device hears nothing before its pass is over, the watchdog is the one that ends it.
     assert started.returncode in (130, 5) and "halation: " in said
+
+
+SLOW = """vec4 spin(vec4 image) {
+    float x = image.r;
+    for (int i = 0; i < 6000000; ++i) x = fract(x * 1.7 + 0.1);
+    return vec4(x);
+}"""
+
+
+def test_helpers_that_share_frames_are_watched_for_as_long_as_was_asked_for(tmp_path: Path) -> None:
+    path, out = graph(tmp_path, SLOW), tmp_path / "out.##.exr"
+    words = (path, "-o", out, "--frames", "1-2", "-j", 2, "--size", "16x16")
+    stopped = render(*words, "--timeout", "0.01", "--json")
+    assert stopped.returncode == 5 and not list(tmp_path.glob("*.exr"))
+    error = json.loads(stopped.stdout)["error"]
+    assert error["kind"] == "DeviceError" and "has not ended after 0.01 seconds" in error["message"]
+    ended = render(*words, "--timeout", 0, "--json")
+    assert ended.returncode == 0 and json.loads(ended.stdout)["frames"] == [1, 2], ended.stderr
+
+
+def test_code_that_never_ends_stops_all_helpers(tmp_path: Path) -> None:
+    started = time.monotonic()
+    ended = render(graph(tmp_path, ENDLESS), "-o", tmp_path / "o.##.exr", "--frames", "1-2", "-j", 2, "--timeout", 1)
+    assert ended.returncode == 5 and "its code has not ended after 1 seconds" in ended.stderr
+    assert time.monotonic() - started < 60.0

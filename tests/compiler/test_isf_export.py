@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from halation.cli.options import LazyResourceProvider
 from halation.compiler.isf import Exported, export_isf
 from halation.compiler.isf.affine import length_text
 from halation.custom_nodes import Written
 from halation.graph import Control, Graph, Input, Output, Port, Settings
+from halation.inputs.lazy_provider import LazyResourceProvider
 from halation.nodes import Kind, Node, catalogue
 from halation.renderer import Renderer, RenderRequest
 from hypothesis import given

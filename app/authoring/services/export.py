@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from ...graph import Graph
+from ...renderer.jobs.render_job import RenderJob, worker_command
 from ...resources.atomic_write import temporary_prefix
 
 State = Literal["waiting", "running", "done", "failed", "cancelled"]
@@ -31,14 +32,10 @@ _TOLD = 0.3
 
 @dataclass(frozen=True)
 class Job:
-    """All that is needed to render something, now or again: the call, and the graph that it reads."""
+    """What is rendered, now or again: the job that is sent to a process, and its graph."""
 
-    words: tuple[str, ...]
-    text: str
+    order: RenderJob
     graph: Graph
-    destinations: tuple[tuple[str, Path], ...]
-    frames: tuple[int, ...]
-    jobs: int = 1
 
 
 class Export:
@@ -53,7 +50,7 @@ class Export:
         self.job = job
         self.state: State = "waiting"
         self.done = self.kept = 0
-        self.total = max(len(job.frames), 1)
+        self.total = max(len(job.order.frames), 1)
         self.frame: int | None = None
         self.passes = (0, 0)
         self.node = self.sentence = ""
@@ -70,7 +67,7 @@ class Export:
     @property
     def destinations(self) -> tuple[tuple[str, Path], ...]:
         """Names of outputs, and where they go."""
-        return self.job.destinations
+        return self.job.order.files
 
     @property
     def fraction(self) -> float:
@@ -98,7 +95,7 @@ class Export:
             self.began = time.monotonic()
             try:
                 self._process = subprocess.Popen(
-                    self.job.words,
+                    worker_command(),
                     cwd=self.job.graph.folder or ".",
                     stdin=subprocess.PIPE,
                     stdout=subprocess.PIPE,
@@ -149,7 +146,7 @@ class Export:
         with running as process:
             assert process.stdin and process.stdout and process.stderr
             with contextlib.suppress(OSError):  # it may end before it has read everything
-                process.stdin.write(self.job.text)
+                process.stdin.write(self.job.order.to_json())
             with contextlib.suppress(OSError):
                 process.stdin.close()
             for line in process.stderr:

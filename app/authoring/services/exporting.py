@@ -3,50 +3,22 @@
 from __future__ import annotations
 
 import os
-import sys
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from threading import RLock
 
+from msgspec.structs import replace
+
 from ... import document
-from ...compiler import Precision
 from ...errors import UsageError
 from ...graph import Graph
-from ...graph.frames import format_frames
+from ...renderer.jobs.render_job import RenderJob
 from .export import Export, Job, State
 
-__all__ = ["Export", "Exports", "Options", "State"]
+__all__ = ["Export", "Exports", "RenderJob", "State"]
 
 
-@dataclass(frozen=True)
-class Options:
-    """What to render and how to write it, as `halation render` has it. Without `frames`, the first of the graph."""
-
-    node: str = ""
-    size: tuple[int, int] | None = None
-    scale: float = 1.0
-    frames: tuple[int, ...] = ()
-    precision: Precision | None = None
-    view: str = ""
-    compression: str = "zip"
-    jobs: int = 1
-    resume: bool = False
-
-    def words(self) -> Iterator[str]:
-        """The flags for it."""
-        yield from (f"--scale={self.scale!r}", f"--compression={self.compression}")
-        if self.frames:
-            yield f"--frames={format_frames(self.frames)}"
-        if self.size:
-            yield f"--size={self.size[0]}x{self.size[1]}"
-        if self.jobs > 1:
-            yield f"--jobs={self.jobs}"
-        if self.resume:
-            yield "--resume"
-        for flag, text in (("node", self.node), ("precision", self.precision), ("view", self.view)):
-            if text:
-                yield f"--{flag}={text}"
+_DEFAULT = RenderJob()
 
 
 class Exports:
@@ -78,33 +50,35 @@ class Exports:
         graph: Graph,
         destinations: Sequence[tuple[str, Path]],
         bindings: Mapping[str, object] | None = None,
-        options: Options = Options(),
+        options: RenderJob = _DEFAULT,
     ) -> Export:
         """Render the graph as it is now, saved or not, to pairs of an output's name and a file; "" is all outputs.
 
-        `bindings` are files for graph inputs. It waits for those before it. Raises UsageError, and GraphError for what
-        JSON cannot hold.
+        `bindings` are files for graph inputs; `options` say how to render and write, its graph, inputs and destinations
+        are replaced. It waits for those before it. Raises UsageError, and GraphError for what JSON cannot hold.
         """
         if not destinations:
             raise UsageError("nothing says where to write: choose a file")
-        files = tuple((name, path.absolute()) for name, path in destinations)
-        # -P: a folder with graphs in it is no place to import modules from.
-        words = [sys.executable, "-P", "-m", "halation.cli", "render", "-", "--json", "--progress=json"]
-        for name, path in files:
-            words += ["-o", f"{name}={path}" if name else str(path)]
+        inputs: dict[str, str] = {}
         for name, item in (bindings or {}).items():
             if not isinstance(item, str | Path):
                 raise UsageError(f"input '{name}' is filled from memory, which an export cannot see: save it to a file")
-            words += ["-i", f"{name}={os.path.abspath(item)}"]  # noqa: PTH100 - a layer may follow the path
-        words += options.words()
-        return self._queue(Job(tuple(words), document.dumps(graph), graph, files, options.frames, options.jobs))
+            inputs[name] = os.path.abspath(item)  # noqa: PTH100 - a layer may follow the path
+        order = replace(
+            options,
+            graph="-",
+            document=document.dumps(graph),
+            inputs=inputs,
+            destinations=tuple((name, str(path.absolute())) for name, path in destinations),
+        )
+        return self._queue(Job(order, graph))
 
     def again(self, export: Export) -> Export:
         """Go on with one that has ended, in its place: frames that are finished and would be the same are kept."""
         if export not in self.all or export in self.unfinished:
             return export
-        words = tuple(word for word in export.job.words if word != "--resume")
-        return self._queue(replace(export.job, words=(*words, "--resume")), export)
+        job = export.job
+        return self._queue(Job(replace(job.order, resume=True), job.graph), export)
 
     def move(self, export: Export, by: int) -> None:
         """Let one that waits have its turn earlier or later."""

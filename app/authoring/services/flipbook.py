@@ -49,7 +49,7 @@ class Strip:
         output, path = export.destinations[0]
         outputs = export.job.graph.outputs
         found = outputs.get(output or next(iter(outputs), ""))
-        frames = export.job.frames or _found(path) or (1,)
+        frames = export.job.order.frames or _found(path) or (1,)
         return Strip(path, (min(frames), max(frames)), found.view if found else "", export)
 
     @staticmethod

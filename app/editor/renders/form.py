@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import os
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from halation.nodes import Kind
+from msgspec.structs import replace
 
-from ...authoring.services.exporting import Export, Options
+from ...authoring.services.exporting import Export, RenderJob
 from ...errors import HalationError, UsageError
 from ...graph.frames import Pattern, check_numbered, format_frames, is_video, numbered, parse_frames, unnumbered
 from ...media.sequences import find_sequence
@@ -149,15 +150,15 @@ class Form:
             self._seen = (key, now, _aim(paths, frames, key[2]))
         return self._seen[2]
 
-    def options(self, editor: Editor) -> Options:
+    def options(self, editor: Editor) -> RenderJob:
         """The choices as the exporter wants them."""
         frames = self.frames(editor)
-        made = Options(
+        made = RenderJob(
             frames=frames,
             precision=self.precision or None,
             view=self.view,
             resume=self.resume and not any(is_video(str(self.file(editor, name))) for name in self.wanted(editor)),
-            jobs=self.jobs if len(frames) > 1 else 1,
+            processes=self.jobs if len(frames) > 1 else 1,
         )
         if self.sizing == "scale":
             return replace(made, scale=self.scale)

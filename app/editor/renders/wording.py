@@ -28,8 +28,8 @@ def progress_text(export: Export) -> str:
 def under_way(export: Export) -> str:
     """What of a render is computed now, and how long it still takes."""
     parts: list[str] = []
-    if export.total > 1 and export.job.jobs > 1 and not export.node:
-        parts.append(f"{export.job.jobs} processes")
+    if export.total > 1 and export.job.order.processes > 1 and not export.node:
+        parts.append(f"{export.job.order.processes} processes")
     elif export.node:
         parts.append(f"frame {export.frame}: {export.node}" if export.total > 1 else export.node)
     left = export.seconds_left

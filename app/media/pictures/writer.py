@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import OpenImageIO as oiio
@@ -16,6 +16,7 @@ from ...color.encoding import Encoding, png_space
 from ...color.transforms import Array
 from ...errors import OutputError, UsageError
 from ...resources.atomic_write import check_writable, write_atomically
+from ...resources.render_choices import Precision
 from ..info import TAG
 from ..layers import is_depth
 from ..metadata import add_metadata
@@ -38,8 +39,6 @@ _COMPRESSIONS = {
     "tiff": ("none", "lzw", "zip", "packbits"),
 }
 _STORED = {"uint8": "uint8", "uint16": "uint16", "float32": "float"}
-
-Precision = Literal["half", "float"]
 
 
 class EncodedPart(Struct, frozen=True):

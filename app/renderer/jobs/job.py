@@ -16,7 +16,7 @@ from msgspec import Struct, field
 from msgspec.structs import replace
 
 from ... import media
-from ...compiler import Pass, Plan
+from ...compiler import Plan
 from ...errors import HalationError, UsageError
 from ...graph import Graph
 from ...resources.atomic_write import remove_abandoned_files
@@ -53,8 +53,8 @@ class FrameReport(Struct, frozen=True):
 class Progress(Protocol):
     """Hears how far a job is."""
 
-    def passed(self, frame: int, done: int, total: int, one: Pass) -> None:
-        """A pass of a frame, or of one that leads up to it, is through."""
+    def passed(self, frame: int, done: int, total: int, nodes: Sequence[str]) -> None:
+        """A pass of a frame, or of one that leads up to it, is done; it computed these nodes."""
         ...
 
     def finished(self, report: FrameReport, done: int, total: int) -> None:
@@ -241,7 +241,7 @@ class _Job:
                 for done, one in enumerate(run, 1):
                     passes += 1
                     if self._progress is not None:
-                        self._progress.passed(task.frame, done, run.total, one)
+                        self._progress.passed(task.frame, done, run.total, one.nodes)
         self.seconds["render"] += time.perf_counter() - started
         return kept, passes
 

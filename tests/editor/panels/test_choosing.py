@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from halation.authoring.services.exporting import Exports, Options
+from halation.authoring.services.exporting import Exports, RenderJob
 from halation.authoring.services.preferences import Store
 from halation.authoring.session import Session
 from halation.editor.browser.browsing import Browsing, begun, size_text
@@ -110,11 +110,11 @@ def test_the_form_suggests_files_and_gives_options(desk: Desk, tmp_path: Path) -
     form.files["image"] = str(tmp_path / "mine.exr")
     form.reform(".png")
     assert form.file(desk, "image") == tmp_path / "mine.png"
-    assert form.options(desk) == Options(frames=(1,))
+    assert form.options(desk) == RenderJob(frames=(1,))
     form.sizing, form.scale, form.precision, form.view = "scale", 0.25, "float", "none"
-    assert form.options(desk) == Options(scale=0.25, frames=(1,), precision="float", view="none")
+    assert form.options(desk) == RenderJob(scale=0.25, frames=(1,), precision="float", view="none")
     form.sizing, form.size = "size", (64, 32)
-    assert form.options(desk) == Options(size=(64, 32), frames=(1,), precision="float", view="none")
+    assert form.options(desk) == RenderJob(size=(64, 32), frames=(1,), precision="float", view="none")
 
 
 def test_nothing_chosen_is_refused_with_a_sentence(desk: Desk) -> None:

@@ -108,10 +108,9 @@ def test_files_that_are_there_are_counted(desk: Desk, tmp_path: Path) -> None:
 def test_options_hold_frames_processes_and_resume(desk: Desk) -> None:
     form = Form(jobs=4, resume=True, extent="some frames", listed="3,5-6")
     options = form.options(desk)
-    assert (options.frames, options.jobs, options.resume) == ((3, 5, 6), 4, True)
-    assert {"--frames=3,5-6", "--jobs=4", "--resume"} <= set(options.words())
+    assert (options.frames, options.processes, options.resume) == ((3, 5, 6), 4, True)
     form.listed = "3"
-    assert form.options(desk).jobs == 1
+    assert form.options(desk).processes == 1
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from exr_files import write_exr
-from halation.authoring.services.exporting import Exports, Options
+from halation.authoring.services.exporting import Exports, RenderJob
 from halation.errors import UsageError
 from halation.graph import Expression, Graph, Group, Input, Output, Port, Settings
 from halation.media import read_layer
@@ -67,7 +67,7 @@ def test_bindings_options_and_groups(exports, folder, tmp_path, monkeypatch):
     graph = Graph(folder=str(folder)).add_input("beauty", Input(file="a.exr")).add_output("image", Output())
     graph = graph.add("group", Group(body)).connect(Port("inputs", "beauty"), Port("group", "beauty"))
     graph = graph.connect(Port("group", "image"), Port("outputs", "image"))
-    options = Options(size=(8, 6), scale=0.5, precision="float", compression="none")
+    options = RenderJob(size=(8, 6), scale=0.5, precision="float", compression="none")
     one = exports.start(graph, [("", Path("b out.exr"))], {"beauty": "b.exr:Combined"}, options)
     one.wait()
     assert one.state == "done", one.sentence
@@ -109,7 +109,7 @@ def test_what_makes_no_sense_is_refused_at_once(exports, folder):
 def test_cancelling_leaves_nothing(exports, folder, tmp_path, passes):
     out = tmp_path / "out.exr"
     out.write_bytes(b"precious")
-    one = exports.start(brighter(folder, 200, sigma=30.0), [("", out)], options=Options(size=(1600, 1200)))
+    one = exports.start(brighter(folder, 200, sigma=30.0), [("", out)], options=RenderJob(size=(1600, 1200)))
     while one.passes[0] < passes:
         assert one.state == "running", one.sentence
         time.sleep(0.01)
@@ -144,7 +144,9 @@ def test_one_that_does_not_listen_is_killed_and_its_part_removed(exports, folder
 
 
 def test_one_that_dies_says_so(exports, folder):
-    one = exports.start(brighter(folder, 100, sigma=30.0), [("", folder / "out.exr")], options=Options(size=(900, 900)))
+    one = exports.start(
+        brighter(folder, 100, sigma=30.0), [("", folder / "out.exr")], options=RenderJob(size=(900, 900))
+    )
     one._process.kill()
     one.wait()
     assert one.state == "failed" and "signal 9" in one.sentence
@@ -155,7 +157,7 @@ def test_closing_cancels_or_waits(folder, tmp_path):
     one = waited.start(brighter(folder), [("", tmp_path / "one.exr")])
     waited.close(wait=True)
     long = brighter(folder, 200, sigma=30.0)
-    two = cancelled.start(long, [("", tmp_path / "two.exr")], options=Options(size=(900, 900)))
+    two = cancelled.start(long, [("", tmp_path / "two.exr")], options=RenderJob(size=(900, 900)))
     cancelled.close()
     assert (one.state, two.state) == ("done", "cancelled")
     assert [path.name for path in tmp_path.glob("*.exr")] == ["one.exr"]
@@ -185,7 +187,7 @@ def names(folder):
 def test_many_frames_are_counted_and_shared(exports, folder, tmp_path, jobs):
     out = tmp_path / "out"
     out.mkdir()
-    one = exports.start(shot(folder), [("", out / "s.####.exr")], options=Options(frames=(1, 2, 5), jobs=jobs))
+    one = exports.start(shot(folder), [("", out / "s.####.exr")], options=RenderJob(frames=(1, 2, 5), processes=jobs))
     assert (one.done, one.total) == (0, 3)
     assert one.wait(90) and one.state == "done", one.sentence
     assert names(out) == ["s.0001.exr", "s.0002.exr", "s.0005.exr"]
@@ -195,7 +197,7 @@ def test_many_frames_are_counted_and_shared(exports, folder, tmp_path, jobs):
 
 def test_renders_wait_for_each_other_in_an_order_that_can_change(exports, folder, tmp_path):
     long = exports.start(
-        brighter(folder, 200, sigma=30.0), [("", tmp_path / "0.exr")], options=Options(size=(1600, 1200))
+        brighter(folder, 200, sigma=30.0), [("", tmp_path / "0.exr")], options=RenderJob(size=(1600, 1200))
     )
     rest = [exports.start(brighter(folder), [("", tmp_path / f"{number}.exr")]) for number in (1, 2, 3)]
     assert [one.state for one in exports.all] == ["running", "waiting", "waiting", "waiting"]
@@ -216,7 +218,7 @@ def test_renders_wait_for_each_other_in_an_order_that_can_change(exports, folder
 def test_what_was_stopped_goes_on_where_it_was(exports, folder, tmp_path, jobs):
     out = tmp_path / "out"
     out.mkdir()
-    options = Options(frames=tuple(range(1, 13)), jobs=jobs, size=(1200, 900))
+    options = RenderJob(frames=tuple(range(1, 13)), processes=jobs, size=(1200, 900))
     one = exports.start(shot(folder, 12, sigma=20.0), [("", out / "s.####.exr")], options=options)
     while one.done < 2:
         assert one.state == "running", one.sentence
@@ -244,7 +246,7 @@ def test_one_that_cannot_be_started_says_so_and_the_next_one_has_its_turn(export
 def test_closing_forgets_what_waits(folder, tmp_path):
     exports = Exports()
     long = exports.start(
-        brighter(folder, 200, sigma=30.0), [("", tmp_path / "0.exr")], options=Options(size=(900, 900))
+        brighter(folder, 200, sigma=30.0), [("", tmp_path / "0.exr")], options=RenderJob(size=(900, 900))
     )
     other = exports.start(brighter(folder), [("", tmp_path / "1.exr")])
     exports.close()

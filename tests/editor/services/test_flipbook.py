@@ -9,6 +9,7 @@ from halation.authoring.services.export import Export, Job
 from halation.authoring.services.flipbook import Flipbook, Strip
 from halation.errors import InputError
 from halation.graph import OUTPUTS, Graph, Output, Port
+from halation.renderer.jobs.render_job import RenderJob
 
 
 @pytest.fixture
@@ -22,7 +23,7 @@ def folder(tmp_path: Path) -> Path:
 def render(path: Path, frames: tuple[int, ...], view: str = "") -> Export:
     """A render that somebody else moves on."""
     graph = Graph().add_output("image", Output(view=view))
-    return Export(Job((), "", graph, (("", path),), frames))
+    return Export(Job(RenderJob(destinations=(("", str(path)),), frames=frames), graph))
 
 
 def write(export: Export, *frames: int) -> None:

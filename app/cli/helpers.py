@@ -1,0 +1,194 @@
+"""Render jobs in helper processes: the frames of one are shared among several, or code that may never end is watched.
+
+Each helper reads a `RenderJob` as JSON, renders with a device of its own, and reports in lines of JSON, which this
+process shows as if it rendered itself. Where code of the graph could keep a device for ever, each helper has a watchdog
+here: one that is stuck is ended, and so are the others.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .. import errors
+from ..errors import HalationError
+from .outcome import note
+from .watchdog import LOOK, Watchdog
+
+if TYPE_CHECKING:
+    from ..renderer.jobs.render_job import RenderJob
+    from .progress import ProgressReporter
+
+
+def run_helpers(jobs: Sequence[RenderJob], timeout: float, progress: ProgressReporter, total: int) -> dict[str, Any]:
+    """Render each job in a process of its own, and join their reports; `total` is how many frames they have together.
+
+    A helper whose code takes longer than `timeout` seconds is ended; with 0 none is. Raises HalationError with the
+    sentence and exit code of the first one that fails; the others are stopped.
+    """
+    with tempfile.TemporaryDirectory(prefix="halation-") as folder:
+        crew = _Crew(jobs, timeout, progress, total, Path(folder))
+        return join_reports(crew.run())
+
+
+def join_reports(reports: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """What several processes did together. Each has textures of its own, so their bytes are added."""
+    joined = dict(reports[0])
+    for report in reports[1:]:
+        for name in ("written", "frames", "kept"):
+            joined[name] = [*joined[name], *report[name]]
+        for name in ("passes", "programs", "peak_bytes"):
+            joined[name] += report[name]
+        joined["repaired"] = {**joined["repaired"], **report["repaired"]}
+        joined["seconds"] = {name: max(spent, report["seconds"][name]) for name, spent in joined["seconds"].items()}
+    if len(reports) == 1:
+        return joined
+    order = sorted(range(len(joined["frames"])), key=lambda place: joined["frames"][place])
+    each = len(joined["written"]) // max(1, len(order))
+    joined["written"] = [path for place in order for path in joined["written"][place * each : (place + 1) * each]]
+    return {**joined, "frames": sorted(joined["frames"]), "kept": sorted(joined["kept"])}
+
+
+class _Helper:
+    """One process with its job and, if there is a time limit, its watchdog."""
+
+    def __init__(self, job: RenderJob, watchdog: Watchdog | None, environment: Mapping[str, str]) -> None:
+        from ..renderer.jobs.render_job import worker_command
+
+        self.job, self.watchdog = job, watchdog
+        self.process = subprocess.Popen(
+            worker_command(),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            encoding="utf-8",
+            errors="surrogateescape",
+            env={**environment, **(watchdog.environment if watchdog else {})},
+        )
+
+    def stop(self) -> None:
+        """Ask it to end: what it has finished stays."""
+        if self.process.poll() is None:
+            with contextlib.suppress(OSError):
+                self.process.send_signal(signal.SIGINT) if sys.platform != "win32" else self.process.terminate()
+
+
+class _Crew:
+    """All helpers of one rendering, a thread that listens to each, and what they have said so far."""
+
+    def __init__(
+        self, jobs: Sequence[RenderJob], timeout: float, progress: ProgressReporter, total: int, folder: Path
+    ) -> None:
+        self._progress, self._total, self._lock = progress, total, threading.Lock()
+        self._done, self._notes = 0, set[str]()
+        self._reports: list[dict[str, Any]] = []
+        self._fault: HalationError | None = None
+        environment = {**_threads(len(jobs)), **os.environ, "PYTHONIOENCODING": "utf-8"}
+        self._helpers = [
+            _Helper(job, Watchdog(folder / f"heartbeat{number}", timeout) if timeout else None, environment)
+            for number, job in enumerate(jobs)
+        ]
+
+    def run(self) -> list[dict[str, Any]]:
+        """Wait for all of them: their reports. Raises HalationError as `run_helpers`."""
+        self._progress.shared([helper.process.pid for helper in self._helpers])
+        threads = [threading.Thread(target=self._follow, args=(helper,), daemon=True) for helper in self._helpers]
+        for thread in threads:
+            thread.start()
+        try:
+            self._wait(threads)
+        except KeyboardInterrupt:
+            self._stop()
+            self._wait(threads)
+            raise
+        if self._fault:
+            raise self._fault
+        return self._reports
+
+    def _wait(self, threads: Sequence[threading.Thread]) -> None:
+        for thread in threads:
+            while thread.is_alive():
+                thread.join(LOOK)
+                for helper in self._helpers:
+                    self._check(helper)
+
+    def _check(self, helper: _Helper) -> None:
+        """End a helper whose code takes too long."""
+        if helper.watchdog is None or helper.process.poll() is not None:
+            return
+        if fault := helper.watchdog.check():
+            with self._lock:
+                self._fault = self._fault or fault
+                helper.process.kill()
+                self._stop()
+
+    def _stop(self) -> None:
+        for helper in self._helpers:
+            helper.stop()
+
+    # --- on the threads that listen ----------------------------------------------------------------------------------
+
+    def _follow(self, helper: _Helper) -> None:
+        """Listen to a helper until it has ended."""
+        report: dict[str, Any] = {}
+        with helper.process as process:
+            assert process.stdin and process.stdout and process.stderr
+            with contextlib.suppress(OSError):  # it may end before it has read everything
+                process.stdin.write(helper.job.to_json())
+            with contextlib.suppress(OSError):
+                process.stdin.close()
+            for line in process.stderr:
+                with self._lock:
+                    self._hear(line.rstrip())
+            with contextlib.suppress(ValueError):
+                report = json.loads(process.stdout.read())
+        with self._lock:
+            if process.returncode == 0:
+                self._reports.append(report)
+            elif self._fault is None:
+                self._fault = _fault_of(report.get("error", {}), process.returncode)
+                self._stop()
+
+    def _hear(self, line: str) -> None:
+        """One line that a helper writes: progress as JSON, or a note for the user, which is shown once."""
+        from ..renderer.jobs.job import FrameReport
+
+        with contextlib.suppress(ValueError, KeyError, TypeError):
+            event = json.loads(line)
+            if "done" in event:
+                self._done += 1
+                written = tuple(Path(path) for path in event["written"])
+                report = FrameReport(event["frame"], written, event["passes"], event["kept"])
+                self._progress.finished(report, self._done, self._total)
+            elif len(self._helpers) == 1:  # passes of several frames at once would only confuse
+                self._progress.passed(event["frame"], event["pass"], event["passes"], event["nodes"])
+            return
+        if line and line not in self._notes and not line.startswith("halation: "):
+            self._notes.add(line)
+            note(line)
+
+
+def _threads(helpers: int) -> dict[str, str]:
+    """The environment that divides the cores: helpers that each used all of them would only get in each other's way."""
+    if helpers == 1:
+        return {}
+    threads = str(max(1, (os.cpu_count() or 1) // helpers))
+    return {"LP_NUM_THREADS": threads, "OPENIMAGEIO_THREADS": threads}
+
+
+def _fault_of(error: Mapping[str, Any], code: int) -> HalationError:
+    """The error of a helper, of the same class if it is one of `errors`."""
+    kind = getattr(errors, str(error.get("kind", "")), HalationError)
+    fault: HalationError = kind.__new__(kind)
+    HalationError.__init__(fault, error.get("message", f"a process was ended by {code}"))
+    fault.exit_code = error.get("exit_code", 1)
+    return fault

@@ -1,0 +1,75 @@
+"""A provider of resources that loads media libraries only when a file is needed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene
+
+    from ..graph import Graph
+    from ..resources.color_program import ColorProgram
+    from ..resources.mesh import Mesh
+    from ..resources.picture import Picture
+    from ..resources.provider import FrameFile, PictureProbe
+    from ..resources.working_space import WorkingSpace
+    from .provider import Binding, MediaProvider
+
+
+class LazyResourceProvider:
+    """A `ResourceProvider` for graphs that may read no file: media libraries are imported with the first one."""
+
+    @cached_property
+    def pictures(self) -> MediaProvider:
+        """The provider that reads files."""
+        from ..inputs.provider import MediaProvider
+
+        return MediaProvider()
+
+    def bind(self, graph: Graph, inputs: Mapping[str, Binding]) -> dict[str, Picture]:
+        """Pictures for graph inputs by name. Raises UsageError for a name that the graph does not have."""
+        return self.pictures.bind(graph, inputs) if inputs else {}
+
+    def frames(self, graph: Graph, inputs: Mapping[str, Binding]) -> tuple[int, int]:
+        """The first and last frame of a graph, without reading any file where it says so itself."""
+        from ..compiler import named_files
+        from ..graph import keyed_range
+
+        if graph.settings.frames:
+            return graph.settings.frames
+        if not inputs and not named_files(graph, {}):
+            return keyed_range(graph)
+        return self.pictures.frames(graph, self.bind(graph, inputs))
+
+    def check_frames(self, graph: Graph, frames: range) -> None:
+        """Raise InputError for a file that is missing in a sequence."""
+        from ..compiler import named_files
+
+        if named_files(graph, {}):
+            self.pictures.check_frames(graph, frames)
+
+    def at(self, path: str, frame: int, missing: Missing) -> FrameFile:
+        """The file of a frame."""
+        return self.pictures.at(path, frame, missing)
+
+    def probe(self, picture: Picture) -> PictureProbe:
+        """Size and precision of a picture."""
+        return self.pictures.probe(picture)
+
+    def recolor(self, change: ColorChange) -> ColorProgram:
+        """The program of a change of color."""
+        return self.pictures.recolor(change)
+
+    def working(self, color: ColorSettings) -> WorkingSpace | None:
+        """What shaders know of the working space."""
+        return self.pictures.working(color)
+
+    def render(self, path: str, named: Mapping[str, str]) -> Render:
+        """What the file of a render holds."""
+        return self.pictures.render(path, named)
+
+    def mesh(self, scene: Scene) -> Mesh:
+        """The triangles of a scene."""
+        return self.pictures.mesh(scene)

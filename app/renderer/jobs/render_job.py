@@ -1,0 +1,90 @@
+"""A rendering to files as one value: built once, run in this process or sent as JSON to others.
+
+The command line, the render queue of the editor and helper processes all speak of the same `RenderJob`. It holds what
+decides which pixels are made and where they go. How progress is shown is not part of it.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+import msgspec
+from halation.nodes import Size
+from msgspec import Struct, field
+
+from ...errors import UsageError
+from ...graph.frames import is_video
+from ...resources.render_choices import DEFAULT_TIMEOUT, Form, Precision
+
+
+class RenderJob(Struct, frozen=True, kw_only=True, omit_defaults=True, forbid_unknown_fields=True):
+    """What to render of which graph, how, and into which files.
+
+    `graph` is the path of a graph file; "-" stands for the text in `document`, whose relative paths start at the
+    current folder. `inputs` are files by the name of an input of the graph, where "" stands for its only one. `sets`
+    are the texts of `--set` by the name of what they set. `destinations` are pairs of an output's name and a file; the
+    name "" stands for all outputs.
+    """
+
+    graph: str = "-"
+    document: str = ""
+    inputs: Mapping[str, str] = field(default_factory=dict[str, str])
+    sets: Mapping[str, str] = field(default_factory=dict[str, str])
+    node: str = ""
+    """The node, or the output of one, that is rendered instead of the graph's outputs."""
+    size: Size | None = None
+    scale: float = 1.0
+    frames: tuple[int, ...] = ()
+    """Without any: all frames of the graph where a file's name has a place for the number, else the first."""
+    precision: Precision | None = None
+    form: Form | None = None
+    memory: int = 0
+    """Bytes that a frame may take; 0 for as many as there are."""
+    deterministic: bool = False
+    destinations: tuple[tuple[str, str], ...] = ()
+    view: str = ""
+    display: str = ""
+    look: str = ""
+    colorspace: str = ""
+    compression: str = "zip"
+    codec: str = ""
+    resume: bool = False
+    processes: int = 1
+    timeout: float = DEFAULT_TIMEOUT
+    """Seconds that a pass of code in the graph may take; 0 for no limit."""
+    root: str = ""
+    """The folder below which all files must lie; "" for no limit."""
+
+    @property
+    def files(self) -> tuple[tuple[str, Path], ...]:
+        """The destinations, with paths."""
+        return tuple((name, Path(path)) for name, path in self.destinations)
+
+    @property
+    def videos(self) -> tuple[Path, ...]:
+        """The files that hold all frames."""
+        return tuple(path for _, path in self.files if is_video(str(path)))
+
+    def to_json(self) -> str:
+        """The job as one line of JSON in ASCII, which can hold names of files in any encoding."""
+        return json.dumps(msgspec.to_builtins(self))
+
+    @staticmethod
+    def from_json(text: str) -> RenderJob:
+        """The job in a text of `to_json`. Raises UsageError for any other text."""
+        try:
+            return msgspec.convert(json.loads(text), RenderJob)
+        except (ValueError, RecursionError) as fault:
+            raise UsageError(f"standard input is not a render job: {fault}") from None
+
+
+def worker_command() -> list[str]:
+    """The command of a process that reads a job as JSON from standard input and renders it.
+
+    It writes a line of JSON on standard error for every pass and frame, and a report as JSON on standard output. With
+    `-P`, modules that lie beside a graph are not imported.
+    """
+    return [sys.executable, "-P", "-m", "halation.cli", "worker"]
