@@ -97,6 +97,9 @@ class _Crew:
             _Helper(job, Watchdog(folder / f"heartbeat{number}", timeout) if timeout else None, environment)
             for number, job in enumerate(jobs)
         ]
+        from ..renderer.jobs.job import FrameReport  # it takes a while, so the helpers are started first
+
+        self._frame_report = FrameReport
 
     def run(self) -> list[dict[str, Any]]:
         """Wait for all of them: their reports. Raises HalationError as `run_helpers`."""
@@ -160,14 +163,12 @@ class _Crew:
 
     def _hear(self, line: str) -> None:
         """One line that a helper writes: progress as JSON, or a note for the user, which is shown once."""
-        from ..renderer.jobs.job import FrameReport
-
         with contextlib.suppress(ValueError, KeyError, TypeError):
             event = json.loads(line)
             if "done" in event:
                 self._done += 1
                 written = tuple(Path(path) for path in event["written"])
-                report = FrameReport(event["frame"], written, event["passes"], event["kept"])
+                report = self._frame_report(event["frame"], written, event["passes"], event["kept"])
                 self._progress.finished(report, self._done, self._total)
             elif len(self._helpers) == 1:  # passes of several frames at once would only confuse
                 self._progress.passed(event["frame"], event["pass"], event["passes"], event["nodes"])

@@ -82,7 +82,7 @@ def test_an_interrupt_reaches_the_code(tmp_path: Path) -> None:
 
 SLOW = """vec4 spin(vec4 image) {
     float x = image.r;
-    for (int i = 0; i < 6000000; ++i) x = fract(x * 1.7 + 0.1);
+    for (int i = 0; i < 60000; ++i) for (int j = 0; j < 400; ++j) x = fract(x * 1.7 + 0.1);
     return vec4(x);
 }"""
 
