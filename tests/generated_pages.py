@@ -16,7 +16,7 @@ from command_reference import fill_tables
 from halation.cli import manual
 from halation.graph.expressions.functions import FUNCTIONS
 from halation.lint.checking import RULES
-from halation.nodes import catalogue
+from halation.nodes import built_in_nodes
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = MappingProxyType(
@@ -63,7 +63,7 @@ def fill_rules(text: str) -> str:
 
 
 WHOLE_PAGES: Mapping[str, Callable[[], str]] = MappingProxyType(
-    {"docs/api.md": write_reference, "docs/nodes.md": lambda: manual.page(list(catalogue().values()))}
+    {"docs/api.md": write_reference, "docs/nodes.md": lambda: manual.page(list(built_in_nodes().values()))}
 )
 """Pages that are generated from the first line to the last."""
 

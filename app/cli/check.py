@@ -12,6 +12,7 @@ import typer
 from ..version import VERSION
 from .options import AsJson, standard_input
 from .outcome import note, print_json
+from .plugins import note_refused_plugins, refused_plugins
 
 if TYPE_CHECKING:
     from ..graph.rules import Rule
@@ -52,7 +53,11 @@ def check(
     if sarif:
         _write_sarif(reports, RULES, sarif)
     if as_json:
-        print_json({"graphs": [_told(report, strict) for report in reports]})
+        refused = refused_plugins()
+        also = {"refused_plugins": refused} if refused else {}
+        print_json({"graphs": [_told(report, strict) for report in reports], **also})
+    else:
+        note_refused_plugins()
     return max((_code(report, strict) for report in reports), default=0)
 
 

@@ -47,7 +47,7 @@ def _slug(heading: str) -> str:
 def _menu(nodes: Iterable[type[Node]]) -> str:
     rows = [
         (
-            f"[{node.id}](#{node.id})",
+            f"[{node.id}](#{_slug(node.id)})",
             _prose(doc_of(node).splitlines()[0]),
             _types(node.inputs),
             _types({name: output.socket for name, output in node.outputs.items()}),
@@ -59,6 +59,8 @@ def _menu(nodes: Iterable[type[Node]]) -> str:
 
 def _section(node: type[Node]) -> Iterator[str]:
     yield f"### {node.id}"
+    if node.package:
+        yield _paragraph(f"From the plug-in {node.package.replace('==', ' ')}.")
     for paragraph in doc_of(node).split("\n\n"):
         yield _paragraph(paragraph)
     outputs = {name: output.socket for name, output in node.outputs.items()}

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from .facts import default_text, doc_of, facts_of, hard_range, passes_of, socket_note, soft_range, type_of
 from .options import AsJson
 from .outcome import print_json
+from .plugins import note_refused_plugins, refused_plugins
 
 if TYPE_CHECKING:
     from halation.nodes import Node, Value
@@ -41,12 +42,19 @@ def nodes(
 
         print(page(list(known.values())), end="")
     elif as_json:
-        print_json(facts_of(known[id]) if id else {"nodes": [facts_of(node) for node in known.values()]})
+        print_json(facts_of(known[id]) if id else {"nodes": [facts_of(node) for node in known.values()], **_refused()})
     elif id:
         _page(known[id])
     else:
         _list(list(known.values()))
+        note_refused_plugins()
     return 0
+
+
+def _refused() -> dict[str, Any]:
+    """The plug-ins that cannot be loaded, where there are any."""
+    refused = refused_plugins()
+    return {"refused_plugins": refused} if refused else {}
 
 
 def _written(file: str) -> type[Node]:
@@ -68,11 +76,13 @@ def _list(classes: list[type[Node]]) -> None:
         if node.category != category:
             category = node.category
             print(f"\n{category}")
-        print(f"  {node.id:<{width}}  {doc_of(node).splitlines()[0]}")
+        source = f" ({node.package.replace('==', ' ')})" if node.package else ""
+        print(f"  {node.id:<{width}}  {doc_of(node).splitlines()[0]}{source}")
 
 
 def _page(node: type[Node]) -> None:
-    print(f"{node.id}  ({node.category}, version {node.version})\n\n{doc_of(node)}\n")
+    source = f", from {node.package.replace('==', ' ')}" if node.package else ""
+    print(f"{node.id}  ({node.category}, version {node.version}{source})\n\n{doc_of(node)}\n")
     outputs = {name: output.socket for name, output in node.outputs.items()}
     for title, sockets in (("inputs", node.inputs), ("outputs", outputs)):
         if sockets:

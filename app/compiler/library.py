@@ -6,9 +6,11 @@ import re
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from functools import cache, cached_property
 from hashlib import blake2b
+from itertools import chain
 from pathlib import Path
 from typing import ClassVar
 
+from halation.nodes import plugins
 from halation.shaders import folder
 from msgspec import field
 
@@ -193,20 +195,35 @@ class Layered(Mapping[str, Text]):
 
 
 class Texts(Mapping[str, Text]):
-    """Shader files of a folder by name; each is read when it is asked for."""
+    """Shader files of a folder by name; each is read when it is asked for.
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
+    Those of a plug-in have its namespace in front, and so have all their functions: any two nodes may share a pass.
+    """
+
+    def __init__(self, folder: Path, namespace: str = "") -> None:
+        self._folder, self._namespace = folder, namespace
         self._read: dict[str, Text] = {}
 
     @cached_property
     def _files(self) -> dict[str, Path]:
-        return dict(_walk(self._folder, ""))
+        return dict(_walk(self._folder, f"{self._namespace}/" if self._namespace else ""))
 
     def __getitem__(self, name: str) -> Text:
         if name not in self._read:
-            self._read[name] = parse(name, self._files[name].read_bytes().decode(errors="replace"))
+            self._read[name] = self._parse(name)
         return self._read[name]
+
+    def _parse(self, name: str) -> Text:
+        source = self._files[name].read_bytes().decode(errors="replace")
+        if not self._namespace:
+            return parse(name, source)
+        namespace, _, inner = name.partition("/")
+        text = parse(name, source, f"{namespace}/shaders/{inner}.glsl")
+        for function in text.all_functions:
+            if not function.name.startswith(f"{namespace}_"):
+                fault = f"the function '{function.name}' of a plug-in must begin with '{namespace}_'"
+                raise ShaderError(name, text.file, function.line, fault)
+        return text
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._files)
@@ -216,6 +233,36 @@ class Texts(Mapping[str, Text]):
 
     def __contains__(self, name: object) -> bool:
         return name in self._files
+
+
+class InstalledTexts(Mapping[str, Text]):
+    """The shader files of Halation, and those of plug-ins, which are looked for only when one is asked for."""
+
+    def __init__(self) -> None:
+        self._own = Texts(folder())
+
+    @cached_property
+    def _added(self) -> Mapping[str, Texts]:
+        """The shader files of every plug-in by its namespace."""
+        return {
+            plugin.namespace: Texts(plugin.folder / "shaders", plugin.namespace)
+            for plugin in plugins()
+            if plugin.nodes and plugin.folder and (plugin.folder / "shaders").is_dir()
+        }
+
+    def __getitem__(self, name: str) -> Text:
+        return self._own[name] if name in self._own else self._added[name.partition("/")[0]][name]
+
+    def __iter__(self) -> Iterator[str]:
+        return chain(self._own, *self._added.values())
+
+    def __len__(self) -> int:
+        return len(self._own) + sum(map(len, self._added.values()))
+
+    def __contains__(self, name: object) -> bool:
+        if name in self._own:
+            return True
+        return isinstance(name, str) and name in self._added.get(name.partition("/")[0], ())
 
 
 def _walk(folder: Path, prefix: str) -> Iterator[tuple[str, Path]]:
@@ -228,5 +275,5 @@ def _walk(folder: Path, prefix: str) -> Iterator[tuple[str, Path]]:
 
 @cache
 def installed() -> Library:
-    """The library that ships with Halation."""
-    return Library(Texts(folder()))
+    """The library that ships with Halation, with the shaders of plug-ins."""
+    return Library(InstalledTexts())

@@ -125,6 +125,7 @@ class NodeRecord(TypeRecord):
     """A node of a known type."""
 
     version: Count = 1
+    package: str = ""
     values: Section = {}
 
 

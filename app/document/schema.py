@@ -59,6 +59,7 @@ _DOCS = {
     "CodeRecord.code": "The code, line by line.",
     "CodeRecord.file": "The file with the code, relative to this one.",
     "NodeRecord.version": "The version of the node type that saved the values.",
+    "NodeRecord.package": "The plug-in that brings the node type, as pip installs it: acme-glow==1.2.0.",
     "NodeRecord.values": "What differs from the default.",
 }
 

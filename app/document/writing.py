@@ -125,7 +125,9 @@ def _item(id: str, item: Item, graph: Graph) -> Section:
     set_values = {name: _value(id, value, getattr(item, name)) for name, value in item.values.items()}
     changed = {name: plain for name, plain in set_values.items() if plain != item.values[name].default}
     values = {**kept, **changed}
-    what = {"version": item.version} if not isinstance(item, Written) else written_code(item.code)
+    what = written_code(item.code) if isinstance(item, Written) else {"version": item.version}
+    if item.package:
+        what["package"] = graph.extra.get(f"nodes.{id}", {}).get("package", item.package)
     return {"type": item.id} | what | muted | ({"values": values} if values else {})
 
 

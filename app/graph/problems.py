@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
-from halation.nodes import Node, catalogue
+from halation.nodes import Node, catalogue, plugins
 
 from ..errors import GraphError
 from . import rules
@@ -18,6 +19,9 @@ from .rules import Rule, Severity
 from .unmerged import CONFLICTS, unmerged
 from .values import numbers, value_fault
 from .walk import loop_sentence, loops
+
+_REQUIREMENT = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*==[A-Za-z0-9][A-Za-z0-9.+!_-]*")
+"""A package and its version, as pip takes them. Anything else in a file is not repeated as a command to type."""
 
 CONTROLS = "controls"
 """The `node` of a problem with a control."""
@@ -104,8 +108,25 @@ def _inside(graph: Graph, known: Mapping[str, type[Node]], depth: int) -> Iterat
 def _unknown(id: str, item: Unknown, known: Mapping[str, type[Node]]) -> Problem:
     if item.fault:
         return Problem(id, "", f"node '{id}': {item.fault}", rules.BROKEN_CODE)
+    if fault := _plugin_fault(item):
+        return Problem(id, "", f"node '{id}' has the type '{item.type}' {fault}", rules.MISSING_PLUGIN)
     hint = did_you_mean(item.type, known)
     return Problem(id, "", f"node '{id}' has the unknown type '{item.type}'{hint}", rules.UNKNOWN_TYPE)
+
+
+def _plugin_fault(item: Unknown) -> str:
+    """Why the plug-in that a node comes from does not give it, and what to install; "" for a node of none."""
+    package = item.raw.get("package")
+    wanted = package if isinstance(package, str) and _REQUIREMENT.fullmatch(package) else ""
+    namespace = item.type.partition(".")[0]
+    installed = [plugin for plugin in plugins() if plugin.namespace == namespace] if "." in item.type else []
+    for plugin in installed:
+        if plugin.fault:
+            return f"of the plug-in {plugin}, which cannot be loaded: {plugin.fault}"
+    if not wanted:
+        return ""
+    lack = f"the installed {installed[0]} does not have it" if installed else "which is not installed"
+    return f"of the plug-in {wanted.replace('==', ' ')}, {lack}: pip install {wanted}"
 
 
 def _animations(graph: Graph) -> Iterator[Problem]:
@@ -214,5 +235,7 @@ def _leftovers(graph: Graph) -> Iterator[Problem]:
             hint = "" if item is None else did_you_mean(key, signature(item).values)
             where = f"{path}.{key}" if path else key
             node = parts[1] if len(parts) > 1 else ""
+            if key == "package" and len(parts) == 2 and getattr(graph.nodes.get(parts[1]), "package", ""):
+                continue
             sentence = f"{where} means nothing to this version and is only kept{hint}"
             yield Problem(node, "", sentence, rules.UNKNOWN_KEY, where)

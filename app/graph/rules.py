@@ -27,6 +27,12 @@ UNKNOWN_TYPE = Rule(
     "A node is of a type that is not installed; it is kept, and does nothing.",
     "Correct the type, or update Halation.",
 )
+MISSING_PLUGIN = Rule(
+    "missing-plugin",
+    "error",
+    "A node comes from a plug-in that is not installed or cannot be loaded; it is kept, and does nothing.",
+    "Install the package that is named.",
+)
 BROKEN_CODE = Rule(
     "broken-code", "error", "The code of a written node says no node.", "Correct the line that is named."
 )
@@ -97,6 +103,7 @@ UNMERGED = Rule(
 
 RULES = (
     UNKNOWN_TYPE,
+    MISSING_PLUGIN,
     BROKEN_CODE,
     BAD_NAME,
     BAD_VALUE,

@@ -33,6 +33,8 @@ class Node:
 
     id: ClassVar[str] = ""
     """The file's name; in a plug-in its namespace comes first: `acme_glow.soft_glow`."""
+    title: ClassVar[str] = ""
+    """What people call it: the id with spaces, `soft glow (acme glow)` for one of a plug-in."""
     category: ClassVar[str] = ""
     """The folder's name, which is the menu."""
     package: ClassVar[str] = ""
@@ -58,9 +60,10 @@ class Node:
         name = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls.__name__).lower()
         cls.category = cls.__module__.rpartition(".")[0].rpartition(".")[2]
         cls.id, cls.function, cls.shader = name, name, f"{cls.category}/{name}"
+        cls.title = name.replace("_", " ")
         if namespace := _namespace(cls.__module__):
             cls.id, cls.function = f"{namespace}.{name}", f"{namespace}_{name}"
-            cls.shader = f"{namespace}/{cls.shader}"
+            cls.shader, cls.title = f"{namespace}/{cls.shader}", f"{cls.title} ({namespace.replace('_', ' ')})"
         cls.inputs = {name: item for name, item in body.items() if isinstance(item, Socket)}
         outputs = {name: item for name, item in body.items() if isinstance(item, Output)}
         dataclasses.dataclass(frozen=True, kw_only=True)(cls)

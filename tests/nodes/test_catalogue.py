@@ -11,11 +11,11 @@ import pytest
 from conftest import graph_of
 from halation.compiler import installed
 from halation.graph import Graph, Port
-from halation.nodes import Filter, Kind, Node, Pointwise, Source, Trait, catalogue, look_at
+from halation.nodes import Filter, Kind, Node, Pointwise, Source, Trait, built_in_nodes, look_at
 from halation.renderer import RenderRequest
 
 ROOT = Path(__file__).parents[2]
-NODES = list(catalogue().values())
+NODES = list(built_in_nodes().values())
 RENDERED = [
     node
     for node in NODES
@@ -227,7 +227,7 @@ def test_shader_names_do_not_clash(name):
 @pytest.mark.parametrize("name", SHADERS)
 def test_every_shader_belongs_to_a_node(name):
     folder, _, id = name.partition("/")
-    assert folder in ("lib", "primitive") or (id in catalogue() and catalogue()[id].category == folder)
+    assert folder in ("lib", "primitive") or (id in built_in_nodes() and built_in_nodes()[id].category == folder)
     source = re.sub(r"//[^\n]*", "", (ROOT / "shaders" / f"{name}.glsl").read_text(encoding="utf-8"))
     for word in ("#version", "void main", "uniform ", "texture(", "imageLoad"):
         assert word not in source

@@ -17,7 +17,7 @@ from halation.authoring.preview.data import data_range
 from halation.cli.specimen import drawn, over
 from halation.color.transforms import decode_srgb
 from halation.compiler import installed
-from halation.nodes import Kind, Node, Pointwise, catalogue
+from halation.nodes import Kind, Node, Pointwise, built_in_nodes
 from halation.presets import sample
 from halation.renderer import Renderer, RenderRequest
 
@@ -108,7 +108,7 @@ UNLIKE = MappingProxyType(
 )
 """Outputs that look otherwise at half size, by the reason why."""
 
-NODES = tuple(node for node in catalogue().values() if drawn(node))
+NODES = tuple(node for node in built_in_nodes().values() if drawn(node))
 
 
 def listed(reasons: Mapping[str, tuple[str, ...]]) -> frozenset[str]:

@@ -219,7 +219,7 @@ class Wiring(State):
         here = self.path.resolve() if self.path else None
         if here in {Path(path).resolve(), *(file.resolve() for file in paths.group_files(body))}:
             raise GraphError(f"a group cannot hold itself: '{Path(path).name}' is or holds this document")
-        if Path(path).resolve() in {preset.resolve() for preset in presets.paths()}:
+        if Path(path).resolve() in {preset.resolve() for preset in presets.installed_paths()}:
             return Group(paths.rebased(without_samples(body), self.root.folder))
         return Group(body, self.relative(path))
 
@@ -245,4 +245,4 @@ class Wiring(State):
 
 def _stem(type_id: str) -> str:
     """What a new node of a type is called."""
-    return "code" if type_id == coding.CODE else type_id
+    return "code" if type_id == coding.CODE else type_id.rpartition(".")[2]

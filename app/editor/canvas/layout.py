@@ -219,11 +219,9 @@ def node_layout(id: str, item: Item, graph: Graph, facts: Facts) -> Layout:
 
 def subtitle_of(item: Item) -> str:
     """What stands beside the id of a node: its type, of code what that calls itself."""
-    if isinstance(item, Written):
-        return item.title
     if isinstance(item, Unknown):
         return LANGUAGES.get(item.type, item.type)
-    return item.id if isinstance(item, Node) else ""
+    return item.title if isinstance(item, Node) else ""
 
 
 def _value_rows(id: str, item: Item, graph: Graph, facts: Facts, values: Mapping[str, Value]) -> list[Row]:

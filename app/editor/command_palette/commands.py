@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from halation.presets import paths
+from halation.presets import installed_paths
 
 from ...graph import Group
 from ..shared.action import Action
@@ -84,14 +84,14 @@ def _all(editor: Editor) -> Iterator[Command]:
         doc = (type.__doc__ or "").strip().splitlines()
         yield Command(
             f"add {id}",
-            f"Add {words(id).title()}",
+            f"Add {type.title.title()}",
             words(type.category).capitalize(),
             partial(_add, editor, id),
             doc=doc[0] if doc else "",
         )
     for entry in code_entries():
         yield Command(f"add {entry.id}", "Add Code", "Code", partial(_add, editor, entry.id), doc=entry.doc)
-    for path in paths():
+    for path in installed_paths():
         name = words(path.stem).title()
         opens, adds = partial(open_preset, editor, path), partial(_add_preset, editor, path)
         yield Command(f"preset {path.stem}", f"Open Preset {name}", "Preset", opens, weight=-4.0)

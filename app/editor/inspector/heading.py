@@ -11,7 +11,6 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...authoring.edits.coding import LANGUAGES
-from ...custom_nodes import Written
 from ...graph import Group, Item
 from ..fields.fields import Fields
 from ..fields.text_field import text_field
@@ -86,8 +85,7 @@ def faults(rows: Rows, key: str) -> None:
 def title_of(item: Item) -> str:
     """What kind of node it is, in words."""
     if isinstance(item, Node):
-        words = item.title if isinstance(item, Written) else item.id.replace("_", " ")
-        return " ".join(word[:1].upper() + word[1:] for word in words.split())
+        return " ".join(word[:1].upper() + word[1:] for word in item.title.split())
     return "Group" if isinstance(item, Group) else LANGUAGES.get(item.type, item.type)
 
 

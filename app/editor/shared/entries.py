@@ -40,7 +40,7 @@ def words(name: str) -> str:
 def node_entries(types: Mapping[str, type[Node]]) -> tuple[Entry, ...]:
     """Every node type, in the order of the menu."""
     return tuple(
-        Entry(id, words(id), kind.category, (kind.__doc__ or "").strip().partition("\n")[0])
+        Entry(id, kind.title, kind.category, (kind.__doc__ or "").strip().partition("\n")[0])
         for id, kind in types.items()
     )
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from time import localtime, strftime
 from typing import TYPE_CHECKING
 
-from halation.presets import paths, picture
+from halation.presets import installed_paths, picture
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
@@ -43,7 +43,7 @@ class StartScreen:
         self._textures = Textures()
         self._found: tuple[Recovered, ...] | None = None
         self._there: dict[str, bool] = {}
-        self._pictured = {path: picture(path).is_file() for path in paths()}
+        self._pictured = {path: picture(path).is_file() for path in installed_paths()}
 
     def close(self) -> None:
         """Give pictures back."""
@@ -176,7 +176,7 @@ class StartScreen:
         room = imgui.get_content_region_avail().x
         count = max(int((room + gap) / (_CARD * scale + gap)), 1)
         width = (room - gap * (count - 1)) / count
-        for index, path in enumerate(paths()):
+        for index, path in enumerate(self._pictured):
             if index % count:
                 imgui.same_line()
             self._card(editor, path, width)
@@ -186,7 +186,7 @@ class StartScreen:
         name = path.stem.replace("_", " ")
         picture_height = width * _PICTURE_HEIGHT / _CARD
         size = ImVec2(width, picture_height + 26 * scale)
-        clicked = imgui.invisible_button(f"##{path.stem}", size)
+        clicked = imgui.invisible_button(f"##{path}", size)
         record(editor, f"preset {path.stem}")
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
         lines, rounding = imgui.get_window_draw_list(), imgui.get_style().frame_rounding

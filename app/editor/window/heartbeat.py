@@ -6,6 +6,8 @@ import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from halation.nodes import plugins
+
 from ...compiler import installed
 from ...graph import Port
 from ...watch.code_files import code_files
@@ -50,7 +52,8 @@ class Heartbeat:
 
     def _tell(self, editor: Editor) -> None:
         """What services cannot do is said once; Problems shows it for as long as it lasts."""
-        now = {editor.recovery.fault, editor.watcher.fault, *editor.store.faults} - {""}
+        refused = {f"The plug-in {plugin} cannot be loaded: {plugin.fault}" for plugin in plugins() if plugin.fault}
+        now = {editor.recovery.fault, editor.watcher.fault, *editor.store.faults, *refused} - {""}
         for sentence in sorted(now - self._told):
             editor.log.add(sentence, "warning")
         self._told = now

@@ -1,0 +1,1 @@
+"""Soft glows for Halation."""

@@ -1,0 +1,199 @@
+"""Plug-ins are found by their entry points; what is wrong with one of them costs only that one."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from halation import document
+from halation.compiler import installed
+from halation.errors import ShaderError
+from halation.graph import Graph, Port, Unknown, problems
+from halation.nodes import catalogue, plugins
+
+NODE = '''
+from halation.nodes import Image, Pointwise, Slider
+from typing import Annotated
+
+class {name}(Pointwise):
+    """Darken."""
+
+    image = Image()
+    factor: Annotated[float, Slider(0.0, 1.0, unit="ratio")] = 0.5
+'''
+
+
+@dataclass
+class Site:
+    """A folder that Python imports from, in which packages can be installed."""
+
+    folder: Path
+
+    def install(self, package: str, version: str, names: tuple[str, ...] = ("Dim",), module: str = "") -> Path:
+        """A package with these nodes; returns the folder of its code."""
+        module = module or package.replace("-", "_")
+        code = self.folder / module
+        (code / "nodes" / "tone").mkdir(parents=True, exist_ok=True)
+        for name in names:
+            (code / "nodes" / "tone" / f"{name.lower()}.py").write_text(NODE.format(name=name))
+        notes = self.folder / f"{package.replace('-', '_')}-{version}.dist-info"
+        notes.mkdir()
+        (notes / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {package}\nVersion: {version}\n")
+        (notes / "entry_points.txt").write_text(f"[halation.nodes]\n{module} = {module}\n")
+        importlib.invalidate_caches()
+        forget()
+        return code
+
+
+def forget() -> None:
+    """Look for plug-ins anew."""
+    for cached in (plugins, catalogue, installed):
+        cached.cache_clear()
+
+
+@pytest.fixture
+def site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Site]:
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    loaded = set(sys.modules)
+    yield Site(tmp_path)
+    for name in set(sys.modules) - loaded:
+        if name.startswith(("acme", "other")):
+            del sys.modules[name]
+    forget()
+
+
+def faults() -> dict[str, str]:
+    return {plugin.package: plugin.fault for plugin in plugins()}
+
+
+def test_its_nodes_have_its_name_in_front(site: Site) -> None:
+    site.install("acme-tone", "2.1")
+    node = catalogue()["acme_tone.dim"]
+    assert (node.id, node.category, node.function) == ("acme_tone.dim", "tone", "acme_tone_dim")
+    assert (node.shader, node.title) == ("acme_tone/tone/dim", "dim (acme tone)")
+    assert node.package == "acme-tone==2.1"
+    menus = [kind.category for kind in catalogue().values()]
+    assert menus == sorted(menus) and len(catalogue()) == len(menus) == len([*catalogue()])
+
+
+def test_built_in_ids_never_look_for_plugins(site: Site, monkeypatch: pytest.MonkeyPatch) -> None:
+    forget()
+    monkeypatch.setattr("importlib.metadata.entry_points", lambda **_: pytest.fail("they are looked up"))
+    assert catalogue()["exposure"].id == "exposure" and "no_such_node" not in catalogue()
+    assert installed().function("color/exposure", "exposure", "test").result == "vec4"
+
+
+def test_a_fault_costs_only_that_plugin(site: Site) -> None:
+    site.install("acme-tone", "1.0")
+    code = site.install("other-tone", "3.0", ("Dim", "Fade"))
+    (code / "nodes" / "tone" / "fade.py").write_text("import no_such_library\n")
+    forget()
+    assert faults() == {
+        "acme-tone": "",
+        "other-tone": "ImportError: nodes/tone/fade.py: ModuleNotFoundError: No module named 'no_such_library'",
+    }
+    assert "acme_tone.dim" in catalogue() and "other_tone.dim" not in catalogue()
+
+
+def test_an_entry_point_that_names_nothing_is_a_fault(site: Site) -> None:
+    site.install("acme-tone", "1.0")
+    (site.folder / "acme_tone-1.0.dist-info" / "entry_points.txt").write_text("[halation.nodes]\nx = acme_gone\n")
+    forget()
+    assert faults() == {"acme-tone": "its entry point names the package 'acme_gone', which is not there"}
+
+
+def test_two_plugins_with_one_id_are_both_refused_by_name(site: Site) -> None:
+    site.install("acme-tone", "1.0")
+    site.install("acme-copy", "0.5", module="acme_tone")
+    site.install("other-tone", "3.0")
+    sentence = "acme-copy 0.5 and acme-tone 1.0 both bring a node 'acme_tone.dim': uninstall one of them"
+    assert faults() == {"acme-copy": sentence, "acme-tone": sentence, "other-tone": ""}
+    assert "acme_tone.dim" not in catalogue() and "other_tone.dim" in catalogue()
+
+
+def test_functions_of_shaders_have_its_name_in_front(site: Site) -> None:
+    code = site.install("acme-tone", "1.0")
+    (code / "shaders" / "tone").mkdir(parents=True)
+    shader = code / "shaders" / "tone" / "dim.glsl"
+    shader.write_text("vec4 acme_tone_dim(vec4 image, float factor) { return image * factor; }\n")
+    forget()
+    assert installed().function("acme_tone/tone/dim", "acme_tone_dim", "test").name == "acme_tone_dim"
+    shader.write_text("\nvec4 dim(vec4 image, float factor) { return image * factor; }\n")
+    forget()
+    with pytest.raises(ShaderError, match=r"acme_tone/shaders/tone/dim.glsl.*'dim'.*must begin with 'acme_tone_'"):
+        installed().function("acme_tone/tone/dim", "acme_tone_dim", "test")
+
+
+# --- graphs ----------------------------------------------------------------------------------------------------------
+
+
+def graph_with_dim() -> Graph:
+    graph = Graph().add("dim", catalogue()["acme_tone.dim"](factor=0.25)).add("blur", catalogue()["gaussian_blur"]())
+    return graph.connect(Port("dim", "out"), Port("blur", "image")).mute("dim")
+
+
+def test_a_graph_records_what_it_needs(site: Site) -> None:
+    site.install("acme-tone", "2.1")
+    text = document.dumps(graph_with_dim())
+    assert '"package": "acme-tone==2.1"' in text
+    assert text.count("package") == 1
+
+
+def test_a_missing_plugin_is_a_placeholder_that_saves_unchanged(site: Site) -> None:
+    site.install("acme-tone", "2.1")
+    text = document.dumps(graph_with_dim())
+    (site.folder / "acme_tone-2.1.dist-info" / "entry_points.txt").unlink()
+    forget()
+    graph = document.loads(text)
+    assert isinstance(graph.nodes["dim"], Unknown) and "dim" in graph.muted
+    assert graph.links[Port("blur", "image")] == Port("dim", "out")
+    assert document.dumps(graph) == text
+    problem = next(item for item in problems(graph) if item.node == "dim")
+    assert problem.rule.name == "missing-plugin"
+    assert problem.sentence == (
+        "node 'dim' has the type 'acme_tone.dim' of the plug-in acme-tone 2.1, which is not installed: "
+        "pip install acme-tone==2.1"
+    )
+
+
+def test_a_plugin_with_a_fault_is_named_at_its_nodes(site: Site) -> None:
+    code = site.install("acme-tone", "2.1")
+    text = document.dumps(graph_with_dim())
+    (code / "nodes" / "tone" / "fade.py").write_text("1 / 0\n")
+    forget()
+    sentence = next(item.sentence for item in problems(document.loads(text)) if item.node == "dim")
+    assert "plug-in acme-tone 2.1, which cannot be loaded" in sentence and "division by zero" in sentence
+
+
+def test_a_plugin_that_is_too_old_says_so(site: Site) -> None:
+    site.install("acme-tone", "2.1")
+    text = document.dumps(graph_with_dim()).replace("acme_tone.dim", "acme_tone.fade")
+    sentence = next(item.sentence for item in problems(document.loads(text)) if item.node == "dim")
+    assert "the installed acme-tone 2.1 does not have it: pip install acme-tone==2.1" in sentence
+
+
+def test_nothing_but_a_package_is_repeated_as_a_command(site: Site) -> None:
+    site.install("acme-tone", "2.1")
+    text = document.dumps(graph_with_dim())
+    for name in ("--index-url=http://example.org evil==1", "evil; rm -rf ~", "evil==1 && true", "git+https://x/y"):
+        graph = document.loads(text.replace("acme_tone.dim", "gone.dim").replace("acme-tone==2.1", name))
+        sentence = next(item.sentence for item in problems(graph) if item.node == "dim")
+        assert "pip" not in sentence and "unknown type" in sentence
+
+
+def test_another_version_of_a_plugin_changes_no_file(site: Site) -> None:
+    site.install("acme-tone", "2.1")
+    text = document.dumps(graph_with_dim())
+    (site.folder / "acme_tone-2.1.dist-info" / "METADATA").write_text(
+        "Metadata-Version: 2.1\nName: acme-tone\nVersion: 2.2\n"
+    )
+    forget()
+    graph = document.loads(text)
+    assert catalogue()["acme_tone.dim"].package == "acme-tone==2.2"
+    assert document.dumps(graph) == text
+    assert not [item for item in problems(graph) if item.rule.name == "unknown-key"]
