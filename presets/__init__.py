@@ -4,18 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from halation.nodes import plugins
-
 
 def paths() -> tuple[Path, ...]:
     """Every preset of Halation itself, by name."""
     return tuple(sorted(Path(__file__).parent.glob("*.json")))
-
-
-def installed_paths() -> tuple[Path, ...]:
-    """Every preset: those of Halation, then those that plug-ins bring in their folder `presets`."""
-    folders = (plugin.folder / "presets" for plugin in plugins() if plugin.folder and not plugin.fault)
-    return (*paths(), *(path for folder in folders for path in sorted(folder.glob("*.json"))))
 
 
 def picture(preset: Path) -> Path:

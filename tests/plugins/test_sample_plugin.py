@@ -70,16 +70,16 @@ def test_a_graph_with_it_renders(site: Path) -> None:
 def test_the_editor_finds_it(site: Path) -> None:
     code = """
 from pathlib import Path
-from halation import presets
+from halation.custom_nodes.plugins import preset_paths
 from halation.authoring.session import Session
 from halation.editor.shared import entries
 from halation.nodes import catalogue
-every = entries.node_entries(catalogue()) + entries.preset_entries(presets.installed_paths())
+every = entries.node_entries(catalogue()) + entries.preset_entries(preset_paths())
 for query in ("soft glow", "acme glow", "acme dream"):
     print(entries.found(every, query)[0].entries[0].title)
 session = Session()
 print(session.add_node("acme_glow.soft_glow"))
-print(session.add_group(next(path for path in presets.installed_paths() if path.stem == "acme_dream")))
+print(session.add_group(next(path for path in preset_paths() if path.stem == "acme_dream")))
 """
     result = python(site, "-c", code)
     assert result.stdout.split("\n")[:5] == [

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
-from halation import presets
 from halation.nodes import Node
 
+from ...custom_nodes.plugins import preset_paths
 from ...document import load
 from ...errors import GraphError
 from ...graph import Graph, Group, Item, Port, did_you_mean
@@ -219,7 +219,7 @@ class Wiring(State):
         here = self.path.resolve() if self.path else None
         if here in {Path(path).resolve(), *(file.resolve() for file in paths.group_files(body))}:
             raise GraphError(f"a group cannot hold itself: '{Path(path).name}' is or holds this document")
-        if Path(path).resolve() in {preset.resolve() for preset in presets.installed_paths()}:
+        if Path(path).resolve() in {preset.resolve() for preset in preset_paths()}:
             return Group(paths.rebased(without_samples(body), self.root.folder))
         return Group(body, self.relative(path))
 

@@ -6,11 +6,11 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from halation import presets
 from halation.nodes import Kind
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
+from ...custom_nodes.plugins import preset_paths
 from ...graph import Port
 from ...graph.names import fresh_name
 from ..shared.entries import (
@@ -59,7 +59,7 @@ class Search:
 
     @cached_property
     def _fixed(self) -> tuple[Entry, ...]:
-        return (*code_entries(), *preset_entries(presets.installed_paths()), *graph_entries())
+        return (*code_entries(), *preset_entries(preset_paths()), *graph_entries())
 
     def begin(self, editor: Editor, at: Point, port: Port | None = None, output: bool = True) -> None:
         """Open it for something at a canvas position; with a port, for what can be linked with it."""
@@ -71,7 +71,7 @@ class Search:
         else:
             self._link = port, output
             fits = editor.attempt(lambda: session.fitting(port, output), ()) or ()
-            files = editor.attempt(lambda: session.fitting_files(presets.installed_paths(), port, output), ()) or ()
+            files = editor.attempt(lambda: session.fitting_files(preset_paths(), port, output), ()) or ()
             self._entries = narrowed((*nodes, *self._fixed), {*fits, *map(str, files)})
         self._at, self._query, self._marked, self._opening, self._awaits = at, "", 0, True, True
 

@@ -8,8 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from halation.presets import installed_paths
-
+from ...custom_nodes.plugins import preset_paths
 from ...graph import Group
 from ..shared.action import Action
 from ..shared.entries import code_entries, words
@@ -91,7 +90,7 @@ def _all(editor: Editor) -> Iterator[Command]:
         )
     for entry in code_entries():
         yield Command(f"add {entry.id}", "Add Code", "Code", partial(_add, editor, entry.id), doc=entry.doc)
-    for path in installed_paths():
+    for path in preset_paths():
         name = words(path.stem).title()
         opens, adds = partial(open_preset, editor, path), partial(_add_preset, editor, path)
         yield Command(f"preset {path.stem}", f"Open Preset {name}", "Preset", opens, weight=-4.0)

@@ -6,12 +6,13 @@ from pathlib import Path
 from time import localtime, strftime
 from typing import TYPE_CHECKING
 
-from halation.presets import installed_paths, picture
+from halation.presets import picture
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
 from ...authoring.services.preferences import Recent
 from ...authoring.services.recovery import Recovered
+from ...custom_nodes.plugins import preset_paths
 from ...media.pictures.thumbnail import load_thumbnail
 from ..theme.style import mix, u32, ui_scale, vec4
 from ..toolkit.buttons import main_button, outline, quiet
@@ -43,7 +44,7 @@ class StartScreen:
         self._textures = Textures()
         self._found: tuple[Recovered, ...] | None = None
         self._there: dict[str, bool] = {}
-        self._pictured = {path: picture(path).is_file() for path in installed_paths()}
+        self._pictured = {path: picture(path).is_file() for path in preset_paths()}
 
     def close(self) -> None:
         """Give pictures back."""
