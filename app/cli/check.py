@@ -132,13 +132,13 @@ def _told(report: Report, strict: bool) -> dict[str, Any]:
 
 def _write_sarif(reports: Sequence[Report], rules: Mapping[str, Rule], file: str) -> None:
     """Paths in the log start at the repository that this folder is in, else at this folder."""
-    from ..document.disk import write_text
     from ..lint.sarif import sarif
     from ..lint.surroundings import Surroundings
+    from ..resources.atomic_write import write_text_atomically
 
     here = Path.cwd()
     log = sarif(reports, rules, Surroundings().root(here) or here, VERSION)
     if file == "-":
         print_json(log)
     else:
-        write_text(Path(file), json.dumps(log, indent=2, ensure_ascii=False) + "\n")
+        write_text_atomically(Path(file), json.dumps(log, indent=2, ensure_ascii=False) + "\n")

@@ -60,9 +60,9 @@ def export_isf(
     if output is None:
         print(found.text, end="")
     else:
-        from ..document.disk import write_text
+        from ..resources.atomic_write import write_text_atomically
 
-        write_text(output, found.text)
+        write_text_atomically(output, found.text)
     if as_json:
         print_json({"file": str(output), "notes": list(found.notes)})
     return 0

@@ -27,9 +27,9 @@ def fmt(
 ) -> int:
     """Rewrite graphs in the canonical format; - writes to standard output."""
     from .. import document
-    from ..document.disk import write_text
     from ..errors import UsageError
     from ..lint.files import graphs as found
+    from ..resources.atomic_write import write_text_atomically
 
     if any(str(path) == "-" for path in graphs):
         if len(graphs) > 1 or as_json:
@@ -39,7 +39,7 @@ def fmt(
     formatted = {path: document.dumps(document.load(path)) for path in found(graphs)}
     changed = [path for path, text in formatted.items() if path.read_bytes() != text.encode()]
     for path in changed if not check else ():
-        write_text(path, formatted[path])
+        write_text_atomically(path, formatted[path])
     if as_json:
         print_json({"changed": [str(path) for path in changed], "checked": len(formatted), "written": not check})
     else:

@@ -77,8 +77,8 @@ def _text(file: str) -> int:
 
 def _merge(base: str, ours: str, theirs: str, path: str) -> int:
     """`git merge` and all that merges: the result goes where ours was."""
-    from ..document.disk import write_text
     from ..errors import DocumentError
+    from ..resources.atomic_write import write_text_atomically
     from .merge import merged_versions, tell
 
     if not any('"halation"' in _read(file) for file in (ours, theirs)):
@@ -90,7 +90,7 @@ def _merge(base: str, ours: str, theirs: str, path: str) -> int:
     except DocumentError as fault:
         note(f"halation: {path}: it cannot be merged, ours is left as it was: {fault}")
         return CONFLICTS
-    write_text(Path(ours), made.text)
+    write_text_atomically(Path(ours), made.text)
     tell(made, path)
     return CONFLICTS if made.conflicts else 0
 

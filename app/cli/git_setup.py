@@ -91,7 +91,7 @@ def _configure(scope: str, remove: bool) -> list[str]:
 
 def _attribute(file: Path, patterns: Sequence[str], given: bool, remove: bool) -> list[str]:
     """Add or remove lines of .gitattributes; what was changed. With `given`, only the lines of these patterns go."""
-    from ..document.disk import write_text
+    from ..resources.atomic_write import write_text_atomically
 
     old = file.read_text(encoding="utf-8") if file.exists() else ""
     lines, ours = old.splitlines(), {f"{_quoted(pattern)} {ATTRIBUTES}" for pattern in patterns}
@@ -101,11 +101,11 @@ def _attribute(file: Path, patterns: Sequence[str], given: bool, remove: bool) -
         if gone and not kept:
             file.unlink()
         elif gone:
-            write_text(file, "".join(f"{line}\n" for line in kept))
+            write_text_atomically(file, "".join(f"{line}\n" for line in kept))
         return [f"{file}: removed {line}" for line in gone]
     new = sorted(ours.difference(lines))
     if new:
-        write_text(file, "".join(f"{line}\n" for line in (*lines, *new)))
+        write_text_atomically(file, "".join(f"{line}\n" for line in (*lines, *new)))
     return [f"{file}: {line}" for line in new]
 
 

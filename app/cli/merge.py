@@ -56,9 +56,9 @@ def merge(
             raise UsageError("- is there once: name files for the others")
         made = merged_versions(*graphs)
         if output:
-            from ..document.disk import write_text
+            from ..resources.atomic_write import write_text_atomically
 
-            write_text(output, made.text)
+            write_text_atomically(output, made.text)
     except OutputError as fault:
         fault.exit_code = TROUBLE
         raise
@@ -104,9 +104,10 @@ def _resolve(graphs: Sequence[str], choices: Sequence[str], as_json: bool) -> in
     from .. import document
     from ..document.canonical import pretty
     from ..document.diff_merge import conflicts_of, resolved
-    from ..document.disk import read_text, write_text
+    from ..document.disk import read_text
     from ..document.syntax import parse
     from ..errors import UsageError
+    from ..resources.atomic_write import write_text_atomically
 
     chosen = dict(map(_choice, choices))
     done: dict[Path, str] = {}
@@ -118,7 +119,7 @@ def _resolve(graphs: Sequence[str], choices: Sequence[str], as_json: bool) -> in
         done[path] = document.dumps(document.loads(pretty(tree), str(path), str(path.parent), follow=False))
     left: dict[str, list[str]] = {}
     for path, text in done.items():
-        write_text(path, text)
+        write_text_atomically(path, text)
         left[str(path)] = [conflict.path for conflict in conflicts_of(parse(text, str(path)))]
     if as_json:
         print_json({"graphs": [{"graph": path, "conflicts": open} for path, open in left.items()]})

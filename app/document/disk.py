@@ -1,20 +1,13 @@
-"""Files of text: read with a limit, written whole or not at all."""
+"""Texts of files, read with a limit."""
 
 from __future__ import annotations
 
-import contextlib
-import glob
 import os
-import stat
-import time
 from pathlib import Path
 
-from ..errors import DocumentError, OutputError
+from ..errors import DocumentError
 from ..resources.sandbox import outside
 from .limits import MAX_BYTES, size_fault
-
-STALE = 60.0
-"""Seconds after which what a process began to write and never finished is nobody's any more."""
 
 
 def read_text(path: Path) -> str:
@@ -37,57 +30,6 @@ def read_text(path: Path) -> str:
     except UnicodeDecodeError as error:
         fault = f"the text is not UTF-8 (byte {error.start}); save it as UTF-8"
         raise DocumentError(str(path), "", fault, rule="unreadable-graph") from None
-
-
-def write_text(path: Path, text: str) -> None:
-    """Replace `path` by `text`: after any failure the old file is still there. Raises OutputError."""
-    if said := outside(path):
-        raise OutputError(f"{path}: {said}")
-    try:
-        # A link to a file stays a link: what it points at is replaced.
-        target = path.resolve()
-        if target.exists() and not target.stat().st_mode & (stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH):
-            raise OutputError(f"{path}: the file is read-only; save under another name, or make it writable")
-        begun = f".{target.name[:100]}."
-        temporary = target.with_name(f"{begun}{os.urandom(4).hex()}.tmp")
-        handle = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
-    except (OSError, ValueError, RuntimeError) as error:
-        raise OutputError(f"{path}: it cannot be saved here ({_reason(error)}); choose another folder") from None
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(text.encode())
-            file.flush()
-            os.fsync(file.fileno())
-        if target.exists():
-            temporary.chmod(target.stat().st_mode & 0o777)
-        os.replace(temporary, target)  # noqa: PTH105
-    except BaseException as error:
-        with contextlib.suppress(OSError):
-            temporary.unlink()
-        if isinstance(error, OSError):
-            kept = "; the old file is unchanged" if target.exists() else ""
-            raise OutputError(f"{path}: it could not be saved ({_reason(error)}){kept}") from None
-        raise
-    _sync_folder(target.parent)
-    _tidy(target.parent, begun)
-
-
-def _tidy(folder: Path, begun: str) -> None:
-    """Remove what processes that were killed have left of the same file."""
-    with contextlib.suppress(OSError):
-        for left in folder.glob(f"{glob.escape(begun)}{'[0-9a-f]' * 8}.tmp"):
-            if time.time() - left.stat().st_mtime > STALE:
-                left.unlink()
-
-
-def _sync_folder(folder: Path) -> None:
-    """Make the new name last too; not every system can."""
-    with contextlib.suppress(OSError):
-        handle = os.open(folder, os.O_RDONLY)
-        try:
-            os.fsync(handle)
-        finally:
-            os.close(handle)
 
 
 def _reason(error: Exception) -> str:

@@ -14,10 +14,10 @@ from ..errors import GraphError, OutputError
 from ..graph import Control, Graph, Group, Input, Item, Output, Settings, Unknown, signature
 from ..graph.names import name_fault
 from ..graph.values import coerced, expected
+from ..resources.atomic_write import write_text_atomically
 from .animation import written_animation
 from .canonical import pretty
 from .code import written_code
-from .disk import write_text
 from .limits import size_fault
 from .migrations import FORMAT
 from .records import type_name
@@ -43,7 +43,7 @@ def save(graph: Graph, path: str | Path) -> None:
     text = dumps(graph)
     if fault := size_fault(len(text.encode())):
         raise OutputError(f"{path}: it is not saved, because it could not be read again: {fault}")
-    write_text(Path(path), text)
+    write_text_atomically(Path(path), text)
 
 
 def _graph(graph: Graph) -> Section:

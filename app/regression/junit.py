@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
-from ..document.disk import write_text
+from ..resources.atomic_write import write_text_atomically
 from .results import Outcome, Session
 
 _NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -30,7 +30,7 @@ def write_junit(session: Session, path: Path) -> None:
         for item in mine:
             _case(element, item)
     ET.indent(root)
-    write_text(path, f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(root, encoding="unicode")}\n')
+    write_text_atomically(path, f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(root, encoding="unicode")}\n')
 
 
 def _case(suite: ET.Element, outcome: Outcome) -> None:

@@ -8,8 +8,8 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from ..document.disk import write_text
 from ..errors import UsageError
+from ..resources.atomic_write import write_text_atomically
 from .cases import METRICS, number
 from .results import Check, Outcome, Session, Views
 
@@ -31,7 +31,7 @@ def check_report(*paths: Path | None) -> None:
 
 def write_report(session: Session, path: Path) -> None:
     """Write the page, whole or not at all. Raises OutputError."""
-    write_text(path, page(session))
+    write_text_atomically(path, page(session))
 
 
 def page(session: Session) -> str:

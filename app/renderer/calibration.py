@@ -17,10 +17,11 @@ from msgspec.structs import asdict, replace
 
 from ..compiler import Form, Request, compile_graph
 from ..compiler.devices import Measured
-from ..document.disk import read_text, write_text
+from ..document.disk import read_text
 from ..errors import HalationError
 from ..graph import Graph, Port, Settings
 from ..inputs.provider import MediaProvider
+from ..resources.atomic_write import write_text_atomically
 from ..resources.sandbox import outside
 from .execution.runner import Runner
 from .opengl.device import Device
@@ -50,7 +51,7 @@ def kept_or_measured(device: Device, folder: Path | None = None) -> Measured | N
         known = _read(path)  # another process may have been quicker
         if known is None:
             said = {"renderer": device.target.renderer, "driver": device.driver, **asdict(found)}
-            write_text(path, json.dumps(said, indent=1) + "\n")
+            write_text_atomically(path, json.dumps(said, indent=1) + "\n")
     except (OSError, HalationError):
         return None
     return known or found

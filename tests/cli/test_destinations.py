@@ -118,7 +118,7 @@ def test_a_full_disk(fails, graphs, monkeypatch):
     monkeypatch.setattr(os, "posix_fallocate", full, raising=False)
     monkeypatch.setattr(shutil, "disk_usage", full)
     said = fails(1, "render", graphs())
-    assert said.endswith("out.exr: cannot be written: the disk is full: make room or write elsewhere")
+    assert "out.exr: cannot be written: the disk is full: make room or write elsewhere" in said
 
 
 def test_interrupted_while_writing(fails, graphs, monkeypatch):
@@ -144,7 +144,7 @@ def test_a_disk_that_is_really_full(fails, graphs, tmp_path):
         for ending in (".exr", ".png", ".jpg", ".tif", ".webp"):
             target = old if ending == ".exr" else disk / f"new{ending}"
             said = fails(1, "render", path, "--size", "640x480", "-o", target)
-            assert said == f"{target}: cannot be written: the disk is full: make room or write elsewhere"
+            assert said.startswith(f"{target}: cannot be written: the disk is full: make room or write elsewhere")
             assert [item.name for item in disk.iterdir()] == ["old.exr"] and old.read_bytes() == b"precious"
     finally:
         subprocess.run(["umount", str(disk)], check=True)

@@ -15,8 +15,8 @@ from typing import Annotated, Any, Literal, cast, get_type_hints
 import msgspec
 import platformdirs
 
-from ...document.disk import write_text
 from ...errors import OutputError, UsageError
+from ...resources.atomic_write import write_text_atomically
 from .locks import locked
 
 MAX_RECENT = 20
@@ -135,7 +135,7 @@ class Store:
             self.file.parent.mkdir(parents=True, exist_ok=True)
             with locked(self.file.with_suffix(".lock")):
                 self.now = self._together()
-                write_text(self.file, json.dumps(_tree(self.now), indent=2, sort_keys=True) + "\n")
+                write_text_atomically(self.file, json.dumps(_tree(self.now), indent=2, sort_keys=True) + "\n")
         except OSError as fault:
             self._report(f"preferences cannot be kept in {self.file.parent} ({fault.strerror})")
             return False

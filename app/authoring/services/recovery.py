@@ -19,9 +19,10 @@ from pathlib import Path
 import msgspec
 
 from ... import document
-from ...document.disk import read_text, write_text
+from ...document.disk import read_text
 from ...errors import DocumentError, HalationError, OutputError
 from ...graph import Graph
+from ...resources.atomic_write import find_temporary_files, write_text_atomically
 from .locks import is_held, lock
 
 FIRST = 1.0
@@ -182,7 +183,7 @@ class Recovery:
             if noted is None:
                 _remove(self._file)
             else:
-                write_text(self._file, _text(*noted))
+                write_text_atomically(self._file, _text(*noted))
             for one in adopted:
                 one.discard()
         except HalationError as fault:
@@ -249,8 +250,8 @@ def _claimed(folder: Path) -> Iterator[Path]:
 
 def _tidy(folder: Path) -> None:
     """Remove what ended editors left unfinished."""
-    for path in _files(folder, ".*.tmp"):
-        if not is_held(folder / f"{path.name[1:].partition('.')[0]}.lock"):
+    for path in find_temporary_files(folder):
+        if not is_held(folder / f"{path.name.rpartition('-')[2].partition('.')[0]}.lock"):
             _remove(path)
     for path in _files(folder, "*.lock"):
         if not path.with_suffix(".json").exists() and not is_held(path):

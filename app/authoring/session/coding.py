@@ -11,9 +11,10 @@ from typing import Any
 from msgspec import structs
 
 from ...custom_nodes import Code
-from ...document.disk import read_text, write_text
+from ...document.disk import read_text
 from ...errors import DocumentError, GraphError
 from ...graph import Graph
+from ...resources.atomic_write import write_text_atomically
 from ..edits import coding, folding, paths
 from .state import State
 
@@ -68,7 +69,7 @@ class Coding(State):
         name = paths.relative(path, self.graph.folder)
         after = coding.coded(self.graph, id, structs.replace(code, file=name))
         self._check_ours()
-        write_text(Path(path), code.text)
+        write_text_atomically(Path(path), code.text)
         self._note(self._path(self.graph, structs.replace(code, file=name)), code.text)
         self.edit(f"Move code of {id} to {Path(path).name}", after)
 
@@ -146,7 +147,7 @@ class Coding(State):
         return paths.full(code.file, graph.folder)
 
     def _write(self, path: Path, text: str) -> None:
-        write_text(path, text)
+        write_text_atomically(path, text)
         self._note(path, text)
         if self._saved is not None:
             self._saved = coding.refiled(self._saved, path, text)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
@@ -12,8 +11,7 @@ from halation.nodes import Kind, Size
 
 from ...color.encoding import Encoding
 from ...color.transforms import Array
-from ...errors import OutputError
-from ...resources.atomic_write import describe_write_error, replace_file
+from ...resources.atomic_write import replace_file
 from ..metadata import add_metadata
 from .writer import Precision, encode_exr_parts, encoder_error, open_encoder
 
@@ -45,7 +43,7 @@ class ScanlineFile:
         self._output = open_encoder(path, "openexr")
         self._row = 0
         self._open = ExitStack()
-        self._part, self._target = self._open.enter_context(replace_file(path))
+        self._replacement = self._open.enter_context(replace_file(path))
 
     def add(self, rows: Array) -> None:
         """Write the next rows: [rows, width, channels]."""
@@ -54,7 +52,7 @@ class ScanlineFile:
         if not self._row:
             part.spec.height = part.spec.full_height = self._size[1]
             add_metadata(part.spec, self._metadata, "openexr")
-            self._check(self._output.open(str(self._part), part.spec))
+            self._check(self._output.open(str(self._replacement.temporary), part.spec))
             self._open.callback(self._output.close)
         end = self._row + len(rows)
         self._check(self._output.write_scanlines(self._row, end, 0, part.array))
@@ -65,11 +63,9 @@ class ScanlineFile:
         try:
             assert self._row == self._size[1], f"{self._size[1] - self._row} rows are missing"
             self._check(self._output.close())
-            with self._part.open("r+b") as file:
-                os.fsync(file.fileno())
-            self._part.replace(self._target)
+            self._replacement.commit()
         except OSError as error:
-            raise OutputError(f"{self._path}: cannot be written: {describe_write_error(error)}") from error
+            raise self._replacement.explain(error) from error
         finally:
             self.abort()
 
@@ -82,8 +78,8 @@ class ScanlineFile:
             return
         said = self._output.geterror()
         try:
-            with self._part.open("ab") as file:  # the encoder does not know why, but the system does
+            with self._replacement.temporary.open("ab") as file:  # the encoder does not know why, but the system does
                 file.write(bytes(_BLOCK))
         except OSError as error:
-            raise OutputError(f"{self._path}: cannot be written: {describe_write_error(error)}") from error
+            raise self._replacement.explain(error) from error
         raise encoder_error(self._path, said)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from contextlib import ExitStack
 from fractions import Fraction
@@ -15,7 +14,7 @@ from halation.nodes import Kind, Size
 
 from ...color.encoding import Encoding
 from ...errors import OutputError
-from ...resources.atomic_write import check_writable, describe_write_error, replace_file
+from ...resources.atomic_write import check_writable, replace_file
 from ..pictures.writer import choose_shown_layer
 from .codecs import find_codec
 from .library import library
@@ -73,7 +72,7 @@ class VideoFile:
         self._codec, self._encoding = find_codec(path, codec, size), encoding or Encoding()
         self._format, self._count = self._codec.pixels[deep], 0
         self._av, self._open = library(), ExitStack()
-        self._part, self._target = self._open.enter_context(replace_file(path))
+        self._replacement = self._open.enter_context(replace_file(path, self.path.suffix))
         try:
             self._container, self._stream = self._opened(_tags(metadata or {}))
         except BaseException:
@@ -97,11 +96,9 @@ class VideoFile:
         try:
             self._put(None)
             self._try(self._container.close)
-            with self._part.open("r+b") as file:
-                os.fsync(file.fileno())
-            self._part.replace(self._target)
+            self._replacement.commit()
         except OSError as error:
-            raise OutputError(f"{self.path}: cannot be written: {describe_write_error(error)}") from error
+            raise self._replacement.explain(error) from error
         finally:
             self.abort()
 
@@ -113,10 +110,10 @@ class VideoFile:
 
     def _opened(self, tags: Mapping[str, str]) -> tuple[Any, Any]:
         options = {"fflags": "+bitexact"}
-        suffix = self._part.suffix.casefold()
+        suffix = self.path.suffix.casefold()
         if suffix in (".mp4", ".m4v", ".mov"):
             options["movflags"] = "+faststart+use_metadata_tags+write_colr"
-        container = self._try(lambda: self._av.open(str(self._part), "w", options=options))
+        container = self._try(lambda: self._av.open(str(self._replacement.temporary), "w", options=options))
         self._open.callback(lambda: self._quietly(container))
         stream = self._try(lambda: container.add_stream(self._codec.encoder, rate=self._rate))
         context = stream.codec_context
@@ -147,7 +144,7 @@ class VideoFile:
         try:
             return act()
         except (self._av.FFmpegError, OSError, MemoryError) as error:
-            raise OutputError(f"{self.path}: cannot be written: {describe_write_error(error)}") from error
+            raise self._replacement.explain(error) from error
 
     def _quietly(self, container: Any) -> None:
         try:

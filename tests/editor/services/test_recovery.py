@@ -194,7 +194,7 @@ def test_leftovers_of_ended_editors_are_tidied(editor, tmp_path):
     one = editor()
     folder = tmp_path / "recovery"
     [mine] = folder.glob("*.lock")
-    ours, theirs = folder / f".{mine.stem}.json.12ab34cd.tmp", folder / ".0123456789abcdef.json.12ab34cd.tmp"
+    ours, theirs = folder / f".halation-1-0a-{mine.stem}.json.tmp", folder / ".halation-1-0a-0123456789abcdef.json.tmp"
     for path in (ours, theirs, folder / "0123456789abcdef.lock"):
         path.touch()
     two = editor()
