@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
+from device_textures import read_texture
 from halation.authoring.preview import Preview
 from halation.graph import Graph, Input, Output, Port
 from halation.nodes import Kind, Size
@@ -61,9 +62,7 @@ def settle(preview: Preview) -> int:
 def pixels(preview: Preview, engine: Renderer, name: str = "A") -> np.ndarray:
     shown = preview.shown(name)
     assert shown is not None
-    with engine.device.current():
-        data = np.frombuffer(shown.texture.read(), np.float32)
-    return data.reshape(shown.size[1], shown.size[0], -1)[..., : shown.channels]
+    return read_texture(engine.device, shown.texture)[..., : shown.channels]
 
 
 def rendered(engine: Renderer, graph: Graph, port: Port = IMAGE, **rest) -> np.ndarray:

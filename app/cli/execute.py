@@ -110,7 +110,7 @@ def _render(
     from ..renderer.jobs.job import Writing, run_job
 
     loaded = time.perf_counter()
-    device = (open_pinned() if job.deterministic else open_device(job.form)).within(job.memory)
+    device = open_pinned(job.memory) if job.deterministic else open_device(job.form, job.memory)
     # A job keeps what the next frame wants; where each frame is led up to, it wants more than that of the one before.
     led = len(job.frames) > 1 and graph.settings.preroll is not None
     renderer = Renderer(device, budget=DEFAULT_BUDGET if led and not job.memory else 0, ahead=ahead)

@@ -49,9 +49,9 @@ class Watchdog:
     @property
     def environment(self) -> dict[str, str]:
         """The variables of the environment that the process needs."""
-        from ..renderer.opengl.heartbeat import HEARTBEAT
+        from ..renderer.execution.progress_beacon import BEACON_FILE
 
-        return {HEARTBEAT: str(self._file)}
+        return {BEACON_FILE: str(self._file)}
 
     def check(self) -> DeviceError | None:
         """The error to raise once code has run for too long, else None."""
@@ -70,9 +70,9 @@ class Watchdog:
 
 def needs_watchdog(graph: Graph, timeout: float) -> bool:
     """True if code of the graph could run for ever, and no other process watches this one."""
-    from ..renderer.opengl.heartbeat import HEARTBEAT
+    from ..renderer.execution.progress_beacon import BEACON_FILE
 
-    return timeout > 0.0 and not os.environ.get(HEARTBEAT) and has_loops(graph)
+    return timeout > 0.0 and not os.environ.get(BEACON_FILE) and has_loops(graph)
 
 
 def has_loops(graph: Graph) -> bool:

@@ -10,16 +10,16 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .device import Device, DeviceTexture
     from .engine import DEFAULT_BUDGET, Renderer, RenderRequest
     from .execution.executor import Counters
     from .execution.run import Run
     from .execution.runner import Runner
+    from .execution.texture_pool import Lease
     from .frame_renderer import FrameRenderer
-    from .opengl.device import Device, describe
-    from .opengl.textures import Lease
     from .opening import open_device
     from .pinned import open_pinned
-    from .viewing.display import Display, Drawable, Handle
+    from .viewing.display import Display, Drawable
     from .viewing.look import Look, fitted, to_panel, to_picture
     from .viewing.probe import Nonfinite, Probe, first_nonfinite
 
@@ -27,10 +27,10 @@ __all__ = [
     "DEFAULT_BUDGET",
     "Counters",
     "Device",
+    "DeviceTexture",
     "Display",
     "Drawable",
     "FrameRenderer",
-    "Handle",
     "Lease",
     "Look",
     "Nonfinite",
@@ -39,7 +39,6 @@ __all__ = [
     "Renderer",
     "Run",
     "Runner",
-    "describe",
     "first_nonfinite",
     "fitted",
     "open_device",
@@ -52,11 +51,11 @@ _HOMES = MappingProxyType(
     {
         "Counters": "execution.executor",
         "DEFAULT_BUDGET": "engine",
-        "Device": "opengl.device",
+        "Device": "device",
+        "DeviceTexture": "device",
         "Display": "viewing.display",
         "Drawable": "viewing.display",
-        "Handle": "viewing.display",
-        "Lease": "opengl.textures",
+        "Lease": "execution.texture_pool",
         "Look": "viewing.look",
         "Nonfinite": "viewing.probe",
         "Probe": "viewing.probe",
@@ -65,7 +64,6 @@ _HOMES = MappingProxyType(
         "Run": "execution.run",
         "Runner": "execution.runner",
         "RenderRequest": "engine",
-        "describe": "opengl.device",
         "first_nonfinite": "viewing.probe",
         "fitted": "viewing.look",
         "open_device": "opening",

@@ -16,8 +16,8 @@ from ..compiler import Pass, Plan
 from ..graph import Graph
 from .engine import Renderer, RenderRequest
 from .execution.run import Timings
+from .execution.texture_pool import Lease
 from .frame_renderer import FrameRenderer
-from .opengl.textures import Lease
 
 Name = tuple[tuple[str, ...], tuple[str, ...], int]
 """What stands for a pass in every frame and every run: its nodes, its functions, and a count of such passes before."""
@@ -103,7 +103,7 @@ def bench(
     reels = {frame: FrameRenderer(renderer, graph, wanted) for frame in frames}
     plans = {frame: reel.plan(frame) for frame, reel in reels.items()}
     planning, started = time.perf_counter() - started, time.perf_counter()
-    with renderer.device.current():
+    with renderer.device.make_current():
         for plan in plans.values():
             for one in plan.passes:
                 renderer.runner.programs.get(one)
@@ -117,7 +117,7 @@ def bench(
         reel.close()
         loading += time.perf_counter() - started
         try:
-            turns = [renderer.runner.timed(plans[frame]) for _ in range(warm_up + repeats)]
+            turns = [renderer.runner.measure(plans[frame]) for _ in range(warm_up + repeats)]
         finally:
             given.close()
         timings[frame] = turns[warm_up:]

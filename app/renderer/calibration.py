@@ -23,8 +23,8 @@ from ..graph import Graph, Port, Settings
 from ..inputs.provider import MediaProvider
 from ..resources.atomic_write import write_text_atomically
 from ..resources.sandbox import outside
+from .device import Device
 from .execution.runner import Runner
-from .opengl.device import Device
 
 SIZE = (1024, 1024)
 TURNS = 5
@@ -35,7 +35,7 @@ VERSION = 1
 """Goes up when other passes are measured, or the compiler makes something else of them."""
 
 
-def kept_or_measured(device: Device, folder: Path | None = None) -> Measured | None:
+def load_or_measure(device: Device, folder: Path | None = None) -> Measured | None:
     """What is kept of the device; else it is measured and kept. None where it cannot be kept.
 
     `folder` is by default that of the user.
@@ -68,14 +68,14 @@ def measured(device: Device, size: Size = SIZE, turns: int = TURNS) -> Measured:
     request, pictures = Request({"out": Port("blur", "out")}), MediaProvider()
     fastest, spent = dict.fromkeys(get_args(Form), math.inf), 0.0
     runners = {
-        form: Runner(replace(device, target=replace(device.target, form=form)), pictures.load, 0) for form in fastest
+        form: Runner(device.with_target(replace(device.target, form=form)), pictures.load, 0) for form in fastest
     }
     try:
         for turn in range(turns + 1):
             for form, runner in list(runners.items()):
                 plan = compile_graph(graph, request, pictures, target=runner.device.target)
                 try:
-                    seconds = sum(taken for _, taken in runner.timed(plan))
+                    seconds = sum(taken for _, taken in runner.measure(plan))
                 except HalationError:  # the driver refuses these passes: the others are left
                     fastest[form] = math.inf
                     runners.pop(form).close()

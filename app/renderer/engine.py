@@ -12,9 +12,9 @@ from msgspec import Struct, field
 from ..compiler import Library, Memory, Plan, Planner, Precision, Region, Request
 from ..graph import Graph, Port
 from ..inputs.provider import MediaProvider
+from .device import Device
 from .execution.decoding import Array
 from .execution.runner import Runner
-from .opengl.device import Device
 from .opening import open_device
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from ..graph import Graph, Port
 from .engine import Renderer, RenderRequest
 from .execution.decoding import Array
 from .execution.run import Run, Timings, carried
-from .opengl.textures import Lease
+from .execution.texture_pool import Lease
 
 KEPT_PLANS = 16
 

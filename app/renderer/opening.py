@@ -1,59 +1,32 @@
-"""Opening OpenGL, with or without a display, with the form of passes that suits it."""
+"""Opening the device, with the form of passes that suits it."""
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable
-
-import moderngl
 from msgspec.structs import replace
 
 from ..compiler import Form
 from ..compiler.devices import choose
-from ..errors import DeviceError
-from .calibration import kept_or_measured
-from .opengl.device import OLDEST, Device, describe
-from .opengl.warming import EGL, GL
+from .calibration import load_or_measure
+from .device import Device
+from .opengl.context import open_current, open_standalone
+from .opengl.device import OpenGLDevice
 
 
-def open_device(form: Form | None = None) -> Device:
+def open_device(form: Form | None = None, memory: int = 0) -> Device:
     """Open OpenGL without a window. Raises DeviceError where there is none, or one that is too old.
 
-    `form` overrides how passes are emitted; otherwise the table says, or what was measured at the first start.
+    `form` overrides how passes are emitted; otherwise the table says, or what was measured at the first start. Plans
+    use at most `memory` bytes of the device; 0 is as much as it has.
     """
-    context = _standalone()
-    return _fitted(Device(context, describe(context)), form)
+    return _choose_form(open_standalone(), form, memory)
 
 
-def adopt(form: Form | None = None) -> Device:
-    """The device of the OpenGL context that is current on this thread, a window's. Raises DeviceError if it is old."""
-    moderngl.init_context()
-    context = moderngl.get_context()
-    return _fitted(Device(context, describe(context), shared=True), form)
+def adopt_window(form: Form | None = None) -> Device:
+    """The device of the window that is current on this thread. Raises DeviceError if its OpenGL is too old."""
+    return _choose_form(open_current(), form)
 
 
-def _fitted(device: Device, form: Form | None) -> Device:
+def _choose_form(device: OpenGLDevice, form: Form | None, memory: int = 0) -> Device:
     target = device.target
-    chosen = choose(target.renderer, target.version, form, lambda: kept_or_measured(device))
-    return replace(device, target=replace(target, form=chosen.form, why=chosen.why))
-
-
-def _standalone() -> moderngl.Context:
-    named = {"libegl": EGL, "libgl": GL}  # searching for them would take two processes
-    ways = ({"backend": "egl", **named}, {"backend": "egl"}, {}) if sys.platform.startswith("linux") else ({},)
-    create: Callable[..., moderngl.Context] = moderngl.create_context  # its stub knows nothing of backends
-    faults: list[str] = []
-    for way in ways:
-        try:
-            return create(standalone=True, require=OLDEST, **way)
-        except Exception as fault:  # moderngl and its loaders raise plain Exceptions
-            faults.append(str(fault).strip().rstrip("."))
-    raise DeviceError(f"OpenGL {OLDEST / 100:.1f} cannot be opened ({'; '.join(dict.fromkeys(faults))}): {_way_out()}")
-
-
-def _way_out() -> str:
-    if sys.platform.startswith("linux"):
-        return "install a graphics driver or the software rasterizer (Debian, Ubuntu: apt-get install libegl1 libgl1)"
-    if sys.platform == "win32":
-        return "install the graphics driver of your card's maker"
-    return "run where a window system is available"
+    chosen = choose(target.renderer, target.version, form, lambda: load_or_measure(device))
+    return device.with_target(replace(target, form=chosen.form, why=chosen.why, memory=memory or target.memory))

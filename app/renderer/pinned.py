@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from .opengl.device import Device
+from .device import Device
 from .opening import open_device
 
 _SET = {
@@ -59,10 +59,10 @@ def pinned() -> Iterator[None]:
                 os.environ[name] = text
 
 
-def open_pinned() -> Device:
+def open_pinned(memory: int = 0) -> Device:
     """The software rasterizer; another device where there is none. Raises DeviceError where there is no OpenGL at all.
 
     `Device.target.software` says which it is.
     """
     with pinned():
-        return open_device("fragment")
+        return open_device("fragment", memory)

@@ -25,6 +25,7 @@ from halation.graph import Graph
 from halation.media.comparison.metrics import measure_flip
 from halation.renderer import Device, FrameRenderer, Renderer, RenderRequest
 from halation.renderer.bench import bench, held
+from halation.renderer.opengl.device import OpenGLDevice
 from msgspec import structs
 
 Say = Callable[[str], None]
@@ -36,7 +37,8 @@ def measure_copies(results: Results, device: Device, given: argparse.Namespace, 
     """The bandwidth of the card."""
     size, by_query = DRY if given.dry else UHD2, not device.target.software
     say("copies")
-    with device.drawing() as context:
+    assert isinstance(device, OpenGLDevice)
+    with device.save_draw_target() as context:
         results.extras["queries"] = queries_against_clock(context, size)
         found = copies(context, size, given.repeat, by_query)
     results.extras["copies"] = {
@@ -65,7 +67,7 @@ def measure_work(results: Results, device: Device, given: argparse.Namespace, sa
 def engine(device: Device, form: Form) -> Renderer:
     """A renderer with another form of passes on the same context."""
     target = structs.replace(device.target, form=form, why="measured here")
-    return Renderer(structs.replace(device, target=target), budget=0)
+    return Renderer(device.with_target(target), budget=0)
 
 
 def take(
@@ -115,8 +117,8 @@ def frames(renderer: Renderer, graph: Graph, wanted: RenderRequest, repeat: int)
 
 def finish(device: Device) -> None:
     """Wait for all that was submitted."""
-    with device.current():
-        device.context.finish()
+    with device.make_current():
+        device.finish()
 
 
 def measure_presets(results: Results, device: Device, given: argparse.Namespace, say: Say) -> None:

@@ -89,7 +89,7 @@ def main() -> None:
         found.setdefault(kind, []).append(f"{path.stem}: {why}" if why else path.stem)
         if pixels is not None and pixels.shape[:2] == (options.size, options.size):
             tiles.append(pixels)
-        engine.runner.textures.forget()
+        engine.runner.textures.release_idle()
     compiled = sum(len(names) for kind, names in found.items() if kind not in ("refused", "failed"))
     print(
         f"{len(paths)} shaders, {options.size}x{options.size}, {options.frames} frames, "

@@ -63,7 +63,7 @@ def row(results, beginning):
 
 
 def test_copies_copy(device):
-    with device.drawing() as context:
+    with device.save_draw_target() as context:
         found = copies(context, DRY, 2, by_query=False)
         assert queries_against_clock(context, DRY) >= 0.0
     ways = {f"{form} {texel}" for form in ("fragment", "compute") for texel in FORMATS}
@@ -74,7 +74,7 @@ def test_copies_copy(device):
 
 def test_a_copy_that_does_not_arrive_is_seen(device, monkeypatch):
     monkeypatch.setattr(moderngl.VertexArray, "render", lambda *_, **__: None)
-    with device.drawing() as context:
+    with device.save_draw_target() as context:
         found = {one.way: one.same for one in copies(context, DRY, 1, by_query=False)}
     assert not found["fragment rgba16f"] and not found["fragment rgba32f"] and found["buffer"]
 

@@ -22,8 +22,8 @@ Graphs = Callable[..., Path]
 
 
 @cache
-def device(form: Form | None) -> renderer.Device:
-    return REAL_DEVICE(form)
+def device(form: Form | None, memory: int) -> renderer.Device:
+    return REAL_DEVICE(form, memory)
 
 
 REAL_DEVICE = renderer.open_device
@@ -32,7 +32,7 @@ REAL_DEVICE = renderer.open_device
 @pytest.fixture
 def cli(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Cli:
     """`cli("render", path, "-o", file)` runs a command; a thousand devices would be slow, so there is one per form."""
-    monkeypatch.setattr(renderer, "open_device", lambda form=None: device(form))
+    monkeypatch.setattr(renderer, "open_device", lambda form=None, memory=0: device(form, memory))
 
     return command(capfd)
 

@@ -112,7 +112,7 @@ def test_what_cannot_be_opened_is_a_sentence(place, tmp_path: Path, words, code:
 @pytest.mark.parametrize(
     ("what", "fault", "code", "sentence"),
     [
-        ("window.adopt", "DeviceError('this driver is too old')", 5, "halation: this driver is too old"),
+        ("window.adopt_window", "DeviceError('this driver is too old')", 5, "halation: this driver is too old"),
         ("window.assemble", "ValueError('oh')", 70, "this is a bug in Halation (ValueError: oh)"),
         (
             "window.open_first",

@@ -6,6 +6,7 @@ import numpy as np
 import OpenImageIO as oiio
 import PyOpenColorIO as ocio
 import pytest
+from device_textures import read_texture, upload_texture
 from halation.color.encoding import Encoding
 from halation.color.gpu_programs import gpu_view
 from halation.color.transforms import to_display
@@ -92,20 +93,17 @@ class Picture:
 def test_the_viewer_shows_the_same(color, light):
     device = open_device()
     opaque = np.concatenate([light, np.ones_like(light[..., :1])], axis=2)
-    with device.current():
-        texture = device.context.texture((light.shape[1], light.shape[0]), 4, opaque.tobytes(), dtype="f4")
+    texture = upload_texture(device, opaque)
     display = Display(device, "f4")
     for view, screen, look, _ in VIEWS:
         shown = display.draw(
             "x", texture.size, Picture(texture), None, Look(view=view, display=screen, look=look, color=color)
         )
-        with device.current():
-            pixels = np.frombuffer(shown.read(), np.float32).reshape(*light.shape[:2], 4)[..., :3]
+        pixels = read_texture(device, shown)[..., :3]
         expected = to_display(light, view, bits=32, display=screen, look=look, color=color)
         np.testing.assert_allclose(pixels, expected, rtol=2e-3, atol=1e-3)
     gray = display.draw("x", texture.size, Picture(texture), None, Look(channels="luminance", view="none", color=color))
-    with device.current():
-        pixels = np.frombuffer(gray.read(), np.float32).reshape(*light.shape[:2], 4)[..., 0]
+    pixels = read_texture(device, gray)[..., 0]
     weighed = (light @ np.array((0.2722287, 0.6740818, 0.0536895)))[..., None].repeat(3, 2).astype(np.float32)
     np.testing.assert_allclose(pixels, to_display(weighed, "none", bits=32, color=color)[..., 0], rtol=2e-3, atol=1e-3)
     display.close()

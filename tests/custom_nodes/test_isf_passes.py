@@ -40,7 +40,7 @@ def test_runs_split_over_frames_make_the_same_pictures(renderer: Renderer) -> No
     back = reel(renderer, item)
     for frame in (5, 2, 4, 1, 3):
         assert np.array_equal(back.render(frame)["out"], inorder[frame])
-        renderer.runner.textures.forget()
+        renderer.runner.textures.release_idle()
         assert np.array_equal(reel(renderer, item).render(frame)["out"], inorder[frame])
 
 

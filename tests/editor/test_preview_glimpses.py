@@ -7,6 +7,7 @@ import time
 import numpy as np
 import pytest
 from conftest import graph_of
+from device_textures import read_texture
 from halation.authoring.preview import Glimpse, Preview
 from halation.authoring.preview.glimpses import GRID, Part
 from halation.compiler import Region
@@ -26,10 +27,8 @@ BINDINGS = {"image": PICTURE}
 def part(preview: Preview, engine: Renderer, name: str = "A") -> tuple[np.ndarray, Region]:
     """What is seen of a picture, and where that lies in it."""
     seen = preview.seen(name)
-    with engine.device.current():
-        data = np.frombuffer(seen.texture.read(), np.float32)
-    width, height = seen.texture.size
-    return data.reshape(height, width, -1)[..., : seen.channels], Region(*seen.start, width, height)
+    pixels = read_texture(engine.device, seen.texture)
+    return pixels[..., : seen.channels], Region(*seen.start, *seen.texture.size)
 
 
 def of(picture: np.ndarray, region: Region) -> np.ndarray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from device_textures import read_texture
 from halation.graph import Graph, Input, Port
 from halation.nodes import Kind
 from halation.nodes.color.exposure import Exposure
@@ -61,8 +62,7 @@ def test_thumbnails_of_what_is_there(preview, engine):
         assert texture.size == (37, 23) and fresh
     assert preview.thumbnail("nobody") is None and passes(engine) == before
     light = np.clip(rendered(engine, chain(), Port("light", "out")), 0.0, 1.0)
-    with engine.device.current():
-        drawn = np.frombuffer(preview.thumbnail("light")[0].read(), np.uint8).reshape(23, 37, 4)[..., :3]
+    drawn = read_texture(engine.device, preview.thumbnail("light")[0], np.uint8)[..., :3]
     opaque = PICTURE[..., 3] > 0.9
     assert np.corrcoef(drawn[opaque].ravel(), light[opaque][..., :3].ravel())[0, 1] > 0.8
 
@@ -101,8 +101,7 @@ def test_a_thumbnail_of_depth_shows_its_range(preview, engine):
     graph = Graph(inputs={"depth": Input(Kind.FIELD)})
     want(preview, graph, {"A": Port("inputs", "depth")}, bindings={"depth": depth})
     settle(preview)
-    with engine.device.current():
-        drawn = np.frombuffer(preview.thumbnail("inputs.depth")[0].read(), np.uint8).reshape(23, 37, 4)
+    drawn = read_texture(engine.device, preview.thumbnail("inputs.depth")[0], np.uint8)
     assert drawn[0, 0, 0] == 0 and drawn[-1, -1, 0] == 255 and 100 < drawn[11, 18, 0] < 155
 
 
@@ -111,6 +110,5 @@ def test_the_sky_does_not_make_a_thumbnail_of_depth_black(preview, engine):
     depth[:5] = 1e10
     want(preview, Graph(inputs={"depth": Input(Kind.FIELD)}), {"A": Port("inputs", "depth")}, bindings={"depth": depth})
     settle(preview)
-    with engine.device.current():
-        drawn = np.frombuffer(preview.thumbnail("inputs.depth")[0].read(), np.uint8).reshape(23, 37, 4)
+    drawn = read_texture(engine.device, preview.thumbnail("inputs.depth")[0], np.uint8)
     assert drawn[2, 3, 0] == 255 and drawn[5, 0, 0] < 10 and 100 < drawn[14, 18, 0] < 155

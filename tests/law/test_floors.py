@@ -35,8 +35,8 @@ ROOMS = {
 """Folders of a floor, first to last. What lies beside them is what all of them speak of, or puts them together."""
 
 HOMES = {
-    "moderngl": "renderer",
-    "glcontext": "renderer",
+    "moderngl": "renderer.opengl",
+    "glcontext": "renderer.opengl",
     "OpenImageIO": "media",
     "PyOpenColorIO": "color",
     "av": "media",
@@ -175,6 +175,14 @@ def test_a_library_has_one_home(library: str) -> None:
     users = {name for name, target in links() if target.split(".")[0] == library}
     home = f"halation.{HOMES[library]}"
     assert all(f"{name}.".startswith(f"{home}.") for name in users), users
+
+
+def test_only_the_room_of_opengl_speaks_of_its_library() -> None:
+    """Textures and programs elsewhere are handles of the `Device` protocol."""
+    home = ROOT / "app" / "renderer" / "opengl"
+    about = ROOT / "app" / "editor" / "panels" / "about.py"  # which lists the libraries for the user
+    files = [path for path in (ROOT / "app").rglob("*.py") if home not in path.parents and path != about]
+    assert not [path for path in files if re.search(r"\bmoderngl\b|\.glo\b", path.read_text(encoding="utf-8"))]
 
 
 @pytest.mark.parametrize("part", ["errors", "graph", "document", "cli"])

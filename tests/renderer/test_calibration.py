@@ -8,7 +8,7 @@ import pytest
 from halation.compiler.devices import Measured
 from halation.errors import ShaderError
 from halation.renderer import calibration, open_device
-from halation.renderer.calibration import kept_or_measured, measured
+from halation.renderer.calibration import load_or_measure, measured
 from halation.renderer.execution.runner import Runner
 from halation.resources.sandbox import fenced
 from msgspec.structs import replace
@@ -55,10 +55,10 @@ def test_a_form_that_the_driver_refuses_takes_forever(device, monkeypatch):
 
 
 def test_a_device_is_measured_once(device, counted, tmp_path):
-    first = kept_or_measured(device, tmp_path / "new")
-    assert first == Measured(1.0, 0.25) == kept_or_measured(device, tmp_path / "new")
+    first = load_or_measure(device, tmp_path / "new")
+    assert first == Measured(1.0, 0.25) == load_or_measure(device, tmp_path / "new")
     other = replace(device, target=replace(device.target, renderer="another card"))
-    assert kept_or_measured(other, tmp_path / "new") == Measured(0.5, 0.25)
+    assert load_or_measure(other, tmp_path / "new") == Measured(0.5, 0.25)
     assert counted == [device.target.renderer, "another card"]
     files = list((tmp_path / "new").iterdir())
     assert {json.loads(file.read_text())["renderer"] for file in files} == set(counted)
@@ -66,18 +66,18 @@ def test_a_device_is_measured_once(device, counted, tmp_path):
 
 @pytest.mark.parametrize("text", ["", "{", "[]", '{"compute": 1}', '{"compute": "x", "fragment": 1}'])
 def test_a_file_that_makes_no_sense_is_measured_again(device, counted, tmp_path, text):
-    kept_or_measured(device, tmp_path)
+    load_or_measure(device, tmp_path)
     file = next(tmp_path.iterdir())
     file.write_text(text)
-    assert kept_or_measured(device, tmp_path) == Measured(0.5, 0.25) == kept_or_measured(device, tmp_path)
+    assert load_or_measure(device, tmp_path) == Measured(0.5, 0.25) == load_or_measure(device, tmp_path)
 
 
 def test_what_cannot_be_kept_is_not_measured(device, counted, tmp_path):
     (tmp_path / "file").write_text("")
     (tmp_path / "inside").mkdir()
-    assert kept_or_measured(device, tmp_path / "file" / "below") is None
+    assert load_or_measure(device, tmp_path / "file" / "below") is None
     with fenced(tmp_path / "inside"):
-        assert kept_or_measured(device, tmp_path / "outside") is None
+        assert load_or_measure(device, tmp_path / "outside") is None
     assert not counted
 
 

@@ -23,19 +23,19 @@ def test_what_was_measured_holds_for_every_size(renderer):
     small, large = planned(renderer, light), planned(renderer, light, 64)
     for seconds in (0.5, 0.001):  # a program is finished when it first runs
         costs.learn(small, small.passes[0], seconds)
-    assert costs.of(small, small.passes[0]) == pytest.approx(0.001)
-    assert costs.of(large, large.passes[0]) == pytest.approx(0.004)
+    assert costs.estimate(small, small.passes[0]) == pytest.approx(0.001)
+    assert costs.estimate(large, large.passes[0]) == pytest.approx(0.004)
     costs.learn(large, large.passes[0], 0.008)
-    assert costs.of(small, small.passes[0]) == pytest.approx(0.002)
+    assert costs.estimate(small, small.passes[0]) == pytest.approx(0.002)
 
 
 def test_before_that_it_is_estimated_by_what_is_read(renderer):
     costs = Costs(True)
     point, blur = planned(renderer, Exposure(stops=1.0)), planned(renderer, GaussianBlur(sigma=3.0))
-    cheap, dear = (max(costs.of(plan, one) for one in plan.passes) for plan in (point, blur))
+    cheap, dear = (max(costs.estimate(plan, one) for one in plan.passes) for plan in (point, blur))
     assert 0.0 < cheap < dear
     costs.learn(point, point.passes[0], 0.5)
-    assert costs.of(point, point.passes[0]) == cheap
+    assert costs.estimate(point, point.passes[0]) == cheap
 
 
 def test_a_file_costs_what_it_took_to_decode(renderer):

@@ -6,12 +6,13 @@ import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-import moderngl
 import numpy as np
 import pytest
+from device_textures import read_texture, upload_texture
 from halation.color.transforms import displays, to_display, views
 from halation.errors import UsageError
-from halation.renderer import Display, Look, Renderer, fitted, to_panel, to_picture
+from halation.renderer import DeviceTexture, Display, Look, Renderer, fitted, to_panel, to_picture
+from halation.renderer.opengl.device import OpenGLDevice
 
 NUMBERS = itertools.count()
 RAW = {"view": "Raw", "surround": (0.25, 0.25, 0.25), "checker": False}
@@ -19,7 +20,7 @@ RAW = {"view": "Raw", "surround": (0.25, 0.25, 0.25), "checker": False}
 
 @dataclass
 class Result:
-    texture: moderngl.Texture
+    texture: DeviceTexture
     full_size: tuple[int, int]
     channels: int
     key: str
@@ -37,7 +38,7 @@ def display(renderer: Renderer) -> Iterator[Display]:
 @pytest.fixture
 def result(renderer: Renderer):
     """`result(pixels)` is a texture as the runner keeps it: three channels are stored as four."""
-    made: list[moderngl.Texture] = []
+    made: list[DeviceTexture] = []
 
     def uploaded(pixels, scale: float = 1.0) -> Result:
         array = np.asarray(pixels, np.float32)
@@ -45,13 +46,12 @@ def result(renderer: Renderer):
         stored = 4 if channels == 3 else channels
         padded = np.zeros((height, width, stored), np.float32)
         padded[..., :channels] = array
-        with renderer.device.current():
-            made.append(renderer.device.context.texture((width, height), stored, padded, dtype="f4"))
+        made.append(upload_texture(renderer.device, padded))
         full = (round(width / scale), round(height / scale))
         return Result(made[-1], full, channels, f"{next(NUMBERS)}", (width, height))
 
     yield uploaded
-    with renderer.device.current():
+    with renderer.device.make_current():
         for texture in made:
             texture.release()
 
@@ -63,8 +63,7 @@ def shown(display: Display, renderer: Renderer):
     def drawn(a, size=None, b=None, **look):
         size = size or a.full_size
         texture = display.draw("panel", size, a, b, Look(**look))
-        with renderer.device.current():
-            pixels = np.frombuffer(texture.read(), np.float32).reshape(size[1], size[0], 4)
+        pixels = read_texture(renderer.device, texture)
         assert (pixels[..., 3] == 1.0).all()
         return pixels[..., :3]
 
@@ -97,8 +96,7 @@ def test_a_screen_gets_eight_bits(renderer, result):
     pixels = stops(np.random.default_rng(3))
     display = Display(renderer.device)
     texture = display.draw("a", (64, 48), result(pixels))
-    with renderer.device.current():
-        got = np.frombuffer(texture.read(), np.uint8).reshape(48, 64, 4)[..., :3]
+    got = read_texture(renderer.device, texture, np.uint8)[..., :3]
     assert np.abs(got.astype(int) - to_display(pixels)[..., :3]).max() <= 1
     display.close()
 
@@ -153,8 +151,7 @@ def test_outside_is_the_surround(result, shown):
 
 def test_nothing_to_show(display, renderer):
     texture = display.draw("panel", (3, 2), None, None, Look(**RAW))
-    with renderer.device.current():
-        assert set(np.frombuffer(texture.read(), np.float32)) == {0.25, 1.0}
+    assert set(read_texture(renderer.device, texture).flat) == {0.25, 1.0}
 
 
 @pytest.mark.parametrize("zoom", [0.5, 0.25])
@@ -350,23 +347,24 @@ def test_a_part_is_shown_where_it_lies_in_the_whole(result, shown, zoom, compare
 def test_it_draws_only_what_changed(result, display):
     a, look = result(np.ones((4, 4, 4))), Look(view="none")
     first = display.draw("one", (8, 8), a, None, look)
-    assert display.draw("one", (8, 8), a, None, Look(view="none")) is first and display.drawn == 1
+    assert display.draw("one", (8, 8), a, None, Look(view="none")) is first and display.draw_count == 1
     display.draw("two", (8, 8), a, None, look)
-    assert display.draw("one", (8, 8), a, None, look) is first and display.drawn == 2
+    assert display.draw("one", (8, 8), a, None, look) is first and display.draw_count == 2
     a.key = "changed"
-    assert display.draw("one", (8, 8), a, None, look) is first and display.drawn == 3
+    assert display.draw("one", (8, 8), a, None, look) is first and display.draw_count == 3
     display.draw("one", (8, 8), a, None, Look(view="none", exposure=1.0))
-    assert display.draw("one", (9, 8), a, None, look).size == (9, 8) and display.drawn == 5
+    assert display.draw("one", (9, 8), a, None, look).size == (9, 8) and display.draw_count == 5
 
 
 def test_what_was_bound_stays_bound(result, display, renderer):
+    assert isinstance(renderer.device, OpenGLDevice)
     context = renderer.device.context
-    with renderer.device.current():
+    with renderer.device.make_current():
         mine = context.framebuffer([context.texture((3, 3), 4)])
         mine.use()
     display.draw("one", (8, 8), result(np.ones((4, 4, 4))), None, Look(view="none"))
     display.drop("one")
-    with renderer.device.current():
+    with renderer.device.make_current():
         assert context.fbo is mine and context.viewport == (0, 0, 3, 3)
-        renderer.device.idle.use()
+        renderer.device._idle.use()
         mine.release()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from halation.renderer import Device, Renderer, RenderRequest, open_device
+from halation.renderer import Renderer, RenderRequest, open_device
 from msgspec.structs import replace
 from random_graphs import pictures, random_graph
 
@@ -12,7 +12,8 @@ from random_graphs import pictures, random_graph
 @pytest.fixture(scope="module", params=["compute", "fragment"])
 def engine(request):
     device = open_device(request.param)
-    made = Renderer(Device(device.context, replace(device.target, software=False, precision="half")), budget=0)
+    target = replace(device.target, software=False, precision="half")
+    made = Renderer(device.with_target(target), budget=0)
     yield made
     made.close()
 

@@ -154,7 +154,7 @@ def test_a_picture_that_is_there_needs_no_history(engine):
     shown.take(plan.surfaces[plan.outputs["out"]].key)
     made.close()
     one.close()
-    engine.runner.textures.forget()
+    engine.runner.textures.release_idle()
     before = engine.runner.counters.passes
     assert all(plan.surfaces[number].key not in engine.runner.textures for number in plan.remembered)
     expected = [2.0 * closed_form(0.5, 1, 6)]

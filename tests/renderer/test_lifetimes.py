@@ -214,11 +214,11 @@ def test_an_upload_that_is_interrupted_spoils_nothing(engine, monkeypatch):
     def interrupt(*_):
         raise KeyboardInterrupt
 
-    graph, fitting = graph_of(Exposure(stops=1.0), {"image": PICTURE}), executor._fitting
-    monkeypatch.setattr(executor, "_fitting", interrupt)
+    graph, convert = graph_of(Exposure(stops=1.0), {"image": PICTURE}), executor._convert
+    monkeypatch.setattr(executor, "_convert", interrupt)
     with pytest.raises(KeyboardInterrupt):
         engine.render(graph, wanted())
-    monkeypatch.setattr(executor, "_fitting", fitting)
+    monkeypatch.setattr(executor, "_convert", convert)
     np.testing.assert_allclose(engine.render(graph, wanted())["out"][..., :3], 2.0 * PICTURE[..., :3], rtol=1e-6)
 
 
@@ -245,13 +245,13 @@ def test_a_pass_without_room_for_all_its_outputs_leaves_none(engine, monkeypatch
 def test_results_make_room_before_an_allocation_fails(engine, monkeypatch):
     """The budget is a wish: what the device can hold is less."""
     textures = engine.runner.textures
-    real, room = textures._try, 16 * PICTURE.nbytes
+    real, room = textures._try_create, 16 * PICTURE.nbytes
 
-    def limited(width, height, components, depth):
-        wanted = width * height * components * 4
-        return real(width, height, components, depth) if textures.allocated + wanted <= room else None
+    def limited(kind):
+        width, height, components, _ = kind
+        return real(kind) if textures.allocated + width * height * components * 4 <= room else None
 
-    monkeypatch.setattr(textures, "_try", limited)
+    monkeypatch.setattr(textures, "_try_create", limited)
     for stops in range(12):
         picture = PICTURE + np.float32(stops)
         engine.render(chain(stops + 0.5), wanted(picture))
@@ -321,14 +321,12 @@ def test_a_picture_that_was_begun_for_a_dropped_run_is_not_decoded_again(forgetf
 
 
 def test_programs_that_were_not_used_for_long_go(renderer, engine, monkeypatch):
-    from halation.renderer.opengl import programs
-
-    monkeypatch.setattr(programs, "MAX_PROGRAMS", 2)
+    monkeypatch.setattr(engine.runner.programs._programs, "_limit", 2)
     for _ in range(2):
         for sigma in (2.0, 9.0):
             found = engine.render(chain(sigma=sigma), wanted(PICTURE * (1 + engine.runner.counters.passes)))["image"]
             assert np.isfinite(found).all()
-    assert len(engine.runner.programs._known) == 2
+    assert len(engine.runner.programs._programs._resources) == 2
     assert engine.runner.programs.compiled > 6
     np.testing.assert_array_equal(
         engine.render(chain(), wanted())["image"], renderer.render(chain(), wanted())["image"]
@@ -341,7 +339,7 @@ def test_closing_gives_everything_back():
         engine = Renderer()
         engine.render(chain(sigma=9.0), wanted())
         engine.close()
-        assert (engine.runner.textures.allocated, engine.runner._executor._weights) == (0, {})
+        assert (engine.runner.textures.allocated, engine.runner._executor._weights._resources) == (0, {})
     assert threading.active_count() == threads
 
 

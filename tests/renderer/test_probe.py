@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from device_textures import upload_texture
 from halation.compiler import Library, installed
 from halation.compiler.library import parse
 from halation.errors import UsageError
@@ -31,18 +32,11 @@ def texture(renderer):
     made = []
 
     def uploaded(pixels):
-        height, width, channels = pixels.shape
-        depth = "f2" if pixels.dtype == np.float16 else "f4"
-        with renderer.device.current():
-            made.append(
-                renderer.device.context.texture(
-                    (width, height), channels, np.ascontiguousarray(pixels), alignment=1, dtype=depth
-                )
-            )
+        made.append(upload_texture(renderer.device, pixels))
         return made[-1]
 
     yield uploaded
-    with renderer.device.current():
+    with renderer.device.make_current():
         for one in made:
             one.release()
 

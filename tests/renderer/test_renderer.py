@@ -16,7 +16,8 @@ from halation.nodes.blur.gaussian_blur import GaussianBlur
 from halation.nodes.color.exposure import Exposure
 from halation.nodes.color.saturation import Saturation
 from halation.renderer import Renderer, RenderRequest, open_device
-from halation.renderer.opengl.programs import Programs
+from halation.renderer.execution.texture_pool import TexturePool
+from halation.renderer.opengl import program
 from msgspec.structs import replace
 
 PICTURE = np.random.default_rng(1).random((23, 37, 4), np.float32)
@@ -123,9 +124,7 @@ def test_a_broken_shader_names_node_file_and_line():
 
 
 def test_a_failed_allocation_is_one_sentence_with_numbers(engine, monkeypatch):
-    from halation.renderer.opengl.textures import Textures
-
-    monkeypatch.setattr(Textures, "_try", lambda *_: None)
+    monkeypatch.setattr(TexturePool, "_try_create", lambda *_: None)
     with pytest.raises(DeviceError, match=r"no room for .* MiB more .*--scale"):
         engine.render(graph_of(Exposure(stops=1.0), {"image": PICTURE}), RenderRequest({"image": PICTURE}))
 
@@ -180,15 +179,16 @@ def test_shrinking_averages_like_openimageio(run):
 
 def test_an_interrupt_during_compilation_is_heard_after_it(engine, monkeypatch):
     """moderngl crashes the process if an exception is raised in the middle of it."""
-    compile_ = Programs._compile
+    finish = program._bind_weights
     reached = []
 
-    def interrupted(self, one):
-        signal.raise_signal(signal.SIGINT)
-        reached.append(one)
-        return compile_(self, one)
+    def interrupted(compiled):
+        if not reached:
+            signal.raise_signal(signal.SIGINT)
+        reached.append(compiled)
+        return finish(compiled)
 
-    monkeypatch.setattr(Programs, "_compile", interrupted)
+    monkeypatch.setattr(program, "_bind_weights", interrupted)
     handler = signal.getsignal(signal.SIGINT)
     graph = graph_of(Exposure(stops=1.0), {"image": PICTURE})
     with pytest.raises(KeyboardInterrupt):
@@ -197,4 +197,4 @@ def test_an_interrupt_during_compilation_is_heard_after_it(engine, monkeypatch):
     np.testing.assert_allclose(
         engine.render(graph, RenderRequest({"image": PICTURE}))["out"][..., 0], PICTURE[..., 0] * 2.0
     )
-    assert len(reached) == 1
+    assert len(reached) == 2

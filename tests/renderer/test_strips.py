@@ -37,7 +37,7 @@ def picture(tmp_path) -> str:
 
 def written(folder: Path, picture: str, memory: int, **how) -> Path:
     """The file that a job makes of it, with so much memory."""
-    renderer, file = Renderer(open_device("compute").within(memory), budget=0), folder / "out.exr"
+    renderer, file = Renderer(open_device("compute", memory), budget=0), folder / "out.exr"
     try:
         run_job(renderer, blurred(), RenderRequest({"image": picture}), Writing([("image", file)], **how))
     finally:

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from halation.compiler import Surface
-from halation.renderer.opengl.textures import Lease, Textures
+from halation.renderer.execution.texture_pool import Lease, TexturePool
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -16,15 +16,13 @@ LARGE = SIDE * SIDE * 16
 """Bytes of a picture of four floats."""
 
 
-class Context:
+class EndlessDevice:
     """A device with endless room that counts what lives on it."""
-
-    error = "GL_NO_ERROR"
 
     def __init__(self) -> None:
         self.live = 0
 
-    def texture(self, size: tuple[int, int], components: int, dtype: str) -> SimpleNamespace:
+    def create_texture(self, size: tuple[int, int], components: int, depth: str) -> SimpleNamespace:
         self.live += 1
         return SimpleNamespace(size=size, release=self._gone)
 
@@ -32,23 +30,23 @@ class Context:
         self.live -= 1
 
 
-def pool(results: float) -> Textures:
+def pool(results: float) -> TexturePool:
     """Room for so many large results that nobody leases."""
-    return Textures(Context(), int(results * LARGE))  # type: ignore[arg-type]
+    return TexturePool(EndlessDevice(), int(results * LARGE))  # type: ignore[arg-type]
 
 
-def use(textures: Textures, key: str, cost: float, side: int = SIDE) -> bool:
+def use(textures: TexturePool, key: str, cost: float, side: int = SIDE) -> bool:
     """Read a result, after making it at this cost where it is gone; True if it was there."""
     lease, there = Lease(textures), key in textures
     if there:
         lease.take(key)
     else:
-        lease.make(Surface(key, key, (side, side), 4, "f4", 0, 0, 1)).cost = cost
+        lease.create(Surface(key, key, (side, side), 4, "f4", 0, 0, 1)).cost = cost
     lease.close()
     return there
 
 
-def kept(textures: Textures, keys: str) -> str:
+def kept(textures: TexturePool, keys: str) -> str:
     return "".join(key for key in keys if key in textures)
 
 
@@ -110,7 +108,7 @@ def test_small_results_do_not_stay_for_ever():
 def test_what_somebody_leases_stays_whatever_it_costs():
     textures = pool(1)
     lease = Lease(textures)
-    lease.make(Surface("a", "a", (SIDE, SIDE), 4, "f4", 0, 0, 1)).cost = 0.0
+    lease.create(Surface("a", "a", (SIDE, SIDE), 4, "f4", 0, 0, 1)).cost = 0.0
     for key in "bcd":
         use(textures, key, 1.0)
     assert kept(textures, "abcd") == "ad"
@@ -137,6 +135,6 @@ def test_textures_are_given_back_when_nobody_wants_them(budget: int):
     for number in range(20):
         use(textures, f"{number}", 1.0)
         textures.next_round()
-    assert textures._context.live <= budget + 2  # type: ignore[attr-defined]
+    assert textures._device.live <= budget + 2  # type: ignore[attr-defined]
     textures.clear()
-    assert textures._context.live == 0 and textures.allocated == 0  # type: ignore[attr-defined]
+    assert textures._device.live == 0 and textures.allocated == 0  # type: ignore[attr-defined]

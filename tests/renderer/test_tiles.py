@@ -27,8 +27,8 @@ NODES = catalogue()
 
 def limited(side: int = 16384, memory: int = 0) -> Renderer:
     """A renderer on a device that holds no more."""
-    device = open_device(form_to_test()).within(memory)
-    return Renderer(replace(device, target=replace(device.target, max_size=side)), budget=0)
+    device = open_device(form_to_test(), memory)
+    return Renderer(device.with_target(replace(device.target, max_size=side)), budget=0)
 
 
 @pytest.fixture(scope="module")

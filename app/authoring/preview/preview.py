@@ -13,7 +13,7 @@ from halation.nodes import Camera, Size
 from ...compiler import Library, Plan
 from ...errors import HalationError
 from ...graph import Graph, Port, color_settings
-from ...renderer import Display, Handle, Renderer
+from ...renderer import DeviceTexture, Display, Renderer
 from ..services.renders import Pending
 from .glimpses import Glimpse
 from .jobs import Job, peek
@@ -132,7 +132,7 @@ class Preview:
         self._stopwatch.clear()
         self._timings = {}
         self._cameras.clear()
-        self._runner.forget()
+        self._runner.release_idle()
 
     def close(self) -> None:
         """Give back all that is kept. The renderer stays open."""
@@ -154,7 +154,7 @@ class Preview:
         """Why a panel cannot show what it wants."""
         return self._round.broken.get(name) if self._round else None
 
-    def thumbnail(self, path: str) -> tuple[Handle, bool] | None:
+    def thumbnail(self, path: str) -> tuple[DeviceTexture, bool] | None:
         """The last small picture of a node, and whether it is what the node shows now."""
         return self._thumbnails.find(path, self._wish.mark) if self._wish else None
 
@@ -351,8 +351,8 @@ class Preview:
         try:
             done = job.step()
             if job.run is not None:
-                with self.renderer.device.current():
-                    self.renderer.device.context.finish()
+                with self.renderer.device.make_current():
+                    self.renderer.device.finish()
         except HalationError as error:
             job.close()
             self._job = None

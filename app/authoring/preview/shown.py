@@ -9,7 +9,7 @@ from halation.nodes import Kind, Size
 
 from ...compiler import Plan, scaled
 from ...graph import Port
-from ...renderer import Handle, Lease, Runner
+from ...renderer import DeviceTexture, Lease, Runner
 from .glimpses import Part
 from .takes import Face
 from .wishes import Wish, kind_of
@@ -23,7 +23,7 @@ class Shown:
     """
 
     port: Port
-    texture: Handle
+    texture: DeviceTexture
     size: Size
     full_size: Size
     """Its size at scale 1."""
@@ -44,7 +44,8 @@ class Shown:
     @property
     def share(self) -> float:
         """The part of the picture that the texture is, of its area."""
-        return self.texture.width * self.texture.height / (self.size[0] * self.size[1])
+        width, height = self.texture.size
+        return width * height / (self.size[0] * self.size[1])
 
 
 @dataclass(eq=False)

@@ -9,7 +9,7 @@ from halation.nodes import ColorSettings, Kind
 
 from ...color.management import DEFAULT_COLOR
 from ...compiler import Plan, scaled
-from ...renderer import Display, Handle, Look, Probe, Renderer
+from ...renderer import DeviceTexture, Display, Look, Probe, Renderer
 from ..services.coloring import Coloring
 from .data import are_normals, balanced, data_range
 from .wishes import Wish, kind_of, path_of
@@ -34,7 +34,7 @@ class Subject:
 class _Source:
     """What the display is handed."""
 
-    texture: Handle
+    texture: DeviceTexture
     full_size: tuple[int, int]
     channels: int
     key: str
@@ -47,7 +47,7 @@ class _Source:
 
 @dataclass(frozen=True)
 class _Drawn:
-    texture: Handle
+    texture: DeviceTexture
     key: str
     mark: object
 
@@ -106,7 +106,7 @@ class Thumbnails:
         if subject.path not in self.paths:
             self.paths |= {subject.path}
 
-    def find(self, path: str, mark: Callable[[str], object]) -> tuple[Handle, bool] | None:
+    def find(self, path: str, mark: Callable[[str], object]) -> tuple[DeviceTexture, bool] | None:
         """The last picture of a node, and whether it is what the node shows now, which its `mark` says."""
         drawn = self._drawn.get(path)
         return drawn and (drawn.texture, drawn.mark == mark(path))
@@ -124,7 +124,7 @@ class Thumbnails:
         self.clear()
         self._probe.close()
 
-    def _look(self, subject: Subject, texture: Handle, zoom: float) -> Look:
+    def _look(self, subject: Subject, texture: DeviceTexture, zoom: float) -> Look:
         if subject.kind is Kind.IMAGE:
             return Look(zoom=zoom, view="none", color=self._color)
         pixels = self._probe.small(texture, RANGE_WIDTH)[..., : subject.channels]

@@ -56,7 +56,7 @@ class Moment:
         warnings = () if faults else self.warnings(key)
         picture, fresh, size = None, True, (1, 1)
         if self.pictures and (found := self.editor.preview.thumbnail(self.prefix + key)):
-            picture, fresh = imgui.ImTextureRef(found[0].glo), found[1]
+            picture, fresh = imgui.ImTextureRef(found[0].native_handle), found[1]
             size = found[0].size
         overlay, color = self._cost(key)
         return Look(

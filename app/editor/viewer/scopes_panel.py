@@ -129,7 +129,7 @@ class Scopes:
     def _make(self, editor: Editor, name: str) -> None:
         plate = self._plates.get(name) or self._plates.setdefault(name, Plate(editor.preview.renderer.device))
         pixels = self._image(name, self._rgb, editor.viewer.scopes_logarithmic, graticules.is_dark(editor.palette))
-        self._textures[name] = plate.show(pixels).glo
+        self._textures[name] = plate.show(pixels).native_handle
 
     def _measured(self, editor: Editor, shown: Shown) -> np.ndarray:
         """The picture, or its region, as [h, w, 3]."""

@@ -174,10 +174,10 @@ class Viewer:
             return look
         lines, (x, y) = imgui.get_window_draw_list(), sight.origin
         corner = x + sight.panel[0] / sight.density, y + sight.panel[1] / sight.density
-        lines.add_image(imgui.ImTextureRef(texture.glo), (x, y), corner)
+        lines.add_image(imgui.ImTextureRef(texture.native_handle), (x, y), corner)
         if now.beside(editor):
             other = editor.display.draw("viewer beside", sight.panel, now.b, None, look)
-            lines.add_image(imgui.ImTextureRef(other.glo), (corner[0], y), (2 * corner[0] - x, corner[1]))
+            lines.add_image(imgui.ImTextureRef(other.native_handle), (corner[0], y), (2 * corner[0] - x, corner[1]))
             lines.add_line((corner[0], y), corner, u32(palette.border), ui_scale())
             for name, left in ((A, x), (B, corner[0])):
                 label(lines, (left + 18 * ui_scale(), y + 18 * ui_scale()), name)

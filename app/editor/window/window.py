@@ -12,7 +12,7 @@ from imgui_bundle import ImVec2, glfw_utils, hello_imgui, imgui
 import glfw  # isort: skip
 
 from ...compiler import Form
-from ...renderer.opening import adopt
+from ...renderer.opening import adopt_window
 from ..shared.dialogs import Browse
 from ..theme import fonts, style
 from ..theme.palette import Palette
@@ -121,7 +121,7 @@ class Window:
 
     def _prepare(self) -> None:
         forgive()
-        self.device = adopt(self._form)
+        self.device = adopt_window(self._form)
         self.editor = assemble(self.device, self._state)
         open_first(self.editor, self._path, self._bindings)
         self._panels = {docked.title: docked.make() for docked in DOCKED}
@@ -164,7 +164,7 @@ class Window:
         try:
             guarded(editor, "Rendering", lambda: self._heartbeat.beat(editor))
         finally:
-            self.device.to_screen()
+            self.device.target_window()
         if self._dropped:
             paths, self._dropped = [Path(path) for path in self._dropped], []
             editor.attempt(lambda: arrived(editor, paths))
@@ -222,7 +222,7 @@ class Window:
 
     def _after_panels(self) -> None:
         """Panels draw pictures of their own: the screen must be bound again before the window is drawn."""
-        self.device.to_screen()
+        self.device.target_window()
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
@@ -253,7 +253,7 @@ class Window:
 
     def _screenshot(self) -> None:
         """Save the window as it was shown last."""
-        pixels = self.device.read_screen()
+        pixels = self.device.read_window()
         self.editor.dialogs.browse = Browse(
             "Save a screenshot",
             "export",

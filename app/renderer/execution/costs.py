@@ -25,7 +25,7 @@ class Costs:
         if len(self._per_pixel) > _KNOWN:
             del self._per_pixel[next(iter(self._per_pixel))]
 
-    def of(self, plan: Plan, one: Pass) -> float:
+    def estimate(self, plan: Plan, one: Pass) -> float:
         """How long a pass will take, or took."""
         if known := self._per_pixel.get(one.shader.source):
             return known * _pixels(plan, one)

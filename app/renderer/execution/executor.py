@@ -3,28 +3,33 @@
 from __future__ import annotations
 
 import time
+from functools import partial
 
-import moderngl
 import numpy as np
 from msgspec import Struct
 
-from ...compiler import FIRST_TABLE, MAX_WEIGHTS, Pass, Plan, Shader, Upload
+from ...compiler import FIRST_TABLE, MAX_WEIGHTS, Pass, Plan, Upload
 from ...errors import InputError, RenderError
+from ...resources.color_program import LookupTable
 from ...resources.mesh import Mesh
-from ..opengl.device import Device
-from ..opengl.heartbeat import Heartbeat
-from ..opengl.meshes import MeshBuffers
-from ..opengl.programs import Program, Programs
-from ..opengl.tables import Tables
-from ..opengl.textures import Lease, Texture, Textures
+from ..device import Bindings, Device, DeviceProgram, DeviceResource, DeviceTexture
 from .arrays import Arrays
 from .costs import Costs
 from .decoding import Array, Decoded
+from .program_cache import ProgramCache
+from .progress_beacon import ProgressBeacon
+from .resource_cache import ResourceCache
+from .texture_pool import Lease, PooledTexture, TexturePool
 
+MAX_TABLES = 64
+MAX_MESHES = 16
 MAX_WEIGHT_BUFFERS = 64
+"""Objects that stay on the device for later passes. The largest presets use 16 weight buffers and one mesh; a table is
+a color transform of one node. So there is room for several graphs that are edited in turn."""
 
 BAND_PIXELS = 2**21
-"""The software rasterizer computes at most so many pixels at a time: an interrupt is heard only in between."""
+"""The software rasterizer computes at most so many pixels at a time: an interrupt is heard only in between. A picture
+of 1920x1080 is still one piece."""
 
 
 class Counters(Struct):
@@ -40,204 +45,140 @@ class Executor:
 
     def __init__(self, device: Device, budget: int) -> None:
         self.device = device
-        self.programs = Programs(device.context)
-        self.textures = Textures(device.context, budget)
+        self.programs = ProgramCache(device)
+        self.textures = TexturePool(device, budget)
         self.counters = Counters()
         self.closed = False
         self._costs = Costs(device.target.software)
-        self._tables = Tables(device.context)
-        self._meshes = MeshBuffers(device.context)
-        self._filtered = device.context.sampler(
-            repeat_x=False, repeat_y=False, filter=(moderngl.LINEAR, moderngl.LINEAR)
-        )
-        self._weights: dict[tuple[float, ...], moderngl.Buffer] = {}
-        self._query: moderngl.Query | None = None
-        self._heart = Heartbeat()
+        self._tables = ResourceCache[LookupTable, DeviceResource](MAX_TABLES)
+        self._meshes = ResourceCache[Mesh, DeviceResource](MAX_MESHES)
+        self._weights = ResourceCache[tuple[float, ...], DeviceResource](MAX_WEIGHT_BUFFERS)
+        self._beacon = ProgressBeacon()
 
     def close(self) -> None:
         """Give everything back."""
         self.closed = True
-        self.textures.clear()
-        self.programs.clear()
-        self._tables.clear()
-        self._meshes.clear()
-        self._filtered.release()
-        for buffer in self._weights.values():
-            buffer.release()
-        self._weights.clear()
+        for resources in (self.textures, self.programs, self._tables, self._meshes, self._weights):
+            resources.clear()
 
     def upload(self, plan: Plan, upload: Upload, decoded: Decoded, lease: Lease) -> None:
-        """Write decoded pixels, or the part that is wanted of them, into their surface.
+        """Write decoded pixels, or the part of them that the plan reads, into their surface.
 
-        Raises InputError if they are not those that were planned for.
+        Raises InputError if their size is not the one that was planned for.
         """
         surface, pixels = plan.surfaces[upload.surface], decoded.pixels
         started = time.perf_counter()
-        found = (pixels.shape[1], pixels.shape[0])
-        if surface.window and found == upload.whole:
+        size = (pixels.shape[1], pixels.shape[0])
+        if surface.window and size == upload.whole:
             rows, columns = (slice(*span) for span in (surface.window.down, surface.window.across))
             pixels = pixels[rows, columns]
-        elif found != surface.size:
+        elif size != surface.size:
             raise InputError(
                 f"{upload.picture.path}: it was {upload.whole[0]}x{upload.whole[1]} pixels when the rendering "
-                f"began, and is {found[0]}x{found[1]} now; render again"
+                f"began, and is {size[0]}x{size[1]} now; render again"
             )
         try:
-            texture = lease.make(surface)
-            texture.handle.write(_fitting(pixels, surface.components, surface.depth))
+            texture = lease.create(surface)
+            texture.handle.write(_convert(pixels, surface.components, surface.depth))
             texture.cost = decoded.seconds + time.perf_counter() - started
         except BaseException:
             lease.spoil(surface.key)
             raise
         self.counters.uploads += 1
 
-    def timed(self, plan: Plan, one: Pass, lease: Lease) -> float:
+    def measure(self, plan: Plan, render_pass: Pass, lease: Lease) -> float:
         """Execute a pass and wait for it; the seconds that it took on the device."""
-        context = self.device.context
-        self.programs.get(one)
-        if self.device.target.software:  # its timer queries leave most of the work out
-            context.finish()
-            started = time.perf_counter()
-            self.execute(plan, one, lease)
-            context.finish()
-            seconds = time.perf_counter() - started
-        else:
-            if self._query is None:
-                self._query = context.query(time=True)
-            with self._query:
-                self.execute(plan, one, lease)
-            seconds = self._query.elapsed / 1e9
-        self._costs.learn(plan, one, seconds)
+        self.programs.get(render_pass)
+        seconds = self.device.time(partial(self.execute, plan, render_pass, lease))
+        self._costs.learn(plan, render_pass, seconds)
         return seconds
 
-    def execute(self, plan: Plan, one: Pass, lease: Lease) -> None:
+    def execute(self, plan: Plan, render_pass: Pass, lease: Lease) -> None:
         """Run a pass whose textures are on the device. Raises ShaderError, DeviceError, RenderError."""
-        if not (one.writers and self._heart.watched):
-            self._execute(plan, one, lease)
+        if not (render_pass.writers and self._beacon.watched):
+            self._execute(plan, render_pass, lease)
             return
-        self.device.context.finish()
-        with self._heart.running(tuple(one.writers.values())):
-            self._execute(plan, one, lease)
-            self.device.context.finish()
+        self.device.finish()
+        with self._beacon.announce(tuple(render_pass.writers.values())):
+            self._execute(plan, render_pass, lease)
+            self.device.finish()
 
-    def _execute(self, plan: Plan, one: Pass, lease: Lease) -> None:
-        targets = [plan.surfaces[number] for number in one.targets]
-        missing = [surface for surface in targets if surface.key not in self.textures]
-        for surface in targets:
+    def _execute(self, plan: Plan, render_pass: Pass, lease: Lease) -> None:
+        surfaces = [plan.surfaces[number] for number in render_pass.targets]
+        missing = [surface for surface in surfaces if surface.key not in self.textures]
+        for surface in surfaces:
             if surface not in missing:
                 lease.take(surface.key)
         if not missing:  # another run was quicker
             self.counters.skipped += 1
             return
-        program = self.programs.get(one)
-        textures = [self.resident(plan, number) for number in one.textures]
+        program = self.programs.get(render_pass)
+        textures = [self.resident(plan, number).handle for number in render_pass.textures]
         try:
             for surface in missing:
-                lease.make(surface)
-            made = [self.resident(plan, number) for number in one.targets]
-            for name, value in one.uniforms:
-                program.set(name, value)
-            for unit, table in enumerate(one.tables, FIRST_TABLE):
-                self._tables.use(table, unit)
-            if one.weights:
-                self._weight_buffer(one.weights).bind_to_uniform_block(0)
-            if one.mesh is not None:
-                self._rasterize(one.mesh, program, made)
-            elif one.shader.form == "compute":
-                started = time.perf_counter()
-                self._dispatch(plan, one, program, textures, made)
-                if self.device.target.software:  # which returns when it is done
-                    self._costs.learn(plan, one, time.perf_counter() - started)
-            else:
-                self._draw(one.shader, program.vertices, textures, made)
-            error = self.device.context.error
-            if error != "GL_NO_ERROR":
+                lease.create(surface)
+            targets = [self.resident(plan, number) for number in render_pass.targets]
+            for name, number in render_pass.uniforms:
+                program.set(name, number)
+            started = time.perf_counter()
+            self._run(plan, render_pass, program, textures, [target.handle for target in targets])
+            if render_pass.shader.form == "compute" and self.device.target.software:  # which returns when it is done
+                self._costs.learn(plan, render_pass, time.perf_counter() - started)
+            if error := self.device.take_error():
                 raise RenderError(
-                    f"node '{', '.join(one.nodes)}': {self.device.target.renderer} reports {error}",
-                    node=one.nodes[-1],
+                    f"node '{', '.join(render_pass.nodes)}': {self.device.target.renderer} reports {error}",
+                    node=render_pass.nodes[-1],
                 )
         except BaseException:
             for surface in missing:
                 lease.spoil(surface.key)
             raise
-        for texture in made:
-            texture.cost = self._costs.of(plan, one)
+        cost = self._costs.estimate(plan, render_pass)
+        for target in targets:
+            target.cost = cost
         self.counters.passes += 1
 
-    def _dispatch(self, plan: Plan, one: Pass, program: Program, textures: list[Texture], made: list[Texture]) -> None:
-        assert isinstance(program.handle, moderngl.ComputeShader)
-        first = 0
-        if one.shader.reads_images:
-            first = len(textures)
-            for unit, texture in enumerate(textures):
-                texture.handle.bind_to_image(unit, read=True, write=False)
-        else:
-            for unit, texture in enumerate(textures):
-                texture.handle.use(unit)
-        for unit, texture in enumerate(made):
-            texture.handle.bind_to_image(first + unit, read=False, write=True)
-        across, down, blocks = one.groups
-        width, height = plan.surfaces[one.targets[0]].size
-        bands = -(-width * height // BAND_PIXELS) if self.device.target.software else 1
-        step = -(-down // bands)
-        for row in range(0, down, step):
-            program.set("first_row", row)
-            program.handle.run(across, min(step, down - row), blocks)
-        self.device.context.memory_barrier()
-
-    def _draw(
-        self, shader: Shader, vertices: moderngl.VertexArray | None, textures: list[Texture], made: list[Texture]
+    def _run(
+        self,
+        plan: Plan,
+        render_pass: Pass,
+        program: DeviceProgram,
+        textures: list[DeviceTexture],
+        targets: list[DeviceTexture],
     ) -> None:
-        assert vertices is not None
-        context = self.device.context
-        for unit, texture in enumerate(textures):
-            texture.handle.use(unit)
-            if shader.foreign:
-                self._filtered.use(unit)
-        alone = made[0] if len(made) == 1 else None
-        framebuffer = alone.framebuffer if alone else None
-        if framebuffer is None:
-            framebuffer = context.framebuffer([texture.handle for texture in made])
-        framebuffer.use()
-        context.disable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
-        if shader.foreign:
-            framebuffer.clear()
-        strip = bool(shader.vertex)
-        vertices.render(moderngl.TRIANGLE_STRIP if strip else moderngl.TRIANGLES, vertices=4 if strip else 3)
-        for unit in range(len(textures) if shader.foreign else 0):
-            self._filtered.clear(unit)
-        self.device.idle.use()
-        if alone:
-            alone.framebuffer = framebuffer
+        """Ask the device for a pass: triangles of a mesh, a dispatch, or a draw over all pixels."""
+        shader, bindings = render_pass.shader, self._bind(render_pass, textures)
+        if render_pass.mesh is not None:
+            mesh = self._meshes.get(render_pass.mesh, partial(self.device.create_mesh, render_pass.mesh))
+            self.device.draw_mesh(program, targets, bindings, mesh)
+        elif shader.form == "compute":
+            width, height = plan.surfaces[render_pass.targets[0]].size
+            bands = -(-width * height // BAND_PIXELS) if self.device.target.software else 1
+            groups, images = render_pass.groups, shader.reads_images
+            self.device.dispatch(program, targets, bindings, groups, reads_images=images, bands=bands)
         else:
-            framebuffer.release()
+            if shader.foreign:  # it may leave pixels out
+                for target in targets:
+                    self.device.clear(target, (0.0, 0.0, 0.0, 0.0))
+            self.device.draw(program, targets, bindings)
 
-    def _rasterize(self, mesh: Mesh, program: Program, made: list[Texture]) -> None:
-        assert isinstance(program.handle, moderngl.Program)
-        context, depth = self.device.context, self.device.context.depth_renderbuffer(made[0].handle.size)
-        framebuffer = context.framebuffer([texture.handle for texture in made], depth)
-        framebuffer.use()
-        framebuffer.clear()
-        context.disable(moderngl.BLEND | moderngl.CULL_FACE)
-        context.enable(moderngl.DEPTH_TEST)
-        self._meshes.draw(mesh, program.handle)
-        context.disable(moderngl.DEPTH_TEST)
-        self.device.idle.use()
-        framebuffer.release()
-        depth.release()
+    def _bind(self, render_pass: Pass, textures: list[DeviceTexture]) -> Bindings:
+        """What a pass reads: its textures, and its tables and weights, uploaded where they are not there yet."""
+        tables = {
+            unit: self._tables.get(table, partial(self.device.create_table, table))
+            for unit, table in enumerate(render_pass.tables, FIRST_TABLE)
+        }
+        weights = render_pass.weights
+        buffer = self._weights.get(weights, partial(self._create_weights, weights)) if weights else None
+        return Bindings(textures, tables, buffer, interpolated=render_pass.shader.foreign)
 
-    def _weight_buffer(self, weights: tuple[float, ...]) -> moderngl.Buffer:
-        known = self._weights.get(weights)
-        if known is None:
-            if len(self._weights) >= MAX_WEIGHT_BUFFERS:
-                self._weights.pop(next(iter(self._weights))).release()
-            data = np.zeros(MAX_WEIGHTS, np.float32)
-            data[: len(weights)] = weights
-            known = self._weights[weights] = self.device.context.buffer(data)
-        return known
+    def _create_weights(self, weights: tuple[float, ...]) -> DeviceResource:
+        numbers = np.zeros(MAX_WEIGHTS, np.float32)
+        numbers[: len(weights)] = weights
+        return self.device.create_buffer(numbers)
 
-    def resident(self, plan: Plan, number: int) -> Texture:
-        """The texture of a surface that somebody leases."""
+    def resident(self, plan: Plan, number: int) -> PooledTexture:
+        """The texture of a surface that has a lease."""
         texture = self.textures.find(plan.surfaces[number].key)
         assert texture is not None, f"surface {number} is gone before its last reader"
         return texture
@@ -247,14 +188,14 @@ class Executor:
         surface = plan.surfaces[number]
         width, height = surface.size
         if self.device.target.software:  # llvmpipe may read a texture before the draws into it are done
-            self.device.context.finish()
+            self.device.finish()
         shape = (height, width, surface.components)
         pixels = arrays.take(shape, np.float16 if surface.depth == "f2" else np.float32)
         self.resident(plan, number).handle.read_into(pixels)
         return pixels[..., : surface.channels]
 
 
-def _fitting(pixels: Array, components: int, depth: str) -> Array:
+def _convert(pixels: Array, components: int, depth: str) -> Array:
     """The same pixels with the components and depth of the texture."""
     dtype = np.float16 if depth == "f2" else np.float32
     if pixels.ndim == 2:

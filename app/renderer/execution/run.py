@@ -8,10 +8,10 @@ from types import TracebackType
 
 from ...compiler import Pass, Plan
 from ...errors import HalationError
-from ..opengl.textures import Lease
 from .decoding import Array, Decoding
 from .decoding import Wanted as Awaited
 from .executor import Executor
+from .texture_pool import Lease
 
 Timings = list[tuple[Pass, float]]
 """Passes and the seconds that each took on the device."""
@@ -112,7 +112,7 @@ class WholeRun(Run):
         if self.ended:
             raise StopIteration
         try:
-            with self._executor.device.current():
+            with self._executor.device.make_current():
                 if self.done < self.total:
                     return self._step()
                 self._finish()
@@ -129,7 +129,7 @@ class WholeRun(Run):
         self._decoding.cancel()
         if not self._executor.closed:
             self._lease.close()
-            with self._executor.device.current():
+            with self._executor.device.make_current():
                 self._executor.textures.next_round()
 
     # --- parts -------------------------------------------------------------------------------------------------------
@@ -140,7 +140,7 @@ class WholeRun(Run):
         if self._timings is None:
             self._executor.execute(self.plan, one, self._lease)
         else:
-            self._timings.append((one, self._executor.timed(self.plan, one, self._lease)))
+            self._timings.append((one, self._executor.measure(self.plan, one, self._lease)))
         for number in one.textures:
             key = self.plan.surfaces[number].key
             self._readers[key] -= 1

@@ -11,13 +11,13 @@ from msgspec import Struct
 
 from ...compiler import Plan
 from ...errors import DeviceError, UsageError
-from ..opengl.device import Device
-from ..opengl.textures import Lease, Texture
+from ..device import Device
 from .arrays import Arrays
 from .decoding import Array, Decoded, Decoding, Loader, decode, within_reach
 from .decoding import Wanted as Awaited
 from .executor import Executor
 from .run import Run, Timings, WholeRun, needed_passes, needed_uploads
+from .texture_pool import Lease, PooledTexture
 from .tiles import TiledRun
 
 
@@ -67,10 +67,10 @@ class Runner:
                 raise DeviceError(f"{plan.tiling.why}; render smaller with --scale or --size")
             return TiledRun(self, self._load, plan, partial(self._keep, plan, kept))
         surfaces = plan.outputs.values() if wanted is None else wanted
-        with self.device.current():
+        with self.device.make_current():
             return WholeRun(self._executor, plan, kept, self._decode, surfaces, timings)
 
-    def timed(self, plan: Plan) -> Timings:
+    def measure(self, plan: Plan) -> Timings:
         """Run to the end, waiting for every pass, and say what each took. The pixels are not kept."""
         kept, taken = self.lease(), Timings()
         try:
@@ -100,19 +100,19 @@ class Runner:
         if plan.tiling is not None:
             return dict(self._whole[_known(plan)].pixels)
         arrays = arrays or Arrays()
-        with self.device.current():
+        with self.device.make_current():
             return {name: self._executor.download(plan, number, arrays) for name, number in plan.outputs.items()}
 
     def lease(self) -> Lease:
         """Keeps pixels on the device, none as yet."""
         return Lease(self.textures)
 
-    def forget(self) -> None:
+    def release_idle(self) -> None:
         """Give back to the driver what nobody leases."""
-        with self.device.current():
-            self.textures.forget()
+        with self.device.make_current():
+            self.textures.release_idle()
 
-    def texture(self, key: str) -> Texture | None:
+    def texture(self, key: str) -> PooledTexture | None:
         """The texture that holds these pixels, if any does."""
         return self.textures.find(key)
 
@@ -121,7 +121,7 @@ class Runner:
         if self._executor.closed:
             return
         self._threads.shutdown(cancel_futures=True)
-        with self.device.current():
+        with self.device.make_current():
             self._executor.close()
 
     def _keep(self, plan: Plan, kept: Lease, pixels: dict[str, Array]) -> None:

@@ -16,16 +16,16 @@ from ...compiler.ir import Program
 from ...errors import DeviceError, HalationError
 from ...media.info import machine_memory
 from ...resources.picture import Picture
-from ..opengl.textures import Lease
 from .arrays import Arrays
 from .decoding import Array, Loader
 from .run import Run, carried
+from .texture_pool import Lease
 
 
 class Runs(Protocol):
     """Runs plans that fit: see `Runner`."""
 
-    def forget(self) -> None:
+    def release_idle(self) -> None:
         """Give back textures that nobody leases."""
         ...
 
@@ -134,7 +134,7 @@ class TiledRun(Run):
                             kept.give(plan.surfaces[surface].key)
                 finally:
                     if following and _kinds(following) != _kinds(plan):
-                        self._runner.forget()  # else textures of other sizes would wait for their next use
+                        self._runner.release_idle()  # else textures of other sizes would wait for their next use
                     before, plan = kept, following or plan
         finally:
             before.close()

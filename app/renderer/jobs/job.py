@@ -22,8 +22,8 @@ from ...graph import Graph
 from ...resources.atomic_write import remove_abandoned_files
 from ..engine import Renderer, RenderRequest
 from ..execution.decoding import Array
+from ..execution.texture_pool import Lease
 from ..frame_renderer import FrameRenderer
-from ..opengl.textures import Lease
 from .behind import Behind
 from .destinations import Destination, Writing, check, destinations, halves
 from .header import frame_key, header, is_marked, is_written, whole

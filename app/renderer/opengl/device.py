@@ -1,27 +1,39 @@
-"""An OpenGL context, and what it can do."""
+"""An OpenGL context as a device.
+
+A draw leaves no framebuffer of ours bound: moderngl binds the last one again on its own, even one that was released.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from functools import cached_property
 from threading import current_thread, get_ident
+from typing import cast
 
 import moderngl
 import numpy as np
+from halation.nodes import Size
 from msgspec import Struct, field
 from msgspec.structs import replace
 
 from ...compiler import Target
 from ...compiler.devices import is_software
 from ...errors import DeviceError, UsageError
+from ...resources.color_program import LookupTable
+from ...resources.mesh import Mesh
+from ..device import Bindings, DeviceProgram, DeviceResource, DeviceTexture, PixelRect, TextureDepth
+from .mesh import OpenGLMesh, create_mesh
+from .program import OpenGLProgram, create_compute_program, create_program
+from .texture import OpenGLTexture, create_table, create_texture
 
 OLDEST = 410
-"""macOS stops at OpenGL 4.1."""
+"""The oldest OpenGL that works: macOS stops at 4.1."""
 
 
-class Device(Struct, frozen=True, dict=True):
-    """An OpenGL context and what the compiler needs to know of it."""
+class OpenGLDevice(Struct, frozen=True, dict=True):
+    """A `Device` on an OpenGL context."""
 
     context: moderngl.Context
     target: Target
@@ -30,63 +42,206 @@ class Device(Struct, frozen=True, dict=True):
     thread: int = field(default_factory=get_ident)
     """The thread that opened it: a context is current on one thread, and only there can it be used."""
 
-    def current(self) -> AbstractContextManager[object]:
-        """Our context is the current one inside this block, whatever other contexts the process has.
+    @property
+    def driver(self) -> str:
+        return str(self.context.info["GL_VERSION"])
 
-        Raises UsageError on another thread than the one that opened the device.
-        """
+    @property
+    def description(self) -> str:
+        kind = "software rasterizer" if self.target.software else "GPU"
+        return f"{self.target.renderer} ({kind}, OpenGL {self.target.version / 100:.1f}, {self.target.form} passes)"
+
+    def with_target(self, target: Target) -> OpenGLDevice:
+        return replace(self, target=target)
+
+    def make_current(self) -> AbstractContextManager[object]:
         if get_ident() != self.thread:
             name = current_thread().name
             raise UsageError(f"thread '{name}' did not open this device and cannot render on it: open one there")
         return nullcontext() if self.shared else self.context
 
-    def within(self, memory: int) -> Device:
-        """The same device, of which plans use no more bytes than that; 0 for all that there are."""
-        return replace(self, target=replace(self.target, memory=memory))
-
-    def to_screen(self) -> None:
-        """What is drawn next by others goes to the window again."""
-        self.context.screen.use()
-
-    def read_screen(self) -> np.ndarray:
-        """The window as it was shown last: [height, width, 3] of 8 bits, row 0 on top."""
-        width, height = self.context.screen.size
-        pixels = np.frombuffer(self.context.screen.read(components=3, alignment=1), np.uint8)
-        return pixels.reshape(height, width, 3)[::-1]
-
     @contextmanager
-    def drawing(self) -> Iterator[moderngl.Context]:
-        """Our context is current inside this block; afterwards the framebuffer is bound that was bound before."""
-        with self.current():
-            before = self.context.fbo or self.idle
+    def save_draw_target(self) -> Iterator[moderngl.Context]:
+        with self.make_current():
+            before = self.context.fbo or self._idle
             try:
-                self.context.disable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
                 yield self.context
             finally:
                 before.use()
 
-    @cached_property
-    def idle(self) -> moderngl.Framebuffer:
-        """What stays bound between draws: moderngl rebinds the last framebuffer, even one that was released."""
-        return self.context.framebuffer([self.context.texture((1, 1), 1)])
+    # --- create ------------------------------------------------------------------------------------------------------
+
+    def create_texture(
+        self, size: Size, components: int, depth: TextureDepth, *, linear: bool = False
+    ) -> OpenGLTexture:
+        return create_texture(self.context, size, components, depth, linear)
+
+    def create_table(self, table: LookupTable) -> DeviceResource:
+        return create_table(self.context, table)
+
+    def create_buffer(self, numbers: np.ndarray) -> DeviceResource:
+        return self.context.buffer(numbers)
+
+    def create_mesh(self, mesh: Mesh) -> DeviceResource:
+        return create_mesh(self.context, mesh)
+
+    def create_program(self, fragment: str, vertex: str = "") -> OpenGLProgram:
+        return create_program(self.context, fragment, vertex)
+
+    def create_compute_program(self, source: str) -> OpenGLProgram:
+        return create_compute_program(self.context, source)
+
+    # --- run ---------------------------------------------------------------------------------------------------------
+
+    def draw(
+        self,
+        program: DeviceProgram,
+        targets: Sequence[DeviceTexture],
+        bindings: Bindings,
+        *,
+        viewport: PixelRect | None = None,
+    ) -> None:
+        self._bind(bindings)
+        interpolated = range(len(bindings.textures) if bindings.interpolated else 0)
+        for unit in interpolated:
+            self._interpolation.use(unit)
+        framebuffer = self._framebuffer(targets)
+        if viewport is not None:
+            framebuffer.viewport = viewport
+        framebuffer.use()
+        self.context.disable(moderngl.BLEND | moderngl.DEPTH_TEST | moderngl.CULL_FACE)
+        cast("OpenGLProgram", program).draw()
+        for unit in interpolated:
+            self._interpolation.clear(unit)
+        if viewport is not None:
+            framebuffer.viewport = (0, 0, *targets[0].size)
+        self._idle.use()
+        if len(targets) > 1:
+            framebuffer.release()
+
+    def draw_mesh(
+        self, program: DeviceProgram, targets: Sequence[DeviceTexture], bindings: Bindings, mesh: DeviceResource
+    ) -> None:
+        handle = cast("OpenGLProgram", program).handle
+        assert isinstance(handle, moderngl.Program)
+        self._bind(bindings)
+        depth = self.context.depth_renderbuffer(targets[0].size)
+        framebuffer = self.context.framebuffer(_handles(targets), depth)
+        framebuffer.use()
+        framebuffer.clear()
+        self.context.disable(moderngl.BLEND | moderngl.CULL_FACE)
+        self.context.enable(moderngl.DEPTH_TEST)
+        cast("OpenGLMesh", mesh).draw(handle)
+        self.context.disable(moderngl.DEPTH_TEST)
+        self._idle.use()
+        framebuffer.release()
+        depth.release()
+
+    def dispatch(
+        self,
+        program: DeviceProgram,
+        targets: Sequence[DeviceTexture],
+        bindings: Bindings,
+        groups: tuple[int, int, int],
+        *,
+        reads_images: bool,
+        bands: int = 1,
+    ) -> None:
+        handle = cast("OpenGLProgram", program).handle
+        assert isinstance(handle, moderngl.ComputeShader)
+        self._bind(bindings, as_images=reads_images)
+        first = len(bindings.textures) if reads_images else 0
+        for unit, texture in enumerate(_handles(targets), first):
+            texture.bind_to_image(unit, read=False, write=True)
+        across, down, blocks = groups
+        rows = -(-down // bands)
+        for row in range(0, down, rows):
+            program.set("first_row", row)
+            handle.run(across, min(rows, down - row), blocks)
+        self.context.memory_barrier()
+
+    def clear(self, texture: DeviceTexture, color: tuple[float, float, float, float]) -> None:
+        framebuffer = cast("OpenGLTexture", texture).framebuffer
+        framebuffer.use()
+        framebuffer.clear(*color)
+        self._idle.use()
+
+    def read_region(self, texture: DeviceTexture, region: PixelRect) -> np.ndarray:
+        _, _, width, height = region
+        pixels = np.empty((height, width, texture.components), np.float32)
+        framebuffer = cast("OpenGLTexture", texture).framebuffer
+        framebuffer.read_into(pixels, viewport=region, components=texture.components, dtype="f4", alignment=1)
+        return pixels
+
+    def finish(self) -> None:
+        self.context.finish()
+
+    def time(self, work: Callable[[], None]) -> float:
+        if self.target.software:  # its timer queries leave most of the work out
+            self.context.finish()
+            started = time.perf_counter()
+            work()
+            self.context.finish()
+            return time.perf_counter() - started
+        with self._timer:
+            work()
+        return self._timer.elapsed / 1e9
+
+    def take_error(self) -> str:
+        error = self.context.error
+        return "" if error == "GL_NO_ERROR" else error
+
+    # --- the window it draws to --------------------------------------------------------------------------------------
+
+    def target_window(self) -> None:
+        self.context.screen.use()
+
+    def read_window(self) -> np.ndarray:
+        width, height = self.context.screen.size
+        pixels = np.frombuffer(self.context.screen.read(components=3, alignment=1), np.uint8)
+        return pixels.reshape(height, width, 3)[::-1]
 
     def close(self) -> None:
-        """Give the context back. Nothing made on it can be used any more."""
         self.context.release()
 
-    @property
-    def driver(self) -> str:
-        """What the driver says of its version, such as `4.5 (Core Profile) Mesa 22.3.6`."""
-        return str(self.context.info["GL_VERSION"])
+    # --- parts -------------------------------------------------------------------------------------------------------
 
-    @property
-    def description(self) -> str:
-        """One line that says what does the work."""
-        kind = "software rasterizer" if self.target.software else "GPU"
-        return f"{self.target.renderer} ({kind}, OpenGL {self.target.version / 100:.1f}, {self.target.form} passes)"
+    @cached_property
+    def _idle(self) -> moderngl.Framebuffer:
+        """What stays bound between draws."""
+        return self.context.framebuffer([self.context.texture((1, 1), 1)])
+
+    @cached_property
+    def _interpolation(self) -> moderngl.Sampler:
+        return self.context.sampler(repeat_x=False, repeat_y=False, filter=(moderngl.LINEAR, moderngl.LINEAR))
+
+    @cached_property
+    def _timer(self) -> moderngl.Query:
+        return self.context.query(time=True)
+
+    def _bind(self, bindings: Bindings, *, as_images: bool = False) -> None:
+        for unit, texture in enumerate(_handles(bindings.textures)):
+            if as_images:
+                texture.bind_to_image(unit, read=True, write=False)
+            else:
+                texture.use(unit)
+        for unit, table in bindings.tables.items():
+            cast("moderngl.Texture", table).use(unit)
+        if bindings.weights is not None:
+            cast("moderngl.Buffer", bindings.weights).bind_to_uniform_block(0)
+
+    def _framebuffer(self, targets: Sequence[DeviceTexture]) -> moderngl.Framebuffer:
+        """One texture has its own; for several of them one is made, and released after the draw."""
+        if len(targets) == 1:
+            return cast("OpenGLTexture", targets[0]).framebuffer
+        return self.context.framebuffer(_handles(targets))
 
 
-def describe(context: moderngl.Context) -> Target:
+def _handles(textures: Sequence[DeviceTexture]) -> list[moderngl.Texture]:
+    return [texture.handle for texture in cast("Sequence[OpenGLTexture]", textures)]
+
+
+def describe_target(context: moderngl.Context) -> Target:
     """What a context can do; the form of passes is left as it is by default. Raises DeviceError for one too old."""
     info = context.info
     renderer = str(info["GL_RENDERER"])

@@ -17,11 +17,11 @@ from ...media.comparison.metrics import EIGHT_BIT_STEP, PictureDifference, compa
 from ...media.pictures.same_numbers import stored
 from ...resources.sandbox import ROOT
 from ...version import VERSION
+from ..device import Device
 from ..engine import Renderer, RenderRequest
 from ..execution.decoding import Array
 from ..jobs.destinations import Writing
 from ..jobs.job import run_job
-from ..opengl.device import Device
 from ..opening import open_device
 from ..pinned import open_pinned
 from .finding import Found, pointed

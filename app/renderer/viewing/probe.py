@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Generator, Iterator
 
-import moderngl
 import numpy as np
 from msgspec import Struct
 from msgspec.structs import replace
@@ -12,13 +11,9 @@ from msgspec.structs import replace
 from ...compiler import installed
 from ...errors import UsageError
 from ...graph import INPUTS, Graph, Port
+from ..device import Bindings, Device, DeviceProgram, DeviceTexture, PixelRect
 from ..engine import Renderer, RenderRequest
 from ..execution.decoding import Array
-from ..opengl.device import Device
-from ..opengl.programs import VERTEX, undisturbed
-
-Rect = tuple[int, int, int, int]
-"""x, y, width, height in pixels of the texture, row 0 on top."""
 
 
 class Probe:
@@ -26,65 +21,44 @@ class Probe:
 
     def __init__(self, device: Device) -> None:
         self._device = device
-        self._program: moderngl.Program | None = None
-        self._vertices: moderngl.VertexArray | None = None
+        self._decimation: DeviceProgram | None = None
 
-    def pixel(self, texture: moderngl.Texture, x: int, y: int) -> tuple[float, ...]:
+    def pixel(self, texture: DeviceTexture, x: int, y: int) -> tuple[float, ...]:
         """The channels of one pixel. Raises UsageError outside of the picture."""
         return tuple(float(part) for part in self.region(texture, (x, y, 1, 1))[0, 0])
 
-    def region(self, texture: moderngl.Texture, rect: Rect) -> Array:
+    def region(self, texture: DeviceTexture, rect: PixelRect) -> Array:
         """Pixels as [height, width, channels] of float32. Raises UsageError outside of the picture."""
         x, y, width, height = rect
-        if min(x, y) < 0 or min(width, height) < 1 or x + width > texture.width or y + height > texture.height:
-            size = f"{texture.width}x{texture.height}"
-            raise UsageError(f"{width}x{height} pixels at {x},{y} are not inside a picture of {size}")
-        with self._device.current():
-            framebuffer = self._device.context.framebuffer([texture])
-            try:
-                return _read(framebuffer, rect, texture.components)
-            finally:
-                framebuffer.release()
+        across, down = texture.size
+        if min(x, y) < 0 or min(width, height) < 1 or x + width > across or y + height > down:
+            raise UsageError(f"{width}x{height} pixels at {x},{y} are not inside a picture of {across}x{down}")
+        with self._device.make_current():
+            return self._device.read_region(texture, rect)
 
-    def small(self, texture: moderngl.Texture, max_width: int) -> Array:
+    def small(self, texture: DeviceTexture, max_width: int) -> Array:
         """A picture of at most that width, of pixels taken at even distances: [height, width, channels] of float32."""
-        width = min(max_width, texture.width)
-        height = max(1, round(texture.height * width / texture.width))
-        with self._device.drawing() as context:
-            program, vertices = self._decimation(context)
-            target = context.texture((width, height), texture.components, dtype="f4")
-            framebuffer = context.framebuffer([target])
+        across, down = texture.size
+        width = min(max_width, across)
+        height = max(1, round(down * width / across))
+        with self._device.save_draw_target():
+            if self._decimation is None:
+                text = "".join(part.body for part in installed().closure(("viewer/decimate",), "viewer"))
+                self._decimation = self._device.create_program(f"#version 410 core\n{text}")
+            self._decimation.set("texels", (across / width, down / height))
+            target = self._device.create_texture((width, height), texture.components, "f4")
             try:
-                framebuffer.use()
-                texture.use(0)
-                program["texels"] = (texture.width / width, texture.height / height)
-                vertices.render(moderngl.TRIANGLES, vertices=3)
-                return _read(framebuffer, (0, 0, width, height), texture.components)
+                self._device.draw(self._decimation, [target], Bindings([texture]))
+                return self._device.read_region(target, (0, 0, width, height))
             finally:
-                framebuffer.release()
                 target.release()
 
     def close(self) -> None:
         """Give everything back."""
-        with self._device.current():
-            for item in (self._vertices, self._program):
-                if item is not None:
-                    item.release()
-        self._vertices = self._program = None
-
-    def _decimation(self, context: moderngl.Context) -> tuple[moderngl.Program, moderngl.VertexArray]:
-        if self._program is None or self._vertices is None:
-            text = "".join(part.body for part in installed().closure(("viewer/decimate",), "viewer"))
-            with undisturbed():
-                self._program = context.program(vertex_shader=VERTEX, fragment_shader=f"#version 410 core\n{text}")
-                self._vertices = context.vertex_array(self._program, [])
-        return self._program, self._vertices
-
-
-def _read(framebuffer: moderngl.Framebuffer, rect: Rect, components: int) -> Array:
-    pixels = np.empty((rect[3], rect[2], components), np.float32)
-    framebuffer.read_into(pixels, viewport=rect, components=components, dtype="f4", alignment=1)
-    return pixels
+        if self._decimation is not None:
+            with self._device.make_current():
+                self._decimation.release()
+        self._decimation = None
 
 
 class Nonfinite(Struct, frozen=True):

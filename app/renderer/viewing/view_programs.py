@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import cast, get_args
 
-import moderngl
 from halation.nodes import ColorSettings
 
 from ...color.gpu_programs import gpu_view
@@ -14,16 +14,15 @@ from ...color.primaries import working_of
 from ...compiler import Library, installed, library_for
 from ...errors import DeviceError
 from ...resources.color_program import ColorProgram
-from ..opengl.programs import VERTEX, undisturbed
-from ..opengl.tables import table_texture
+from ..device import Bindings, Device, DeviceProgram, DeviceResource, DeviceTexture, PixelRect
 from .look import Channels, Compare, Meaning
 
-FIRST_LUT = 2
+_FIRST_TABLE = 2
 """The texture unit of a view's first table; pictures are bound to those before."""
 
 
 @dataclass(frozen=True)
-class Seen:
+class ColorView:
     """A view of OpenColorIO: see `Look`."""
 
     view: str
@@ -33,34 +32,36 @@ class Seen:
 
 @dataclass(eq=False)
 class ViewProgram:
-    """A compiled program, and the tables that its view reads."""
+    """A compiled program, and the tables that its view reads by texture unit."""
 
-    handle: moderngl.Program
-    vertices: moderngl.VertexArray
-    luts: tuple[moderngl.Texture | moderngl.Texture3D, ...]
+    device: Device
+    handle: DeviceProgram
+    tables: Mapping[int, DeviceResource]
 
     def set(self, name: str, value: object) -> None:
         """Set a uniform, unless the driver found it unused."""
-        if name in self.handle:
-            self.handle[name] = value
+        self.handle.set(name, value)
 
-    def draw(self) -> None:
-        """Cover what the bound framebuffer shows."""
-        for unit, lut in enumerate(self.luts, FIRST_LUT):
-            lut.use(unit)
-        self.vertices.render(moderngl.TRIANGLES, vertices=3)
+    def draw(self, target: DeviceTexture, textures: Sequence[DeviceTexture], viewport: PixelRect) -> None:
+        """Draw over a part of `target`; `textures` are bound in order."""
+        self.device.draw(self.handle, [target], Bindings(textures, self.tables), viewport=viewport)
+
+    def release(self) -> None:
+        """Give it back to the driver."""
+        for resource in (*self.tables.values(), self.handle):
+            resource.release()
 
 
 class ViewPrograms:
     """Views and ways to draw are programs of their own: a branch around one would cost as much as the view."""
 
-    def __init__(self, context: moderngl.Context) -> None:
-        self._context = context
-        self._known: dict[object, ViewProgram] = {}
+    def __init__(self, device: Device) -> None:
+        self._device = device
+        self._programs: dict[object, ViewProgram] = {}
 
     def get(
         self,
-        view: Seen | None,
+        view: ColorView | None,
         color: ColorSettings,
         compare: Compare = "off",
         *,
@@ -73,31 +74,28 @@ class ViewPrograms:
         Raises UsageError for an unknown view; GraphError, UsageError without a config.
         """
         key = (view, color, color_mark(color), compare, texels, viewed)
-        if key not in self._known:
+        if key not in self._programs:
             text = gpu_view(view.view, view.display, view.look, color) if view else None
             library = library_for(installed(), working_of(color))
-            with undisturbed():
-                self._known[key] = self._compile(text, _source(text, library, compare, texels, viewed))
-        return self._known[key]
+            self._programs[key] = self._compile(text, _source(text, library, compare, texels, viewed))
+        return self._programs[key]
 
     def release(self) -> None:
         """Give everything back to the driver."""
-        for program in self._known.values():
-            for item in (*program.luts, program.vertices, program.handle):
-                item.release()
-        self._known.clear()
+        for program in self._programs.values():
+            program.release()
+        self._programs.clear()
 
     def _compile(self, view: ColorProgram | None, source: str) -> ViewProgram:
-        context = self._context
         try:
-            handle = context.program(vertex_shader=VERTEX, fragment_shader=source)
-        except moderngl.Error as fault:
+            handle = self._device.create_program(source)
+        except DeviceError as fault:
             raise DeviceError(f"the viewer's shader does not compile: {fault}") from None
-        luts = [table_texture(context, table) for table in (view.tables if view else ())]
-        program = ViewProgram(handle, context.vertex_array(handle, []), tuple(luts))
-        for unit, table in enumerate(view.tables if view else (), FIRST_LUT):
-            program.set(table.sampler, unit)
-        return program
+        tables = dict(enumerate(view.tables if view else (), _FIRST_TABLE))
+        for unit, table in tables.items():
+            handle.set(table.sampler, unit)
+        resources = {unit: self._device.create_table(table) for unit, table in tables.items()}
+        return ViewProgram(self._device, handle, resources)
 
 
 def _source(view: ColorProgram | None, library: Library, compare: Compare, texels: bool, viewed: bool) -> str:

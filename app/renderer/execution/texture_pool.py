@@ -1,69 +1,73 @@
-"""Textures: pooled by size and format, kept by key under a byte budget, leased by the runs that need them."""
+"""Textures: pooled by size and format, kept by key under a byte budget, leased by the runs that need them.
+
+The key of a surface says what its pixels are. A texture under a key is leased while a run, a panel or a history needs
+it. Without a lease it is idle: it stays as long as the budget allows, because the next plan often wants the same
+pixels. What the budget evicts is not destroyed at once either: a texture of the same size and format is often wanted a
+moment later.
+"""
 
 from __future__ import annotations
 
 from collections import Counter
 
-import moderngl
 from msgspec import Struct
 
 from ...compiler import Surface
+from ...compiler.plan import Depth
 from ...errors import DeviceError
+from ..device import Device, DeviceTexture
 
-Kind = tuple[int, int, int, str]
+TextureKind = tuple[int, int, int, Depth]
 """Width, height, components, depth."""
 
 
 _SMALLEST = 2**16
-"""What a texture counts for at least among those that may go: one of few pixels takes more than these."""
+"""The bytes that a texture counts for at least when results are ranked. By its own 16 bytes a single pixel would
+outrank every picture, and thousands of them would stay for ever. Chosen, not measured: it stands for what the driver
+keeps beside the pixels."""
 
 
-class Texture(Struct, eq=False):
-    """A texture on the device, and a framebuffer for it once a fragment pass draws to it alone."""
+class PooledTexture(Struct, eq=False):
+    """A texture of the pool."""
 
-    handle: moderngl.Texture
-    kind: Kind
+    handle: DeviceTexture
+    kind: TextureKind
     nbytes: int
-    framebuffer: moderngl.Framebuffer | None = None
-    freed: int = 0
+    freed_round: int = 0
     """The round in which it was last in use."""
     cost: float = 0.0
     """Seconds that it would take to make its pixels again."""
 
-    def release(self) -> None:
-        """Give it back to the driver."""
-        if self.framebuffer is not None:
-            self.framebuffer.release()
-        self.handle.release()
 
+class TexturePool:
+    """Every texture that renderings own: results by key, of which idle ones are evicted when the budget is spent.
 
-class Textures:
-    """Every texture we own: results by key, of which those that nobody leases go when the budget is spent.
+    A result that is cheap to make again and was not used for long is evicted first: its rank is its cost per byte, on
+    top of the rank of the result that was evicted last (GreedyDual-Size: Cao and Irani 1997). At equal costs that is
+    the least recently used one.
 
-    First goes what was not used for long and is made again soon: the rank of a result is what a byte of it costs, on
-    top of the rank of the last one that went (GreedyDual-Size: Cao and Irani 1997). At equal costs that is the least
-    recently used one.
-
-    A freed texture waits for the next use, but not for long: `next_round` returns what a whole round did not want, so
-    that pictures of ever other sizes do not pile up.
+    A free texture waits for its next use, but not for long: `next_round` releases what a whole round did not use, so
+    that pictures of many sizes do not pile up.
     """
 
-    def __init__(self, context: moderngl.Context, budget: int) -> None:
-        self._context = context
+    def __init__(self, device: Device, budget: int) -> None:
+        self._device = device
         self.budget = budget
-        self._results: dict[str, Texture] = {}
+        self._results: dict[str, PooledTexture] = {}
         self._leases: Counter[str] = Counter()
         self._idle: dict[str, float] = {}
-        """Results that nobody leases, least recently used first, and their ranks."""
+        """Results without a lease, least recently used first, and their ranks."""
         self._floor = 0.0
-        """The rank of the last one that went."""
+        """The rank of the result that was evicted last."""
         self._idle_bytes = 0
-        self._free: dict[Kind, list[Texture]] = {}
+        self._free: dict[TextureKind, list[PooledTexture]] = {}
         self._round = 0
         self.allocated = 0
+        """Bytes of all textures on the device."""
         self.peak = 0
+        """The most that `allocated` has been."""
 
-    def find(self, key: str) -> Texture | None:
+    def find(self, key: str) -> PooledTexture | None:
         """The texture that holds these pixels, if any does."""
         return self._results.get(key)
 
@@ -71,9 +75,9 @@ class Textures:
         return key in self._results
 
     def clear(self) -> None:
-        """Give everything back to the driver."""
+        """Release everything."""
         for texture in self._results.values():
-            texture.release()
+            texture.handle.release()
         self._results.clear()
         self._leases.clear()
         self._idle.clear()
@@ -81,17 +85,17 @@ class Textures:
         self._release_free()
         self.allocated = 0
 
-    def forget(self) -> None:
-        """Give back to the driver whatever nobody leases."""
+    def release_idle(self) -> None:
+        """Release everything that has no lease."""
         for key in list(self._idle):
             self.drop(key)
         self._release_free()
 
     def next_round(self) -> None:
-        """Give back to the driver what waited in vain since the round before this one."""
-        waiting, self._free = [one for kind in self._free.values() for one in kind], {}
+        """Release the free textures that nobody used since the round before this one."""
+        waiting, self._free = [texture for textures in self._free.values() for texture in textures], {}
         for texture in waiting:
-            if texture.freed < self._round:
+            if texture.freed_round < self._round:
                 self._release(texture)
             else:
                 self._free.setdefault(texture.kind, []).append(texture)
@@ -99,7 +103,7 @@ class Textures:
 
     # --- for leases --------------------------------------------------------------------------------------------------
 
-    def make(self, surface: Surface) -> Texture:
+    def create(self, surface: Surface) -> PooledTexture:
         """A texture for `surface`, leased. Raises DeviceError where the device cannot hold it."""
         kind = (*surface.size, surface.components, surface.depth)
         waiting = self._free.get(kind)
@@ -109,13 +113,13 @@ class Textures:
         return texture
 
     def lease(self, key: str) -> None:
-        """Keep these pixels until `unlease`."""
+        """Keep these pixels until `end_lease`."""
         self._leases[key] += 1
-        self._wake(key)
+        self._remove_from_idle(key)
 
-    def unlease(self, key: str) -> None:
-        """Unless somebody else leases them, these pixels may go as soon as the budget asks for it."""
-        if key not in self._leases:  # everything was given back to the driver
+    def end_lease(self, key: str) -> None:
+        """Unless they have another lease, these pixels may go as soon as the budget requires it."""
+        if key not in self._leases:  # everything was released meanwhile
             return
         self._leases[key] -= 1
         if self._leases[key] > 0:
@@ -125,29 +129,28 @@ class Textures:
         self._idle[key] = self._floor + texture.cost / max(texture.nbytes, _SMALLEST)
         self._idle_bytes += texture.nbytes
         while self._idle_bytes > self.budget:
-            gone = min(self._idle, key=self._idle.__getitem__)
-            self._floor = self._idle[gone]
-            self.drop(gone)
+            lowest = min(self._idle, key=self._idle.__getitem__)
+            self._floor = self._idle[lowest]
+            self.drop(lowest)
 
     def drop(self, key: str) -> None:
         """Forget these pixels: there is no room for them, or they were not finished."""
-        self._wake(key)
+        self._remove_from_idle(key)
         self._leases.pop(key, None)
         texture = self._results.pop(key)
-        texture.freed = self._round
+        texture.freed_round = self._round
         self._free.setdefault(texture.kind, []).append(texture)
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _wake(self, key: str) -> None:
-        """No longer idle."""
+    def _remove_from_idle(self, key: str) -> None:
         if key in self._idle:
             del self._idle[key]
             self._idle_bytes -= self._results[key].nbytes
 
-    def _release(self, texture: Texture) -> None:
+    def _release(self, texture: PooledTexture) -> None:
         self.allocated -= texture.nbytes
-        texture.release()
+        texture.handle.release()
 
     def _release_free(self) -> None:
         for waiting in self._free.values():
@@ -155,49 +158,41 @@ class Textures:
                 self._release(texture)
         self._free.clear()
 
-    def _allocate(self, kind: Kind, surface: Surface) -> Texture:
-        width, height, components, depth = kind
-        self._context.error  # noqa: B018  (reading it clears what earlier calls left behind)
-        handle = self._try(width, height, components, depth)
-        for make_room in (self._release_free, self.forget):
+    def _allocate(self, kind: TextureKind, surface: Surface) -> PooledTexture:
+        handle = self._try_create(kind)
+        for make_room in (self._release_free, self.release_idle):
             if handle is None:
                 make_room()
-                handle = self._try(width, height, components, depth)
+                handle = self._try_create(kind)
         if handle is None:
             raise DeviceError(
                 f"node '{surface.label}': the device has no room for {surface.nbytes / 2**20:.0f} MiB more "
                 f"({self.allocated / 2**20:.0f} MiB are in use); render smaller with --scale or --size, or with "
                 "--precision half"
             )
-        handle.filter = (moderngl.NEAREST, moderngl.NEAREST)
-        handle.repeat_x = handle.repeat_y = False
         self.allocated += surface.nbytes
         self.peak = max(self.peak, self.allocated)
-        return Texture(handle, kind, surface.nbytes)
+        return PooledTexture(handle, kind, surface.nbytes)
 
-    def _try(self, width: int, height: int, components: int, depth: str) -> moderngl.Texture | None:
+    def _try_create(self, kind: TextureKind) -> DeviceTexture | None:
+        width, height, components, depth = kind
         try:
-            handle = self._context.texture((width, height), components, dtype=depth)
-        except moderngl.Error:
+            return self._device.create_texture((width, height), components, depth)
+        except DeviceError:
             return None
-        # moderngl does not raise when the driver is out of memory.
-        if self._context.error != "GL_NO_ERROR":
-            handle.release()
-            return None
-        return handle
 
 
 class Lease:
-    """The pixels that one run still needs: they stay until it hands them back."""
+    """Keeps the pixels that a run, a panel or a history still needs, until it gives them back."""
 
-    def __init__(self, textures: Textures) -> None:
+    def __init__(self, textures: TexturePool) -> None:
         self._textures = textures
         self._keys: set[str] = set()
-        self._others: list[object] = []
+        self._arrays: list[object] = []
 
-    def make(self, surface: Surface) -> Texture:
+    def create(self, surface: Surface) -> PooledTexture:
         """A texture for `surface`, whose pixels are to be made. Raises DeviceError where there is no room."""
-        texture = self._textures.make(surface)
+        texture = self._textures.create(surface)
         self._keys.add(surface.key)
         return texture
 
@@ -208,14 +203,14 @@ class Lease:
             self._keys.add(key)
 
     def hold(self, pixels: object) -> None:
-        """Keep these as well, which are not on the device."""
-        self._others.append(pixels)
+        """Keep pixels that are not on the device as well."""
+        self._arrays.append(pixels)
 
     def give(self, key: str) -> None:
         """These pixels are not needed any more."""
         if key in self._keys:
             self._keys.discard(key)
-            self._textures.unlease(key)
+            self._textures.end_lease(key)
 
     def spoil(self, key: str) -> None:
         """These pixels could not be made."""
@@ -224,7 +219,7 @@ class Lease:
             self._textures.drop(key)
 
     def close(self) -> None:
-        """Hand everything back."""
-        self._others.clear()
+        """Give everything back."""
+        self._arrays.clear()
         for key in list(self._keys):
             self.give(key)

@@ -1,0 +1,47 @@
+"""Opening OpenGL: a context of our own without a window, or the one of a window."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+
+import moderngl
+
+from ...errors import DeviceError
+from .device import OLDEST, OpenGLDevice, describe_target
+from .warming import EGL, GL
+
+
+def open_standalone() -> OpenGLDevice:
+    """A device without a window. Raises DeviceError where OpenGL cannot be opened, or is too old."""
+    context = _create_context()
+    return OpenGLDevice(context, describe_target(context))
+
+
+def open_current() -> OpenGLDevice:
+    """The device of the context that is current on this thread, a window's. Raises DeviceError if it is too old."""
+    moderngl.init_context()
+    context = moderngl.get_context()
+    return OpenGLDevice(context, describe_target(context), shared=True)
+
+
+def _create_context() -> moderngl.Context:
+    named = {"libegl": EGL, "libgl": GL}  # searching for them would take two processes
+    ways = ({"backend": "egl", **named}, {"backend": "egl"}, {}) if sys.platform.startswith("linux") else ({},)
+    create: Callable[..., moderngl.Context] = moderngl.create_context  # its stub knows nothing of backends
+    faults: list[str] = []
+    for way in ways:
+        try:
+            return create(standalone=True, require=OLDEST, **way)
+        except Exception as fault:  # moderngl and its loaders raise plain Exceptions
+            faults.append(str(fault).strip().rstrip("."))
+    reasons = "; ".join(dict.fromkeys(faults))
+    raise DeviceError(f"OpenGL {OLDEST / 100:.1f} cannot be opened ({reasons}): {_suggest_installation()}")
+
+
+def _suggest_installation() -> str:
+    if sys.platform.startswith("linux"):
+        return "install a graphics driver or the software rasterizer (Debian, Ubuntu: apt-get install libegl1 libgl1)"
+    if sys.platform == "win32":
+        return "install the graphics driver of your card's maker"
+    return "run where a window system is available"
