@@ -42,14 +42,14 @@ def test_both_forms_run_and_take_time(device):
 
 
 def test_a_form_that_the_driver_refuses_takes_forever(device, monkeypatch):
-    run = Runner.timed
+    run = Runner.measure
 
     def refusing(self, plan):
         if self.device.target.form == "compute":
             raise ShaderError("noise", "noise.glsl", 1, "no")
         return run(self, plan)
 
-    monkeypatch.setattr(Runner, "timed", refusing)
+    monkeypatch.setattr(Runner, "measure", refusing)
     found = measured(device, SMALL, 1)
     assert found.compute == float("inf") and found.telling
 
@@ -57,7 +57,7 @@ def test_a_form_that_the_driver_refuses_takes_forever(device, monkeypatch):
 def test_a_device_is_measured_once(device, counted, tmp_path):
     first = load_or_measure(device, tmp_path / "new")
     assert first == Measured(1.0, 0.25) == load_or_measure(device, tmp_path / "new")
-    other = replace(device, target=replace(device.target, renderer="another card"))
+    other = device.with_target(replace(device.target, renderer="another card"))
     assert load_or_measure(other, tmp_path / "new") == Measured(0.5, 0.25)
     assert counted == [device.target.renderer, "another card"]
     files = list((tmp_path / "new").iterdir())
