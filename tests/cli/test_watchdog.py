@@ -11,6 +11,10 @@ import time
 from pathlib import Path
 
 import pytest
+from commands import Cli
+from halation.cli import helpers
+from halation.errors import HalationError
+from halation.renderer.jobs.render_job import RenderJob
 
 HALATION = [sys.executable, "-m", "halation.cli"]
 ENDLESS = """vec4 spin(vec4 image) {
@@ -80,22 +84,25 @@ def test_an_interrupt_reaches_the_code(tmp_path: Path) -> None:
     assert started.returncode in (130, 5) and "halation: " in said
 
 
-SLOW = """vec4 spin(vec4 image) {
-    float x = image.r;
-    for (int i = 0; i < 60000; ++i) for (int j = 0; j < 400; ++j) x = fract(x * 1.7 + 0.1);
-    return vec4(x);
-}"""
+@pytest.mark.parametrize("timeout", [0.0, 7.0])
+@pytest.mark.parametrize("processes", [1, 2])
+def test_the_timeout_reaches_what_watches_helpers(
+    tmp_path: Path, cli: Cli, monkeypatch: pytest.MonkeyPatch, timeout: float, processes: int
+) -> None:
+    """Helpers themselves get no limit: they are watched from here."""
+    calls: list[tuple[list[RenderJob], float]] = []
 
+    def run_helpers(jobs: list[RenderJob], limit: float, *_: object) -> dict[str, object]:
+        calls.append((jobs, limit))
+        raise HalationError("that is enough")
 
-def test_helpers_that_share_frames_are_watched_for_as_long_as_was_asked_for(tmp_path: Path) -> None:
-    path, out = graph(tmp_path, SLOW), tmp_path / "out.##.exr"
-    words = (path, "-o", out, "--frames", "1-2", "-j", 2, "--size", "16x16")
-    stopped = render(*words, "--timeout", "0.01", "--json")
-    assert stopped.returncode == 5 and not list(tmp_path.glob("*.exr"))
-    error = json.loads(stopped.stdout)["error"]
-    assert error["kind"] == "DeviceError" and "has not ended after 0.01 seconds" in error["message"]
-    ended = render(*words, "--timeout", 0, "--json")
-    assert ended.returncode == 0 and json.loads(ended.stdout)["frames"] == [1, 2], ended.stderr
+    monkeypatch.setattr(helpers, "run_helpers", run_helpers)
+    words = ("-o", tmp_path / "o.##.exr", "--frames", "1-3", "-j", processes, "--timeout", timeout)
+    cli("render", graph(tmp_path, ENDLESS), *words) if processes > 1 or timeout else None
+    for jobs, limit in calls:
+        assert limit == timeout and {job.timeout for job in jobs} == {0.0} and len(jobs) == processes
+        assert sorted(frame for job in jobs for frame in job.frames) == [1, 2, 3]
+    assert len(calls) == (processes > 1 or timeout > 0.0)
 
 
 def test_code_that_never_ends_stops_all_helpers(tmp_path: Path) -> None:
