@@ -62,8 +62,11 @@ Root = Annotated[
 GraphFile = Annotated[Path, typer.Argument(help="A graph, as JSON; - reads it from standard input.")]
 
 
-def rooted(command: Callable[..., int]) -> Callable[..., int]:
-    """The same command with the flag `--root`, which holds for all that it reads and writes."""
+def add_root(command: Callable[..., int]) -> Callable[..., int]:
+    """The same command with the option `--root`, which holds for all files that it reads and writes.
+
+    This is the only place that adds the option and makes the sandbox, so no command can have one without the other.
+    """
 
     @functools.wraps(command)
     def run(*args: Any, root: Root = None, **options: Any) -> int:
@@ -72,9 +75,9 @@ def rooted(command: Callable[..., int]) -> Callable[..., int]:
         with fenced(root):
             return command(*args, **options)
 
-    known = inspect.signature(command, eval_str=True)
+    signature = inspect.signature(command, eval_str=True)
     flag = inspect.Parameter("root", inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Root)
-    run.__signature__ = known.replace(parameters=[*known.parameters.values(), flag])  # type: ignore[attr-defined]
+    run.__signature__ = signature.replace(parameters=[*signature.parameters.values(), flag])  # type: ignore[attr-defined]
     run.__annotations__ = {**command.__annotations__, "root": Root}
     return run
 

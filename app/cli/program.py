@@ -6,6 +6,7 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from importlib import import_module
+from types import MappingProxyType
 from typing import Any
 
 import typer
@@ -13,7 +14,7 @@ from typer.core import TyperGroup
 from typer.main import get_command
 
 from ..version import VERSION
-from .options import rooted
+from .options import add_root
 from .outcome import EXIT_CODES, failed, guarded, settle
 
 _SHOWN = (
@@ -38,8 +39,18 @@ _SHOWN = (
     "export-isf",
 )
 _HIDDEN = ("git-driver", "worker")
-_FENCED = ("render", "check", "explain", "export-isf", "info", "diff", "test", "reproduce", "watch", "sweep", "bench")
-"""Commands that take graphs and pictures from people who may not be trusted."""
+WITHOUT_ROOT = MappingProxyType(
+    {
+        "edit": "the user of the editor chooses its files",
+        "demo": "it reads files of Halation only",
+        "gallery": "it reads files of Halation only",
+        "schema": "it reads no file",
+        "git-setup": "it reads no graph but those of the repository, and writes the configuration of git",
+        "git-driver": "git hands it files of the repository, and copies in temporary folders",
+        "worker": "the render job names the root",
+    }
+)
+"""Commands without `--root`, and why. All others have it: they may be given files by strangers."""
 
 
 class Commands(Mapping[str, Any]):
@@ -111,5 +122,5 @@ def _command(name: str) -> Any:
     function = name.replace("-", "_")
     command = getattr(import_module(f".{function}", __package__), function)
     alone = typer.Typer(add_completion=False, rich_markup_mode=None)
-    alone.command(hidden=name in _HIDDEN)(guarded(rooted(command) if name in _FENCED else command))
+    alone.command(hidden=name in _HIDDEN)(guarded(command if name in WITHOUT_ROOT else add_root(command)))
     return get_command(alone)

@@ -84,6 +84,7 @@ def render(
     if deterministic and form_of_passes == "compute":
         raise UsageError("--deterministic renders with fragment passes: leave out --form compute")
     from ..renderer.jobs.render_job import RenderJob
+    from ..resources.sandbox import sandbox_root
 
     job = RenderJob(
         graph=str(graph),
@@ -108,5 +109,6 @@ def render(
         resume=resume,
         processes=jobs,
         timeout=timeout,
+        root=sandbox_root(),
     )
     return execute(job, parsing.progress(progress), as_json)

@@ -9,5 +9,8 @@ from .options import AsJson, standard_input
 def worker(as_json: AsJson = True) -> int:
     """Render the job that comes as JSON on standard input, and report in JSON."""
     from ..renderer.jobs.render_job import RenderJob
+    from ..resources.sandbox import fenced
 
-    return execute(RenderJob.from_json(standard_input()), "json", as_json)
+    job = RenderJob.from_json(standard_input())
+    with fenced(job.root or None):
+        return execute(job, "json", as_json)

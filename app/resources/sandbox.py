@@ -33,6 +33,11 @@ def outside(path: str | Path) -> str:
     return f"lies outside of {root}: nothing else may be read or written (--root)"
 
 
+def sandbox_root() -> str:
+    """The folder that `--root` names, "" without one: a render job that is sent to another machine carries it."""
+    return os.environ.get(ROOT, "")
+
+
 @contextmanager
 def fenced(root: str | Path | None) -> Generator[None]:
     """Nothing outside of that folder is read or written meanwhile. Raises UsageError for what is no folder."""

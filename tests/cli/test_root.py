@@ -13,6 +13,8 @@ import numpy as np
 import PyOpenColorIO as ocio
 import pytest
 from exr_files import write_exr
+from halation.cli.program import WITHOUT_ROOT, Commands
+from halation.renderer.jobs.render_job import RenderJob, worker_command
 from halation.resources.sandbox import ROOT
 
 CUBE = "LUT_3D_SIZE 2\n" + "".join(f"{r} {g} {b}\n" for b in (0, 1) for g in (0, 1) for r in (0, 1))
@@ -180,3 +182,57 @@ def test_processes_that_share_frames_are_inside_too(yard):
     )
     assert result.returncode == 4 and "in.0002.exr: lies outside of" in result.stderr
     assert not (fence / "a.0002.png").exists()
+
+
+def test_a_job_carries_its_root(yard):
+    """A worker that is started elsewhere, without this environment, is in the same sandbox."""
+    fence = yard / "fence"
+    for file, code in ((yard / "out" / "shot.exr", 4), (picture(fence / "shot.exr"), 0)):
+        graph = written(yard, NAMED["an input"][1](str(file)))
+        job = RenderJob(graph=str(graph), destinations=(("", str(fence / "a.png")),), root=str(fence))
+        result = subprocess.run(worker_command(), input=job.to_json(), capture_output=True, text=True)
+        assert result.returncode == code, result.stderr
+
+
+OUTSIDE: dict[str, tuple[object, ...]] = {
+    "render": ("{out}/group.json", "-o", "{fence}/a.png"),
+    "check": ("{out}/group.json",),
+    "explain": ("{out}/group.json",),
+    "info": ("{out}/shot.exr",),
+    "nodes": ("{out}/code.glsl",),
+    "fmt": ("{out}/group.json",),
+    "diff": ("{out}/group.json", "{fence}/graph.json"),
+    "merge": ("{fence}/graph.json", "{out}/group.json", "{fence}/graph.json"),
+    "test": ("{out}/cases.suite.toml",),
+    "reproduce": ("{out}/shot.exr",),
+    "watch": ("{out}/group.json", "-o", "{fence}/a.png"),
+    "sweep": ("{out}/group.json", "-o", "{fence}/a.png", "--set", "n.size=1,2"),
+    "bench": ("{out}/group.json",),
+    "export-isf": ("{out}/group.json",),
+}
+"""For each command that takes `--root`, words that name a file outside of it."""
+
+
+def test_every_command_has_the_option_or_says_why_not() -> None:
+    commands = {name for name, command in Commands().items() if any(item.name == "root" for item in command.params)}
+    assert commands == set(Commands()) - set(WITHOUT_ROOT) == set(OUTSIDE)
+
+
+@pytest.mark.parametrize("name", sorted(set(OUTSIDE) - {"watch"}))
+def test_no_command_reads_outside(cli, yard, name):
+    (yard / "out" / "cases.suite.toml").write_text('[cases.a]\ngraph = "group.json"\ngolden = "a.exr"\n')
+    written(yard, NAMED["an input"][1](""))
+    words = [str(word).format(out=yard / "out", fence=yard / "fence") for word in OUTSIDE[name]]
+    result = cli(name, *words, "--root", yard / "fence")
+    assert result.code != 0 and "lies outside of" in result.out + result.err, result
+
+
+def test_watch_reads_nothing_outside_either(yard):
+    """It says so, and waits for a change."""
+    words = [word.format(out=yard / "out", fence=yard / "fence") for word in OUTSIDE["watch"]]
+    command = [sys.executable, "-m", "halation.cli", "watch", *words, "--root", yard / "fence"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        lines = [process.stderr.readline() for _ in range(2)]
+        process.kill()
+    assert "lies outside of" in lines[1], lines
