@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from .areas import Region, scaled
 from .explain import as_json, dot, explain
-from .ir import MAX_WEIGHTS, Held, Memory, Read, Ref
+from .ir import MAX_WEIGHTS, Memory, Ref, StoredResult
 from .library import Library, installed
 from .lowering.named import named_files
 from .lowering.upstream import Upstream
@@ -26,19 +26,18 @@ __all__ = [
     "MAX_WEIGHTS",
     "NULL",
     "Form",
-    "Held",
     "Library",
     "Memory",
     "Pass",
     "Plan",
     "Planner",
     "Precision",
-    "Read",
     "Ref",
     "Region",
     "Request",
     "Shader",
     "Stage",
+    "StoredResult",
     "Surface",
     "Target",
     "Tiling",

@@ -43,13 +43,13 @@ class Library(Record, frozen=True):
     _closures: dict[tuple[str, ...], tuple[Text, ...]] = field(default_factory=dict[tuple[str, ...], tuple[Text, ...]])
     _light: dict[tuple[str, str], bool] = field(default_factory=dict[tuple[str, str], bool])
     _used: dict[tuple[str, str], frozenset[str]] = field(default_factory=dict[tuple[str, str], frozenset[str]])
-    _asked: dict[tuple[str, str], frozenset[str]] = field(default_factory=dict[tuple[str, str], frozenset[str]])
+    _uniforms: dict[tuple[str, str], frozenset[str]] = field(default_factory=dict[tuple[str, str], frozenset[str]])
     _digests: dict[tuple[str, ...], str] = field(default_factory=dict[tuple[str, ...], str])
     _lines: dict[Hashable, Lines] = field(default_factory=dict[Hashable, Lines])
     _larger: dict[frozenset[str], Library] = field(default_factory=dict[frozenset[str], "Library"])
 
     compare_exclude: ClassVar[frozenset[str]] = frozenset(
-        {"_closures", "_light", "_used", "_asked", "_digests", "_lines", "_larger"}
+        {"_closures", "_light", "_used", "_uniforms", "_digests", "_lines", "_larger"}
     )
 
     def including(self, texts: Iterable[Text]) -> Library:
@@ -87,7 +87,7 @@ class Library(Record, frozen=True):
         """True if the file or anything it includes says one of `words`."""
         return any(words & text.words for text in self.closure((shader,), asker))
 
-    def kept(self, key: Hashable, find: Callable[[], Lines]) -> Lines:
+    def remember_lines(self, key: Hashable, find: Callable[[], Lines]) -> Lines:
         """The lines of files for a pass, which `find` finds the first time. `key` is all that they depend on."""
         if key not in self._lines:
             if len(self._lines) >= KEPT:
@@ -104,14 +104,14 @@ class Library(Record, frozen=True):
             self._light[shader, function] = self._is_light(shader, function, asker)
         return self._light[shader, function]
 
-    def asked(self, shader: str, function: str, asker: str) -> frozenset[str]:
+    def find_uniforms(self, shader: str, function: str, asker: str) -> frozenset[str]:
         """The uniforms that a function asks for; so may macros, which come with files of which it calls nothing."""
-        if (shader, function) not in self._asked:
+        if (shader, function) not in self._uniforms:
             needed = frozenset({function})
             for text in reversed(self.closure((shader,), asker)):
                 needed |= text.only(needed).words
-            self._asked[shader, function] = needed & ASKED
-        return self._asked[shader, function]
+            self._uniforms[shader, function] = needed & ASKED
+        return self._uniforms[shader, function]
 
     def digest(self, names: tuple[str, ...], asker: str) -> str:
         """A hash of files and all they include."""

@@ -14,12 +14,11 @@ from ..resources.picture import Picture
 from ..resources.provider import ResourceProvider
 from .fusion.fuse import fuse
 from .fusion.rewrites import rewritten
-from .ir import Read
 from .library import Library, installed
 from .lowering.expand import written_texts
-from .lowering.incremental import relower
+from .lowering.incremental import lower_again
 from .lowering.lower import lower
-from .lowering.steps import Lowered
+from .lowering.steps import LoweringRecord
 from .plan import Plan
 from .request import Request
 from .scheduling.schedule import Scheduled, formats, reschedule, schedule
@@ -36,7 +35,7 @@ class Compiled(Struct, frozen=True):
     """A plan of whole pictures, how it came to be, and what was asked for besides a frame, a region and bindings."""
 
     asked: tuple[object, ...]
-    lowered: Lowered
+    lowered: LoweringRecord
     scheduled: Scheduled
     tiled: bool
     """False where it is known to fit."""
@@ -98,7 +97,7 @@ class Planner:
         for known in self._known:
             if known.asked != asked or known.lowered.library is not library:
                 continue
-            lowered = relower(known.lowered, graph, request, outside)
+            lowered = lower_again(known.lowered, graph, request, outside)
             if lowered is not None:
                 scheduled, tiled = reschedule(known.scheduled, lowered.program, library), known.tiled
                 part = known.part
@@ -179,6 +178,6 @@ def _with_pixels(plan: Plan, bindings: Mapping[str, Picture]) -> Plan:
     if plan.tiling is None:
         return replace(plan, uploads=uploads)
     program = plan.tiling.program
-    ops = tuple(replace(op, picture=filled(op.picture)) if isinstance(op, Read) else op for op in program.ops)
+    ops = tuple(op.with_pictures(filled) for op in program.ops)
     tiling = replace(plan.tiling, program=replace(program, ops=ops))
     return replace(plan, uploads=uploads, tiling=tiling)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from halation.nodes import Edge, glsl_type
 
 from ..ir import BLOCK, MAX_WEIGHTS, Accessor, Convolve, Reduce, Ref
-from .names import Names
+from .names import ShaderNames
 
 OUTPUTS = 8
 """Pixels that one invocation of a long convolution makes: each pixel read is used for all of them."""
@@ -20,7 +20,7 @@ SMALL = 2**18
 """Pixels of pictures that are convolved in loops: writing taps out takes the driver longer than is ever saved."""
 
 
-def accessor(names: Names, item: Accessor, edge: Edge) -> list[str]:
+def accessor(names: ShaderNames, item: Accessor, edge: Edge) -> list[str]:
     """`<name>_size`, `<name>_raw`, `<name>_at` and `<name>_near` for one picture."""
     name, glsl = item.name, item.glsl
     if isinstance(item.operand, Ref):
@@ -48,7 +48,7 @@ def accessor(names: Names, item: Accessor, edge: Edge) -> list[str]:
     ]
 
 
-def convolution_accessor(names: Names, op: Convolve) -> list[str]:
+def convolution_accessor(names: ShaderNames, op: Convolve) -> list[str]:
     """The accessor, the weights and the uniforms that all forms of a convolution share."""
     names.uniform("ivec2", (1, 0) if op.axis == 0 else (0, 1), "along")
     names.uniform("int", op.origin, "origin")
@@ -59,7 +59,7 @@ def convolution_accessor(names: Names, op: Convolve) -> list[str]:
     return [block, *accessor(names, Accessor("image", glsl, op.image), op.edge)]
 
 
-def convolution(names: Names, op: Convolve) -> list[str]:
+def convolution(names: ShaderNames, op: Convolve) -> list[str]:
     """`convolution`, one pixel of it, for fragment passes."""
     glsl = glsl_type(names.shape(op.image).channels)
     stride = names.uniform("int", op.stride, "stride")
@@ -84,7 +84,7 @@ def count_of(op: Convolve) -> int:
     return OUTPUTS if len(op.weights) > SHORT[-1] else max(2 * FEWER // max(op.stride, 2), 1)
 
 
-def strip(names: Names, op: Convolve, count: int) -> list[str]:
+def strip(names: ShaderNames, op: Convolve, count: int) -> list[str]:
     """Statements that make `s0`, `s1`..., the convolution at `count` pixels from `first` on.
 
     Every pixel is read once. Terms are added in the order of a plain loop, so all forms give the same bits.
@@ -140,7 +140,7 @@ def padded_weights(op: Convolve, form: str) -> tuple[float, ...]:
     return op.weights + (0.0,) * (-(-count // 4) * 4 - len(op.weights))
 
 
-def source(names: Names, root: Reduce, body: list[str], value: str) -> list[str]:
+def source(names: ShaderNames, root: Reduce, body: list[str], value: str) -> list[str]:
     """`source_at`: a pixel of what is reduced, computed on the spot where its producers joined the pass."""
     shape = names.shape(root.image)
     names.uniform("ivec2", shape.size, "source_size")
@@ -153,7 +153,7 @@ def source(names: Names, root: Reduce, body: list[str], value: str) -> list[str]
     ]
 
 
-def reduction(names: Names, root: Reduce) -> list[str]:
+def reduction(names: ShaderNames, root: Reduce) -> list[str]:
     """Every invocation folds one block; the blocks at the far edges are smaller."""
     glsl = glsl_type(names.shape(root.image).channels)
     fold = "result + c" if root.operation == "sum" else "max(result, c)"

@@ -11,11 +11,10 @@ from collections.abc import Sequence
 
 from halation.nodes import Size, glsl_type
 
-from ..fusion.fuse import PassGroup
-from ..ir import Call, Convolve, Gather, Op, Program
-from ..library import Library
+from ..ir import Convolve
 from . import bodies
-from .names import Names
+from .names import ShaderNames
+from .pass_parts import PassContext
 
 LOCAL_SIZE = 64
 """Invocations of a work group: neighbors across the row of pixels that each makes."""
@@ -29,22 +28,13 @@ rows that the one above it has read is then still in the nearest cache.
 """
 
 
-def count_of(program: Program, fused: PassGroup, library: Library) -> int:
-    """How many pixels an invocation of a compute pass should make. Functions with loops share nothing.
+def count_rows(context: PassContext) -> int:
+    """How many pixels of a column an invocation of a compute pass makes. Functions with loops share nothing.
 
     Where several functions look around, what two rows share is lost again, since so much does not fit into registers.
     """
-    ops = [program.ops[index] for index in fused.members]
-    if isinstance(root := ops[-1], Convolve):
-        return bodies.count_of(root)
-    looking = sum(isinstance(op, Gather) for op in ops)
-    return ROWS if looking < 2 and all(_is_straight(op, library) for op in ops) else 1
-
-
-def _is_straight(op: Op, library: Library) -> bool:
-    if isinstance(op, Call):
-        return not op.program and library.straight(op.shader, op.function, op.owner)
-    return isinstance(op, Gather) and op.light
+    gathers = sum(bool(op.files) and not op.is_pointwise and op.is_inlinable for op in context.members)
+    return ROWS if gathers < 2 and all(op.is_straight(context.library) for op in context.members) else 1
 
 
 def groups(convolve: Convolve | None, count: int, size: Size) -> tuple[int, int, int]:
@@ -55,7 +45,9 @@ def groups(convolve: Convolve | None, count: int, size: Size) -> tuple[int, int,
     return (block, along, -(-across // block))
 
 
-def main(names: Names, count: int, convolve: Convolve | None, body: Sequence[str], texels: Sequence[str]) -> list[str]:
+def main(
+    names: ShaderNames, count: int, convolve: Convolve | None, body: Sequence[str], texels: Sequence[str]
+) -> list[str]:
     """The entry point of a compute pass.
 
     What is made beyond the edges is stored nowhere. To leave before it is made would have the software rasterizer mask

@@ -8,7 +8,7 @@ from halation.nodes import Uniform, glsl_type
 from msgspec import Struct, field
 
 from ..areas import Region
-from ..ir import Choice, Constant, Parameter, Program, Ref, Shape
+from ..ir import Choice, LoweredProgram, Parameter, PictureShape, Ref, UniformConstant
 from ..target import Form
 
 _FLOAT32 = 3.4e38
@@ -16,10 +16,10 @@ _INT32 = 2**31
 """Numbers that GLSL can hold. A float this large is infinite for every purpose."""
 
 
-class Names(Struct):
+class ShaderNames(Struct):
     """Hands out textures and uniforms as the text of a pass asks for them."""
 
-    program: Program
+    program: LoweredProgram
     textures: dict[Ref, int]
     form: Form
     by_image: bool
@@ -43,7 +43,7 @@ class Names(Struct):
         self.uniforms.append((name, "int" if glsl == "bool" else glsl, value))
         return f"({name} != 0)" if glsl == "bool" else name
 
-    def shape(self, ref: Ref) -> Shape:
+    def shape(self, ref: Ref) -> PictureShape:
         return self.program.ops[ref.op].shapes[ref.output]
 
     def load(self, ref: Ref, where: str) -> str:
@@ -60,7 +60,7 @@ class Names(Struct):
         """Read one pixel as another type."""
         return convert(self.load(ref, where), self.shape(ref).channels, glsl)
 
-    def constant(self, item: Constant, glsl: str) -> str:
+    def constant(self, item: UniformConstant, glsl: str) -> str:
         """A uniform within the range of its type; one of another type is converted like a picture would be."""
         if isinstance(item.value, tuple):
             value = tuple(_float32(part) for part in item.value)
@@ -79,7 +79,7 @@ class Names(Struct):
         """A parameter as an expression; `values` names what the pass has computed or loaded already."""
         if isinstance(item.operand, Choice):
             return str(item.operand.index)
-        if isinstance(item.operand, Constant):
+        if isinstance(item.operand, UniformConstant):
             return self.constant(item.operand, item.glsl)
         text = values[item.operand]
         channels = self.shape(item.operand).channels
@@ -90,7 +90,7 @@ class Names(Struct):
         return convert(text, channels, item.glsl)
 
 
-def held(item: Constant) -> Uniform:
+def uniform_value(item: UniformConstant) -> Uniform:
     """A constant as a uniform of its own type can hold it."""
     if isinstance(item.value, tuple):
         return tuple(_float32(part) for part in item.value)

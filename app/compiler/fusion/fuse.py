@@ -11,7 +11,7 @@ from collections.abc import Iterable
 
 from msgspec import Struct
 
-from ..ir import Call, Constant, Gather, History, Op, Program, Read, Reduce, Ref
+from ..ir import LoweredProgram, Op, Ref
 from ..target import Target
 
 MAX_MEMBERS = 48
@@ -33,7 +33,9 @@ class PassGroup(Struct, frozen=True):
         return self.members[-1]
 
 
-def fuse(program: Program, target: Target, *, enabled: bool = True, gathers: bool = True) -> tuple[PassGroup, ...]:
+def fuse(
+    program: LoweredProgram, target: Target, *, enabled: bool = True, gathers: bool = True
+) -> tuple[PassGroup, ...]:
     """Group the operations of `program` into passes, in order.
 
     `enabled=False` leaves every one alone, `gathers=False` those that look around.
@@ -41,23 +43,23 @@ def fuse(program: Program, target: Target, *, enabled: bool = True, gathers: boo
     ops = program.ops
     live = _live(program)
     readers = _readers(ops, live)
-    kept = set(kept_refs(program))
+    kept = set(program.kept_refs)
     home: dict[int, int] = {}
     members: dict[int, list[int]] = {}
     reads: dict[int, dict[Ref, None]] = {}
     uniforms: dict[int, int] = {}
     for index in reversed(range(len(ops))):
         op = ops[index]
-        if index not in live or isinstance(op, (Read, History)):
+        if index not in live or op.is_source:
             continue
-        outputs = [Ref(index, number) for number in range(len(op.shapes))]
+        outputs = [Ref(index, number) for number in range(op.outputs)]
         roots = {home[reader] for ref in outputs for reader in readers.get(ref, ())}
         root = roots.pop() if len(roots) == 1 else index
-        joins = isinstance(op, Call) or (gathers and isinstance(op, Gather) and op.light)
+        joins = op.is_pointwise or (gathers and op.is_inlinable)
         joins = joins and root != index and not kept.intersection(outputs) and _at_its_pixel(ops, outputs, readers)
         if enabled and joins:
             joined = _joined(reads[root], outputs, op)
-            together = uniforms[root] + count_uniforms(op)
+            together = uniforms[root] + op.uniform_floats
             inputs = len(joined) + count_tables(ops, [*members[root], index])
             if together <= MAX_UNIFORMS and _fits(ops, op, members[root], inputs, target):
                 home[index] = root
@@ -65,7 +67,7 @@ def fuse(program: Program, target: Target, *, enabled: bool = True, gathers: boo
                 members[root].append(index)
                 reads[root] = joined
                 continue
-        home[index], members[index], uniforms[index] = index, [index], count_uniforms(op)
+        home[index], members[index], uniforms[index] = index, [index], op.uniform_floats
         reads[index] = dict.fromkeys(op.reads())
     return tuple(
         PassGroup(tuple(reversed(members[root])), tuple(reads[root]), tuple(_writes(ops, root, readers, kept)))
@@ -73,15 +75,10 @@ def fuse(program: Program, target: Target, *, enabled: bool = True, gathers: boo
     )
 
 
-def kept_refs(program: Program) -> tuple[Ref, ...]:
-    """What must be there at the end: outputs, and what the next frame will want."""
-    return (*program.outputs.values(), *program.memories.values())
-
-
-def _live(program: Program) -> set[int]:
+def _live(program: LoweredProgram) -> set[int]:
     """Operations that an output needs."""
     found: set[int] = set()
-    todo = [ref.op for ref in kept_refs(program)]
+    todo = [ref.op for ref in program.kept_refs]
     while todo:
         index = todo.pop()
         if index not in found:
@@ -100,7 +97,7 @@ def _readers(ops: tuple[Op, ...], live: set[int]) -> dict[Ref, list[int]]:
 
 def _at_its_pixel(ops: tuple[Op, ...], outputs: Iterable[Ref], readers: dict[Ref, list[int]]) -> bool:
     """True if all that read these pictures want each pixel for one of their own."""
-    return all(isinstance(ops[reader], (Call, Reduce)) for ref in outputs for reader in readers.get(ref, ()))
+    return all(ops[reader].takes_producers for ref in outputs for reader in readers.get(ref, ()))
 
 
 def _joined(outer: Iterable[Ref], made: list[Ref], op: Op) -> dict[Ref, None]:
@@ -108,35 +105,21 @@ def _joined(outer: Iterable[Ref], made: list[Ref], op: Op) -> dict[Ref, None]:
     return dict.fromkeys([*(ref for ref in outer if ref not in made), *op.reads()])
 
 
-def count_uniforms(op: Op) -> int:
-    """Floats of uniforms that an operation takes at most: each is rounded up to four, and every output has a seam."""
-    if not isinstance(op, (Call, Gather)):
-        return 0
-    constants = [item.operand for item in op.parameters if isinstance(item.operand, Constant)]
-    factors = [item for item in op.parameters if item.factor != 1.0]
-    taken = sum(12 if item.channels == 9 else -(-item.channels // 4) * 4 for item in constants)
-    sizes = len(op.accessors) if isinstance(op, Gather) else 0
-    return taken + 4 * (len(factors) + len(op.shapes) + sizes)
-
-
 def count_tables(ops: tuple[Op, ...], members: Iterable[int]) -> int:
     """How many tables of color programs a pass reads at most."""
-    return sum(len(op.tables) for op in (ops[index] for index in members) if isinstance(op, Call))
+    return sum(len(ops[index].tables) for index in members)
 
 
 def _fits(ops: tuple[Op, ...], op: Op, members: list[int], inputs: int, target: Target) -> bool:
     """Whether `op` can be part of the pass that these are members of, the root first."""
     reader = ops[members[0]]
-    if isinstance(reader, Call):
-        same_size = reader.size == op.size
-    elif isinstance(reader, Reduce) and isinstance(op, Call):
-        same_size = ops[reader.image.op].size == op.size
-    else:
+    if not reader.takes_producers or not (reader.is_pointwise or op.is_pointwise):
         return False
+    same_size = reader.find_producer_size(ops) == op.size
     return same_size and len(members) < MAX_MEMBERS and inputs <= target.max_inputs
 
 
 def _writes(ops: tuple[Op, ...], root: int, readers: dict[Ref, list[int]], kept: set[Ref]) -> list[Ref]:
     """The root's outputs that somebody wants."""
-    outputs = [Ref(root, number) for number in range(len(ops[root].shapes))]
+    outputs = [Ref(root, number) for number in range(ops[root].outputs)]
     return [ref for ref in outputs if ref in readers or ref in kept]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ..ir import Call, Op, Program, Ref
+from ..ir import LoweredProgram, Op, Ref
 from ..target import Target
-from .fuse import MAX_MEMBERS, MAX_UNIFORMS, PassGroup, count_tables, count_uniforms
+from .fuse import MAX_MEMBERS, MAX_UNIFORMS, PassGroup, count_tables
 
 
-def fits(program: Program, one: PassGroup, target: Target) -> bool:
+def fits(program: LoweredProgram, one: PassGroup, target: Target) -> bool:
     """True if a pass of pointwise operations is within the limits of a device, and still reads the fast way."""
     reads, writes = len(one.reads), len(one.writes)
     if target.loads_images and reads + writes > target.max_images:
@@ -19,16 +19,16 @@ def fits(program: Program, one: PassGroup, target: Target) -> bool:
         reads + count_tables(program.ops, one.members) <= target.max_inputs
         and writes <= most
         and len(one.members) <= MAX_MEMBERS
-        and sum(count_uniforms(program.ops[index]) for index in one.members) <= MAX_UNIFORMS
+        and sum(program.ops[index].uniform_floats for index in one.members) <= MAX_UNIFORMS
     )
 
 
 def ordered(ops: tuple[Op, ...], *members: Iterable[int]) -> tuple[int, ...]:
     """The operations of several passes as those of one. What looks around reads textures only, so it comes first."""
     both = {index for some in members for index in some}
-    return tuple(sorted(both, key=lambda index: (isinstance(ops[index], Call), index)))
+    return tuple(sorted(both, key=lambda index: (ops[index].is_pointwise, index)))
 
 
 def looks_around(ops: tuple[Op, ...], one: PassGroup, ref: Ref) -> bool:
     """True if a pass reads more of a picture than its own pixel."""
-    return any(ref in ops[index].reads() for index in one.members if not isinstance(ops[index], Call))
+    return any(ref in ops[index].reads() for index in one.members if not ops[index].is_pointwise)

@@ -13,29 +13,31 @@ from itertools import islice
 from halation.nodes import Size
 from msgspec import Struct
 
-from ..ir import Call, Gather, Program, Ref
+from ..ir import LoweredProgram, Ref
 from ..library import Library
 from ..target import Target
-from .fuse import PassGroup, kept_refs
+from .fuse import PassGroup
 from .limits import fits, looks_around, ordered
 
 MOST_TRIED = 4
 """Passes that read a picture and are tried for another one that does, the latest: hundreds may read one file."""
 
 
-def merge(program: Program, passes: tuple[PassGroup, ...], target: Target, library: Library) -> tuple[PassGroup, ...]:
+def merge(
+    program: LoweredProgram, passes: tuple[PassGroup, ...], target: Target, library: Library
+) -> tuple[PassGroup, ...]:
     """Merge passes as far as `target` allows. They stay in an order in which each comes after what it reads."""
     found = _Merging(program, passes, target).run()
     return tuple(group.fused for group in found)
 
 
-def alone(program: Program, fused: PassGroup) -> tuple[PassGroup, ...]:
+def split_by_result(program: LoweredProgram, fused: PassGroup) -> tuple[PassGroup, ...]:
     """What a pass writes, each operation's as the pass that would make nothing else; the pass itself if it is one."""
     roots = tuple(dict.fromkeys(ref.op for ref in fused.writes))
     return (fused,) if len(roots) == 1 else tuple(_behind(program, fused, root) for root in roots)
 
 
-def _behind(program: Program, fused: PassGroup, root: int) -> PassGroup:
+def _behind(program: LoweredProgram, fused: PassGroup, root: int) -> PassGroup:
     """The part of a pass that an operation needs."""
     needed, reads = {root}, set[Ref]()
     for index in reversed(fused.members):
@@ -68,9 +70,9 @@ class _Group(Struct, frozen=True):
 class _Merging:
     """The work in progress: who makes and who reads each picture, by the numbers of groups."""
 
-    def __init__(self, program: Program, passes: tuple[PassGroup, ...], target: Target) -> None:
+    def __init__(self, program: LoweredProgram, passes: tuple[PassGroup, ...], target: Target) -> None:
         self.program, self.ops, self.target = program, program.ops, target
-        self.kept = frozenset(kept_refs(program))
+        self.kept = frozenset(program.kept_refs)
         self.groups: dict[int, _Group] = {}
         self.maker: dict[Ref, int] = {}
         self.readers: dict[Ref, dict[int, None]] = {}
@@ -91,7 +93,7 @@ class _Merging:
     def _is_open(self, one: PassGroup) -> bool:
         """True for what makes each pixel of its own: pointwise operations, and what looks around and is light."""
         root = self.ops[one.root]
-        if not isinstance(root, Call) and not (isinstance(root, Gather) and root.light):
+        if not root.is_inlinable:
             return False
         return all(self.program.shape(ref).size == root.size for ref in one.writes)
 
@@ -142,7 +144,7 @@ class _Merging:
         if place < 0 or any(looks_around(self.ops, late.fused, ref) for ref in early.writes if ref in late.reads):
             return None
         members = ordered(self.ops, early.members, late.members)
-        if not isinstance(self.ops[members[-1]], Call):
+        if not self.ops[members[-1]].is_pointwise:
             return None
         reads = dict.fromkeys(ref for ref in (*early.reads, *late.reads) if ref not in early.writes)
         writes = dict.fromkeys(ref for ref in (*early.writes, *late.writes) if self._is_wanted(ref, first, last))

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from ..ir import Call, Program, Reduce, Ref
+from ..ir import LoweredProgram, Ref
 from ..library import Library
 from ..target import Target
-from .fuse import PassGroup, kept_refs
+from .fuse import PassGroup
 from .limits import fits, looks_around, ordered
 
 MOST_READERS = 3
@@ -17,10 +17,10 @@ STORE = 4
 
 
 def recompute(
-    program: Program, passes: tuple[PassGroup, ...], target: Target, library: Library
+    program: LoweredProgram, passes: tuple[PassGroup, ...], target: Target, library: Library
 ) -> tuple[PassGroup, ...]:
     """Leave out passes whose readers can do their work, where that costs fewer reads than it saves."""
-    kept = frozenset(kept_refs(program))
+    kept = frozenset(program.kept_refs)
     found = dict(enumerate(passes))
     readers: dict[Ref, dict[int, None]] = {}
     for number, one in found.items():
@@ -44,22 +44,20 @@ def recompute(
     return tuple(found.values())
 
 
-def _is_cheap(program: Program, one: PassGroup, library: Library) -> bool:
+def _is_cheap(program: LoweredProgram, one: PassGroup, library: Library) -> bool:
     ops = [program.ops[index] for index in one.members]
-    return len(ops) <= MOST_AGAIN and all(
-        isinstance(op, Call) and not op.program and library.cheap(op.shader, op.function, op.owner) for op in ops
-    )
+    return len(ops) <= MOST_AGAIN and all(op.is_cheap(library) for op in ops)
 
 
-def _takes(program: Program, reader: PassGroup, ref: Ref) -> bool:
+def _takes(program: LoweredProgram, reader: PassGroup, ref: Ref) -> bool:
     """True if a pass wants each pixel of a picture for one of its own, and can compute it there."""
     root, size = program.ops[reader.root], program.shape(ref).size
-    if isinstance(root, Reduce):
-        return size == program.shape(root.image).size
-    return isinstance(root, Call) and size == root.size and not looks_around(program.ops, reader, ref)
+    if not root.takes_producers or size != root.find_producer_size(program.ops):
+        return False
+    return not root.is_pointwise or not looks_around(program.ops, reader, ref)
 
 
-def _with(program: Program, one: PassGroup, reader: PassGroup) -> PassGroup:
+def _with(program: LoweredProgram, one: PassGroup, reader: PassGroup) -> PassGroup:
     """A pass that also does the work of one that it reads."""
     reads = dict.fromkeys((*(ref for ref in reader.reads if ref not in one.writes), *one.reads))
     return PassGroup(

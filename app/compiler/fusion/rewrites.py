@@ -5,21 +5,21 @@ They are never undone by each other: what is computed again is not stored, so on
 
 from __future__ import annotations
 
-from ..ir import Program
+from ..ir import LoweredProgram
 from ..library import Library
 from ..target import Target
 from .fuse import PassGroup
-from .merge import alone, merge
+from .merge import merge, split_by_result
 from .recompute import recompute
 
-__all__ = ["REWRITES", "alone", "rewritten"]
+__all__ = ["REWRITES", "rewritten", "split_by_result"]
 
 REWRITES = (recompute, merge)
 """In this order."""
 
 
 def rewritten(
-    program: Program, passes: tuple[PassGroup, ...], target: Target, library: Library
+    program: LoweredProgram, passes: tuple[PassGroup, ...], target: Target, library: Library
 ) -> tuple[PassGroup, ...]:
     """Fewer passes, or such that read and write less."""
     for rewrite in REWRITES:

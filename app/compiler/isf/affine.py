@@ -15,7 +15,7 @@ from msgspec import Struct
 
 from ...resources.record import Record
 from ..areas import Around
-from ..ir import Constant, Program, Shape
+from ..ir import LoweredProgram, PictureShape, UniformConstant
 
 TOLERANCE = 1e-5
 MAX_FACTOR = 4096
@@ -47,7 +47,7 @@ class Knob:
 Point = Mapping[str, float]
 """Values of knobs by name."""
 
-Lowered = Callable[[Point], Program | None]
+LoweringFunction = Callable[[Point], LoweredProgram | None]
 """The program with knobs at other values; None where there is none."""
 
 
@@ -61,7 +61,7 @@ class Anatomy:
     places: dict[int, int] = field(default_factory=dict[int, int])
 
 
-def anatomy(program: Program) -> Anatomy:
+def anatomy(program: LoweredProgram) -> Anatomy:
     """Take a program apart."""
     found = Anatomy(None)
     found.skeleton = (*(_walk(op, found) for op in program.ops), tuple(program.outputs.items()))
@@ -69,12 +69,12 @@ def anatomy(program: Program) -> Anatomy:
 
 
 def _walk(item: Any, found: Anatomy) -> object:
-    if isinstance(item, Constant):
+    if isinstance(item, UniformConstant):
         found.places[id(item)] = len(found.numbers)
         parts = item.value if isinstance(item.value, tuple) else (item.value,)
         found.numbers += [float(part) for part in parts]
-        return Constant, len(parts)
-    if isinstance(item, Shape):
+        return UniformConstant, len(parts)
+    if isinstance(item, PictureShape):
         found.sizes.append(item.size)
         return item.channels, item.data, item.size == (1, 1)
     if isinstance(item, Around):
@@ -135,7 +135,7 @@ class Model:
         return f"({' + '.join(parts)})"
 
 
-def fitted(lowered: Lowered, base: Anatomy, knob: Knob) -> list[float] | None:
+def fitted(lowered: LoweringFunction, base: Anatomy, knob: Knob) -> list[float] | None:
     """How fast every number grows with a knob; None if what is computed changes, or numbers do not grow evenly."""
     columns: list[list[float]] = []
     for step in range(1, knob.samples + 1):

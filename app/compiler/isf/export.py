@@ -16,7 +16,7 @@ from ...resources.provider import FrameFile, PictureProbe, ResourceProvider
 from ...resources.working_space import WorkingSpace
 from .. import graph_library
 from ..fusion.fuse import fuse
-from ..ir import Program, Read, Ref
+from ..ir import LoweredProgram, Ref
 from ..lowering.lower import lower
 from ..request import Request
 from ..target import NULL
@@ -118,7 +118,7 @@ class _Export:
         comment = json.dumps(head, indent=2).replace("*/", "*\\/")
         return Exported(f"/*{comment}*/\n\n{text}", tuple(self.notes), ())
 
-    def _lowered(self, point: Point) -> Program:
+    def _lowered(self, point: Point) -> LoweredProgram:
         """The graph as operations, at values of knobs."""
         graph = self.graph
         for control in self.controls:
@@ -148,20 +148,20 @@ class _Export:
             width, height = self.size
             self.notes.append(f"it is made for {width}x{height} pixels, and looks different at others: see --size")
 
-    def _sources(self, program: Program) -> dict[Ref, str]:
+    def _sources(self, program: LoweredProgram) -> dict[Ref, str]:
         """The pictures of the graph's inputs, by the names that the shader gives them."""
         return {
-            Ref(at): self.pictures[op.picture.path]
+            Ref(at): self.pictures[picture.path]
             for at, op in enumerate(program.ops)
-            if isinstance(op, Read) and op.picture.in_memory and op.picture.path in self.pictures
+            if (picture := op.find_upload(0)) and picture.in_memory and picture.path in self.pictures
         }
 
-    def _data(self, program: Program) -> list[tuple[str, str]]:
+    def _data(self, program: LoweredProgram) -> list[tuple[str, str]]:
         """Inputs that are files of data."""
         return [
             (op.owner, f"is a {self.graph.inputs[name].kind}: the format has pictures of display values only")
             for op in program.ops
-            if isinstance(op, Read)
+            if op.find_upload(0)
             for node, _, name in [op.owner.partition(".")]
             if node == "inputs" and name in self.graph.inputs and name not in self.pictures
         ]

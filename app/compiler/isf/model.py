@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from halation.nodes import Size
 
 from ...errors import HalationError
-from ..ir import Constant, Program
+from ..ir import LoweredProgram, UniformConstant
 from .affine import Anatomy, Knob, Model, Point, alike, anatomy, fitted, length_text
 
 WIDTH, HEIGHT, FRAME = "width", "height", "frame"
@@ -21,12 +21,12 @@ Texts = Mapping[Size, tuple[str, str]]
 class Modelled:
     """A program, and what its numbers and sizes are in a shader. `held` are the knobs that it does not follow."""
 
-    program: Program
+    program: LoweredProgram
     model: Model
     sizes: Texts
     held: list[str] = field(default_factory=list[str])
 
-    def texts(self, item: Constant) -> tuple[str, ...] | None:
+    def texts(self, item: UniformConstant) -> tuple[str, ...] | None:
         """The numbers of a constant as GLSL; None for what is always the same."""
         place = self.model.base.places.get(id(item))
         if place is None:
@@ -45,7 +45,7 @@ class Modelled:
 class Modelling:
     """The work in progress: knobs that do not fit in are held at what they have in the graph, one after the other."""
 
-    lowered: Callable[[Point], Program]
+    lowered: Callable[[Point], LoweredProgram]
     knobs: dict[str, Knob]
     size: Size
     held: list[str] = field(default_factory=list[str])
@@ -74,7 +74,7 @@ class Modelling:
     def _base(self) -> dict[str, float]:
         return {name: knob.base for name, knob in self.knobs.items()}
 
-    def _tried(self, point: Point) -> Program | None:
+    def _tried(self, point: Point) -> LoweredProgram | None:
         try:
             return self.lowered({**self._base(), **point})
         except HalationError:

@@ -9,10 +9,11 @@ from halation.nodes import Uniform
 from msgspec import field
 
 from ...glsl import Text, words
-from ..codegen.emit import Parts, around, macros_of, parts_of, texts_of
-from ..codegen.names import Names, convert
+from ..codegen.includes import find_macros, select_texts, split_by_accessors
+from ..codegen.names import ShaderNames, convert
+from ..codegen.pass_parts import PassContext, PassParts, write_parts
 from ..fusion.fuse import PassGroup
-from ..ir import Constant, Convolve, ExternalProgram, Op, Program, Raster, Read, Ref
+from ..ir import ExternalProgram, LoweredProgram, Op, Raster, Ref, UniformConstant
 from ..library import Library
 from .affine import literal
 
@@ -25,10 +26,10 @@ _FINITE = re.compile(r"float finite\(float x\) \{.*?\n\}", re.DOTALL)
 _GLOBALS = ("pixel", "extent", "grid", "frame", "proxy")
 
 
-class PassNames(Names):
+class IsfNames(ShaderNames):
     """Pictures are read through functions of their own; what would be a uniform is set at the start of the pass."""
 
-    texts: Callable[[Constant], tuple[str, ...] | None] = lambda item: None
+    texts: Callable[[UniformConstant], tuple[str, ...] | None] = lambda item: None
     sized: Callable[[Uniform], tuple[str, str] | None] = lambda size: None
     first: int = 1
     """The frame that FRAMEINDEX counts from."""
@@ -53,7 +54,7 @@ class PassNames(Names):
         where = "ivec2(0)" if self.shape(ref).size == (1, 1) else where
         return f"@{self.readers[ref]}({where})" + ("", ".r", ".rg", ".rgb", "")[self.shape(ref).channels]
 
-    def constant(self, item: Constant, glsl: str) -> str:
+    def constant(self, item: UniformConstant, glsl: str) -> str:
         texts = self.texts(item)
         if texts is None or glsl.endswith("]") or item.channels > 4:
             return super().constant(item, glsl)
@@ -64,42 +65,46 @@ class PassNames(Names):
         return convert(whole, len(texts), glsl)
 
 
-def reasons(program: Program, passes: tuple[PassGroup, ...], pictures: Mapping[Ref, str]) -> Iterator[tuple[str, str]]:
+def reasons(
+    program: LoweredProgram, passes: tuple[PassGroup, ...], pictures: Mapping[Ref, str]
+) -> Iterator[tuple[str, str]]:
     """Why a graph cannot be written as one shader: nodes, and sentences about them."""
     for fused in passes:
         for index in fused.members:
             yield from ((owner, why) for owner in program.ops[index].owners if (why := _reason(program.ops[index])))
         for ref in fused.reads:
             op = program.ops[ref.op]
-            if isinstance(op, Read) and ref not in pictures and not op.owner.startswith("inputs."):
-                what = "a table of numbers" if op.picture.path == "numbers" else f"the file '{op.picture.path}'"
+            picture = op.find_upload(ref.output)
+            if picture and ref not in pictures and not op.owner.startswith("inputs."):
+                what = "a table of numbers" if picture.path == "numbers" else f"the file '{picture.path}'"
                 yield op.owner, f"reads {what}, which no shader can hold"
     for port in program.memories:
         yield port.node, "makes every frame of the one before"
 
 
+_OBSTACLES: Mapping[type[Op], str] = {
+    Raster: "draws meshes",
+    ExternalProgram: "is a shader of this format already: use its file",
+}
+"""Kinds of operations that a shader of this format cannot do."""
+
+
 def _reason(op: Op) -> str:
-    if isinstance(op, Raster):
-        return "draws meshes"
-    if isinstance(op, ExternalProgram):
-        return "is a shader of this format already: use its file"
-    if getattr(op, "tables", ()):
-        return "changes color by tables of a color library"
-    return ""
+    return _OBSTACLES.get(type(op)) or ("changes color by tables of a color library" if op.tables else "")
 
 
 def function(
-    program: Program, fused: PassGroup, output: int, prefix: str, names: PassNames, library: Library
+    program: LoweredProgram, fused: PassGroup, output: int, prefix: str, names: IsfNames, library: Library
 ) -> tuple[list[str], str]:
     """The functions of a pass, and the name of the one that makes its pixel: a vec4."""
-    parts = parts_of(program, fused, names, library)
-    root = program.ops[fused.root]
+    context = PassContext(program, fused, names, library)
+    parts = write_parts(context)
     functions = list(parts.functions)
-    if isinstance(root, Convolve):
-        functions[0] = f"float weight(int j) {{ {_weight(root.weights, 0)} }}"
+    if parts.convolution:
+        functions[0] = f"float weight(int j) {{ {_weight(parts.convolution.weights, 0)} }}"
         functions = [line.replace("weights[j >> 2][j & 3]", "weight(j)") for line in functions]
-    texts = texts_of(program, fused, parts, library)
-    lines = list(_lines(program, fused, texts, parts, functions))
+    texts = select_texts(context, parts)
+    lines = list(_lines(context, texts, parts, functions))
     result = parts.results[output]
     whole = convert(result, names.shape(fused.writes[output]).channels, "vec4")
     used = words(*lines, *parts.body, result)
@@ -125,16 +130,14 @@ def function(
     return _renamed(text, prefix, names, texts).split("\n"), f"{prefix}made"
 
 
-def _lines(
-    program: Program, fused: PassGroup, texts: tuple[Text, ...], parts: Parts, functions: list[str]
-) -> Iterator[str]:
-    early, late = around(texts, parts)
+def _lines(context: PassContext, texts: tuple[Text, ...], parts: PassParts, functions: list[str]) -> Iterator[str]:
+    early, late = split_by_accessors(texts, parts)
     for group in (early, None, late):
         if group is None:
             yield from functions
             continue
         for text in group:
-            macros = macros_of(text, program, fused)
+            macros = find_macros(text, context)
             yield from (f"#define {name} {number}" for name, number in macros)
             yield _portable(text.body)
             yield from (f"#undef {name}" for name, _ in macros)
@@ -155,7 +158,7 @@ def _portable(body: str) -> str:
     )
 
 
-def _renamed(text: str, prefix: str, names: PassNames, texts: tuple[Text, ...]) -> str:
+def _renamed(text: str, prefix: str, names: IsfNames, texts: tuple[Text, ...]) -> str:
     """Every global name gets the prefix of the pass: two passes may define the same. What is marked with @ stays."""
     own = {name for found in _DEFINED.finditer(text) for name in found.groups() if name}
     own |= {name for found in _CONSTANTS.finditer(text) for name in _CONSTANT.findall(found[1])}

@@ -14,7 +14,7 @@ from ..target import NULL
 from .affine import literal
 from .controls import Section
 from .model import Modelled
-from .passes import PassNames, function
+from .passes import IsfNames, function
 
 _PIXEL = "ivec2(int(gl_FragCoord.x), int(RENDERSIZE.y - gl_FragCoord.y))"
 
@@ -56,7 +56,7 @@ class Writing:
 
     def _pass(self, fused: PassGroup, output: int, first: int) -> None:
         ref = fused.writes[output]
-        names = PassNames(
+        names = IsfNames(
             self.found.program,
             {one: number for number, one in enumerate(fused.reads)},
             "fragment",

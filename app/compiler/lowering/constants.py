@@ -9,7 +9,7 @@ from halation.nodes import Node, Socket, Value
 from ...errors import GraphError
 from ...graph import Input, Port
 from ...graph.values import value_fault
-from ..ir import Constant
+from ..ir import UniformConstant
 
 
 def check_values(path: str, node: Node) -> None:
@@ -20,20 +20,20 @@ def check_values(path: str, node: Node) -> None:
             raise GraphError(f"{path}.{name}: {fault}")
 
 
-def of_input(port: Port, end: Input) -> Constant:
+def of_input(port: Port, end: Input) -> UniformConstant:
     """The constant of a graph input. Raises GraphError where it does not fit."""
     given = end.default if isinstance(end.default, tuple) else (end.default,)
     found = tuple(part for part in given if isinstance(part, float | int) and math.isfinite(part))
     if len(found) != len(given) or len(found) not in (1, end.width):
         raise GraphError(f"input '{port.socket}': the default {end.default!r} does not fit {end.kind}")
-    return Constant(found if len(found) > 1 else float(*found))
+    return UniformConstant(found if len(found) > 1 else float(*found))
 
 
-def limited(wire: Constant, value: Value, factor: float) -> Constant:
+def limited(wire: UniformConstant, value: Value, factor: float) -> UniformConstant:
     """A wired constant within the hard range, in working units."""
     parts = wire.value if isinstance(wire.value, tuple) else (wire.value,)
     parts = tuple(min(max(part, value.minimum), value.maximum) * factor for part in parts)
-    return Constant(parts if isinstance(wire.value, tuple) else parts[0])
+    return UniformConstant(parts if isinstance(wire.value, tuple) else parts[0])
 
 
 def of_socket(socket: Socket) -> float | tuple[float, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from hashlib import blake2b
 from types import MappingProxyType
 from typing import Literal
@@ -34,12 +34,9 @@ from halation.nodes import (
     Viewpoint,
     glsl_type,
 )
-from msgspec import Struct, field
 
 from ...errors import ShaderError
 from ...glsl import Function
-from ...resources.color_program import ColorProgram
-from ...resources.mesh import Mesh
 from ...resources.picture import Picture
 from ..areas import Around
 from ..ir import (
@@ -49,56 +46,26 @@ from ..ir import (
     Builder,
     Call,
     Choice,
-    Constant,
-    Convolve,
+    ColorCall,
     ExternalProgram,
     Gather,
-    History,
+    HistoryRead,
     Memory,
+    Op,
     Operand,
     Parameter,
+    PictureShape,
     Raster,
     Read,
     Reduce,
     Ref,
-    Shape,
+    UniformConstant,
 )
 from ..library import Library
 from ..raster import CHANNELS
 from . import fourier, gaussian, transforms
-
-
-class Made(Struct, frozen=True):
-    """A draw's result: the `Drawn` that a node sees."""
-
-    ref: Ref
-    shape: Shape
-
-    @property
-    def size(self) -> Size:
-        return self.shape.size
-
-
-class Fed(Struct, frozen=True):
-    """A node at a frame, and what it reads: inputs and wired values by name, and inputs at the frames it looks at."""
-
-    path: str
-    frame: int
-    node: Node
-    inputs: dict[str, Operand] = field(default_factory=dict[str, Operand])
-    wires: dict[str, Operand] = field(default_factory=dict[str, Operand])
-    others: dict[tuple[str, int], Operand] = field(default_factory=dict[tuple[str, int], Operand])
-    linked: set[str] = field(default_factory=set[str])
-
-
-class Files(Struct, frozen=True):
-    """What a node names beyond the graph: pixels, changes of color, triangles, and what a render holds."""
-
-    read: Callable[[Picture], Ref]
-    recolor: Callable[[ColorChange], ColorProgram]
-    mesh: Callable[[Scene], Mesh]
-    render: Callable[[str, Mapping[str, str]], Render]
-    asset: Callable[[Picture], Ref]
+from .blurs import BlurBuilder
+from .node_inputs import DrawnPicture, NodeFiles, NodeInputs
 
 
 class Recorder:
@@ -106,28 +73,29 @@ class Recorder:
 
     def __init__(
         self,
-        fed: Fed,
+        fed: NodeInputs,
         node: Filter,
         size: Size,
         builder: Builder,
         library: Library,
-        files: Files,
+        files: NodeFiles,
         memories: Mapping[str, Memory],
         rate: float,
         start: int,
     ) -> None:
         self.size, self.rate, self.start = size, rate, start
-        self.timed = False
+        self.reads_frame = False
         """Whether the node asked for the frame."""
         self._owner, self._fed, self._node = fed.path, fed, node
         self._builder, self._library, self._files = builder, library, files
+        self._blurs = BlurBuilder(builder, library, fed.path)
         self._memories = memories
         self._shader = node.shader
         self.remembered: dict[str, Ref] = {}
 
     @property
     def frame(self) -> int:
-        self.timed = True
+        self.reads_frame = True
         return self._fed.frame
 
     def size_of(self, pixels: Pixels) -> Size:
@@ -139,16 +107,16 @@ class Recorder:
 
     def camera(self, socket: Viewpoint, frame: int | None = None) -> Camera | None:
         operand = self._operand(socket) if frame is None else self._at(socket, frame)
-        assert isinstance(operand, Constant)
+        assert isinstance(operand, UniformConstant)
         rows = operand.value
         return Camera(rows) if isinstance(rows, tuple) and any(rows) else None
 
     def at(self, socket: Socket, frame: int) -> Drawn:
         operand = self._at(socket, frame)
         if isinstance(operand, Ref):
-            return Made(operand, self._builder.shape(operand))
+            return self._drawn(operand)
         shape, parameters = self._shape(socket, self.size), (Parameter(socket.glsl, operand),)
-        return self._made(Call((shape,), self._owner, "primitive/convert", f"as_{socket.glsl}", parameters))
+        return self._add(Call((shape,), self._owner, "primitive/convert", f"as_{socket.glsl}", parameters))
 
     def __call__(
         self,
@@ -164,7 +132,7 @@ class Recorder:
         light = self._library.light(self._shader, function, self._owner)
         shapes = (self._shape(result, size or self.size),)
         op = self._gather(function, {item.name: item for item in inputs} | arguments, shapes, edge, overlap, light)
-        return self._made(op)
+        return self._add(op)
 
     def several(
         self,
@@ -185,13 +153,13 @@ class Recorder:
             raise ShaderError(self._owner, self._library.file(self._shader), 1, fault)
         op = self._gather(function, {item.name: item for item in inputs} | arguments, shapes, edge, overlap, False)
         first = self._builder.add(op)
-        return tuple(Made(Ref(first.op, number), shape) for number, shape in enumerate(shapes))
+        return tuple(DrawnPicture(Ref(first.op, number), shape) for number, shape in enumerate(shapes))
 
     def _gather(
         self,
         function: str,
         named: Mapping[str, Argument],
-        shapes: tuple[Shape, ...],
+        shapes: tuple[PictureShape, ...],
         edge: Edge,
         overlap: Overlap | Mapping[str, Overlap] | None,
         light: bool,
@@ -200,7 +168,7 @@ class Recorder:
         accessors: list[Accessor] = []
         rest: dict[str, Argument] = {}
         for name, item in named.items():
-            if isinstance(item, (Socket, Made)):
+            if isinstance(item, (Socket, DrawnPicture)):
                 operand = self._operand(item)
                 channels = item.channels if isinstance(item, Socket) else item.shape.channels
                 around = self._around(operand, shapes[0].size, overlaps.get(name))
@@ -213,19 +181,19 @@ class Recorder:
             self._owner,
             self._shader,
             function,
-            tuple(accessors),
             parameters,
-            edge,
             choices(self._node),
+            accessors=tuple(accessors),
+            edge=edge,
             light=light,
         )
 
     def point(self, function: str, /, *inputs: Socket, result: Socket | None = None, **arguments: Argument) -> Drawn:
         signature = self._library.function(self._shader, function, self._owner)
         named: dict[str, Argument] = {item.name: item for item in inputs} | arguments
-        sizes = [self.size_of(item) for item in named.values() if isinstance(item, (Socket, Made))]
+        sizes = [self.size_of(item) for item in named.values() if isinstance(item, (Socket, DrawnPicture))]
         size = next((found for found in sizes if found != (1, 1)), (1, 1) if sizes else self.size)
-        return self._made(
+        return self._add(
             Call(
                 (self._shape(result, size),),
                 self._owner,
@@ -246,60 +214,61 @@ class Recorder:
         result: Socket | None = None,
     ) -> Drawn:
         samplers = tuple((name, self._pixels(item).ref) for name, item in pictures.items())
-        values = tuple((name, Constant(value)) for name, value in uniforms.items())
-        return self._made(
+        values = tuple((name, UniformConstant(value)) for name, value in uniforms.items())
+        return self._add(
             ExternalProgram((self._shape(result, size or self.size),), self._owner, text, samplers, values)
         )
 
     def blur(self, image: Pixels, sigma: float | tuple[float, float], edge: Edge = "clamp") -> Drawn:
         sigmas = sigma if isinstance(sigma, tuple) else (sigma, sigma)
-        return self._blurred(image, [gaussian.plan_axis(max(0.0, one)) for one in sigmas], edge)
+        return self._blur(image, [gaussian.plan_axis(max(0.0, axis_sigma)) for axis_sigma in sigmas], edge)
 
     def spread(self, image: Pixels, weights: tuple[float, ...], edge: Edge = "clamp") -> Drawn:
-        return self._blurred(image, [gaussian.plan_weights(weights)] * 2, edge)
+        return self._blur(image, [gaussian.plan_weights(weights)] * 2, edge)
 
     def convolve(
         self, image: Pixels, weights: tuple[float, ...], axis: Literal["x", "y"], edge: Edge = "clamp"
     ) -> Drawn:
-        made = self._pixels(image)
+        picture = self._pixels(image)
         if len(weights) % 2 == 0 or len(weights) > MAX_TAPS:
             fault = f"a convolution takes an odd number of weights up to {MAX_TAPS}, not {len(weights)}"
             raise ShaderError(self._owner, f"nodes/{self._shader}.py", 1, fault)
         along = 0 if axis == "x" else 1
-        return self._convolve(made, along, weights, 1, -(len(weights) // 2), edge, made.size[along])
+        origin = -(len(weights) // 2)
+        return self._drawn(self._blurs.convolve(picture.ref, along, weights, 1, origin, edge, picture.size[along]))
 
     def convolve_2d(self, image: Pixels, kernel: Pixels) -> Drawn:
         picture, spread = self._pixels(image), self._pixels(kernel)
-        ref = fourier.convolution(self._builder, picture.ref, spread.ref, self._owner)
-        return Made(ref, self._builder.shape(ref))
+        return self._drawn(fourier.convolution(self._builder, picture.ref, spread.ref, self._owner))
 
     def recolor(self, image: Pixels, change: ColorChange) -> Drawn:
-        made, program = self._pixels(image), self._files.recolor(change)
-        color = (Parameter("vec4", made.ref),)
-        return self._made(Call((made.shape,), self._owner, program.text.name, program.function, color, (), program))
+        picture, program = self._pixels(image), self._files.recolor(change)
+        color = (Parameter("vec4", picture.ref),)
+        return self._add(
+            ColorCall((picture.shape,), self._owner, program.text.name, program.function, color, program=program)
+        )
 
     def place(self, image: Pixels, matrix: Affine, kernel: Kernel, edge: Edge = "black") -> Drawn:
         source = self._pixels(image).ref
         shape = self._shape(None, self.size)
-        ref = transforms.place(self._builder, source, self._owner, shape, matrix, kernel, edge)
-        return Made(ref, shape)
+        return self._drawn(transforms.place(self._builder, source, self._owner, shape, matrix, kernel, edge))
 
     def raster(
         self, scene: Scene, motions: tuple[Motion, Motion, Motion], cameras: tuple[Camera, Camera, Camera], near: float
     ) -> Mapping[str, Drawn]:
-        shapes = tuple(Shape(self.size, channels, data) for channels, data, _ in CHANNELS.values())
+        shapes = tuple(PictureShape(self.size, channels, data) for channels, data, _ in CHANNELS.values())
         rows = tuple(part for camera in cameras for part in camera.rows)
         moved = tuple(part for motion in motions for part in motion)
         op = Raster(shapes, self._owner, self._files.mesh(scene), rows, moved, near)
         first = self._builder.add(op)
-        return {name: Made(Ref(first.op, at), shapes[at]) for at, name in enumerate(CHANNELS)}
+        return {name: DrawnPicture(Ref(first.op, at), shapes[at]) for at, name in enumerate(CHANNELS)}
 
     def reduce(self, image: Pixels, operation: Literal["sum", "max"]) -> Drawn:
         made = self._pixels(image)
         while made.size != (1, 1):
             size = (math.ceil(made.size[0] / BLOCK), math.ceil(made.size[1] / BLOCK))
-            shape = Shape(size, made.shape.channels, data=True)
-            made = self._made(Reduce((shape,), self._owner, made.ref, operation))
+            shape = PictureShape(size, made.shape.channels, data=True)
+            made = self._add(Reduce((shape,), self._owner, made.ref, operation))
         return made
 
     def history(self, first: Pixels, name: str = "") -> Drawn:
@@ -307,10 +276,12 @@ class Recorder:
         # A memory of another size is of another picture.
         if memory is None or memory.shape != made.shape:
             return made
-        return Made(self._builder.add(History((made.shape,), self._owner, memory.key, memory.half)), made.shape)
+        return DrawnPicture(
+            self._builder.add(HistoryRead((made.shape,), self._owner, memory.key, memory.half)), made.shape
+        )
 
     def remember(self, pixels: Drawn, name: str = "") -> None:
-        assert isinstance(pixels, Made)
+        assert isinstance(pixels, DrawnPicture)
         self.remembered[name] = pixels.ref
 
     def table(self, numbers: tuple[float, ...], width: int) -> Drawn:
@@ -320,53 +291,57 @@ class Recorder:
             tuple(filled[at : at + 4] for at in range(row, row + 4 * width, 4))
             for row in range(0, len(filled), 4 * width)
         )
-        shape = Shape((width, rows), 4, data=True)
+        shape = PictureShape((width, rows), 4, data=True)
         picture = Picture("numbers", "", Kind.VECTOR, 4, in_memory=True, pixels=table)
-        return self._made(Read((shape,), self._owner, picture, blake2b(repr(table).encode()).hexdigest(), half=False))
+        return self._add(Read((shape,), self._owner, picture, blake2b(repr(table).encode()).hexdigest(), half=False))
 
     def render(self, path: str, named: Mapping[str, str] = MappingProxyType({})) -> Render:
         return self._files.render(path, named)
 
     def read(self, path: str, layer: str, result: Socket, space: str = "") -> Drawn:
-        ref = self._files.read(Picture(path, layer, result.kind, result.channels, space=space))
-        return Made(ref, self._builder.shape(ref))
+        return self._drawn(self._files.read(Picture(path, layer, result.kind, result.channels, space=space)))
 
     def asset(self, path: str, folder: str) -> Drawn:
-        ref = self._files.asset(Picture(path, "", Kind.IMAGE, 4, within=folder))
-        return Made(ref, self._builder.shape(ref))
+        return self._drawn(self._files.asset(Picture(path, "", Kind.IMAGE, 4, within=folder)))
 
     # --- parts ---------------------------------------------------------------------------------------------------
 
-    def _made(self, op: Call | ExternalProgram | Gather | Convolve | Read | Reduce) -> Made:
-        return Made(self._builder.add(op), op.shapes[0])
+    def _add(self, op: Op) -> DrawnPicture:
+        return DrawnPicture(self._builder.add(op), op.shapes[0])
 
-    def _shape(self, result: Socket | None, size: Size) -> Shape:
+    def _drawn(self, ref: Ref) -> DrawnPicture:
+        return DrawnPicture(ref, self._builder.shape(ref))
+
+    def _blur(self, image: Pixels, axes: Sequence[gaussian.BlurAxis], edge: Edge) -> DrawnPicture:
+        return self._drawn(self._blurs.blur(self._pixels(image).ref, axes, edge))
+
+    def _shape(self, result: Socket | None, size: Size) -> PictureShape:
         socket = result or Image()
-        return Shape((1, 1) if socket.single else size, socket.channels, socket.kind is not Kind.IMAGE)
+        return PictureShape((1, 1) if socket.single else size, socket.channels, socket.kind is not Kind.IMAGE)
 
     def _around(self, operand: Operand, own: Size, overlap: Overlap | None) -> Around | None:
         """Where a function reads a picture that has this overlap."""
-        if overlap is None or isinstance(operand, Constant):
+        if overlap is None or isinstance(operand, UniformConstant):
             return None
         if isinstance(overlap, Reach):
             return Around(overlap.matrix, overlap.radius)
         radius = overlap if isinstance(overlap, tuple) else (overlap, overlap)
         return Around.pixel(own, self._builder.shape(operand).size, radius)
 
-    def _operand(self, item: Pixels) -> Ref | Constant:
+    def _operand(self, item: Pixels) -> Ref | UniformConstant:
         if isinstance(item, Socket):
             return self._fed.inputs[item.name]
-        assert isinstance(item, Made)
+        assert isinstance(item, DrawnPicture)
         return item.ref
 
     def _at(self, socket: Socket, frame: int) -> Operand:
-        return self._fed.others.get((socket.name, frame)) or self._fed.inputs[socket.name]
+        return self._fed.at_frames.get((socket.name, frame)) or self._fed.inputs[socket.name]
 
-    def _pixels(self, item: Pixels) -> Made:
+    def _pixels(self, item: Pixels) -> DrawnPicture:
         operand = self._operand(item)
-        if isinstance(operand, Constant):
+        if isinstance(operand, UniformConstant):
             raise ShaderError(self._owner, f"nodes/{self._shader}.py", 1, "a constant input cannot be filtered")
-        return Made(operand, self._builder.shape(operand))
+        return DrawnPicture(operand, self._builder.shape(operand))
 
     def _parameters(self, signature: Function, arguments: Mapping[str, Argument]) -> tuple[Parameter, ...]:
         names = tuple(name for _, name in signature.parameters)
@@ -381,52 +356,13 @@ class Recorder:
         for (glsl, name), item in zip(signature.parameters, arguments.values(), strict=True):
             if isinstance(item, str):
                 operand = Choice(self._node.values[name].choices.index(item))
-            elif isinstance(item, (Socket, Made)):
+            elif isinstance(item, (Socket, DrawnPicture)):
                 operand = self._operand(item)
             else:
                 assert isinstance(item, (float, int, tuple))
-                operand = Constant(_plain(item))
+                operand = UniformConstant(_plain(item))
             found.append(Parameter(glsl, operand))
         return tuple(found)
-
-    def _blurred(self, image: Pixels, axes: Sequence[gaussian.Axis], edge: Edge) -> Made:
-        made = self._pixels(image)
-        full = made.size
-        firsts = [0, 0]
-        spans = [gaussian.spans(plan, length, edge) for plan, length in zip(axes, full, strict=True)]
-        for axis, plan in enumerate(axes):
-            for step, (first, length) in zip(plan.steps, spans[axis][0], strict=True):
-                weights, start = gaussian.decimation(step)
-                made = self._convolve(made, axis, weights, step, first * step + start - firsts[axis], edge, length)
-                firsts[axis] = first
-        for axis, plan in enumerate(axes):
-            if plan.weights:
-                origin = -(len(plan.weights) // 2)
-                made = self._convolve(made, axis, plan.weights, 1, origin, spans[axis][1], made.size[axis])
-        for axis, plan in reversed(list(enumerate(axes))):
-            if plan.factor > 1:
-                apron = -firsts[axis] * plan.factor
-                made = self._enlarge(made, axis, plan.factor, apron, full[axis], spans[axis][1])
-        return made
-
-    def _convolve(
-        self, made: Made, axis: int, weights: tuple[float, ...], stride: int, origin: int, edge: Edge, length: int
-    ) -> Made:
-        size = (length, made.size[1]) if axis == 0 else (made.size[0], length)
-        shape = Shape(size, made.shape.channels, made.shape.data)
-        return self._made(Convolve((shape,), self._owner, made.ref, axis, weights, stride, origin, edge))
-
-    def _enlarge(self, made: Made, axis: int, factor: int, apron: int, length: int, edge: Edge) -> Made:
-        size = (length, made.size[1]) if axis == 0 else (made.size[0], length)
-        shape = Shape(size, made.shape.channels, made.shape.data)
-        part, start = 1.0 / factor, apron / factor
-        matrix = (part, 0.0, start, 0.0, 1.0, 0.0) if axis == 0 else (1.0, 0.0, 0.0, 0.0, part, start)
-        around = Around(matrix, (2.0, 0.0) if axis == 0 else (0.0, 2.0))
-        accessor = Accessor("image", "vec4", made.ref, around)
-        numbers = tuple(Parameter("int", Constant(value)) for value in (axis, factor, apron))
-        enlarge = ("primitive/enlarge", "enlarge")
-        light = self._library.light(*enlarge, self._owner)
-        return self._made(Gather((shape,), self._owner, *enlarge, (accessor,), numbers, edge, light=light))
 
 
 def choices(node: Node) -> tuple[tuple[str, tuple[str, ...]], ...]:

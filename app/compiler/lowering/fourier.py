@@ -7,7 +7,7 @@ from functools import cache
 
 from msgspec import Struct
 
-from ..ir import Accessor, Builder, Choice, Constant, Gather, Parameter, Ref, Shape
+from ..ir import Accessor, Builder, Choice, Gather, Parameter, PictureShape, Ref, UniformConstant
 
 _PRIMES = (2, 3, 5)
 
@@ -41,12 +41,14 @@ def convolution(builder: Builder, image: Ref, kernel: Ref, owner: str) -> Ref:
     ]
     product = builder.add(
         Gather(
-            (Shape((width, height), 4, data=True),),
+            (PictureShape((width, height), 4, data=True),),
             owner,
             _SHADER,
             "fourier_product",
-            tuple(Accessor(name, "vec4", made) for name, made in zip(("image", "kernel"), spectra, strict=True)),
-            (Parameter("float", Constant(1.0 / (width * height))),),
+            (Parameter("float", UniformConstant(1.0 / (width * height))),),
+            accessors=tuple(
+                Accessor(name, "vec4", made) for name, made in zip(("image", "kernel"), spectra, strict=True)
+            ),
         )
     )
     across, down = spread[0] // 2, spread[1] // 2
@@ -111,19 +113,19 @@ def _transform(
         # The numbers that loops run to are part of the text, so that drivers unroll them.
         parameters = [Parameter("int", Choice(axis)), Parameter("int", Choice(stage.terms))]
         if begins:
-            parameters += [Parameter("int", Constant(number)) for number in (stage.radix, apart)]
+            parameters += [Parameter("int", UniformConstant(number)) for number in (stage.radix, apart)]
         else:
-            parameters += [Parameter("int", Constant(number)) for number in (stage.span, apart, first)]
-            parameters.append(Parameter("float", Constant(1.0 if wanted else -1.0)))
+            parameters += [Parameter("int", UniformConstant(number)) for number in (stage.span, apart, first)]
+            parameters.append(Parameter("float", UniformConstant(1.0 if wanted else -1.0)))
         made = builder.add(
             Gather(
-                (Shape(size, 4, data=True),),
+                (PictureShape(size, 4, data=True),),
                 owner,
                 _SHADER,
                 "fourier_first" if begins else "fourier_stage",
-                (Accessor("image", "vec4", made),),
                 tuple(parameters),
-                "black" if begins else "clamp",
+                accessors=(Accessor("image", "vec4", made),),
+                edge="black" if begins else "clamp",
             )
         )
     return made

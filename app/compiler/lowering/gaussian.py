@@ -25,7 +25,7 @@ _REST = 1.8
 """Sigma that must be left for the small size, in its pixels: less of it shows the grid."""
 
 
-class Axis(Struct, frozen=True):
+class BlurAxis(Struct, frozen=True):
     """How to blur along one axis: decimate by each step, convolve with weights, enlarge by `factor`."""
 
     steps: tuple[int, ...]
@@ -33,10 +33,10 @@ class Axis(Struct, frozen=True):
     weights: tuple[float, ...]
 
 
-def plan_axis(sigma: float) -> Axis:
+def plan_axis(sigma: float) -> BlurAxis:
     """Split `sigma`, in pixels, into decimations and an exact rest."""
     if sigma < DIRECT_BELOW:
-        return Axis((), 1, weights(sigma) if sigma > 0.0 else ())
+        return BlurAxis((), 1, weights(sigma) if sigma > 0.0 else ())
     steps: list[int] = []
     factor, variance = 1, 0.0
     while True:
@@ -51,10 +51,10 @@ def plan_axis(sigma: float) -> Axis:
         else:
             break
     rest = math.sqrt(sigma * sigma - variance - factor**2 / 3.0) / factor
-    return Axis(tuple(steps), factor, weights(rest))
+    return BlurAxis(tuple(steps), factor, weights(rest))
 
 
-def plan_weights(smooth: tuple[float, ...]) -> Axis:
+def plan_weights(smooth: tuple[float, ...]) -> BlurAxis:
     """The same for an odd number of weights that fall off as smoothly as three boxes spread by each other do.
 
     Samples of them are sharpened by what decimating and enlarging blur them, but nowhere made negative.
@@ -67,15 +67,15 @@ def plan_weights(smooth: tuple[float, ...]) -> Axis:
         factor *= steps[-1]
         variance += (_SPREAD * factor) ** 2
     if factor == 1:
-        return Axis((), 1, smooth)
+        return BlurAxis((), 1, smooth)
     found = _normalized([0.0, *(smooth[i] for i in range(reach % factor, len(smooth), factor)), 0.0])
     excess = _variance(found) + (variance + factor**2 / 3.0 - _variance(smooth)) / factor**2
     near = [(before + after) / 2.0 for before, after in zip([0.0, *found], [*found[1:], 0.0], strict=False)]
     sharp = [max((1.0 + excess) * one - excess * other, 0.0) for one, other in zip(found, near, strict=True)]
-    return Axis(tuple(steps), factor, _normalized(sharp))
+    return BlurAxis(tuple(steps), factor, _normalized(sharp))
 
 
-def spans(axis: Axis, length: int, edge: Edge) -> tuple[list[tuple[int, int]], Edge]:
+def spans(axis: BlurAxis, length: int, edge: Edge) -> tuple[list[tuple[int, int]], Edge]:
     """The first pixel and the length of what each step of a row of `length` makes, in its own pixels; its edge mode.
 
     A small picture reaches beyond the row far enough for the edge mode to mean what it does at full size. What is

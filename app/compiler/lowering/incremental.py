@@ -1,13 +1,28 @@
 """Lowers again only what changed of a graph that was lowered before.
 
-Nodes are lowered one after the other, and what one adds depends on itself, on what it is fed, and on the operations
-that it looks into: of all others it knows the shape at most. So where a node has other values, it alone is lowered
-again. What it adds takes the places of what it added before, if these are as many and have the same shapes: then no
-other node could tell the difference, but those that looked, which are lowered again too.
+While a slider is dragged, or a sequence rendered, the same graph is planned again and again with other numbers.
+Lowering is the slowest part of that, and nearly all of it would come out as before.
 
-Equal operations share a place. Which do must not change: all that added to a place of which the operation is now
-another one must have been lowered again to the same one, and no two places may hold equal ones. Else all is lowered
-anew, as it is where anything about the graph but values changed.
+Nodes are lowered one after the other. What a node adds to the program depends on three things: on itself, on the
+operands that it is fed, and on those operations of other nodes that it inspects (a transform that is merged with the
+one before it, say); of all other operations it knows at most the shape. Each `LoweringStep` records what a node added,
+which operations it inspected, and whether the frame or something outside of the graph decided. So the nodes that must
+be lowered again are known: those with other values, those that read the frame or a file, those that inspected an
+operation that changed, and those that are fed another constant.
+
+`ReplayBuilder` puts what such a node adds in the places of what it added before. If these are as many operations, of
+the same shapes, then no node that only reads them can tell the difference, and it need not be lowered again. If not,
+the structure changed: `StructureChanged` is raised, and the whole graph is lowered anew. This is always correct, so the
+fast way may give up whenever it is not sure.
+
+Equal operations share a place, which makes one thing subtle. Say two equal nodes added the same operation, and one of
+them changes: its operation must become another one, while the other node keeps the old one. So two things are checked
+at the end. First, all steps that added to a place whose operation changed must have been replayed, to the same result.
+Second, no two places may hold equal operations, since lowering anew would give them one place. Otherwise the structure
+changed.
+
+The result is the same as from the start, to the last bit: `tests/compiler/test_planner.py` compares the two for random
+edits of random graphs.
 """
 
 from __future__ import annotations
@@ -24,151 +39,161 @@ from ..ir import Builder, Op, Ref
 from ..request import Request
 from .lower import Lowering
 from .moments import Moments, looks_around
-from .steps import Lowered, Place, Shown, Step
+from .steps import LoweringRecord, LoweringStep, PortAtOffset, StepKey
 
 
-class Other(Exception):
-    """The program is another one in more than single operations."""
+class StructureChanged(Exception):
+    """The program differs in more than single operations."""
 
 
-def relower(known: Lowered, graph: Graph, request: Request, outside: ResourceProvider) -> Lowered | None:
-    """Lower `graph`, with the library of what is `known` of another one, for a request that differs from that of then
-    in its frame, bindings and memories alone; None where that takes as long as from the start."""
+def lower_again(
+    before: LoweringRecord, graph: Graph, request: Request, outside: ResourceProvider
+) -> LoweringRecord | None:
+    """Lower `graph`, much like the one that was lowered `before`, with the same library.
+
+    The request may differ from that of before in its frame, bindings and memories alone. Returns None where the whole
+    graph must be lowered.
+    """
     try:
-        moments = known.moments.followed(graph, known.now, request.frame)
-        return _Relowering(known, graph, request, outside, moments).run() if moments else None
-    except (Other, HalationError):  # what is wrong is found again, and said, by lowering it all
+        moments = before.moments.followed(graph, before.frame, request.frame)
+        return _IncrementalLowering(before, graph, request, outside, moments).run() if moments else None
+    except (StructureChanged, HalationError):  # an error is found again, and reported, when all is lowered
         return None
 
 
-class Again(Builder):
+class ReplayBuilder(Builder):
     """Puts what a step adds in the places of what it added before."""
 
-    def __init__(self, known: Builder) -> None:
+    def __init__(self, before: Builder) -> None:
         super().__init__()
-        self._before = known
-        self.ops, self.known = [*known.ops], known.known
+        self._before = before
+        self.ops, self.numbers = [*before.ops], before.numbers
         self.changed: set[int] = set()
         """Operations that are not equal to what was in their places."""
-        self._times: dict[int, int] = {}
-        self._step = Step(0, [], [])
+        self._counts: dict[int, int] = {}
+        """How often each operation was added again."""
+        self._step = LoweringStep(0, [], [])
 
-    def begin(self, step: Step) -> None:
+    def begin(self, step: LoweringStep) -> None:
         """Expect what a step added."""
         self._step = step
 
     def add(self, op: Op) -> Ref:
+        """Replace an operation that this step was the first one to add; all others must be as they are."""
         if len(self.added) == len(self._step.added):
-            raise Other
-        at = self._step.added[len(self.added)]
-        old = self.ops[at]
-        if at >= self._step.first and at not in self._times:
+            raise StructureChanged
+        number = self._step.added[len(self.added)]
+        old = self.ops[number]
+        if number >= self._step.first and number not in self._counts:
             if op.shapes != old.shapes or op.owners != old.owners:
-                raise Other
-            self.ops[at] = op
-            if op != self._before.ops[at]:
-                self.changed.add(at)
+                raise StructureChanged
+            self.ops[number] = op
+            if op != self._before.ops[number]:
+                self.changed.add(number)
         elif op != old:
-            raise Other
-        self._times[at] = self._times.get(at, 0) + 1
-        self.added.append(at)
-        return Ref(at)
+            raise StructureChanged
+        self._counts[number] = self._counts.get(number, 0) + 1
+        self.added.append(number)
+        return Ref(number)
 
-    def settled(self, counts: Mapping[int, int]) -> Builder:
-        """All operations, if the same ones are equal as before; `counts` says how often each was added."""
-        if any(self._times[at] != counts[at] for at in self.changed):
-            raise Other
-        made = Builder()
-        made.ops, made.known = self.ops, dict(self.known) if self.changed else self.known
-        for at in self.changed:
-            del made.known[self._before.ops[at]]
-        for at in self.changed:
-            if made.known.setdefault(self.ops[at], at) != at:
-                raise Other
-        return made
+    def finish(self, counts: Mapping[int, int]) -> Builder:
+        """A builder of all operations, if those are equal that were before; `counts` is how often each was added."""
+        if any(self._counts[number] != counts[number] for number in self.changed):
+            raise StructureChanged
+        finished = Builder()
+        finished.ops, finished.numbers = self.ops, dict(self.numbers) if self.changed else self.numbers
+        for number in self.changed:
+            del finished.numbers[self._before.ops[number]]
+        for number in self.changed:
+            if finished.numbers.setdefault(self.ops[number], number) != number:
+                raise StructureChanged
+        return finished
 
 
-class _Relowering:
+class _IncrementalLowering:
     """The work in progress."""
 
     def __init__(
-        self, known: Lowered, graph: Graph, request: Request, outside: ResourceProvider, moments: Moments
+        self, before: LoweringRecord, graph: Graph, request: Request, outside: ResourceProvider, moments: Moments
     ) -> None:
-        self.known, self.moments, self.now = known, moments, request.frame
-        self.builder = Again(known.builder)
-        self.lowering = Lowering(graph, request, known.library, outside, moments, self.builder)
-        self.lowering.results = dict(known.results)
-        self.other: set[Shown] = set()
-        """What stands for another constant than before."""
+        self.before, self.moments, self.frame = before, moments, request.frame
+        self.builder = ReplayBuilder(before.builder)
+        self.lowering = Lowering(graph, request, before.library, outside, moments, self.builder)
+        self.lowering.results = dict(before.results)
+        self.changed_constants: set[PortAtOffset] = set()
+        """Ports that stand for another constant than before."""
 
-    def run(self) -> Lowered:
-        known, lowering = self.known, self.lowering
-        if known.canvas is not None and lowering.pictures.canvas != known.canvas:
-            raise Other
-        steps: dict[Place, Step] = dict(known.steps)
-        moved = self.now != known.now
-        changed = {away: self.moments.changed(self.now + away) for away in {place[1] for place in steps if place}}
-        for place, step in known.steps.items():
+    def run(self) -> LoweringRecord:
+        """Replay the steps that may come out differently, in order: each one may affect those after it."""
+        before, lowering = self.before, self.lowering
+        if before.canvas is not None and lowering.pictures.canvas != before.canvas:
+            raise StructureChanged
+        steps: dict[StepKey, LoweringStep] = dict(before.steps)
+        frame_changed = self.frame != before.frame
+        offsets = {key[1] for key in steps if key}
+        changed_nodes = {offset: self.moments.changed(self.frame + offset) for offset in offsets}
+        for key, step in before.steps.items():
             if (
-                step.asked
-                or (step.timed and moved)
-                or (place is not None and place[0] in changed[place[1]])
-                or not self.builder.changed.isdisjoint(step.looked)
-                or (self.other and not self.other.isdisjoint(self._sources(place)))
+                step.reads_outside
+                or (step.reads_frame and frame_changed)
+                or (key is not None and key[0] in changed_nodes[key[1]])
+                or not self.builder.changed.isdisjoint(step.inspected)
+                or (self.changed_constants and not self.changed_constants.isdisjoint(self._find_sources(key)))
             ):
-                steps[place] = self._again(place, step)
-        builder = self.builder.settled(known.counts)
+                steps[key] = self._replay(key, step)
+        builder = self.builder.finish(before.counts)
         program = replace(
-            known.program,
+            before.program,
             ops=tuple(builder.ops),
-            frame=self.now,
-            cameras=MappingProxyType({**known.program.cameras, **lowering.cameras}),
+            frame=self.frame,
+            cameras=MappingProxyType({**before.program.cameras, **lowering.cameras}),
         )
-        canvas = lowering.pictures.canvas if lowering.pictures.measured else None
         return replace(
-            known,
+            before,
             program=program,
             moments=self.moments,
-            now=self.now,
+            frame=self.frame,
             builder=builder,
             steps=steps,
             results=lowering.results,
-            canvas=canvas,
+            canvas=lowering.pictures.canvas if lowering.pictures.canvas_is_read else None,
         )
 
-    def _check_times(self, path: str, away: int) -> None:
-        frame = self.now + away
+    def _check_times(self, path: str, offset: int) -> None:
+        """Raise StructureChanged for a node that looks at other frames than before."""
+        frame = self.frame + offset
         node = self.moments.node(path, frame)
-        if looks_around(node) and node.times(frame) != self.known.moments.node(path, frame).times(frame):
-            raise Other
+        if looks_around(node) and node.times(frame) != self.before.moments.node(path, frame).times(frame):
+            raise StructureChanged
 
-    def _sources(self, place: Place) -> set[Shown]:
-        """What a step is fed."""
-        if place is None:
-            return {(port, 0) for port in self.lowering.sources().values()}
-        fed = self.moments.feeding((place[0], self.now + place[1])).values()
-        return {(source, frame - self.now) for source, frames in fed for frame in frames}
+    def _find_sources(self, key: StepKey) -> set[PortAtOffset]:
+        """The ports that a step reads."""
+        if key is None:
+            return {(port, 0) for port in self.lowering.find_sources().values()}
+        feeds = self.moments.feeding((key[0], self.frame + key[1])).values()
+        return {(source, frame - self.frame) for source, frames in feeds for frame in frames}
 
-    def _again(self, place: Place, step: Step) -> Step:
+    def _replay(self, key: StepKey, before: LoweringStep) -> LoweringStep:
+        """Lower a node again. All that other steps may know of it must be as before, except constants."""
         lowering = self.lowering
-        if place is not None:
-            self._check_times(*place)
-        for shown in step.shown:
-            del lowering.results[shown]
-        self.builder.begin(step)
-        made = lowering.step(place)
-        made.first = step.first
-        if len(made.added) != len(step.added) or made.memories != step.memories:
-            raise Other
-        if made.shown.keys() != step.shown.keys() or made.cameras.keys() != step.cameras.keys():
-            raise Other
-        if place is None and lowering.outputs != self.known.program.outputs:
-            raise Other
-        for shown, operand in made.shown.items():
-            old = step.shown[shown]
+        if key is not None:
+            self._check_times(*key)
+        for port in before.results:
+            del lowering.results[port]
+        self.builder.begin(before)
+        step = lowering.run_step(key)
+        step.first = before.first
+        if len(step.added) != len(before.added) or step.memories != before.memories:
+            raise StructureChanged
+        if step.results.keys() != before.results.keys() or step.cameras.keys() != before.cameras.keys():
+            raise StructureChanged
+        if key is None and lowering.outputs != self.before.program.outputs:
+            raise StructureChanged
+        for port, operand in step.results.items():
+            old = before.results[port]
+            if operand == old:
+                continue
             if isinstance(operand, Ref) or isinstance(old, Ref):
-                if operand != old:
-                    raise Other
-            elif operand != old:
-                self.other.add(shown)
-        return made
+                raise StructureChanged
+            self.changed_constants.add(port)
+        return step

@@ -15,16 +15,16 @@ from ...resources.mesh import Mesh
 from ...resources.picture import Picture
 from ...resources.provider import PictureProbe, ResourceProvider
 from ..areas import Around, scaled
-from ..ir import Accessor, Builder, Call, Constant, Gather, Operand, Parameter, Read, Ref, Shape
+from ..ir import Accessor, Builder, Call, Gather, Operand, Parameter, PictureShape, Read, Ref, UniformConstant
 from ..request import Request
-from .draws import Fed, Files
 from .expand import Flat, nothing
 from .named import Named
+from .node_inputs import NodeFiles, NodeInputs
 
 DEFAULT_CANVAS: Size = (1920, 1080)
 
 
-class Pictures:
+class PictureBuilder:
     """Adds what is read from outside, and changes of size and type, to the operations in `builder`."""
 
     def __init__(self, graph: Graph, flat: Flat, request: Request, outside: ResourceProvider, builder: Builder) -> None:
@@ -32,7 +32,7 @@ class Pictures:
         self._settled = graph.settings.size
         self._color = color_settings(graph)
         self._request, self._outside, self._builder = request, outside, builder
-        self.measured = False
+        self.canvas_is_read = False
         """Whether the canvas has been asked for."""
 
     @cached_property
@@ -42,7 +42,7 @@ class Pictures:
         if size is None:
             first = next(iter(self.named), None)
             size = self._first_size(*first) if first else DEFAULT_CANVAS
-        self.measured = True
+        self.canvas_is_read = True
         return self._scaled(size)
 
     def _first_size(self, picture: Picture, owner: str) -> Size:
@@ -67,11 +67,11 @@ class Pictures:
             found = self._outside.at(picture.path, frame, missing)
             picture, black = replace(picture, path=found.path, frame=found.number), found.black
         probed = self._probed(picture, owner)
-        shape = Shape(probed.size, picture.width, picture.kind is not Kind.IMAGE)
+        shape = PictureShape(probed.size, picture.width, picture.kind is not Kind.IMAGE)
         wanted = self._scaled(self._request.size if self._request.size and probed.size != (1, 1) else probed.size)
         if black:
             socket = make_socket(picture.kind, picture.width)
-            return self.converted(Constant(nothing(socket)), socket, wanted, owner)
+            return self.converted(UniformConstant(nothing(socket)), socket, wanted, owner)
         # What is bound is known by its fingerprint. Its pixels come with the request: nothing else holds on to them.
         picture = replace(picture, pixels=None, by_rows=probed.by_rows)
         ref = self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half))
@@ -81,14 +81,14 @@ class Pictures:
         """Upload a picture that belongs to a node, as it is."""
         picture = replace(picture, color=self._color)
         probed = self._probed(picture, owner)
-        shape = Shape(probed.size, picture.width, picture.kind is not Kind.IMAGE)
+        shape = PictureShape(probed.size, picture.width, picture.kind is not Kind.IMAGE)
         return self._builder.add(Read((shape,), owner, picture, probed.fingerprint, probed.half))
 
-    def files(self, fed: Fed, missing: Missing) -> Files:
+    def files(self, inputs: NodeInputs, missing: Missing) -> NodeFiles:
         """The files that a node names, which lie beside the graph file that it came from."""
 
         def located(file: str) -> str:
-            return self.named.located(file, fed.path)
+            return self.named.located(file, inputs.path)
 
         def recolor(change: ColorChange) -> ColorProgram:
             if isinstance(change, LookupFile):
@@ -98,7 +98,7 @@ class Pictures:
             return self._outside.recolor(change)
 
         def read(picture: Picture) -> Ref:
-            return self.read(replace(picture, path=located(picture.path)), fed.path, fed.frame, missing)
+            return self.read(replace(picture, path=located(picture.path)), inputs.path, inputs.frame, missing)
 
         def mesh(scene: Scene) -> Mesh:
             if isinstance(scene, SceneFile):
@@ -106,13 +106,13 @@ class Pictures:
             return self._outside.mesh(scene)
 
         def render(file: str, named: Mapping[str, str]) -> Render:
-            return self._outside.render(self._outside.at(located(file), fed.frame, missing).path, named)
+            return self._outside.render(self._outside.at(located(file), inputs.frame, missing).path, named)
 
         def asset(picture: Picture) -> Ref:
             whole = replace(picture, path=located(picture.path), within=located(picture.within))
-            return self.asset(whole, fed.path)
+            return self.asset(whole, inputs.path)
 
-        return Files(read, recolor, mesh, render, asset)
+        return NodeFiles(read, recolor, mesh, render, asset)
 
     def fit(self, ref: Ref, size: Size, owner: str) -> Ref:
         """The picture at another size. Equal up to rounding: stretched; otherwise scaled to cover and cropped."""
@@ -122,7 +122,7 @@ class Pictures:
         across, down = shape.size[0] / size[0], shape.size[1] / size[1]
         if abs(across / down - 1.0) > max(1.0 / side for side in (*size, *shape.size)):
             across = down = min(across, down)
-        fitted = Shape(size, shape.channels, shape.data)
+        fitted = PictureShape(size, shape.channels, shape.data)
         function = "fit_nearest" if shape.data else "fit"
         # The middles of both lie on each other; a pixel more for what floats of 32 bits round.
         matrix = (
@@ -134,12 +134,12 @@ class Pictures:
             (shape.size[1] - down * size[1]) / 2.0,
         )
         around = Around(matrix, (max(across, 1.0) + 1.0, max(down, 1.0) + 1.0))
-        accessor, scale = Accessor("image", "vec4", ref, around), Parameter("vec2", Constant((across, down)))
-        return self._builder.add(Gather((fitted,), owner, "primitive/fit", function, (accessor,), (scale,)))
+        accessor, scale = Accessor("image", "vec4", ref, around), Parameter("vec2", UniformConstant((across, down)))
+        return self._builder.add(Gather((fitted,), owner, "primitive/fit", function, (scale,), accessors=(accessor,)))
 
     def converted(self, operand: Operand, socket: Socket, size: Size, owner: str) -> Ref:
         """The same as the pixels that `socket` stands for."""
         glsl = socket.glsl
-        shape = Shape(size, socket.channels, socket.kind is not Kind.IMAGE)
+        shape = PictureShape(size, socket.channels, socket.kind is not Kind.IMAGE)
         parameters = (Parameter(glsl, operand),)
         return self._builder.add(Call((shape,), owner, "primitive/convert", f"as_{glsl}", parameters))

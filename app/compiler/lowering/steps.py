@@ -1,4 +1,4 @@
-"""What lowering a graph comes to, node by node, so that another graph much like it need not be lowered as a whole."""
+"""What lowering a graph came to, node by node, so that another graph much like it need not be lowered as a whole."""
 
 from __future__ import annotations
 
@@ -13,75 +13,75 @@ from ...resources.mesh import Mesh
 from ...resources.picture import Picture
 from ...resources.provider import FrameFile, PictureProbe, ResourceProvider
 from ...resources.working_space import WorkingSpace
-from ..ir import Builder, Operand, Program, Ref
+from ..ir import Builder, LoweredProgram, Operand, Ref
 from ..library import Library
 from .moments import Moments
 
-Shown = tuple[Port, int]
-"""A port, so many frames after the one that is wanted."""
+PortAtOffset = tuple[Port, int]
+"""A port, so many frames after the one that is rendered."""
 
-Place = tuple[str, int] | None
-"""A node, so many frames after the one that is wanted; None stands for what outputs show."""
+StepKey = tuple[str, int] | None
+"""A node, so many frames after the one that is rendered; None stands for the outputs."""
 
 
-class Step(Struct):
+class LoweringStep(Struct):
     """What lowering one node at a frame came to. `first` is how many operations there were before."""
 
     first: int
     added: list[int]
     """The operations that it added, in order, also those that were there."""
-    looked: list[int]
-    """Operations of others that it did not only read: these decided what it added."""
-    shown: dict[Shown, Operand] = field(default_factory=dict[Shown, Operand])
+    inspected: list[int]
+    """Operations of other nodes that it did not only read: these decided what it added."""
+    results: dict[PortAtOffset, Operand] = field(default_factory=dict[PortAtOffset, Operand])
     cameras: dict[Port, Camera] = field(default_factory=dict[Port, Camera])
     memories: dict[Port, Ref] = field(default_factory=dict[Port, Ref])
-    asked: bool = False
+    reads_outside: bool = False
     """True if something beyond the graph decided, which may be another thing the next time."""
-    timed: bool = False
+    reads_frame: bool = False
     """True if the number of the frame decided."""
 
 
-class Lowered(Struct, frozen=True, weakref=True):
+class LoweringRecord(Struct, frozen=True, weakref=True):
     """A program, and how it came to be."""
 
-    program: Program
+    program: LoweredProgram
     library: Library
     moments: Moments
-    now: int
+    frame: int
     builder: Builder
-    steps: Mapping[Place, Step]
-    results: Mapping[Shown, Operand]
+    steps: Mapping[StepKey, LoweringStep]
+    results: Mapping[PortAtOffset, Operand]
     counts: Mapping[int, int]
     """How often each operation was added."""
     canvas: Size | None
-    """None where nobody asked for it."""
+    """None where nothing depends on it."""
 
 
-class Watched:
-    """The world beyond the graph; it says whether it was `asked` anything."""
+class WatchedProvider:
+    """The resources beyond the graph; `is_read` tells whether any was asked for."""
 
     def __init__(self, outside: ResourceProvider) -> None:
         self._outside = outside
-        self.asked = False
+        self.is_read = False
 
     def at(self, path: str, frame: int, missing: Missing) -> FrameFile:
-        return self._seen().at(path, frame, missing)
+        return self._note_read().at(path, frame, missing)
 
     def probe(self, picture: Picture) -> PictureProbe:
-        return self._seen().probe(picture)
+        return self._note_read().probe(picture)
 
     def recolor(self, change: ColorChange) -> ColorProgram:
-        return self._seen().recolor(change)
+        return self._note_read().recolor(change)
 
     def working(self, color: ColorSettings) -> WorkingSpace | None:
-        return self._seen().working(color)
+        return self._note_read().working(color)
 
     def render(self, path: str, named: Mapping[str, str]) -> Render:
-        return self._seen().render(path, named)
+        return self._note_read().render(path, named)
 
     def mesh(self, scene: Scene) -> Mesh:
-        return self._seen().mesh(scene)
+        return self._note_read().mesh(scene)
 
-    def _seen(self) -> ResourceProvider:
-        self.asked = True
+    def _note_read(self) -> ResourceProvider:
+        self.is_read = True
         return self._outside

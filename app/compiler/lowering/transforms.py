@@ -8,12 +8,12 @@ have the same edge mode; another one says that the frame in between does matter.
 from __future__ import annotations
 
 import math
-from typing import ClassVar, get_args
+from typing import get_args
 
 from halation.nodes import Affine, Edge, Kernel
 
 from ..areas import Around
-from ..ir import Accessor, Builder, Choice, Constant, Gather, Parameter, Ref, Shape
+from ..ir import Accessor, Builder, Choice, Parameter, PictureShape, Placement, Ref, UniformConstant
 
 STILL = 1e-9
 """A product that moves no pixel farther than this is that of a transform and its inverse, but for rounding."""
@@ -27,28 +27,12 @@ _ROUNDING = 1.0
 """Pixels by which a place may be off in floats of 32 bits."""
 
 
-class Placed(Gather, frozen=True):
-    """A picture moved, turned and scaled. `matrix` says where its pixels lie in the one that it reads."""
-
-    matrix: Affine = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
-    chain: tuple[str, ...] = ()
-    """The nodes whose matrices were multiplied, the first one first."""
-
-    compare_exclude: ClassVar[frozenset[str]] = frozenset({"owner", "chain"})
-
-    @property
-    def owners(self) -> tuple[str, ...]:
-        return self.chain
-
-    @property
-    def label(self) -> str:
-        return f"{self.function} x {len(self.chain)}" if len(self.chain) > 1 else self.function
-
-
-def place(builder: Builder, image: Ref, owner: str, shape: Shape, matrix: Affine, kernel: Kernel, edge: Edge) -> Ref:
+def place(
+    builder: Builder, image: Ref, owner: str, shape: PictureShape, matrix: Affine, kernel: Kernel, edge: Edge
+) -> Ref:
     """Place `image`, or what it was placed from, into a picture of `shape`."""
-    chain, before = (owner,), builder.op(image)
-    if isinstance(before, Placed) and before.edge == edge:
+    chain, before = (owner,), builder.inspect(image)
+    if isinstance(before, Placement) and before.edge == edge:
         source = before.accessors[0].operand
         assert isinstance(source, Ref)
         image, matrix, chain = source, product(before.matrix, matrix), (*before.chain, owner)
@@ -59,21 +43,21 @@ def place(builder: Builder, image: Ref, owner: str, shape: Shape, matrix: Affine
     widths = (min(max(math.hypot(*row), 1.0), _WIDEST) for row in ((a, b), (c, d)))
     across, down = (_LOBES[kernel] * width + _ROUNDING for width in widths)
     parameters = (
-        Parameter("vec2", Constant((a, b))),
-        Parameter("vec2", Constant((c, d))),
-        Parameter("vec2", Constant((x, y))),
+        Parameter("vec2", UniformConstant((a, b))),
+        Parameter("vec2", UniformConstant((c, d))),
+        Parameter("vec2", UniformConstant((x, y))),
         Parameter("int", Choice(kernels.index(kernel))),
     )
     return builder.add(
-        Placed(
+        Placement(
             (shape,),
             owner,
             "primitive/place",
             "place",
-            (Accessor("image", "vec4", image, Around(matrix, (across, down))),),
             parameters,
-            edge,
             (("kernel", kernels),),
+            accessors=(Accessor("image", "vec4", image, Around(matrix, (across, down))),),
+            edge=edge,
             matrix=matrix,
             chain=chain,
         )
@@ -87,7 +71,7 @@ def product(first: Affine, then: Affine) -> Affine:
     return (a * e + b * g, a * f + b * h, a * u + b * v + x, c * e + d * g, c * f + d * h, c * u + d * v + y)
 
 
-def is_still(matrix: Affine, shape: Shape) -> bool:
+def is_still(matrix: Affine, shape: PictureShape) -> bool:
     """True if no pixel of the picture moves."""
     a, b, x, c, d, y = matrix
     width, height = shape.size

@@ -11,30 +11,30 @@ from msgspec.structs import replace
 
 from ...errors import DeviceError
 from ...graph import Port
-from ..codegen.emit import Emitted, emit
-from ..fusion.fuse import PassGroup, kept_refs
-from ..ir import Call, ExternalProgram, Gather, Held, History, Memory, Op, Program, Raster, Read, Ref, Shape
+from ..codegen.emit import EmittedProgram, emit
+from ..fusion.fuse import PassGroup
+from ..ir import LoweredProgram, Memory, Op, PictureShape, Ref, SourceOp
 from ..library import Library
 from ..plan import Depth, Pass, Plan, Surface, Upload, texture_bytes, texture_format
 from ..target import Precision, Target
-from .keys import Mark, Marks, keys_of, update
-from .numbers import differing
+from .differences import find_changed_numbers
+from .fingerprints import Fingerprint, PassFingerprints, find_keys, update_keys
 
 
 class Scheduled(Struct, frozen=True):
     """A plan, and what it was made of."""
 
-    program: Program
+    program: LoweredProgram
     passes: tuple[PassGroup, ...]
     texels: Mapping[Ref, str]
     """Formats, in the order of the surfaces."""
-    marks: tuple[tuple[Mark, ...], ...]
+    fingerprints: tuple[tuple[Fingerprint, ...], ...]
     keys: Mapping[Ref, str]
     plan: Plan
 
 
 def schedule(
-    program: Program,
+    program: LoweredProgram,
     passes: tuple[PassGroup, ...],
     library: Library,
     target: Target,
@@ -48,9 +48,9 @@ def schedule(
     texels = formats(program, passes, target, precision, halves)
     needed = dict.fromkeys(texels)
     emitted = [emit(program, fused, library, target, texels) for fused in passes]
-    deciding = Marks(program, library, target, texels)
-    marks = tuple(deciding.of(fused, item) for fused, item in zip(passes, emitted, strict=True))
-    keys = keys_of(program, marks, needed)
+    finder = PassFingerprints(program, library, target, texels)
+    fingerprints = tuple(map(finder.of, passes))
+    keys = find_keys(program, fingerprints, needed)
     first, last = _lives(program, passes)
     slots, sizes = _slots(program, needed, texels, first, last)
     numbers = {ref: number for number, ref in enumerate(needed)}
@@ -58,7 +58,7 @@ def schedule(
         Surface(
             keys[ref],
             program.ops[ref.op].owner,
-            program.held(ref),
+            program.size_on_device(ref),
             _shape(program, ref).channels,
             _depth(texels[ref]),
             slots[ref],
@@ -79,21 +79,21 @@ def schedule(
         _memories(program, keys, texels),
         sizes,
     )
-    return Scheduled(program, passes, texels, marks, keys, plan)
+    return Scheduled(program, passes, texels, fingerprints, keys, plan)
 
 
-def reschedule(known: Scheduled, program: Program, library: Library) -> Scheduled | None:
+def reschedule(known: Scheduled, program: LoweredProgram, library: Library) -> Scheduled | None:
     """The plan of a program that differs from the known one in numbers alone, else None.
 
     The same passes make the same pictures in the same textures: only the passes whose numbers are others are written
     again, and keys found of all that comes after them.
     """
-    changed = differing(known.program, program)
+    changed = find_changed_numbers(known.program, program)
     if changed is None:
         return None
     plan, target, numbers = known.plan, known.plan.target, {ref: number for number, ref in enumerate(known.texels)}
-    moved, deciding = program.frame != known.program.frame, Marks(program, library, target, known.texels)
-    passes, marks, surfaces, keys = [*plan.passes], [*known.marks], [*plan.surfaces], dict(known.keys)
+    moved, finder = program.frame != known.program.frame, PassFingerprints(program, library, target, known.texels)
+    passes, fingerprints, surfaces, keys = [*plan.passes], [*known.fingerprints], [*plan.surfaces], dict(known.keys)
     others = [
         number
         for number, fused in enumerate(known.passes)
@@ -104,9 +104,9 @@ def reschedule(known: Scheduled, program: Program, library: Library) -> Schedule
         fused = known.passes[number]
         item = emit(program, fused, library, target, known.texels)
         passes[number] = _pass(program, fused, item, numbers, library)
-        marks[number] = deciding.of(fused, item)
+        fingerprints[number] = finder.of(fused)
     sources = [ref for ref in numbers if ref.op in changed]
-    for ref in update(keys, program, sources, marks, others):
+    for ref in update_keys(keys, program, sources, fingerprints, others):
         if ref in numbers:
             surfaces[numbers[ref]] = replace(surfaces[numbers[ref]], key=keys[ref])
     plan = replace(
@@ -117,10 +117,10 @@ def reschedule(known: Scheduled, program: Program, library: Library) -> Schedule
         cameras=program.cameras,
         memories=_memories(program, keys, known.texels),
     )
-    return Scheduled(program, known.passes, known.texels, tuple(marks), keys, plan)
+    return Scheduled(program, known.passes, known.texels, tuple(fingerprints), keys, plan)
 
 
-def _memories(program: Program, keys: Mapping[Ref, str], texels: Mapping[Ref, str]) -> Mapping[Port, Memory]:
+def _memories(program: LoweredProgram, keys: Mapping[Ref, str], texels: Mapping[Ref, str]) -> Mapping[Port, Memory]:
     return MappingProxyType(
         {
             node: Memory(keys[ref], _shape(program, ref), texels[ref].endswith("16f"))
@@ -130,7 +130,7 @@ def _memories(program: Program, keys: Mapping[Ref, str], texels: Mapping[Ref, st
 
 
 def formats(
-    program: Program, passes: Sequence[PassGroup], target: Target, precision: Precision, halves: frozenset[str]
+    program: LoweredProgram, passes: Sequence[PassGroup], target: Target, precision: Precision, halves: frozenset[str]
 ) -> dict[Ref, str]:
     """The format of everything that needs a texture. Raises DeviceError for a pass that writes too many at once."""
     for fused in passes:
@@ -139,24 +139,24 @@ def formats(
     return {ref: _texel(program, ref, "half" if ref in rounded else precision) for ref in _textures(program, passes)}
 
 
-def _textures(program: Program, passes: Sequence[PassGroup]) -> dict[Ref, None]:
+def _textures(program: LoweredProgram, passes: Sequence[PassGroup]) -> dict[Ref, None]:
     """Everything that passes read and write, and what must be there at the end."""
     needed = dict.fromkeys(ref for fused in passes for ref in (*fused.reads, *fused.writes))
-    return needed | dict.fromkeys(kept_refs(program))
+    return needed | dict.fromkeys(program.kept_refs)
 
 
-def _shape(program: Program, ref: Ref) -> Shape:
+def _shape(program: LoweredProgram, ref: Ref) -> PictureShape:
     return program.ops[ref.op].shapes[ref.output]
 
 
-def peak(program: Program, passes: Sequence[PassGroup], texels: Mapping[Ref, str]) -> int:
+def peak(program: LoweredProgram, passes: Sequence[PassGroup], texels: Mapping[Ref, str]) -> int:
     """Bytes of all textures that passes need at the same time."""
     first, last = _lives(program, passes)
     return sum(_slots(program, _textures(program, passes), texels, first, last)[1])
 
 
 def _check_outputs(count: int, op: Op, target: Target) -> None:
-    by_image = target.form == "compute" and not isinstance(op, ExternalProgram | Raster)
+    by_image = target.form == "compute" and not op.is_fragment_only
     most = target.max_images if by_image else target.max_targets
     if count > most:
         raise DeviceError(
@@ -166,23 +166,23 @@ def _check_outputs(count: int, op: Op, target: Target) -> None:
         )
 
 
-def _texel(program: Program, ref: Ref, precision: Precision) -> str:
+def _texel(program: LoweredProgram, ref: Ref, precision: Precision) -> str:
     """As narrow as the data allows: data keeps 32 bits, a file of halves stays half, color follows the precision."""
     op, shape = program.ops[ref.op], _shape(program, ref)
-    if isinstance(op, Held):
-        return texture_format(shape.channels, op.halves[ref.output])
-    half = op.half if isinstance(op, (Read, History)) else precision == "half" and not shape.data
+    half = op.is_half(ref.output) if isinstance(op, SourceOp) else precision == "half" and not shape.data
     return texture_format(shape.channels, half)
 
 
-def _rounded(program: Program, passes: Sequence[PassGroup], target: Target, halves: frozenset[str]) -> frozenset[Ref]:
+def _rounded(
+    program: LoweredProgram, passes: Sequence[PassGroup], target: Target, halves: frozenset[str]
+) -> frozenset[Ref]:
     """Outputs that are stored as half floats because nobody wants more, neither a pass nor the next frame."""
     if not target.rounds_halves:
         return frozenset()
     found = {ref for name, ref in program.outputs.items() if name in halves}
     found -= {ref for name, ref in program.outputs.items() if name not in halves}
     found -= {ref for fused in passes for ref in fused.reads}
-    found = {ref for ref in found if not isinstance(program.ops[ref.op], Raster)}  # the driver rounds what it draws
+    found = {ref for ref in found if program.ops[ref.op].rounds_halves}
     return frozenset(found.difference(program.memories.values()))
 
 
@@ -190,7 +190,7 @@ def _depth(format: str) -> Depth:
     return "f2" if format.endswith("16f") else "f4"
 
 
-def _lives(program: Program, passes: Sequence[PassGroup]) -> tuple[dict[Ref, int], dict[Ref, int]]:
+def _lives(program: LoweredProgram, passes: Sequence[PassGroup]) -> tuple[dict[Ref, int], dict[Ref, int]]:
     """The pass that makes each surface, or that reads an upload first; and the pass that reads it last.
 
     What was remembered of the frame before is there from the first pass to the last.
@@ -202,16 +202,16 @@ def _lives(program: Program, passes: Sequence[PassGroup]) -> tuple[dict[Ref, int
             first.setdefault(ref, index)
             last[ref] = index
     for ref in first:
-        if isinstance(program.ops[ref.op], History):
+        if program.ops[ref.op].is_memory:
             first[ref], last[ref] = 0, len(passes)
-    for ref in kept_refs(program):
+    for ref in program.kept_refs:
         first.setdefault(ref, len(passes))
         last[ref] = len(passes)
     return first, last
 
 
 def _slots(
-    program: Program,
+    program: LoweredProgram,
     needed: Mapping[Ref, None],
     texels: Mapping[Ref, str],
     first: Mapping[Ref, int],
@@ -228,9 +228,9 @@ def _slots(
         while ended < len(by_end) and last[by_end[ended]] < first[ref]:
             gone = by_end[ended]
             if gone in slots:
-                free.setdefault((program.held(gone), texels[gone]), []).append(slots[gone])
+                free.setdefault((program.size_on_device(gone), texels[gone]), []).append(slots[gone])
             ended += 1
-        kind = (program.held(ref), texels[ref])
+        kind = (program.size_on_device(ref), texels[ref])
         if free.get(kind):
             slots[ref] = free[kind].pop()
             continue
@@ -239,17 +239,19 @@ def _slots(
     return slots, tuple(bytes_)
 
 
-def _uploads(program: Program, numbers: Mapping[Ref, int]) -> list[Upload]:
+def _uploads(program: LoweredProgram, numbers: Mapping[Ref, int]) -> list[Upload]:
     found: list[Upload] = []
     for ref, number in numbers.items():
         op = program.ops[ref.op]
-        picture = op.picture if isinstance(op, Read) else op.pictures[ref.output] if isinstance(op, Held) else None
+        picture = op.find_upload(ref.output)
         if picture is not None:
             found.append(Upload(number, picture, op.owner, _shape(program, ref).size))
     return found
 
 
-def _pass(program: Program, fused: PassGroup, item: Emitted, numbers: Mapping[Ref, int], library: Library) -> Pass:
+def _pass(
+    program: LoweredProgram, fused: PassGroup, item: EmittedProgram, numbers: Mapping[Ref, int], library: Library
+) -> Pass:
     ops = [program.ops[index] for index in fused.members]
     return Pass(
         tuple(dict.fromkeys(owner for op in ops for owner in op.owners)),
@@ -260,17 +262,12 @@ def _pass(program: Program, fused: PassGroup, item: Emitted, numbers: Mapping[Re
         item.uniforms,
         item.weights,
         item.groups,
-        tuple(dict.fromkeys(table for op in ops if isinstance(op, Call) for table in op.tables)),
-        next((op.mesh for op in ops if isinstance(op, Raster)), None),
+        tuple(dict.fromkeys(table for op in ops for table in op.tables)),
+        next(filter(None, (op.mesh_drawn for op in ops)), None),
         _writers(ops, library),
     )
 
 
 def _writers(ops: list[Op], library: Library) -> dict[str, str]:
     """The nodes behind code that users wrote, by what messages call its file."""
-    calls = (op for op in ops if isinstance(op, (Call, Gather)))
-    found = {library.file(op.shader): op.owner for op in calls if op.shader.startswith("written/")}
-    for op in ops:
-        if isinstance(op, ExternalProgram):
-            found |= {stage.file: op.owner for stage in (op.text.fragment, op.text.vertex) if stage}
-    return found
+    return {file: op.owner for op in ops for file in op.find_user_files(library)}

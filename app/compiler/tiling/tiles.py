@@ -8,7 +8,7 @@ from msgspec import Struct
 
 from ..areas import Region
 from ..fusion.fuse import PassGroup
-from ..ir import Program, Ref
+from ..ir import LoweredProgram, Ref
 from ..library import Library
 from ..target import Precision, Target
 
@@ -32,7 +32,7 @@ class Tiling(Struct, frozen=True):
     `by_rows` are handed over whenever all tiles of some rows are made.
     """
 
-    program: Program
+    program: LoweredProgram
     library: Library
     target: Target
     precision: Precision

@@ -19,12 +19,12 @@ from ...errors import DeviceError
 from ..areas import Region
 from ..explain import size_text
 from ..fusion.fuse import PassGroup
-from ..ir import Held, History, Op, Program, Read, Reduce, Ref
+from ..ir import LoweredProgram, Op, Ref, StoredResult
 from ..library import Library
 from ..plan import Plan, texture_bytes
 from ..scheduling.schedule import peak, schedule
 from ..target import Precision, Target
-from .regions import made_whole, needed, reads_all
+from .regions import needed
 from .tiles import Stage, Tiling
 
 LEAST = 8
@@ -46,7 +46,7 @@ MOST_PIXELS = 2**32
 
 
 def tile(
-    program: Program,
+    program: LoweredProgram,
     passes: tuple[PassGroup, ...],
     texels: Mapping[Ref, str],
     library: Library,
@@ -81,7 +81,7 @@ def tile(
     return Tiling(program, library, target, precision, rounded, keys, before, last, work.nbytes, why, work.by_rows)
 
 
-def tile_plan(tiling: Tiling, stage: Stage, number: int, made: Mapping[int, Held]) -> Plan:
+def tile_plan(tiling: Tiling, stage: Stage, number: int, made: Mapping[int, StoredResult]) -> Plan:
     """How a tile of a stage is made; `made` is what the stages before made, by operation."""
     ops = tuple(made.get(index, op) for index, op in enumerate(tiling.program.ops))
     program = replace(
@@ -95,10 +95,10 @@ def tile_plan(tiling: Tiling, stage: Stage, number: int, made: Mapping[int, Held
     return schedule(program, stage.passes, tiling.library, tiling.target, tiling.precision, tiling.halves).plan
 
 
-def _too_much(program: Program, passes: Sequence[PassGroup], texels: Mapping[Ref, str], target: Target) -> str:
+def _too_much(program: LoweredProgram, passes: Sequence[PassGroup], texels: Mapping[Ref, str], target: Target) -> str:
     """What cannot be held, in a sentence; "" if all can."""
     for ref in texels:
-        size, owner = program.held(ref), program.ops[ref.op].owner
+        size, owner = program.size_on_device(ref), program.ops[ref.op].owner
         if max(size) > target.max_size:
             return (
                 f"node '{owner}': {_sized(size)} pixels is more than the {target.max_size} that {target.renderer} can "
@@ -113,30 +113,32 @@ def _too_much(program: Program, passes: Sequence[PassGroup], texels: Mapping[Ref
     return f"{size_text(nbytes)} of textures and pictures is more than the {size_text(target.memory)} that may be used"
 
 
-def _remembered(program: Program, texels: Mapping[Ref, str]) -> int:
+def _remembered(program: LoweredProgram, texels: Mapping[Ref, str]) -> int:
     """What nodes remember is there twice: of this frame, and of the one before, which may not be read."""
     kept = sum(_nbytes(program, texels, ref) for ref in program.memories.values())
-    read = sum(_nbytes(program, texels, ref) for ref in texels if isinstance(program.ops[ref.op], History))
+    read = sum(_nbytes(program, texels, ref) for ref in texels if program.ops[ref.op].is_memory)
     return max(kept - read, 0)
 
 
-def _outside(program: Program, passes: Sequence[PassGroup]) -> set[Ref]:
+def _outside(program: LoweredProgram, passes: Sequence[PassGroup]) -> set[Ref]:
     """What is not only on the device: pictures that are read from files, and outputs."""
-    reads = {ref for fused in passes for ref in fused.reads if isinstance(program.ops[ref.op], Read)}
+    reads = {ref for fused in passes for ref in fused.reads if program.ops[ref.op].find_upload(ref.output)}
     return reads | set(program.outputs.values())
 
 
-def _nbytes(program: Program, texels: Mapping[Ref, str], ref: Ref) -> int:
+def _nbytes(program: LoweredProgram, texels: Mapping[Ref, str], ref: Ref) -> int:
     """What a whole picture takes."""
     return texture_bytes(program.shape(ref).size, texels[ref])
 
 
-def _check(program: Program, passes: Sequence[PassGroup], target: Target) -> None:
+def _check(program: LoweredProgram, passes: Sequence[PassGroup], target: Target) -> None:
     """Raise DeviceError for what must be whole and does not fit, and for what remembers frames."""
     for fused in passes:
         for op in (program.ops[index] for index in fused.members):
-            refs = [ref for ref in fused.reads if ref in set(op.reads()) and reads_all(program, op, ref)]
-            sizes = [program.shape(ref).size for ref in refs] + ([op.size] if made_whole(op) else [])
+            refs = [
+                ref for ref in fused.reads if ref in set(op.reads()) and op.reads_whole(ref, program.shape(ref).size)
+            ]
+            sizes = [program.shape(ref).size for ref in refs] + ([op.size] if op.is_indivisible else [])
             for size in sizes:
                 if max(size) > target.max_size:
                     raise DeviceError(
@@ -162,7 +164,7 @@ class _Work:
 
     def __init__(
         self,
-        program: Program,
+        program: LoweredProgram,
         passes: tuple[PassGroup, ...],
         texels: Mapping[Ref, str],
         target: Target,
@@ -192,12 +194,12 @@ class _Work:
 
     def _is_cut(self, fused: PassGroup) -> bool:
         """True for a pass whose pictures are made as a whole before others read them."""
-        if any(isinstance(op, Reduce) or made_whole(op) for op in self._ops(fused)):
+        if any(op.is_made_first for op in self._ops(fused)):
             return True
         if self._is_small(fused.writes[0]) and self._is_light(fused) and not self._stays_small(fused):
             return True
         return any(
-            reads_all(self.program, op, ref) and self.program.shape(ref).size != (1, 1)
+            op.reads_whole(ref, self.program.shape(ref).size) and self.program.shape(ref).size != (1, 1)
             for other in self.passes
             for op in self._ops(other)
             for ref in op.reads()
@@ -224,7 +226,7 @@ class _Work:
         """A stage with the fewest tiles that fit."""
         passes = self._needed(outputs.values(), own)
         size = self.program.shape(next(iter(outputs.values()))).size
-        whole = any(made_whole(op) for fused in passes for op in self._ops(fused))
+        whole = any(op.is_indivisible for fused in passes for op in self._ops(fused))
         tile = size
         usual = max(USUAL, 2 * self._textures(passes, outputs, size, (LEAST, LEAST))[1])
         while True:
@@ -287,7 +289,7 @@ class _Work:
         rows = {
             ref: max(windows[ref].height for windows in found if ref in windows)
             for ref in held
-            if self.target.memory and isinstance(op := self.program.ops[ref.op], Read) and op.picture.by_rows
+            if self.target.memory and (picture := self.program.ops[ref.op].find_upload(ref.output)) and picture.by_rows
         }
         rows |= {ref: 2 * tile[1] for name, ref in outputs.items() if name in self.by_rows}
         total = 0
@@ -352,7 +354,7 @@ def _smaller(tile: Size, too_wide: tuple[bool, bool]) -> Size:
     return (max(-(-width // 2), LEAST), height) if across else (width, max(-(-height // 2), LEAST))
 
 
-def _parts(program: Program, found: Sequence[Mapping[Ref, Region]]) -> tuple[Mapping[Ref, Region], ...]:
+def _parts(program: LoweredProgram, found: Sequence[Mapping[Ref, Region]]) -> tuple[Mapping[Ref, Region], ...]:
     """The regions of what is not whole for every tile."""
     parts = {ref for windows in found for ref, region in windows.items() if region.size != program.shape(ref).size}
     return tuple(MappingProxyType({ref: windows[ref] for ref in windows if ref in parts}) for windows in found)

@@ -9,10 +9,10 @@ import numpy as np
 from halation.nodes import Kind, Size
 from msgspec.structs import replace
 
-from ...compiler import Held, Pass, Plan, Read, Ref, Region, Stage, Upload, tile_plan
+from ...compiler import Pass, Plan, Ref, Region, Stage, StoredResult, Upload, tile_plan
 from ...compiler.areas import Span
 from ...compiler.explain import size_text
-from ...compiler.ir import Program
+from ...compiler.ir import LoweredProgram
 from ...errors import DeviceError, HalationError
 from ...media.info import machine_memory
 from ...resources.picture import Picture
@@ -84,7 +84,7 @@ class TiledRun(Run):
         tiling = self._tiling
         taken = tiling.by_rows if self.rows else frozenset[str]()
         _check_memory(tiling.program, taken)
-        made: dict[int, Held] = {}
+        made: dict[int, StoredResult] = {}
         for number, stage in enumerate(tiling.stages[: len(tiling.before)]):
             arrays = yield from self._stage(stage, made)
             made |= self._held(stage, arrays)
@@ -97,7 +97,7 @@ class TiledRun(Run):
             self._forget(made, tiling.stages[number + 1 :])
         self._finished({name: outputs[name] for name in tiling.program.outputs if name not in taken})
 
-    def _stage(self, stage: Stage, made: Mapping[int, Held]) -> Generator[Pass, None, dict[str, Array]]:
+    def _stage(self, stage: Stage, made: Mapping[int, StoredResult]) -> Generator[Pass, None, dict[str, Array]]:
         """Make the pictures of a stage: [height, width, channels] by name. What is taken by rows is not there."""
         size = self._tiling.program.shape(next(iter(stage.outputs.values()))).size
         taken = self._tiling.by_rows.intersection(stage.outputs) if self.rows else frozenset[str]()
@@ -145,16 +145,16 @@ class TiledRun(Run):
         found = tuple(self._pictures.read(item, plan.surfaces[item.surface].window) for item in plan.uploads)
         return replace(plan, uploads=found)
 
-    def _held(self, stage: Stage, arrays: Mapping[str, Array]) -> dict[int, Held]:
+    def _held(self, stage: Stage, arrays: Mapping[str, Array]) -> dict[int, StoredResult]:
         """What a stage made, in place of the operations that would make it again."""
         program, keys = self._tiling.program, self._tiling.keys
-        found: dict[int, Held] = {}
+        found: dict[int, StoredResult] = {}
         for index in dict.fromkeys(ref.op for ref in stage.outputs.values()):
             op = program.ops[index]
             refs = [Ref(index, output) for output in range(len(op.shapes))]
             names = {ref: name for name, ref in stage.outputs.items()}
             pixels = [arrays[names[ref]] if ref in names else None for ref in refs]
-            found[index] = Held(
+            found[index] = StoredResult(
                 op.shapes,
                 op.owner,
                 tuple(None if array is None else _picture(op.owner, array) for array in pixels),
@@ -163,14 +163,14 @@ class TiledRun(Run):
             )
         return found
 
-    def _forget(self, made: dict[int, Held], later: Iterable[Stage]) -> None:
+    def _forget(self, made: dict[int, StoredResult], later: Iterable[Stage]) -> None:
         """Let go of what no later stage reads."""
         read = {ref.op for stage in later for fused in stage.passes for ref in fused.reads}
         read |= {ref.op for ref in self._tiling.program.outputs.values()}
         for index in made.keys() - read:
             del made[index]
         ops = (self._tiling.program.ops[index] for index in read)
-        self._pictures.keep({op.picture for op in ops if isinstance(op, Read)})
+        self._pictures.keep({picture for op in ops if (picture := op.find_upload(0))})
 
 
 class _Pictures:
@@ -209,7 +209,7 @@ class _Pictures:
             del self._decoded[picture]
 
 
-def _check_memory(program: Program, taken: Set[str]) -> None:
+def _check_memory(program: LoweredProgram, taken: Set[str]) -> None:
     """Raise DeviceError for outputs that this machine cannot hold: all but those `taken` are put together in memory."""
     shapes = [program.shape(ref) for name, ref in program.outputs.items() if name not in taken]
     nbytes = sum(shape.size[0] * shape.size[1] * shape.channels * 4 for shape in shapes)
@@ -224,7 +224,7 @@ def _picture(owner: str, pixels: Array) -> Picture:
     return Picture(owner, "", Kind.VECTOR, pixels.shape[2], in_memory=True, pixels=pixels)
 
 
-def _pixels(held: Held, output: int) -> Array:
+def _pixels(held: StoredResult, output: int) -> Array:
     picture = held.pictures[output]
     assert picture is not None and isinstance(picture.pixels, np.ndarray)
     return picture.pixels

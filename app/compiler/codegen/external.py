@@ -7,38 +7,38 @@ from halation.nodes import Stage, Uniform
 from ..fusion.fuse import PassGroup
 from ..ir import ExternalProgram
 from ..plan import LINES_PER_FILE, Shader
-from .names import held
+from .names import uniform_value
 
 
-def foreign(
-    root: ExternalProgram, fused: PassGroup, rounding: list[str]
+def write_external(
+    root: ExternalProgram, group: PassGroup, rounding: list[str]
 ) -> tuple[Shader, tuple[tuple[str, Uniform], ...]]:
     """Its program, and what its uniforms are set to: samplers to the places of their pictures among those read.
 
     `rounding` is the function `as_half`, where the result is stored in half floats.
     """
     fragment, vertex = root.text.fragment, root.text.vertex
-    made = "halation_half(halation_pixel())" if rounding else "halation_pixel()"
+    color = "halation_half(halation_pixel())" if rounding else "halation_pixel()"
     rounding = [line.replace("as_half", "halation_half") for line in rounding]
     end = [
         "layout(location = 0) out vec4 halation_target;",
         *rounding,
-        f"void main() {{ halation_target = {made}; }}",
+        f"void main() {{ halation_target = {color}; }}",
     ]
     shader = Shader(
-        "\n".join([_text(fragment, 1), *end]) + "\n",
+        "\n".join([_write_stage(fragment, 1), *end]) + "\n",
         "fragment",
         ("generated", fragment.file, *([vertex.file] if vertex else [])),
         False,
-        _text(vertex, 2) if vertex else "",
+        _write_stage(vertex, 2) if vertex else "",
         foreign=True,
     )
-    units = {ref: unit for unit, ref in enumerate(fused.reads)}
-    values = tuple((name, held(item)) for name, item in root.uniforms)
+    units = {ref: unit for unit, ref in enumerate(group.reads)}
+    values = tuple((name, uniform_value(item)) for name, item in root.uniforms)
     return shader, (*values, *((name, units[ref]) for name, ref in root.pictures))
 
 
-def _text(stage: Stage, file: int) -> str:
+def _write_stage(stage: Stage, file: int) -> str:
     # The second extension lets functions return whole numbers as floats, which older GLSL did everywhere.
     top = (
         "#version 410 core",

@@ -1,0 +1,29 @@
+"""The program of a pass that draws meshes."""
+
+from __future__ import annotations
+
+from halation.nodes import Camera, Uniform
+
+from ..fusion.fuse import PassGroup
+from ..ir import LoweredProgram, Raster
+from ..library import Library
+from ..plan import Shader
+from ..raster import CHANNELS, fragment_lines, vertex_text
+
+
+def write_raster(
+    program: LoweredProgram, root: Raster, group: PassGroup, library: Library
+) -> tuple[Shader, tuple[tuple[str, Uniform], ...]]:
+    """The vertex and fragment shader that write the channels that are read, and what their uniforms are set to."""
+    text = library.closure(root.files, root.owner)[0]
+    channels = [tuple(CHANNELS)[ref.output] for ref in group.writes]
+    lines = fragment_lines(text.body, channels)
+    shader = Shader("\n".join(lines) + "\n", "fragment", ("generated",), False, vertex_text(text.body))
+    return shader, (
+        ("cameras", root.cameras),
+        ("motions", root.motions),
+        ("near", root.near),
+        ("eye", Camera(root.cameras[:12]).eye),
+        ("grid", root.size),
+        ("proxy", program.scale),
+    )

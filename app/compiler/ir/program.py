@@ -1,0 +1,76 @@
+"""All operations of a graph, and what collects them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from halation.nodes import Camera, Size
+from msgspec import Struct, field
+
+from ...graph import Port
+from ..areas import Region
+from .operation import Op
+from .values import PictureShape, Ref
+
+
+class Builder:
+    """Collects operations; adding an equal one again returns the first.
+
+    `added` and `inspected` are the operations that were added, and looked into, since they were last emptied.
+    """
+
+    def __init__(self) -> None:
+        self.ops: list[Op] = []
+        self.numbers: dict[Op, int] = {}
+        """Operations by value, and where they are in `ops`."""
+        self.added: list[int] = []
+        self.inspected: list[int] = []
+
+    def add(self, op: Op) -> Ref:
+        """The first output of `op`."""
+        number = self.numbers.get(op)
+        if number is None:
+            number = self.numbers[op] = len(self.ops)
+            self.ops.append(op)
+        self.added.append(number)
+        return Ref(number)
+
+    def inspect(self, ref: Ref) -> Op:
+        """The operation behind an output, for a caller that has to know more than its shape."""
+        self.inspected.append(ref.op)
+        return self.ops[ref.op]
+
+    def shape(self, ref: Ref) -> PictureShape:
+        """The size and channels of an output of an operation."""
+        return self.ops[ref.op].shapes[ref.output]
+
+
+class LoweredProgram(Struct, frozen=True):
+    """All operations, each after those whose outputs it reads, and the pictures that are asked for by name."""
+
+    ops: tuple[Op, ...]
+    outputs: Mapping[str, Ref]
+    memories: Mapping[Port, Ref]
+    """What to remember for the next frame, by node and name."""
+    results: Mapping[Port, Ref]
+    """What outputs of nodes and groups, and inputs of graphs, stand for, in the order in which they were lowered."""
+    cameras: Mapping[Port, Camera]
+    """The cameras that inputs of nodes were given."""
+    scale: float
+    frame: int
+    windows: Mapping[Ref, Region] = field(default_factory=lambda: MappingProxyType({}))
+    """The parts of pictures that are made or read, of those that are not whole on the device."""
+
+    @property
+    def kept_refs(self) -> tuple[Ref, ...]:
+        """The pictures that must be there at the end: outputs, and what the next frame reads."""
+        return (*self.outputs.values(), *self.memories.values())
+
+    def size_on_device(self, ref: Ref) -> Size:
+        """How many pixels of a picture are on the device."""
+        return self.windows[ref].size if ref in self.windows else self.shape(ref).size
+
+    def shape(self, ref: Ref) -> PictureShape:
+        """The size and channels of an output of an operation."""
+        return self.ops[ref.op].shapes[ref.output]

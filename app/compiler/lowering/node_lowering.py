@@ -1,0 +1,285 @@
+"""One node becomes operations: what it reads is fitted, and its function or its draws are added."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from halation.nodes import (
+    Camera,
+    Filter,
+    Kind,
+    Missing,
+    Node,
+    Pointwise,
+    Reader,
+    Size,
+    Socket,
+    Temporal,
+    Value,
+    curve_knots,
+    ramp_knots,
+    working_factor,
+)
+from msgspec import Struct
+from msgspec.structs import replace
+
+from ...errors import GraphError, ShaderError
+from ...graph import Graph, Port
+from ..ir import Builder, Call, Choice, Memory, Operand, Parameter, PictureShape, Ref, UniformConstant
+from ..library import Library
+from ..request import Request
+from . import constants
+from .draws import Recorder, choices
+from .expand import Flat, nothing, stand_in
+from .moments import Moments
+from .node_inputs import DrawnPicture, NodeInputs
+from .pictures import PictureBuilder
+from .steps import LoweringStep
+
+OperandFinder = Callable[[Port, int], Operand | None]
+"""What a source port stands for at a frame; None for a graph input without a picture."""
+
+READS_PLACE = frozenset({"pixel", "extent"})
+"""The words by which a function can tell where its pixel lies."""
+
+
+class LoweringContext(Struct, frozen=True):
+    """What all nodes of a graph are lowered with. `frame` is the one that is rendered."""
+
+    graph: Graph
+    request: Request
+    library: Library
+    frame: int
+    moments: Moments
+    builder: Builder
+    flat: Flat
+    pictures: PictureBuilder
+
+
+class NodeLowering:
+    """Lowers nodes. What each one comes to is entered into a step."""
+
+    def __init__(self, context: LoweringContext) -> None:
+        self._context = context
+        self._builder, self._pictures = context.builder, context.pictures
+
+    def lower(self, path: str, frame: int, step: LoweringStep, operand_at: OperandFinder) -> None:
+        """Lower a node at a frame.
+
+        Sizes come first: the size of a node follows from those of its inputs, which are then fitted to it. Values are
+        brought to working units only after that, because units such as a fraction of the height need the size.
+        """
+        context = self._context
+        node = context.moments.node(path, frame)
+        constants.check_values(path, node)
+        inputs = self._collect_inputs(path, frame, node, operand_at)
+        if frame == context.frame:
+            step.cameras = _find_cameras(inputs)
+        size = self._find_size(inputs)
+        through = self._pass_through(inputs)
+        if through is not None:
+            for name, operand in through.items():
+                fitted = self._pictures.fit(operand, size, path) if isinstance(operand, Ref) else operand
+                step.results[Port(path, name), frame - context.frame] = fitted
+            return
+        self._fit_all(inputs, size)
+        working = node.working(context.request.scale, size[1])
+        if isinstance(working, Pointwise):
+            self._lower_pointwise(replace(inputs, node=working), working, size, step)
+        elif isinstance(working, Filter):
+            self._lower_filter(replace(inputs, node=working), working, size, step)
+
+    # --- what a node reads -----------------------------------------------------------------------------------------
+
+    def _collect_inputs(self, path: str, frame: int, node: Node, operand_at: OperandFinder) -> NodeInputs:
+        """A node and all that it reads. Raises GraphError for an input that must be linked and is not."""
+        inputs = NodeInputs(path, frame, node)
+        feeds = self._context.moments.feeding((path, frame))
+        for name, socket in node.inputs.items():
+            source, frames = feeds.get(name, (None, ()))
+            by_frame = {at: operand for at in frames if source and (operand := operand_at(source, at)) is not None}
+            if by_frame:
+                inputs.inputs[name] = by_frame[frame] if frame in by_frame else next(iter(by_frame.values()))
+                inputs.at_frames.update({(name, at): operand for at, operand in by_frame.items()})
+                inputs.linked.add(name)
+            elif socket.optional:
+                inputs.inputs[name] = UniformConstant(constants.of_socket(socket))
+            elif source is not None:
+                raise GraphError(
+                    f"node '{path}': input '{name}' comes from the graph input '{source.socket}', which is not bound "
+                    "to a picture: give it a file, or bind it by name"
+                )
+            else:
+                expected = "camera" if socket.kind is Kind.CAMERA else "picture"
+                raise GraphError(f"node '{path}': input '{name}' is not linked: link a {expected} to it")
+        for name in node.values:
+            source, _ = feeds.get(name, (None, ()))
+            operand = operand_at(source, frame) if source is not None else None
+            if operand is not None:
+                inputs.wires[name] = operand
+        return inputs
+
+    def _fit_all(self, inputs: NodeInputs, size: Size) -> None:
+        """Bring every picture to one size: that of the result, or for a filter, which may resize, of the first one."""
+        unfitted = {name for name, socket in inputs.node.inputs.items() if socket.own_size}
+        operands = (*inputs.inputs.items(), *inputs.wires.items())
+        refs = [operand for name, operand in operands if isinstance(operand, Ref) and name not in unfitted]
+        sizes = [size_ for size_ in (self._builder.shape(ref).size for ref in refs) if size_ != (1, 1)]
+        common = sizes[0] if sizes and isinstance(inputs.node, Filter) else size
+        one_frame = all(frame == inputs.frame for _, frame in inputs.at_frames)
+        if one_frame and all(size_ == common for size_ in sizes):
+            return
+
+        def fit(name: str, operand: Operand) -> Operand:
+            if isinstance(operand, UniformConstant) or name in unfitted:
+                return operand
+            return self._pictures.fit(operand, common, inputs.path)
+
+        for group in (inputs.inputs, inputs.wires):
+            group.update({name: fit(name, operand) for name, operand in group.items()})
+        inputs.at_frames.update({key: fit(key[0], operand) for key, operand in inputs.at_frames.items()})
+
+    def _pass_through(self, inputs: NodeInputs) -> dict[str, Operand] | None:
+        """What the outputs of a muted or neutral node show; None if it has something to do."""
+        node = inputs.node
+        if inputs.path in self._context.flat.muted:
+            shown = {name: stand_in(output.socket, node.inputs) for name, output in node.outputs.items()}
+            return {
+                name: inputs.inputs[source] if source else UniformConstant(nothing(node.outputs[name].socket))
+                for name, source in shown.items()
+            }
+        neutral = None if inputs.wires or len(node.outputs) != 1 else node.identity()
+        return dict.fromkeys(node.outputs, inputs.inputs[neutral]) if neutral else None
+
+    def _find_size(self, inputs: NodeInputs) -> Size:
+        """The size of a node's outputs. What is made of single values alone is one, unless it is a pattern."""
+        node = inputs.node
+        linked = {name: inputs.inputs[name] for name in node.inputs if name in inputs.linked}
+        sizes = {
+            name: self._builder.shape(operand).size
+            for name, operand in (*linked.items(), *inputs.wires.items())
+            if isinstance(operand, Ref)
+        }
+        pictures = {name: size for name, size in sizes.items() if size != (1, 1)}
+        if sizes and not pictures and (sizes.keys() & linked.keys() or not self._is_pattern(inputs.path, node)):
+            return (1, 1)
+        return node.output_size(pictures, self._pictures.canvas)
+
+    def _is_pattern(self, path: str, node: Node) -> bool:
+        """True for a node whose pixels differ even if all that it reads is the same everywhere."""
+        return not node.inputs or self._context.library.uses(node.shader, READS_PLACE, path)
+
+    # --- pointwise nodes -------------------------------------------------------------------------------------------
+
+    def _lower_pointwise(self, inputs: NodeInputs, node: Pointwise, size: Size, step: LoweringStep) -> None:
+        parameters: list[Parameter] = []
+        for name in node.order:
+            if name in node.inputs:
+                parameters.append(Parameter(node.inputs[name].glsl, inputs.inputs[name]))
+            elif node.values[name].glsl is not None:
+                parameters.append(self._value_parameter(node, node.values[name], inputs.wires.get(name), size))
+        sockets = [output.socket for output in node.outputs.values()]
+        shapes = tuple(
+            PictureShape((1, 1) if socket.single else size, socket.channels, socket.kind is not Kind.IMAGE)
+            for socket in sockets
+        )
+        self._check_function(inputs.path, node, [item.glsl for item in parameters], [item.glsl for item in sockets])
+        ref = self._builder.add(Call(shapes, inputs.path, node.shader, node.function, tuple(parameters), choices(node)))
+        for index, name in enumerate(node.outputs):
+            step.results[Port(inputs.path, name), inputs.frame - self._context.frame] = Ref(ref.op, index)
+
+    def _check_function(self, path: str, node: Node, takes: list[str], makes: list[str]) -> None:
+        """Raise ShaderError unless the node's GLSL function takes and makes what the node declares."""
+        library = self._context.library
+        function = library.function(node.shader, node.function, path)
+        parameters = [glsl for glsl, _ in function.parameters]
+        outputs = [glsl for glsl, _ in function.outputs] or [function.result]
+        if parameters != takes or outputs != makes:
+            actual = f"({', '.join(parameters)}) to ({', '.join(outputs)})"
+            declared = f"({', '.join(takes)}) to ({', '.join(makes)})"
+            fault = f"'{node.function}' takes {actual}, but the node declares {declared}"
+            raise ShaderError(path, library.file(node.shader), function.line, fault)
+
+    def _value_parameter(self, node: Node, value: Value, wire: Operand | None, size: Size) -> Parameter:
+        glsl = value.glsl or "float"
+        if wire is not None:
+            factor = working_factor(value.unit, self._context.request.scale, size[1])
+            if isinstance(wire, UniformConstant):
+                return Parameter(glsl, constants.limited(wire, value, factor))
+            return Parameter(glsl, wire, factor, value.minimum, value.maximum)
+        setting = getattr(node, value.name)
+        if value.type == "choice":
+            return Parameter(glsl, Choice(value.choices.index(setting)))
+        knots = {"curve": curve_knots, "ramp": ramp_knots}.get(value.type)
+        return Parameter(glsl, UniformConstant(knots(setting) if knots else setting))
+
+    # --- filters ---------------------------------------------------------------------------------------------------
+
+    def _lower_filter(self, inputs: NodeInputs, node: Filter, size: Size, step: LoweringStep) -> None:
+        """Record the draws of a filter, on pictures that have the channels that it declares."""
+        context, path, remembers = self._context, inputs.path, isinstance(node, Temporal)
+        if remembers and inputs.frame != context.frame:
+            raise GraphError(
+                f"node '{path}' makes every frame of the one before, so it cannot be seen at frame {inputs.frame} "
+                f"while frame {context.frame} is rendered: put what changes the time before '{path}'"
+            )
+        for name in inputs.linked:
+            inputs.inputs[name] = self._as_pixels(path, node.inputs[name], inputs.inputs[name], size)
+        for (name, frame), operand in inputs.at_frames.items():
+            inputs.at_frames[name, frame] = self._as_pixels(path, node.inputs[name], operand, size)
+        settings = context.graph.settings
+        missing = self.missing_at(inputs.node.missing if isinstance(inputs.node, Reader) else "error", inputs.frame)
+        recorder = Recorder(
+            inputs,
+            node,
+            size,
+            self._builder,
+            context.library,
+            self._pictures.files(inputs, missing),
+            self._find_memories(path, step) if remembers else {},
+            settings.rate,
+            (settings.frames or (1, 1))[0],
+        )
+        drawn = node.passes(recorder)
+        step.memories = {Port(path, name): ref for name, ref in recorder.remembered.items()}
+        step.reads_frame = recorder.reads_frame
+        results = drawn if isinstance(drawn, Mapping) else {next(iter(node.outputs)): drawn}
+        for name, item in results.items():
+            assert isinstance(item, DrawnPicture | Camera)
+            operand = UniformConstant(item.rows) if isinstance(item, Camera) else item.ref
+            step.results[Port(path, name), inputs.frame - context.frame] = operand
+
+    def _find_memories(self, path: str, step: LoweringStep) -> dict[str, Memory]:
+        """What a node remembered of the frame before, by name."""
+        step.reads_outside = True
+        memories = self._context.request.memories
+        return {port.socket: memory for port, memory in memories.items() if port.node == path}
+
+    def _as_pixels(self, path: str, socket: Socket, operand: Operand, size: Size) -> Operand:
+        """A filter looks around in its input: give it real pixels with the channels that it declares."""
+        if socket.single or socket.kind is Kind.CAMERA:
+            return operand
+        if isinstance(operand, UniformConstant):
+            return self._pictures.converted(operand, socket, size, path)
+        return self.as_type(operand, socket, path)
+
+    def as_type(self, ref: Ref, socket: Socket, owner: str) -> Ref:
+        """The same pixels with the channels that a socket declares."""
+        shape = self._builder.shape(ref)
+        if shape.channels == socket.channels:
+            return ref
+        return self._pictures.converted(ref, socket, shape.size, owner)
+
+    def missing_at(self, policy: Missing, frame: int) -> Missing:
+        """What stands for a missing file. Nodes may look beyond the ends of a shot: those stay as they are."""
+        return "hold" if policy == "error" and frame != self._context.frame else policy
+
+
+def _find_cameras(inputs: NodeInputs) -> dict[Port, Camera]:
+    """The cameras that are linked to the inputs of a node."""
+    cameras = {name: inputs.inputs[name] for name in inputs.linked if inputs.node.inputs[name].kind is Kind.CAMERA}
+    return {
+        Port(inputs.path, name): Camera(rows)
+        for name, operand in cameras.items()
+        if isinstance(operand, UniformConstant) and isinstance(rows := operand.value, tuple) and any(rows)
+    }
