@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Literal, Protocol
+from typing import ClassVar, Literal, Protocol
 
 from msgspec import Struct
 
@@ -63,6 +63,8 @@ class Stage(Struct, frozen=True):
     text: str
     tail: str
     file: str
+
+    identity_exclude: ClassVar[Mapping[str, str]] = {"file": "only messages say it"}
 
 
 class ShaderText(Struct, frozen=True):

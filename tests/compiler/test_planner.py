@@ -16,7 +16,6 @@ from halation.compiler.fusion.fuse import fuse
 from halation.compiler.fusion.rewrites import rewritten
 from halation.compiler.lowering.lower import lower
 from halation.compiler.planner import KEPT, graph_library
-from halation.compiler.scheduling.numbers import without
 from halation.errors import GraphError, HalationError
 from halation.graph import Control, Expression, Graph, Group, Input, Key, Keys, Output, Port, signature
 from halation.inputs.provider import MediaProvider
@@ -105,7 +104,7 @@ def test_numbers_decide_nothing_about_passes(seed):
     graph = random_graph(seed, 12)
     library = graph_library(graph, Headers(SIZE))
     program = lower(graph, asked(graph), library, Headers(SIZE)).program
-    blank = structs.replace(program, ops=tuple(map(without, program.ops)))
+    blank = structs.replace(program, ops=tuple(op.without_numbers() for op in program.ops))
     passes = fuse(program, NULL)
     assert fuse(blank, NULL) == passes
     assert rewritten(blank, passes, NULL, library) == rewritten(program, passes, NULL, library)

@@ -12,38 +12,95 @@ operation, and of the values in it, count, except:
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from enum import Enum
 from functools import cache
 from hashlib import blake2b
-from typing import Any, cast
+from typing import Any, Literal, get_args, get_origin, get_type_hints
 
-from msgspec import Struct
+from msgspec import Struct, structs
 
 from ...resources.record import Record
 from .values import Ref, UniformConstant
 
 _PLAIN = frozenset({str, int, bool, type(None)})
+_ADD_ZERO = (0.0).__add__
+"""Leaves one zero of two: operations that are equal must have one key, and 0.0 == -0.0."""
 
 
-def describe(item: Any) -> object:
+def describe(item: object) -> object:
     """Everything about an operation, or a value in one, that can change a pixel: nested tuples with a plain repr.
 
     Values that are equal have one description: 1 and 1.0 as constants, 0.0 and -0.0 anywhere.
     """
-    kind = cast("type[Any]", type(item))
-    if kind in _PLAIN:
-        return item
+    return _find_describer(type(item))(item)
+
+
+@cache
+def _find_describer(kind: type[Any]) -> Callable[[Any], object]:
     if kind is float:
-        return item + 0.0
+        return _ADD_ZERO
     if kind is tuple:
-        return tuple(map(describe, item))
+        return lambda parts: tuple(map(describe, parts))
     if kind is Ref:
-        return "ref"
+        return lambda _: "ref"
     if kind is UniformConstant:
-        return tuple(map(float, item.value)) if isinstance(item.value, tuple) else float(item.value)
-    if issubclass(kind, Struct):
-        return (kind.__name__, *(describe(getattr(item, name)) for name in identity_fields(kind)))
-    return item
+        return lambda item: _describe_floats(item.value) if isinstance(item.value, tuple) else float(item.value)
+    if kind not in _PLAIN and issubclass(kind, Struct):
+        return _make_describer(kind)
+    return lambda item: item
+
+
+def _make_describer(kind: type[Struct]) -> Callable[[Any], object]:
+    """What describes values of a class, each field by its declared type.
+
+    A large graph has thousands of parameters to describe each time it is planned. So all fields are taken at once, and
+    only those are looked at that hold floats or other values: text and whole numbers stay as they are. Most floats have
+    their default; to say None for it is faster than to write the number.
+    """
+    hints, identity = get_type_hints(kind), identity_fields(kind)
+    excluded = [place for place, name in enumerate(kind.__struct_fields__) if name not in identity]
+    defaults = {field.name: field.default for field in structs.fields(kind)}
+    floats: list[tuple[int, object]] = []
+    others: list[tuple[int, Callable[[Any], object]]] = []
+    for place, name in enumerate(kind.__struct_fields__):
+        if hints[name] is float:
+            floats.append((place, defaults[name]))
+        elif name in identity and not _is_plain(hints[name]):
+            others.append((place, _describe_floats if _is_float_tuple(hints[name]) else describe))
+
+    def describe_fields(item: Struct) -> object:
+        fields: list[Any] = [kind.__name__, *structs.astuple(item)]
+        for place in excluded:
+            fields[place + 1] = None
+        for place, default in floats:
+            number = fields[place + 1]
+            fields[place + 1] = None if number == default else number + 0.0
+        for place, describe_value in others:
+            fields[place + 1] = describe_value(fields[place + 1])
+        return fields
+
+    return describe_fields
+
+
+def _describe_floats(numbers: tuple[float, ...]) -> tuple[float, ...]:
+    return tuple(map(_ADD_ZERO, numbers))
+
+
+def _is_plain(hint: Any) -> bool:
+    """True for a type of values whose repr says all of them."""
+    if get_origin(hint) is tuple:
+        return all(map(_is_plain, get_args(hint)))
+    return (
+        hint in _PLAIN
+        or hint is ...
+        or get_origin(hint) is Literal
+        or (isinstance(hint, type) and issubclass(hint, Enum))
+    )
+
+
+def _is_float_tuple(hint: Any) -> bool:
+    return get_origin(hint) is tuple and set(get_args(hint)) <= {float, ...}
 
 
 @cache

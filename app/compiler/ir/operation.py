@@ -96,7 +96,7 @@ class Op(Record, frozen=True):
     @property
     def tables(self) -> tuple[Table, ...]:
         """The tables that it reads through samplers of their own."""
-        return tuple(table for program in self.color_programs for table in program.tables)
+        return ()
 
     @property
     def mesh_drawn(self) -> Mesh | None:

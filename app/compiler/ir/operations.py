@@ -12,7 +12,7 @@ from halation.nodes import Affine, Edge, ShaderText, Size
 from msgspec.structs import replace
 
 from ...custom_nodes import unprefixed
-from ...resources.color_program import ColorProgram
+from ...resources.color_program import ColorProgram, Table
 from ...resources.mesh import Mesh
 from ...resources.picture import Picture
 from ..areas import Region, Span, inside
@@ -173,6 +173,10 @@ class ColorCall(Call, frozen=True, kw_only=True):
     @property
     def color_programs(self) -> tuple[ColorProgram, ...]:
         return (self.program,)
+
+    @property
+    def tables(self) -> tuple[Table, ...]:
+        return self.program.tables
 
     def find_uniforms(self, library: Library) -> frozenset[str]:
         return frozenset()

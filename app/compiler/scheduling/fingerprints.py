@@ -33,7 +33,7 @@ class PassFingerprints:
 
     def __init__(self, program: LoweredProgram, library: Library, target: Target, formats: Mapping[Ref, str]) -> None:
         self._program, self._library, self._formats = program, library, formats
-        self._device = (target.form, target.rounds_halves)
+        self._target = target
         self._uniforms = {"proxy": program.scale, "frame": program.frame}
         self._descriptions: dict[int, str] = {}
 
@@ -50,8 +50,10 @@ class PassFingerprints:
             parts += (self._describe(index, op), *(places[ref] for ref in op.reads()))
             for output in range(op.outputs):
                 places[Ref(index, output)] = len(places)
+        target, root = self._target, ops[group.root]
         return hash_parts(
-            self._device,
+            "fragment" if root.is_fragment_only else target.form,
+            target.rounds_halves,
             *parts,
             *(places[ref] for ref in group.writes),
             *self._describe_textures((*group.reads, *group.writes)),

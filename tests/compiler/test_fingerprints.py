@@ -11,7 +11,7 @@ from halation.compiler.fusion.fuse import fuse
 from halation.compiler.fusion.rewrites import rewritten
 from halation.compiler.ir import ExternalProgram, Raster
 from halation.compiler.lowering.lower import lower
-from halation.compiler.scheduling.keys import Marks
+from halation.compiler.scheduling.fingerprints import PassFingerprints
 from halation.compiler.scheduling.schedule import formats
 from halation.errors import HalationError
 from halation.glsl import parse
@@ -44,10 +44,10 @@ def told(graph: Graph, target=NULL, library: Library | None = None, frame: int =
         return {}
     passes = rewritten(program, fuse(program, target), target, library)
     texels = formats(program, passes, target, "half", frozenset())
-    marks = Marks(program, library, target, texels)
+    fingerprints = PassFingerprints(program, library, target, texels)
     for fused in passes:
         whole = emit(program, fused, library, target, texels)
-        for one, mark in marks.of(fused, whole):
+        for one, mark in fingerprints.of(fused):
             root = program.ops[one.root]
             alone = whole if one is fused else emit(program, one, library, target, texels)
             drawn = (
