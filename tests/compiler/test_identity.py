@@ -38,7 +38,7 @@ from halation.compiler.ir import (
 from halation.compiler.scheduling.fingerprints import PassFingerprints, find_keys
 from halation.glsl import parse
 from halation.nodes import Kind, ShaderText, Stage
-from halation.resources.color_program import ColorProgram, Table
+from halation.resources.color_program import ColorProgram, LookupTable
 from halation.resources.mesh import Mesh
 from halation.resources.picture import Picture
 from msgspec import Struct
@@ -56,7 +56,7 @@ CHOICES = (("mode", ("a", "b")),)
 AROUND = Around((1.0, 0.0, 0.0, 0.0, 1.0, 0.0), (2.0, 2.0))
 ACCESSORS = (Accessor("image", "vec4", Ref(0), AROUND), Accessor("mask", "float", UniformConstant(1.0), AROUND))
 PROGRAM = ColorProgram(
-    "color_change", parse("color", "vec4 color_change(vec4 c) { return c; }"), (Table("t", True, 0),)
+    "color_change", parse("color", "vec4 color_change(vec4 c) { return c; }"), (LookupTable("t", True, 0),)
 )
 TEXT = ShaderText(Stage("head", "text", "tail", "a.fs"), Stage("head", "text", "tail", "a.vs"))
 

@@ -29,7 +29,7 @@ FLOORS = (
 """Parts of the machine from the ground up. `__init__` is the public face of the engine: it stands on the renderer."""
 
 ROOMS = {
-    "compiler": ("lowering", "fusion", "codegen", "scheduling", "tiling"),
+    "compiler": ("ir", "lowering", "fusion", "codegen", "scheduling", "tiling"),
     "renderer": ("opengl", "execution", "viewing", "jobs", "provenance"),
 }
 """Folders of a floor, first to last. What lies beside them is what all of them speak of, or puts them together."""

@@ -45,7 +45,7 @@ def _find_describer(kind: type[Any]) -> Callable[[Any], object]:
     if kind is Ref:
         return lambda _: "ref"
     if kind is UniformConstant:
-        return lambda item: _describe_floats(item.value) if isinstance(item.value, tuple) else float(item.value)
+        return _describe_constant
     if kind not in _PLAIN and issubclass(kind, Struct):
         return _make_describer(kind)
     return lambda item: item
@@ -81,6 +81,10 @@ def _make_describer(kind: type[Struct]) -> Callable[[Any], object]:
         return fields
 
     return describe_fields
+
+
+def _describe_constant(constant: UniformConstant) -> object:
+    return _describe_floats(constant.value) if isinstance(constant.value, tuple) else float(constant.value)
 
 
 def _describe_floats(numbers: tuple[float, ...]) -> tuple[float, ...]:

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from halation.nodes import Size
 
-from ...resources.color_program import ColorProgram, Table
+from ...resources.color_program import ColorProgram, LookupTable
 from ...resources.mesh import Mesh
 from ...resources.picture import Picture
 from ...resources.record import Record
@@ -94,7 +94,7 @@ class Op(Record, frozen=True):
         return ()
 
     @property
-    def tables(self) -> tuple[Table, ...]:
+    def tables(self) -> tuple[LookupTable, ...]:
         """The tables that it reads through samplers of their own."""
         return ()
 

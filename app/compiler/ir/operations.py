@@ -12,7 +12,7 @@ from halation.nodes import Affine, Edge, ShaderText, Size
 from msgspec.structs import replace
 
 from ...custom_nodes import unprefixed
-from ...resources.color_program import ColorProgram, Table
+from ...resources.color_program import ColorProgram, LookupTable
 from ...resources.mesh import Mesh
 from ...resources.picture import Picture
 from ..areas import Region, Span, inside
@@ -175,7 +175,7 @@ class ColorCall(Call, frozen=True, kw_only=True):
         return (self.program,)
 
     @property
-    def tables(self) -> tuple[Table, ...]:
+    def tables(self) -> tuple[LookupTable, ...]:
         return self.program.tables
 
     def find_uniforms(self, library: Library) -> frozenset[str]:
