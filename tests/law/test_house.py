@@ -17,6 +17,7 @@ ROOT = Path(__file__).parents[2]
 ENTRIES = {
     ".ci",
     ".git",
+    ".git-blame-ignore-revs",
     ".gitignore",
     "LICENSE",
     "README.md",

@@ -60,7 +60,7 @@ def test_the_floor_plan_lists_every_room() -> None:
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_files_and_folders_that_a_page_names_exist(page: Path) -> None:
     text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.S)
-    paths = set(re.findall(r"(?<![\w./-])(?:docs|presets|tests|nodes|shaders|app)/[\w/-]+(?:\.\w+)?", text))
+    paths = set(re.findall(r"(?<![\w./-])(?:docs|presets|tests|nodes|shaders|app)/[\w/-]+(?:\.\w+)?(?![\w<])", text))
     assert not {path for path in paths if not (ROOT / path).exists()}
     links = set(re.findall(r"\]\((?!https?:|#)([^)#]+)", re.sub(r"`[^`]*`", "", text)))
     assert not {link for link in links if not (page.parent / link).exists()}
