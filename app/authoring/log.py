@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import traceback
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from time import time
-from typing import Literal
+from typing import Literal, TypeVar
 
+from ..errors import HalationError
+
+T = TypeVar("T")
 Level = Literal["info", "warning", "error"]
 
 KEPT = 500
@@ -37,6 +42,24 @@ class Log:
         if newest and (newest.sentence, newest.level, newest.detail) == (sentence, level, detail):
             self.entries.pop()
         self.entries.append(Entry(sentence, level, detail))
+
+    def attempt(self, act: Callable[[], T], default: T | None = None) -> T | None:
+        """Do something that the user asked for; what goes wrong becomes an entry, and `default` is returned.
+
+        A HalationError is a mistake that its sentence explains. Any other exception is a fault of the program.
+        """
+        try:
+            return act()
+        except HalationError as error:
+            self.add(str(error), "error")
+        except Exception as error:
+            self.add(
+                f"this did not work because of a fault in Halation ({type(error).__name__}: {error}); "
+                "the document is as it was before",
+                "error",
+                traceback.format_exc(),
+            )
+        return default
 
     def toasts(self) -> tuple[Entry, ...]:
         """What was said just now."""

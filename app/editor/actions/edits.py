@@ -7,36 +7,36 @@ from typing import TYPE_CHECKING
 from ..shared.action import Action
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import EditContext
 
 
-def _some(editor: Editor) -> bool:
-    return bool(editor.session.selection)
+def _some(context: EditContext) -> bool:
+    return bool(context.session.selection)
 
 
 EDITS: tuple[Action, ...] = (
     Action(
         "edit.undo",
         "Undo",
-        lambda e: e.session.undo(),
+        lambda context: context.session.undo(),
         "Edit",
         "Ctrl+Z",
-        enabled=lambda e: e.session.history.can_undo,
+        enabled=lambda context: context.session.history.can_undo,
         repeats=True,
     ),
     Action(
         "edit.redo",
         "Redo",
-        lambda e: e.session.redo(),
+        lambda context: context.session.redo(),
         "Edit",
         "Ctrl+Shift+Z",
-        enabled=lambda e: e.session.history.can_redo,
+        enabled=lambda context: context.session.history.can_redo,
         repeats=True,
     ),
     Action(
         "edit.cut",
         "Cut",
-        lambda e: e.clipboard.put(e.session.cut_out()),
+        lambda context: context.clipboard.put(context.session.cut_out()),
         "Edit",
         "Ctrl+X",
         "graph",
@@ -47,7 +47,7 @@ EDITS: tuple[Action, ...] = (
     Action(
         "edit.copy",
         "Copy",
-        lambda e: e.clipboard.put(e.session.copy()),
+        lambda context: context.clipboard.put(context.session.copy()),
         "Edit",
         "Ctrl+C",
         "graph",
@@ -57,7 +57,7 @@ EDITS: tuple[Action, ...] = (
     Action(
         "edit.paste",
         "Paste",
-        lambda e: e.session.paste(e.clipboard.get(), e.canvas.pointer),
+        lambda context: context.session.paste(context.clipboard.get(), context.canvas.pointer),
         "Edit",
         "Ctrl+V",
         "graph",
@@ -66,7 +66,7 @@ EDITS: tuple[Action, ...] = (
     Action(
         "edit.duplicate",
         "Duplicate",
-        lambda e: e.session.duplicate(),
+        lambda context: context.session.duplicate(),
         "Edit",
         "Ctrl+D",
         "graph",
@@ -76,7 +76,7 @@ EDITS: tuple[Action, ...] = (
     Action(
         "edit.delete",
         "Delete",
-        lambda e: e.session.delete(),
+        lambda context: context.session.delete(),
         "Edit",
         "Delete",
         "graph",
@@ -87,21 +87,41 @@ EDITS: tuple[Action, ...] = (
     Action(
         "edit.delete_break",
         "Delete and Break Links",
-        lambda e: e.session.delete(heal=False),
+        lambda context: context.session.delete(heal=False),
         "Edit",
         "Shift+Delete",
         "graph",
         _some,
     ),
     Action(
-        "select.all", "Select All", lambda e: e.session.select_all(), "Edit/Select", "Ctrl+A", "graph", separated=True
+        "select.all",
+        "Select All",
+        lambda context: context.session.select_all(),
+        "Edit/Select",
+        "Ctrl+A",
+        "graph",
+        separated=True,
     ),
-    Action("select.none", "Select None", lambda e: e.session.select_none(), "Edit/Select", "Ctrl+Shift+A", "graph"),
-    Action("select.invert", "Invert Selection", lambda e: e.session.select_inverse(), "Edit/Select", "Ctrl+I", "graph"),
+    Action(
+        "select.none",
+        "Select None",
+        lambda context: context.session.select_none(),
+        "Edit/Select",
+        "Ctrl+Shift+A",
+        "graph",
+    ),
+    Action(
+        "select.invert",
+        "Invert Selection",
+        lambda context: context.session.select_inverse(),
+        "Edit/Select",
+        "Ctrl+I",
+        "graph",
+    ),
     Action(
         "select.upstream",
         "Select Upstream",
-        lambda e: e.session.select_upstream(),
+        lambda context: context.session.select_upstream(),
         "Edit/Select",
         "Shift+U",
         "graph",
@@ -112,7 +132,7 @@ EDITS: tuple[Action, ...] = (
     Action(
         "select.downstream",
         "Select Downstream",
-        lambda e: e.session.select_downstream(),
+        lambda context: context.session.select_downstream(),
         "Edit/Select",
         "Shift+D",
         "graph",
@@ -121,12 +141,18 @@ EDITS: tuple[Action, ...] = (
         doc="Everything that what is selected feeds.",
     ),
     Action(
-        "select.linked", "Select Linked", lambda e: e.session.select_linked(), "Edit/Select", "Shift+L", "graph", _some
+        "select.linked",
+        "Select Linked",
+        lambda context: context.session.select_linked(),
+        "Edit/Select",
+        "Shift+L",
+        "graph",
+        _some,
     ),
     Action(
         "edit.preferences",
         "Preferences...",
-        lambda e: e.dialogs.open.add("preferences"),
+        lambda context: context.dialogs.open.add("preferences"),
         "Edit",
         "Ctrl+Comma",
         separated=True,

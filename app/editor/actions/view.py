@@ -7,28 +7,28 @@ from typing import TYPE_CHECKING
 from ..shared.action import Act, Action, Ask
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import ViewSettingsContext
 
 
 def _toggle(name: str) -> Act:
-    def toggle(editor: Editor) -> None:
-        editor.store.change(**{name: not getattr(editor.store.now, name)})
+    def toggle(context: ViewSettingsContext) -> None:
+        context.store.change(**{name: not getattr(context.store.now, name)})
 
     return toggle
 
 
 def _shown(name: str) -> Ask:
-    return lambda editor: bool(getattr(editor.store.now, name))
+    return lambda context: bool(getattr(context.store.now, name))
 
 
-def _theme(editor: Editor) -> None:
-    editor.store.change(theme="light" if editor.store.now.theme == "dark" else "dark")
+def _theme(context: ViewSettingsContext) -> None:
+    context.store.change(theme="light" if context.store.now.theme == "dark" else "dark")
 
 
 def _scale(step: float) -> Act:
-    def scale(editor: Editor) -> None:
-        now = editor.store.now.ui_scale or 1.0
-        editor.store.change(ui_scale=min(max(round(now + step, 2), 0.75), 3.0))
+    def scale(context: ViewSettingsContext) -> None:
+        now = context.store.now.ui_scale or 1.0
+        context.store.change(ui_scale=min(max(round(now + step, 2), 0.75), 3.0))
 
     return scale
 
@@ -39,12 +39,21 @@ VIEW: tuple[Action, ...] = (
         "view.timings", "Time and Memory", _toggle("timings"), "View", "Shift+T", "graph", checked=_shown("timings")
     ),
     Action("view.minimap", "Overview", _toggle("minimap"), "View", checked=_shown("minimap")),
-    Action("view.theme", "Light Theme", _theme, "View", checked=lambda e: e.store.now.theme == "light", separated=True),
+    Action(
+        "view.theme",
+        "Light Theme",
+        _theme,
+        "View",
+        checked=lambda context: context.store.now.theme == "light",
+        separated=True,
+    ),
     Action("view.larger", "Larger Interface", _scale(0.25), "View", "Ctrl+Equal"),
     Action("view.smaller", "Smaller Interface", _scale(-0.25), "View", "Ctrl+Minus"),
-    Action("view.reset_layout", "Reset Panels", lambda e: e.requests.add("reset layout"), "View", separated=True),
-    Action("view.screenshot", "Save a Screenshot...", lambda e: e.requests.add("screenshot"), "View"),
-    Action("help.palette", "Command Palette...", lambda e: e.dialogs.open.add("palette"), "Help", "Ctrl+P"),
-    Action("help.shortcuts", "Shortcuts", lambda e: e.dialogs.toggle("shortcuts"), "Help", "F1"),
-    Action("help.about", "About Halation", lambda e: e.dialogs.open.add("about"), "Help"),
+    Action(
+        "view.reset_layout", "Reset Panels", lambda context: context.commands.reset_layout(), "View", separated=True
+    ),
+    Action("view.screenshot", "Save a Screenshot...", lambda context: context.commands.save_screenshot(), "View"),
+    Action("help.palette", "Command Palette...", lambda context: context.dialogs.open.add("palette"), "Help", "Ctrl+P"),
+    Action("help.shortcuts", "Shortcuts", lambda context: context.dialogs.toggle("shortcuts"), "Help", "F1"),
+    Action("help.about", "About Halation", lambda context: context.dialogs.open.add("about"), "Help"),
 )

@@ -20,7 +20,7 @@ from .listing import make_folder
 from .places import PlaceKind, completed
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import BrowserContext
 
 PLACE_ICONS: dict[PlaceKind, str] = {
     "home": icons.ICON_FA_HOUSE,
@@ -34,9 +34,10 @@ PLACE_ICONS: dict[PlaceKind, str] = {
 class FileBrowser:
     """Places, a path that can be typed, a list or a grid; letters filter, arrows choose, Enter opens, Escape closes."""
 
-    def __init__(self) -> None:
+    def __init__(self, context: BrowserContext) -> None:
+        self._context = context
         self._now: Browsing | None = None
-        self._table, self._grid = FileTable(), FileGrid()
+        self._table, self._grid = FileTable(context), FileGrid(context)
         self._as_grid = True
         self._path = ""
         self._new = ""
@@ -48,56 +49,56 @@ class FileBrowser:
         """End what runs beside the window."""
         self._grid.close()
 
-    def draw(self, editor: Editor) -> None:
+    def draw(self) -> None:
         """Draw over everything, if a file is wanted."""
-        browse = editor.dialogs.browse
+        browse = self._context.dialogs.browse
         if browse is None:
             self._now = None
             return
         if self._now is None or self._now.browse is not browse:
-            self._now, self._naming, self._focus = begun(editor, browse), False, "field"
+            self._now, self._naming, self._focus = begun(self._context, browse), False, "field"
             self._path = str(self._now.folder)
         now = self._now
         now.poll()
-        backdrop(editor, "files")
-        with dialog(editor, "Files", (940, 620)):
-            self._top(editor, now)
+        backdrop(self._context, "files")
+        with dialog(self._context, "Files", (940, 620)):
+            self._top(now)
             foot = 2 * imgui.get_frame_height_with_spacing() + 4 * ui_scale()
             height = imgui.get_content_region_avail().y - foot
-            self._places(editor, now, height)
+            self._places(now, height)
             imgui.same_line()
             framed, still = imgui.ChildFlags_.borders.value, imgui.WindowFlags_.no_nav.value
             imgui.begin_child("files", ImVec2(0, height), framed, still)
-            self._files(editor, now)
+            self._files(now)
             imgui.end_child()
-            self._bottom(editor, now)
-            if escaped() and editor.dialogs.question is None:
-                editor.dialogs.browse = None
+            self._bottom(now)
+            if escaped() and self._context.dialogs.question is None:
+                self._context.dialogs.browse = None
 
-    def _top(self, editor: Editor, now: Browsing) -> None:
-        with font(editor, "bold", 18.0):
+    def _top(self, now: Browsing) -> None:
+        with font(self._context, "bold", 18.0):
             imgui.text_unformatted(now.browse.title)
-        if quiet(editor, icons.ICON_FA_ARROW_UP, "folder up", "The folder around this one (Backspace)"):
+        if quiet(self._context, icons.ICON_FA_ARROW_UP, "folder up", "The folder around this one (Backspace)"):
             self._go(now, now.folder.parent)
         imgui.same_line()
         shown = (icons.ICON_FA_FOLDER_PLUS, icons.ICON_FA_EYE, icons.ICON_FA_LIST)
         buttons = room_for(*shown) + imgui.get_style().item_spacing.x
         imgui.set_next_item_width(imgui.get_content_region_avail().x - buttons)
         entered, self._path = imgui.input_text("##path", self._path, int(imgui.InputTextFlags_.enter_returns_true))
-        record(editor, "path field")
+        record(self._context, "path field")
         self._elsewhere = imgui.is_item_active() or imgui.is_item_deactivated()
         if entered:
             self._typed(now)
         imgui.same_line()
-        if quiet(editor, icons.ICON_FA_FOLDER_PLUS, "new folder", "New folder"):
+        if quiet(self._context, icons.ICON_FA_FOLDER_PLUS, "new folder", "New folder"):
             self._naming, self._new, self._focus = True, "", "folder"
         imgui.same_line()
         eye = icons.ICON_FA_EYE if now.hidden else icons.ICON_FA_EYE_SLASH
-        if quiet(editor, eye, "hidden files", "Hide hidden files" if now.hidden else "Show hidden files"):
+        if quiet(self._context, eye, "hidden files", "Hide hidden files" if now.hidden else "Show hidden files"):
             now.hidden = not now.hidden
         imgui.same_line()
         other = icons.ICON_FA_LIST if self._as_grid else icons.ICON_FA_TABLE_CELLS_LARGE
-        if quiet(editor, other, "list or grid", "As a list" if self._as_grid else "As pictures"):
+        if quiet(self._context, other, "list or grid", "As a list" if self._as_grid else "As pictures"):
             self._as_grid = not self._as_grid
 
     def _typed(self, now: Browsing) -> None:
@@ -113,7 +114,7 @@ class FileBrowser:
         now.go(completed(str(folder), now.folder))
         self._path, self._focus = str(now.folder), "field"
 
-    def _places(self, editor: Editor, now: Browsing, height: float) -> None:
+    def _places(self, now: Browsing, height: float) -> None:
         imgui.begin_child("places", ImVec2(176 * ui_scale(), height), 0, int(imgui.WindowFlags_.no_nav))
         for index, place in enumerate(now.offered):
             room = imgui.get_content_region_avail().x - 30 * ui_scale()
@@ -121,27 +122,27 @@ class FileBrowser:
             if imgui.selectable(label, place.path == now.folder)[0]:
                 self._go(now, place.path)
             tip(str(place.path))
-            record(editor, f"place {place.title}")
+            record(self._context, f"place {place.title}")
         imgui.end_child()
 
-    def _files(self, editor: Editor, now: Browsing) -> None:
+    def _files(self, now: Browsing) -> None:
         if self._naming:
-            self._name_folder(editor, now)
+            self._name_folder(now)
         if now.listing.fault:
-            wrapped(editor.palette.error, now.listing.fault)
+            wrapped(self._context.palette.error, now.listing.fault)
             return
         items = now.items
         if not items:
             nothing = "Nothing here is called that." if now.query else "Nothing here to choose."
-            dim(editor, "Reading..." if now.listing.busy else nothing)
+            dim(self._context, "Reading..." if now.listing.busy else nothing)
             return
         shape = self._grid if self._as_grid and now.browse.purpose == "image" else self._table
-        done = shape.draw(editor, now)
+        done = shape.draw(now)
         self._steer(now, shape.columns)
         if done:
-            self._enter(editor, now)
+            self._enter(now)
 
-    def _name_folder(self, editor: Editor, now: Browsing) -> None:
+    def _name_folder(self, now: Browsing) -> None:
         if self._focus == "folder":
             imgui.set_keyboard_focus_here()
             self._focus = ""
@@ -149,11 +150,11 @@ class FileBrowser:
         entered, self._new = imgui.input_text_with_hint(
             "##new", "Name of the new folder", self._new, int(imgui.InputTextFlags_.enter_returns_true)
         )
-        record(editor, "new folder name")
+        record(self._context, "new folder name")
         self._elsewhere = True
         if entered:
             self._naming, self._focus = False, "field"
-            made = editor.attempt(lambda: make_folder(now.folder, self._new))
+            made = self._context.log.attempt(lambda: make_folder(now.folder, self._new))
             if made:
                 self._go(now, made)
         elif imgui.is_item_deactivated():
@@ -176,8 +177,8 @@ class FileBrowser:
             now.choose(min(max(now.chosen + step, 0), len(now.items) - 1))
             self._table.reveal = self._grid.reveal = True
 
-    def _bottom(self, editor: Editor, now: Browsing) -> None:
-        free = not imgui.is_any_item_active() and not self._naming and editor.dialogs.question is None
+    def _bottom(self, now: Browsing) -> None:
+        free = not imgui.is_any_item_active() and not self._naming and self._context.dialogs.question is None
         if self._focus == "field" or free:
             imgui.set_keyboard_focus_here()
             self._focus = ""
@@ -191,50 +192,50 @@ class FileBrowser:
             changed, query = imgui.input_text_with_hint("##query", "Type to find", now.query)
             if changed:
                 now.search(query)
-        record(editor, "file field")
-        if not self._elsewhere and editor.dialogs.question is None:
+        record(self._context, "file field")
+        if not self._elsewhere and self._context.dialogs.question is None:
             if imgui.is_key_pressed(imgui.Key.backspace, False) and empty and not now.browse.saving:
                 self._go(now, now.folder.parent)
             if any(imgui.is_key_pressed(key, False) for key in (imgui.Key.enter, imgui.Key.keypad_enter)):
-                self._enter(editor, now)
-        self._buttons(editor, now)
+                self._enter(now)
+        self._buttons(now)
 
-    def _buttons(self, editor: Editor, now: Browsing) -> None:
+    def _buttons(self, now: Browsing) -> None:
         verb = "Save" if now.browse.saving else "Open"
         target = now.target
         imgui.align_text_to_frame_padding()
         counted = f"{len(now.items)} items" if target is None else elided(str(target), 560 * ui_scale())
-        dim(editor, counted)
+        dim(self._context, counted)
         right_aligned("Cancel", f"    {verb}    ")
         if imgui.button("Cancel"):
-            editor.dialogs.browse = None
-        record(editor, "cancel file")
+            self._context.dialogs.browse = None
+        record(self._context, "cancel file")
         imgui.same_line()
         can = target is not None or (now.item is not None and now.item.is_folder)
-        if main_button(editor, f"    {verb}    ", "choose file", enabled=can):
-            self._enter(editor, now)
+        if main_button(self._context, f"    {verb}    ", "choose file", enabled=can):
+            self._enter(now)
 
-    def _enter(self, editor: Editor, now: Browsing) -> None:
+    def _enter(self, now: Browsing) -> None:
         """Open the folder that is chosen, or answer with the file."""
         item, target = now.item, now.target
         if item and item.is_folder:
             self._go(now, now.folder / item.name)
             return
-        if target is None or editor.dialogs.question is not None:
+        if target is None or self._context.dialogs.question is not None:
             return
-        answer = partial(_answer, editor, now, target)
+        answer = partial(_answer, self._context, now, target)
         if not now.browse.saving or not target.exists():
             answer()
             return
-        editor.dialogs.question = Question(
+        self._context.dialogs.question = Question(
             "Replace the file?",
             f"{target.name} is already in {target.parent.name or target.parent}.",
             (("Replace", answer), ("Cancel", lambda: None)),
         )
 
 
-def _answer(editor: Editor, now: Browsing, target: object) -> None:
+def _answer(context: BrowserContext, now: Browsing, target: object) -> None:
     path = now.folder / str(target)
-    editor.dialogs.browse = None
-    editor.attempt(lambda: editor.store.used(now.browse.purpose, path))
-    editor.attempt(lambda: now.browse.then(path))
+    context.dialogs.browse = None
+    context.log.attempt(lambda: context.store.used(now.browse.purpose, path))
+    context.log.attempt(lambda: now.browse.then(path))

@@ -16,7 +16,7 @@ from .listing import Item, Listing, Order
 from .places import Place, places
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import BrowserContext
 
 
 @dataclass
@@ -94,14 +94,14 @@ class Browsing:
         return self.folder / self.item.name if self.item and not self.item.is_folder else None
 
 
-def begun(editor: Editor, browse: Browse) -> Browsing:
+def begun(context: BrowserContext, browse: Browse) -> Browsing:
     """Start in the folder that was used last for this, else where the document is."""
-    path = editor.session.path
+    path = context.session.path
     own = path.absolute().parent if path else None
-    last = editor.store.folder(browse.purpose)
+    last = context.store.folder(browse.purpose)
     start = own if browse.saving and browse.purpose == "graph" and own else Path(last) if last else own or Path.home()
-    recent = tuple(dict.fromkeys(Path(one.path).parent for one in editor.store.now.recent))[:4]
-    used = tuple(Path(folder) for folder in editor.store.now.folders.values())
+    recent = tuple(dict.fromkeys(Path(one.path).parent for one in context.store.now.recent))[:4]
+    used = tuple(Path(folder) for folder in context.store.now.folders.values())
     made = Browsing(browse, start, endings(browse), places(own, recent, used), browse.name)
     made.listing.show(start)
     return made

@@ -18,7 +18,7 @@ from .browsing import Browsing, size_text, time_text
 from .listing import Item, Order
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import BrowserContext
 
 _ORDERS: tuple[Order, ...] = ("name", "size", "time")
 _CELL, _PICTURE = (168.0, 128.0), (152.0, 88.0)
@@ -29,10 +29,11 @@ class FileTable:
 
     columns = 1
 
-    def __init__(self) -> None:
+    def __init__(self, context: BrowserContext) -> None:
+        self._context = context
         self.reveal = False
 
-    def draw(self, editor: Editor, now: Browsing) -> bool:
+    def draw(self, now: Browsing) -> bool:
         """True if an item was double-clicked."""
         flags = int(imgui.TableFlags_.sortable) | int(imgui.TableFlags_.scroll_y) | int(imgui.TableFlags_.row_bg)
         if not imgui.begin_table("table", 3, flags):
@@ -52,12 +53,12 @@ class FileTable:
         while clipper.step():
             for index in range(clipper.display_start, clipper.display_end):
                 imgui.table_next_row()
-                done = self._row(editor, now, index, items[index]) or done
+                done = self._row(now, index, items[index]) or done
         clipper.end()
         imgui.end_table()
         return done
 
-    def _row(self, editor: Editor, now: Browsing, index: int, item: Item) -> bool:
+    def _row(self, now: Browsing, index: int, item: Item) -> bool:
         imgui.table_next_column()
         icon = icons.ICON_FA_FOLDER if item.is_folder else _icon(item.name)
         flags = int(imgui.SelectableFlags_.span_all_columns) | int(imgui.SelectableFlags_.allow_double_click)
@@ -67,21 +68,22 @@ class FileTable:
         if imgui.selectable(f"{icon}  {elided(item.name, room)}##{index}", chosen, flags)[0]:
             now.choose(index)
             done = imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
-        record(editor, f"file {item.name}")
+        record(self._context, f"file {item.name}")
         if chosen and self.reveal:
             imgui.internal.scroll_to_item()
             self.reveal = False
         imgui.table_next_column()
-        dim(editor, "" if item.is_folder else size_text(item.size))
+        dim(self._context, "" if item.is_folder else size_text(item.size))
         imgui.table_next_column()
-        dim(editor, time_text(item.time))
+        dim(self._context, time_text(item.time))
         return done
 
 
 class FileGrid:
     """Pictures with their names; those that are visible are decoded beside the window."""
 
-    def __init__(self) -> None:
+    def __init__(self, context: BrowserContext) -> None:
+        self._context = context
         self.reveal = False
         self.columns = 1
         self._pictures: Pictures | None = None
@@ -93,10 +95,10 @@ class FileGrid:
             self._pictures.close()
         self._textures.clear()
 
-    def draw(self, editor: Editor, now: Browsing) -> bool:
+    def draw(self, now: Browsing) -> bool:
         """True if an item was double-clicked."""
         if self._pictures is None:
-            self._pictures = Pictures(editor.store.file.parent / "thumbnails")
+            self._pictures = Pictures(self._context.store.file.parent / "thumbnails")
         scale, items, done = ui_scale(), now.items, False
         self.columns = max(int((imgui.get_content_region_avail().x - 16 * scale) / (_CELL[0] * scale)), 1)
         imgui.begin_child("grid")
@@ -110,19 +112,19 @@ class FileGrid:
                 for index in range(row * self.columns, min((row + 1) * self.columns, len(items))):
                     corner = ((index % self.columns) * _CELL[0], row * _CELL[1])
                     imgui.set_cursor_pos(ImVec2(start.x + corner[0] * scale, start.y + corner[1] * scale))
-                    done = self._cell(editor, now, index, items[index], self._pictures) or done
+                    done = self._cell(now, index, items[index], self._pictures) or done
         clipper.end()
         imgui.end_child()
         return done
 
-    def _cell(self, editor: Editor, now: Browsing, index: int, item: Item, pictures: Pictures) -> bool:
-        scale, palette = ui_scale(), editor.palette
+    def _cell(self, now: Browsing, index: int, item: Item, pictures: Pictures) -> bool:
+        scale, palette = ui_scale(), self._context.palette
         chosen = index == now.chosen
         size = ImVec2((_CELL[0] - 6) * scale, (_CELL[1] - 6) * scale)
         imgui.push_id(index)
         flags = int(imgui.SelectableFlags_.allow_double_click)
         clicked, _ = imgui.selectable("##cell", chosen, flags, size)
-        record(editor, f"file {item.name}")
+        record(self._context, f"file {item.name}")
         tip(f"{item.name}\n{size_text(item.size)}, {time_text(item.time)}")
         if chosen:
             outline(palette.accent)
@@ -130,7 +132,7 @@ class FileGrid:
                 imgui.internal.scroll_to_item()
                 self.reveal = False
         low = imgui.get_item_rect_min()
-        self._picture(editor, now.folder / item.name, item, low, pictures)
+        self._picture(now.folder / item.name, item, low, pictures)
         lines = imgui.get_window_draw_list()
         name = elided(item.name, _PICTURE[0] * scale)
         left = low.x + (size.x - imgui.calc_text_size(name).x) / 2
@@ -140,8 +142,8 @@ class FileGrid:
             now.choose(index)
         return clicked and imgui.is_mouse_double_clicked(imgui.MouseButton_.left)
 
-    def _picture(self, editor: Editor, path: Path, item: Item, low: ImVec2, pictures: Pictures) -> None:
-        scale, palette, lines = ui_scale(), editor.palette, imgui.get_window_draw_list()
+    def _picture(self, path: Path, item: Item, low: ImVec2, pictures: Pictures) -> None:
+        scale, palette, lines = ui_scale(), self._context.palette, imgui.get_window_draw_list()
         left, top = low.x + 5 * scale, low.y + 5 * scale
         width, height = _PICTURE[0] * scale, _PICTURE[1] * scale
         found = None if item.is_folder else pictures.get(path, item.time)
@@ -155,7 +157,7 @@ class FileGrid:
         icon = icons.ICON_FA_FOLDER if item.is_folder else icons.ICON_FA_BAN if broken else icons.ICON_FA_IMAGE
         size = 34 * scale
         color = palette.error if broken else palette.dim
-        font = editor.fonts.text if editor.fonts else imgui.get_font()
+        font = self._context.fonts.text if self._context.fonts else imgui.get_font()
         corner = ImVec2(left + (width - size) / 2, top + (height - size) / 2)
         lines.add_text(font, size, corner, u32(color, 0.7), icon)
         if broken and imgui.is_item_hovered():

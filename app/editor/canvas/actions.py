@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 from ...graph import Group
 from ..shared.action import Act, Action
 from ..shared.dialogs import Browse
-from ..workflows.documents import open_graph
 from .pictures import with_room
 from .view import Tool
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CanvasContext
 
 _SIDES = (
     ("left", "Left"),
@@ -27,63 +26,63 @@ _SIDES = (
 )
 
 
-def _some(editor: Editor) -> bool:
-    return bool(editor.session.selection)
+def _some(context: CanvasContext) -> bool:
+    return bool(context.session.selection)
 
 
-def _several(editor: Editor) -> bool:
-    return len(editor.session.selection) > 1
+def _several(context: CanvasContext) -> bool:
+    return len(context.session.selection) > 1
 
 
-def _node(editor: Editor) -> bool:
-    return editor.session.active in editor.session.graph.nodes
+def _node(context: CanvasContext) -> bool:
+    return context.session.active in context.session.graph.nodes
 
 
-def _group(editor: Editor) -> bool:
-    return isinstance(editor.session.graph.nodes.get(editor.session.active), Group)
+def _group(context: CanvasContext) -> bool:
+    return isinstance(context.session.graph.nodes.get(context.session.active), Group)
 
 
-def _borrowed_group(editor: Editor) -> bool:
-    item = editor.session.graph.nodes.get(editor.session.active)
+def _borrowed_group(context: CanvasContext) -> bool:
+    item = context.session.graph.nodes.get(context.session.active)
     return isinstance(item, Group) and bool(item.path)
 
 
-def _save_group(editor: Editor) -> None:
+def _save_group(context: CanvasContext) -> None:
     """Ask for a file, and let the group come from it from now on."""
-    id = editor.session.active
+    id = context.session.active
 
     def saved(path: Path) -> None:
-        editor.attempt(lambda: editor.session.save_group(id, path.with_suffix(".json"), link=True))
+        context.log.attempt(lambda: context.session.save_group(id, path.with_suffix(".json"), link=True))
 
-    editor.dialogs.browse = Browse("Save the group as", "graph", saved, saving=True, name=f"{id}.json")
+    context.dialogs.browse = Browse("Save the group as", "graph", saved, saving=True, name=f"{id}.json")
 
 
-def _open_group(editor: Editor) -> None:
-    item = editor.session.graph.nodes[editor.session.active]
+def _open_group(context: CanvasContext) -> None:
+    item = context.session.graph.nodes[context.session.active]
     assert isinstance(item, Group)
-    open_graph(editor, Path(editor.session.graph.folder, item.path))
+    context.documents.open_graph(Path(context.session.graph.folder, item.path))
 
 
-def _replace(editor: Editor) -> None:
-    editor.canvas.replacing = editor.session.active
+def _replace(context: CanvasContext) -> None:
+    context.canvas.replacing = context.session.active
 
 
-def _search(editor: Editor) -> None:
-    editor.canvas.searching = True
+def _search(context: CanvasContext) -> None:
+    context.canvas.searching = True
 
 
-def _frame(editor: Editor) -> None:
-    at = None if editor.session.selection else editor.canvas.pointer
-    editor.session.add_frame(at=at, sizes=editor.canvas.sizes)
+def _frame(context: CanvasContext) -> None:
+    at = None if context.session.selection else context.canvas.pointer
+    context.session.add_frame(at=at, sizes=context.canvas.sizes)
 
 
-def _rename(editor: Editor) -> None:
-    editor.canvas.renaming = editor.session.active
+def _rename(context: CanvasContext) -> None:
+    context.canvas.renaming = context.session.active
 
 
 def _tool(tool: Tool) -> Act:
-    def take(editor: Editor) -> None:
-        editor.canvas.tool = tool
+    def take(context: CanvasContext) -> None:
+        context.canvas.tool = tool
 
     return take
 
@@ -92,7 +91,7 @@ def _align(side: str, label: str) -> Action:
     return Action(
         f"align.{side.replace(' ', '_')}",
         label,
-        lambda e: e.session.align(side, e.canvas.sizes or {}),
+        lambda context: context.session.align(side, context.canvas.sizes or {}),
         "Graph/Align",
         scope="graph",
         enabled=_several,
@@ -104,7 +103,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "node.mute",
         "Mute",
-        lambda e: e.session.mute(),
+        lambda context: context.session.mute(),
         "Graph",
         "M",
         "graph",
@@ -116,7 +115,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "node.collapse",
         "Collapse",
-        lambda e: e.session.collapse(),
+        lambda context: context.session.collapse(),
         "Graph",
         "H",
         "graph",
@@ -126,7 +125,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "node.view",
         "View",
-        lambda e: e.session.view_node(e.session.active),
+        lambda context: context.session.view_node(context.session.active),
         "Graph",
         "V",
         "graph",
@@ -137,7 +136,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "node.view_b",
         "View as B",
-        lambda e: e.session.view_node(e.session.active, "B"),
+        lambda context: context.session.view_node(context.session.active, "B"),
         "Graph",
         "Shift+V",
         "graph",
@@ -148,7 +147,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "node.extract",
         "Extract from Chain",
-        lambda e: e.session.extract(),
+        lambda context: context.session.extract(),
         "Graph",
         "Alt+X",
         "graph",
@@ -159,7 +158,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "node.swap",
         "Swap Inputs",
-        lambda e: e.session.swap_inputs(e.session.active),
+        lambda context: context.session.swap_inputs(context.session.active),
         "Graph",
         "Alt+S",
         "graph",
@@ -180,7 +179,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "node.reset",
         "Reset Values",
-        lambda e: e.session.reset_all(e.session.active),
+        lambda context: context.session.reset_all(context.session.active),
         "Graph",
         enabled=_node,
         contexts=frozenset({"node"}),
@@ -192,7 +191,7 @@ GRAPH: tuple[Action, ...] = (
         "Graph",
         "F2",
         "graph",
-        lambda e: bool(e.session.active),
+        lambda context: bool(context.session.active),
         contexts=frozenset({"node"}),
     ),
     Action(
@@ -217,7 +216,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "group.make",
         "Group",
-        lambda e: e.session.make_group(),
+        lambda context: context.session.make_group(),
         "Graph",
         "Ctrl+G",
         "graph",
@@ -228,7 +227,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "group.ungroup",
         "Ungroup",
-        lambda e: e.session.ungroup(e.session.active),
+        lambda context: context.session.ungroup(context.session.active),
         "Graph",
         "Ctrl+Shift+G",
         "graph",
@@ -238,7 +237,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "group.enter",
         "Enter Group",
-        lambda e: e.session.enter(e.session.active),
+        lambda context: context.session.enter(context.session.active),
         "Graph",
         "Ctrl+Enter",
         "graph",
@@ -248,11 +247,11 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "group.leave",
         "Leave Group",
-        lambda e: e.session.leave(),
+        lambda context: context.session.leave(),
         "Graph",
         "Ctrl+Backspace",
         "graph",
-        lambda e: bool(e.session.place),
+        lambda context: bool(context.session.place),
         contexts=frozenset({"canvas"}),
     ),
     Action(
@@ -267,7 +266,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "group.local",
         "Make Group Local",
-        lambda e: e.session.make_local(e.session.active),
+        lambda context: context.session.make_local(context.session.active),
         "Graph",
         enabled=_borrowed_group,
         contexts=frozenset({"group"}),
@@ -289,7 +288,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "comment.add",
         "Comment",
-        lambda e: e.session.add_comment(e.canvas.pointer, ""),
+        lambda context: context.session.add_comment(context.canvas.pointer, ""),
         "Graph",
         "Shift+C",
         "graph",
@@ -298,7 +297,7 @@ GRAPH: tuple[Action, ...] = (
     Action(
         "layout.arrange",
         "Arrange",
-        lambda e: e.session.arrange(with_room(e)),
+        lambda context: context.session.arrange(with_room(context)),
         "Graph",
         "L",
         "graph",
@@ -308,7 +307,20 @@ GRAPH: tuple[Action, ...] = (
     ),
     *(_align(side, label) for side, label in _SIDES),
     Action(
-        "view.fit_all", "Fit All", lambda e: e.canvas.fit(), "Graph", "Home", "graph", contexts=frozenset({"canvas"})
+        "view.fit_all",
+        "Fit All",
+        lambda context: context.canvas.fit(),
+        "Graph",
+        "Home",
+        "graph",
+        contexts=frozenset({"canvas"}),
     ),
-    Action("view.fit_selection", "Fit Selection", lambda e: e.canvas.fit(e.session.selection), "Graph", "F", "graph"),
+    Action(
+        "view.fit_selection",
+        "Fit Selection",
+        lambda context: context.canvas.fit(context.session.selection),
+        "Graph",
+        "F",
+        "graph",
+    ),
 )

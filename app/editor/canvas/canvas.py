@@ -43,7 +43,7 @@ from .search import Search
 from .staging import Stage
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CanvasContext
 
 _HINTS = ("An empty graph", "Tab adds a node", "Drop an image or a graph file here")
 _ANY_TIME = int(imgui.HoveredFlags_.allow_when_blocked_by_active_item)
@@ -70,43 +70,44 @@ class Canvas:
 
     title = "Graph"
 
-    def __init__(self) -> None:
+    def __init__(self, context: CanvasContext) -> None:
+        self._context = context
         self._stage = Stage()
         self._scene: Scene | None = None
         self._staged: tuple[object, ...] = ()
         self._texts = Texts()
-        self._live = Live()
+        self._live = Live(context)
         self._mouse = Mouse()
-        self._search = Search()
-        self._menus = Menus()
-        self._naming = Naming()
-        self._minimap = Minimap()
-        self._legend = Legend()
-        self._places = Places()
+        self._search = Search(context)
+        self._menus = Menus(context)
+        self._naming = Naming(context)
+        self._minimap = Minimap(context)
+        self._legend = Legend(context)
+        self._places = Places(context)
         self._pictures = Pictures()
         self._hot = ""
         self._place: tuple[str, ...] = ()
         self._views: dict[tuple[str, ...], tuple[Point, float]] = {}
 
-    def draw(self, editor: Editor) -> None:
+    def draw(self) -> None:
         """Draw the graph at the session's place into the current window."""
-        fonts, view, scale = editor.fonts, editor.canvas, ui_scale()
+        fonts, view, scale = self._context.fonts, self._context.canvas, ui_scale()
         panel = _whole_window()
         area = panel[2] - panel[0], panel[3] - panel[1]
         if fonts is None or min(area) < 16:
             return
         imgui.set_scroll_x(0.0)
         imgui.set_scroll_y(0.0)
-        self._enter(editor)
-        scene = self._build(editor)
-        self._fit(editor, scene, (area[0] / scale, area[1] / scale))
+        self._enter()
+        scene = self._build()
+        self._fit(scene, (area[0] / scale, area[1] / scale))
         to = transform(panel, view.center, view.zoom * scale)
         low_seen, high_seen = to.to_canvas(*panel[:2]), to.to_canvas(*panel[2:])
         brush = Brush(
             imgui.get_window_draw_list(),
             to,
             view.zoom,
-            ink(editor.palette.name),
+            ink(self._context.palette.name),
             fonts,
             self._texts,
             (*low_seen, *high_seen),
@@ -119,25 +120,25 @@ class Canvas:
         imgui.pop_item_flag()
         view.hovered = imgui.is_window_hovered(_ANY_TIME)
         busy = imgui.is_any_item_active() and not imgui.is_item_active()
-        over = view.hovered and not busy and not self._blocked(editor, panel)
+        over = view.hovered and not busy and not self._blocked(panel)
         at = imgui.get_mouse_pos()
-        frame = Frame(editor, scene, to, panel, scale, over, to.to_canvas(at.x, at.y), (at.x, at.y))
+        frame = Frame(self._context, scene, to, panel, scale, over, to.to_canvas(at.x, at.y), (at.x, at.y))
         if view.hovered and not self._search.is_open:
             view.pointer = frame.at
         self._mouse.update(frame)
 
         paint_grid(brush, panel)
-        self._paint(editor, brush, frame)
-        self._around(editor, brush, frame)
+        self._paint(brush, frame)
+        self._around(brush, frame)
         brush.draw.pop_clip_rect()
         view.sizes = scene.sizes
-        self._places.record(editor, self._mouse.dragged.scene, brush)
+        self._places.record(self._mouse.dragged.scene, brush)
 
     # --- before painting ---------------------------------------------------------------------------------------------
 
-    def _enter(self, editor: Editor) -> None:
+    def _enter(self) -> None:
         """Every group keeps the view that someone had of it; a new one is seen whole."""
-        place, view = editor.session.place, editor.canvas
+        place, view = self._context.session.place, self._context.canvas
         if place == self._place:
             return
         self._views[self._place] = view.center, view.zoom
@@ -147,8 +148,8 @@ class Canvas:
         else:
             view.fit()
 
-    def _build(self, editor: Editor) -> Scene:
-        session, pictures = editor.session, self._pictures.of(editor)
+    def _build(self) -> Scene:
+        session, pictures = self._context.session, self._pictures.of(self._context)
         gesture = self._mouse.gesture
         opened = self._opened if isinstance(gesture, Link) else ""
         graph = session.graph_now
@@ -170,12 +171,12 @@ class Canvas:
 
     _over: Point = (0.0, 0.0)
 
-    def _fit(self, editor: Editor, scene: Scene, size: Point) -> None:
+    def _fit(self, scene: Scene, size: Point) -> None:
         """Bring into view what was asked for. It stays so until someone moves the view or changes the graph, even when
         the panel is resized or first pictures make nodes larger."""
-        view, last = editor.canvas, self._fitted
+        view, last = self._context.canvas, self._fitted
         if view.wanted is None:
-            untouched = last.view == (view.center, view.zoom) and last.graph is editor.session.root
+            untouched = last.view == (view.center, view.zoom) and last.graph is self._context.session.root
             if not untouched or (last.size == size and last.scene is scene):
                 return
             keys = last.keys
@@ -183,31 +184,31 @@ class Canvas:
             keys, view.wanted = view.wanted, None
         around = bounds(box.rect for key, box in scene.boxes.items() if not keys or key in keys)
         view.center, view.zoom = fitted(around, size) if around else ((0.0, 0.0), 1.0)
-        self._fitted = _Fitted(keys, (view.center, view.zoom), size, scene, editor.session.root)
+        self._fitted = _Fitted(keys, (view.center, view.zoom), size, scene, self._context.session.root)
 
     _fitted = _Fitted()
 
-    def _blocked(self, editor: Editor, panel: Rect) -> bool:
+    def _blocked(self, panel: Rect) -> bool:
         mouse = imgui.get_mouse_pos()
-        likes = editor.store.now
+        likes = self._context.store.now
         return any(
             holds(rect, mouse.x, mouse.y)
             for rect in (
                 self._minimap.rect(panel) if likes.minimap else None,
                 self._legend.rect(panel),
                 self._naming.rect,
-                editor.places.get("crumbs"),
+                self._context.places.get("crumbs"),
             )
             if rect
         )
 
     # --- painting ----------------------------------------------------------------------------------------------------
 
-    def _paint(self, editor: Editor, brush: Brush, frame: Frame) -> None:
-        scene, session, mouse = self._mouse.dragged.scene, editor.session, self._mouse
+    def _paint(self, brush: Brush, frame: Frame) -> None:
+        scene, session, mouse = self._mouse.dragged.scene, self._context.session, self._mouse
         self._over = frame.at
         hot = self._hot = self._found_hot(frame, scene)
-        now = moment(editor, brush.ink, mouse.gesture, hot)
+        now = moment(self._context, brush.ink, mouse.gesture, hot)
         if not session.graph.nodes:
             paint_hint(brush, frame.panel, _HINTS)
         visible = [box for box in scene.boxes.values() if overlap(box.rect, _grown(brush.seen, 32.0))]
@@ -215,8 +216,8 @@ class Canvas:
             if box.sort == "frame":
                 lit = mouse.hit.key == box.key or (isinstance(mouse.gesture, Resize) and mouse.gesture.key == box.key)
                 paint_frame(brush, box, entry(session.graph, box.key), box.key in session.selection, lit)
-        self._paint_wires(editor, brush, scene)
-        self._live.begin(editor)
+        self._paint_wires(brush, scene)
+        self._live.begin()
         for box in visible:
             if box.layout:
                 self._paint_node(brush, box, now, hot)
@@ -226,8 +227,8 @@ class Canvas:
             elif box.sort == "dot":
                 kind = next((wire.kind for wire in scene.wires if box.key in wire.stops), None)
                 paint_dot(brush, box, brush.ink.kinds[kind], box.key in session.selection)
-        self._live.end(editor)
-        self._paint_gesture(editor, brush, frame)
+        self._live.end()
+        self._paint_gesture(brush, frame)
         self._tooltip(now, scene)
 
     def _found_hot(self, frame: Frame, scene: Scene) -> str:
@@ -249,12 +250,12 @@ class Canvas:
         look = now.look(box.key, names)
         paint_node(brush, box, layout, look)
         if look.overlay:
-            now.editor.places[f"cost {box.key}"] = brush.on_screen((box.x, box.y - 20.0, box.x + box.w, box.y))
+            now.context.places[f"cost {box.key}"] = brush.on_screen((box.x, box.y - 20.0, box.x + box.w, box.y))
         if live:
             self._live.draw(brush, box, layout.rows)
 
-    def _paint_wires(self, editor: Editor, brush: Brush, scene: Scene) -> None:
-        mouse, selection = self._mouse, editor.session.selection
+    def _paint_wires(self, brush: Brush, scene: Scene) -> None:
+        mouse, selection = self._mouse, self._context.session.selection
         linking = isinstance(mouse.gesture, Link)
         taken = mouse.gesture.detached if isinstance(mouse.gesture, Link) else None
         chosen = {mouse.hit.port} if mouse.hit.part == "link" else {mouse.dragged.insert, *mouse.dragged.crossed}
@@ -268,7 +269,7 @@ class Canvas:
                 for shape in scene.by_target[port].curves:
                     paint_curve(brush, shape, color, 3.0, halo=False)
 
-    def _paint_gesture(self, editor: Editor, brush: Brush, frame: Frame) -> None:
+    def _paint_gesture(self, brush: Brush, frame: Frame) -> None:
         mouse = self._mouse
         match mouse.gesture:
             case Band() as band:
@@ -291,13 +292,13 @@ class Canvas:
                         else (imgui.MouseCursor_.resize_ew if across else imgui.MouseCursor_.resize_ns)
                     )
                     imgui.set_mouse_cursor(cursor)
-        if editor.canvas.refusal:
-            paint_note(brush, *frame.screen, editor.canvas.refusal, brush.ink.error)
-        elif editor.canvas.tool and frame.over:
-            what = "cut them" if editor.canvas.tool == "cut" else "put dots on them"
+        if self._context.canvas.refusal:
+            paint_note(brush, *frame.screen, self._context.canvas.refusal, brush.ink.error)
+        elif self._context.canvas.tool and frame.over:
+            what = "cut them" if self._context.canvas.tool == "cut" else "put dots on them"
             paint_note(brush, *frame.screen, f"Drag across links to {what}; Escape ends", brush.ink.text)
             if imgui.is_key_pressed(imgui.Key.escape):
-                editor.canvas.tool = ""
+                self._context.canvas.tool = ""
 
     def _paint_link(self, brush: Brush, frame: Frame, link: Link) -> None:
         scene = self._mouse.dragged.scene
@@ -309,7 +310,7 @@ class Canvas:
         snap = self._mouse.dragged.snap
         end = snap[1] if snap else frame.at
         shape = curve(*start, *end) if link.output else curve(*end, *start)
-        color = brush.ink.error if frame.editor.canvas.refusal else brush.ink.kinds[pin.kind]
+        color = brush.ink.error if frame.context.canvas.refusal else brush.ink.kinds[pin.kind]
         paint_curve(brush, shape, color, 3.0)
         paint_pin(brush, *start, pin.kind, color, 1.5)
         if snap:
@@ -323,7 +324,7 @@ class Canvas:
         if hit.part == "link" and hit.port and (wire := scene.by_target.get(hit.port)):
             words = f"{wire.source}  to  {wire.target}" + (f"\n{wire.fault}" if wire.fault else "")
         elif hit.part == "pin" and hit.port:
-            words = _pin_words(now.editor, hit.port, hit.output)
+            words = _pin_words(now.context, hit.port, hit.output)
         elif hit.part == "title":
             box = scene.boxes[hit.key]
             words = "\n".join((*now.faults(hit.key), *now.warnings(hit.key))) or (box.layout.doc if box.layout else "")
@@ -333,30 +334,30 @@ class Canvas:
 
     # --- around it ---------------------------------------------------------------------------------------------------
 
-    def _around(self, editor: Editor, brush: Brush, frame: Frame) -> None:
-        asked, view = self._mouse.asked, editor.canvas
+    def _around(self, brush: Brush, frame: Frame) -> None:
+        asked, view = self._mouse.asked, self._context.canvas
         if asked.toggle:
             self._stage.expanded ^= {asked.toggle}
         if view.renaming or asked.rename:
-            self._naming.begin(editor, view.renaming or asked.rename)
+            self._naming.begin(view.renaming or asked.rename)
             view.renaming = ""
-        self._naming.draw(editor, brush, self._mouse.dragged.scene)
-        if editor.store.now.minimap and self._mouse.dragged.scene.boxes:
-            self._minimap.draw(editor, brush, frame.panel, self._mouse.dragged.scene)
-        self._legend.draw(editor, brush, frame.panel)
-        draw_crumbs(editor, brush, frame.panel)
+        self._naming.draw(brush, self._mouse.dragged.scene)
+        if self._context.store.now.minimap and self._mouse.dragged.scene.boxes:
+            self._minimap.draw(brush, frame.panel, self._mouse.dragged.scene)
+        self._legend.draw(brush, frame.panel)
+        draw_crumbs(self._context, brush, frame.panel)
         if asked.menu:
             self._menus.begin(asked.menu, frame.at)
-        self._menus.draw(editor)
+        self._menus.draw()
         if asked.search:
-            self._search.begin(editor, frame.at, *asked.search)
+            self._search.begin(frame.at, *asked.search)
         elif view.searching:
             view.searching = False
-            self._search.begin(editor, view.pointer)
+            self._search.begin(view.pointer)
         elif view.replacing:
-            self._search.begin_replacing(editor, view.replacing)
+            self._search.begin_replacing(view.replacing)
             view.replacing = ""
-        self._search.draw(editor)
+        self._search.draw()
 
 
 def _whole_window() -> Rect:
@@ -369,10 +370,10 @@ def _grown(rect: Rect, by: float) -> Rect:
     return rect[0] - by, rect[1] - by, rect[2] + by, rect[3] + by
 
 
-def _pin_words(editor: Editor, port: Port, output: bool) -> str:
+def _pin_words(context: CanvasContext, port: Port, output: bool) -> str:
     """What a socket takes or gives."""
-    graph = editor.session.graph
-    found = editor.attempt(lambda: graph.source(port) if output else graph.target(port))
+    graph = context.session.graph
+    found = context.log.attempt(lambda: graph.source(port) if output else graph.target(port))
     if found is None:
         return str(port)
     kind = getattr(found, "kind", None)

@@ -12,19 +12,19 @@ from .brush import Brush
 from .geometry import Rect
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CanvasContext
 
 
-def draw_crumbs(editor: Editor, brush: Brush, panel: Rect) -> None:
+def draw_crumbs(context: CanvasContext, brush: Brush, panel: Rect) -> None:
     """Draw the bar at the top, inside groups only."""
-    session = editor.session
+    session = context.session
     if not session.place:
         return
-    scale, palette = ui_scale(), editor.palette
+    scale, palette = ui_scale(), context.palette
     pad, height = 8.0 * scale, imgui.get_frame_height() + 8.0 * scale
     brush.draw.add_rect_filled(panel[:2], (panel[2], panel[1] + height), u32(palette.panel, 0.94))
     brush.draw.add_line((panel[0], panel[1] + height), (panel[2], panel[1] + height), u32(palette.border))
-    editor.places["crumbs"] = (*panel[:3], panel[1] + height)
+    context.places["crumbs"] = (*panel[:3], panel[1] + height)
     imgui.set_cursor_screen_pos((panel[0] + pad, panel[1] + 4.0 * scale))
     imgui.push_style_color(imgui.Col_.button, vec4(palette.panel, 0.0))
     imgui.push_style_var(imgui.StyleVar_.item_spacing, (2.0 * scale, 0.0))
@@ -37,10 +37,10 @@ def draw_crumbs(editor: Editor, brush: Brush, panel: Rect) -> None:
         here = place == session.place
         imgui.push_style_color(imgui.Col_.text, vec4(palette.text if here else palette.dim))
         if imgui.button(f"{title}##crumb {index}") and not here:
-            editor.attempt(lambda place=place: session.go(place))
+            context.log.attempt(lambda place=place: session.go(place))
         imgui.pop_style_color()
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-        editor.places[f"crumb {title}"] = low.x, low.y, high.x, high.y
+        context.places[f"crumb {title}"] = low.x, low.y, high.x, high.y
     if session.borrowed:
         imgui.same_line(0.0, 16.0 * scale)
         imgui.align_text_to_frame_padding()

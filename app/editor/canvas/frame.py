@@ -12,7 +12,7 @@ from .layout import ROW
 from .scene import Scene
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CanvasContext
 
 CLICK = 4.0
 """Pixels (at UI scale 1) that the mouse may move within a click."""
@@ -25,7 +25,7 @@ _NOTCH = 60.0
 class Frame:
     """What is known of the mouse and the canvas in one frame. `scene` has no gesture in it yet."""
 
-    editor: Editor
+    context: CanvasContext
     scene: Scene
     to: Transform
     panel: Rect
@@ -49,7 +49,7 @@ class Frame:
 
 def turn_wheel(frame: Frame, io: imgui.IO, on_field: bool) -> None:
     """The wheel zooms about the pointer; with Shift, or sideways, it pans. Ctrl on a field turns its value."""
-    view = frame.editor.canvas
+    view = frame.context.canvas
     across, down = io.mouse_wheel_h, io.mouse_wheel
     if not (across or down) or (io.key_ctrl and on_field):
         return
@@ -66,6 +66,6 @@ def pan_at_border(frame: Frame, io: imgui.IO) -> None:
     """Move the view on while something is dragged near the border of the panel."""
     x, y = drift(frame.panel, *frame.screen, _BORDER * frame.scale)
     if x or y:
-        view = frame.editor.canvas
+        view = frame.context.canvas
         step = _SPEED * frame.scale * min(io.delta_time, 0.05) / frame.to.scale
         view.center = view.center[0] + x * step, view.center[1] + y * step

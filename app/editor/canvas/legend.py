@@ -14,7 +14,7 @@ from .geometry import Rect, Transform
 from .paint_node import paint_pin
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CanvasContext
 
 _POPUP = "sockets"
 _SIDE, _GAP = 24.0, 12.0
@@ -45,15 +45,17 @@ _MOUSE = (
 class Legend:
     """The question mark and its popup."""
 
+    context: CanvasContext
+
     def rect(self, panel: Rect) -> Rect:
         """Where the question mark is."""
         scale = ui_scale()
         left, bottom = panel[0] + _GAP * scale, panel[3] - _GAP * scale
         return left, bottom - _SIDE * scale, left + _SIDE * scale, bottom
 
-    def draw(self, editor: Editor, brush: Brush, panel: Rect) -> None:
+    def draw(self, brush: Brush, panel: Rect) -> None:
         """Draw it."""
-        rect, palette, scale = self.rect(panel), editor.palette, ui_scale()
+        rect, palette, scale = self.rect(panel), self.context.palette, ui_scale()
         imgui.set_cursor_screen_pos(rect[:2])
         imgui.set_next_item_allow_overlap()
         imgui.push_item_flag(int(imgui.ItemFlags_.no_nav), True)
@@ -64,15 +66,15 @@ class Legend:
         brush.draw.add_circle_filled(center, _SIDE / 2 * scale, u32(palette.hover if hovered else palette.panel, 0.9))
         size = imgui.calc_text_size("?")
         brush.draw.add_text((center[0] - size.x / 2, center[1] - size.y / 2), u32(palette.dim), "?")
-        editor.places["legend"] = rect
+        self.context.places["legend"] = rect
         if pressed:
             imgui.open_popup(_POPUP)
         imgui.set_next_window_pos((rect[0], rect[1] - 6 * scale), imgui.Cond_.appearing, (0.0, 1.0))
         if imgui.begin_popup(_POPUP):
-            self._contents(editor, brush)
+            self._contents(brush)
             imgui.end_popup()
 
-    def _contents(self, editor: Editor, brush: Brush) -> None:
+    def _contents(self, brush: Brush) -> None:
         scale, line = ui_scale(), imgui.get_text_line_height()
         draw = imgui.get_window_draw_list()
         for kind, meaning in _MEANING.items():
@@ -84,9 +86,9 @@ class Legend:
             imgui.same_line()
             imgui.text(kind)
             imgui.same_line(90 * scale)
-            imgui.text_colored(vec4(editor.palette.dim), meaning)
+            imgui.text_colored(vec4(self.context.palette.dim), meaning)
         imgui.separator()
         for key, act in _MOUSE:
             imgui.text(key)
             imgui.same_line(200 * scale)
-            imgui.text_colored(vec4(editor.palette.dim), act)
+            imgui.text_colored(vec4(self.context.palette.dim), act)

@@ -25,7 +25,7 @@ from .scene import Box
 from .sketch import Sketch
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CanvasContext
 
 _CHOICES, _PICKER = "choices of a node", "color of a node"
 
@@ -42,6 +42,7 @@ def drawn_live(row: Row) -> bool:
 class Live:
     """The widgets on nodes. `open` is the value whose list or picker is open."""
 
+    context: CanvasContext
     fields: Fields | None = None
     open: tuple[Port, Value] | None = None
     _opening: str = ""
@@ -57,12 +58,12 @@ class Live:
         id = self.fields.typing.id if self.fields.typing else self.fields.drag_id or self.fields.pressed
         return id.removeprefix("canvas ").partition(".")[0]
 
-    def begin(self, editor: Editor) -> None:
+    def begin(self) -> None:
         """Call before any node is drawn."""
-        palette = on_nodes(editor.palette.name)
+        palette = on_nodes(self.context.palette.name)
         if self.fields is None or self.fields.palette is not palette:
             self.fields = Fields(palette)
-        self.fields.places = editor.places
+        self.fields.places = self.context.places
         self.fields.begin(imgui.is_mouse_down(imgui.MouseButton_.left))
         self._dragged = self.fields.dragging
 
@@ -110,35 +111,38 @@ class Live:
         if edit:
             self._edits.append((port, edit))
 
-    def end(self, editor: Editor) -> None:
+    def end(self) -> None:
         """Call after all nodes: draws what is open, and sets what was changed."""
         fields = self.fields
         if fields is None:
             return
-        self._popups(editor, fields)
+        self._popups(fields)
         if left := fields.end():
             self._edits.append((Port.parse(left[0].removeprefix("canvas ")), left[1]))
         if fields.eyedropper:
-            editor.viewer.picking = fields.eyedropper.removeprefix("canvas ")
-        editor.dragging = editor.dragging or fields.dragging
+            self.context.viewer.picking = fields.eyedropper.removeprefix("canvas ")
+        self.context.interface.dragging = self.context.interface.dragging or fields.dragging
         for port, edit in self._edits:
-            editor.attempt(lambda port=port, edit=edit: _put(editor.session, port, edit))
+            self.context.log.attempt(lambda port=port, edit=edit: _put(self.context.session, port, edit))
         self._edits.clear()
         if self._dragged and not fields.dragging:
-            editor.session.seal()
+            self.context.session.seal()
 
-    def _popups(self, editor: Editor, fields: Fields) -> None:
+    def _popups(self, fields: Fields) -> None:
         if self.open is None:
             return
         (port, value), opening, self._opening = self.open, self._opening, ""
-        if port.node not in editor.session.graph.nodes:
+        if port.node not in self.context.session.graph.nodes:
             self.open = None
             return
-        plain = editor.session.graph_now.value(port)
+        plain = self.context.session.graph_now.value(port)
         if opening == "path":
             self.open = None
-            editor.dialogs.browse = browse(
-                value, lambda path: editor.attempt(lambda: editor.session.set(port, editor.session.relative(path)))
+            self.context.dialogs.browse = browse(
+                value,
+                lambda path: self.context.log.attempt(
+                    lambda: self.context.session.set(port, self.context.session.relative(path))
+                ),
             )
             return
         if opening:
@@ -150,18 +154,18 @@ class Live:
                 self._edits.append((port, edit))
             imgui.end_popup()
         elif value.type == "choice" and imgui.begin_popup(_CHOICES):
-            self._choices(editor, port, value, plain)
+            self._choices(port, value, plain)
             imgui.end_popup()
         elif not opening:
             self.open = None
 
-    def _choices(self, editor: Editor, port: Port, value: Value, plain: Plain) -> None:
+    def _choices(self, port: Port, value: Value, plain: Plain) -> None:
         appearing = imgui.is_window_appearing()
         for choice in value.choices:
             if imgui.selectable(choice or " ", choice == plain)[0]:
                 self._edits.append((port, Edit(choice)))
             low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-            editor.places[f"choice {choice}"] = low.x, low.y, high.x, high.y
+            self.context.places[f"choice {choice}"] = low.x, low.y, high.x, high.y
             if choice == plain and appearing:
                 imgui.set_scroll_here_y()
                 imgui.set_item_default_focus()

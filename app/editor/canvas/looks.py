@@ -15,7 +15,7 @@ from .gestures import Gesture, Link
 from .paint_node import Look
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CanvasContext
 
 SLOW, COSTLY = 0.35, 0.12
 """Shares of the whole time from which a node counts as slow, or worth a look."""
@@ -25,7 +25,7 @@ SLOW, COSTLY = 0.35, 0.12
 class Moment:
     """What decides the looks of all nodes in one frame; what is costly to find out is found out once."""
 
-    editor: Editor
+    context: CanvasContext
     ink: Ink
     shown: Mapping[str, str]
     badges: Mapping[str, str]
@@ -43,7 +43,7 @@ class Moment:
     def faults(self, key: str) -> tuple[str, ...]:
         """What keeps an element from rendering."""
         found = tuple(one.sentence for one in self.problems.get(key, ()) if one.severity == "error")
-        fault = self.editor.preview.faults.get(self.prefix + key, "")
+        fault = self.context.preview.faults.get(self.prefix + key, "")
         return (*found, fault) if fault and fault not in found else found
 
     def warnings(self, key: str) -> tuple[str, ...]:
@@ -55,7 +55,7 @@ class Moment:
         faults = self.faults(key)
         warnings = () if faults else self.warnings(key)
         picture, fresh, size = None, True, (1, 1)
-        if self.pictures and (found := self.editor.preview.thumbnail(self.prefix + key)):
+        if self.pictures and (found := self.context.preview.thumbnail(self.prefix + key)):
             picture, fresh = imgui.ImTextureRef(found[0].native_handle), found[1]
             size = found[0].size
         overlay, color = self._cost(key)
@@ -86,9 +86,9 @@ class Moment:
         return f"{seconds * 1e3:.1f} ms   {_size(size)}", color
 
 
-def moment(editor: Editor, ink: Ink, gesture: Gesture, hot: str) -> Moment:
+def moment(context: CanvasContext, ink: Ink, gesture: Gesture, hot: str) -> Moment:
     """What holds for all nodes in this frame."""
-    session = editor.session
+    session = context.session
     shown: dict[str, str] = {}
     for side in ("A", "B"):
         if port := session.viewed(side):
@@ -102,10 +102,10 @@ def moment(editor: Editor, ink: Ink, gesture: Gesture, hot: str) -> Moment:
         for port in gesture.targets:
             lit[owner(port)] = lit.get(owner(port), frozenset()) | {(not gesture.output, port.socket)}
         lit[owner(gesture.port)] = frozenset({(gesture.output, gesture.port.socket)})
-    costs, total = _costs(editor) if editor.preview.timed else ({}, 0.0)
+    costs, total = _costs(context) if context.preview.timed else ({}, 0.0)
     prefix = "".join(f"{id}/" for id in session.place)
     return Moment(
-        editor,
+        context,
         ink,
         shown,
         badges,
@@ -118,14 +118,14 @@ def moment(editor: Editor, ink: Ink, gesture: Gesture, hot: str) -> Moment:
         session.active,
         session.graph.muted,
         session.problems,
-        editor.preview.thumbnailing,
+        context.preview.thumbnailing,
     )
 
 
-def _costs(editor: Editor) -> tuple[dict[str, tuple[float, int]], float]:
+def _costs(context: CanvasContext) -> tuple[dict[str, tuple[float, int]], float]:
     """Seconds and bytes of every element here, groups with all that is in them, and the seconds of everything."""
-    timings = editor.preview.timings
-    prefix = "".join(f"{id}/" for id in editor.session.place)
+    timings = context.preview.timings
+    prefix = "".join(f"{id}/" for id in context.session.place)
     found: dict[str, dict[frozenset[str], tuple[float, int]]] = {}
     everything: dict[frozenset[str], float] = {}
     for path, timing in timings.items():

@@ -18,7 +18,7 @@ from .geometry import Point
 from .scene import EMPTY, Hit
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CanvasContext
 
 _POPUP = "on the canvas"
 
@@ -27,6 +27,7 @@ _POPUP = "on the canvas"
 class Menus:
     """The menu for what was clicked."""
 
+    context: CanvasContext
     is_open: bool = False
     _hit: Hit = EMPTY
     _at: Point = (0.0, 0.0)
@@ -36,67 +37,67 @@ class Menus:
         """Open the menu for what is under the mouse, at a canvas position."""
         self._hit, self._at, self._opening = hit, at, True
 
-    def draw(self, editor: Editor) -> None:
+    def draw(self) -> None:
         """Draw the menu, if it is open."""
         if self._opening:
             imgui.open_popup(_POPUP)
             self._opening = False
-            editor.canvas.pointer = self._at
+            self.context.canvas.pointer = self._at
         self.is_open = imgui.begin_popup(_POPUP)
         if not self.is_open:
             return
-        session, hit = editor.session, self._hit
+        session, hit = self.context.session, self._hit
         if hit.part == "link" and hit.port:
             target = hit.port
-            _item(editor, "Add a dot", lambda: session.add_dot(target, self._at))
-            _item(editor, "Cut this link", lambda: session.cut((target,)))
+            _item(self.context, "Add a dot", lambda: session.add_dot(target, self._at))
+            _item(self.context, "Cut this link", lambda: session.cut((target,)))
         elif hit.part == "pin" and hit.port:
-            self._pin(editor, hit.port, hit.output)
+            self._pin(hit.port, hit.output)
         elif hit.part == "field" and hit.port:
-            self._field(editor, hit.port)
+            self._field(hit.port)
             imgui.separator()
         if hit.part == "empty":
             label = f"{icons.ICON_FA_MAGNIFYING_GLASS}  Search to add ..."
-            if imgui.menu_item(label, _key(editor, "node.add"), False)[0]:
-                editor.canvas.searching = True
-            record(editor, "menu search")
+            if imgui.menu_item(label, _key(self.context, "node.add"), False)[0]:
+                self.context.canvas.searching = True
+            record(self.context, "menu search")
             imgui.separator()
         if hit.key.startswith(("frames.", "comments.")):
             if imgui.menu_item("Rename ..." if hit.key.startswith("frames") else "Edit text ...", "", False)[0]:
-                editor.canvas.renaming = hit.key
+                self.context.canvas.renaming = hit.key
             if hit.key.startswith("frames."):
-                _colors(editor, hit.key)
-        for action in editor.actions.context(_context(hit)):
+                _colors(self.context, hit.key)
+        for action in self.context.actions.in_menu(_context(hit)):
             if action.id != "node.add":
-                _action(editor, action)
-        if isinstance(editor.session.graph.nodes.get(hit.key), Group):
-            for action in editor.actions.context("group"):
-                _action(editor, action)
-        if editor.session.code(hit.key) is not None:
-            for action in editor.actions.context("code"):
-                _action(editor, action)
+                _action(self.context, action)
+        if isinstance(self.context.session.graph.nodes.get(hit.key), Group):
+            for action in self.context.actions.in_menu("group"):
+                _action(self.context, action)
+        if self.context.session.code(hit.key) is not None:
+            for action in self.context.actions.in_menu("code"):
+                _action(self.context, action)
         imgui.end_popup()
 
-    def _pin(self, editor: Editor, port: Port, output: bool) -> None:
-        session = editor.session
+    def _pin(self, port: Port, output: bool) -> None:
+        session = self.context.session
         if output:
-            _item(editor, "View", lambda: session.view(port))
-            _item(editor, "View as B", lambda: session.view(port, "B"))
+            _item(self.context, "View", lambda: session.view(port))
+            _item(self.context, "View as B", lambda: session.view(port, "B"))
             fed = [target for target, source in session.graph.links.items() if source == port]
-            _item(editor, "Cut its links", lambda: session.cut(fed), bool(fed))
+            _item(self.context, "Cut its links", lambda: session.cut(fed), bool(fed))
         else:
-            _item(editor, "Cut its link", lambda: session.disconnect(port), port in session.graph.links)
+            _item(self.context, "Cut its link", lambda: session.disconnect(port), port in session.graph.links)
             if port.node in session.graph.nodes and port in session.graph.links:
-                _item(editor, "Add a dot", lambda: session.add_dot(port, self._at))
+                _item(self.context, "Add a dot", lambda: session.add_dot(port, self._at))
 
-    def _field(self, editor: Editor, port: Port) -> None:
-        session = editor.session
-        _item(editor, f"Reset {port.socket}", lambda: session.reset(port), not session.is_default(port))
+    def _field(self, port: Port) -> None:
+        session = self.context.session
+        _item(self.context, f"Reset {port.socket}", lambda: session.reset(port), not session.is_default(port))
         control = session.control_of(port)
         if control:
-            _item(editor, f"Hide the control '{control}'", lambda: session.hide(control))
+            _item(self.context, f"Hide the control '{control}'", lambda: session.hide(control))
         else:
-            _item(editor, "Show as a control of the graph", lambda: session.expose(port))
+            _item(self.context, "Show as a control of the graph", lambda: session.expose(port))
 
 
 def _context(hit: Hit) -> str:
@@ -107,29 +108,29 @@ def _context(hit: Hit) -> str:
     return hit.key.partition(".")[0][:-1] if hit.key.startswith(("frames.", "comments.", "dots.")) else "node"
 
 
-def _colors(editor: Editor, key: str) -> None:
+def _colors(context: CanvasContext, key: str) -> None:
     """Colors for a frame: those of headers, so that frames and nodes look alike."""
     id = key.removeprefix("frames.")
-    for index, color in enumerate(dict.fromkeys(editor.palette.categories.values())):
+    for index, color in enumerate(dict.fromkeys(context.palette.categories.values())):
         if index % 7:
             imgui.same_line()
         if imgui.color_button(f"##frame color {index}", (*color, 1.0), int(imgui.ColorEditFlags_.no_tooltip)):
-            editor.attempt(lambda color=color: editor.session.set_frame(id, color=color))
+            context.log.attempt(lambda color=color: context.session.set_frame(id, color=color))
     imgui.separator()
 
 
-def _action(editor: Editor, action: Action) -> None:
+def _action(context: CanvasContext, action: Action) -> None:
     if action.separated:
         imgui.separator()
-    entry(editor, action)
+    entry(context, action)
 
 
-def _key(editor: Editor, id: str) -> str:
-    text = editor.actions.shortcut(id)
+def _key(context: CanvasContext, id: str) -> str:
+    text = context.actions.shortcut(id)
     return shown(text) if text else ""
 
 
-def _item(editor: Editor, label: str, act: Callable[[], object], enabled: bool = True) -> None:
+def _item(context: CanvasContext, label: str, act: Callable[[], object], enabled: bool = True) -> None:
     if imgui.menu_item(label, "", False, enabled)[0]:
-        editor.attempt(act)
-    record(editor, f"menu {label}")
+        context.log.attempt(act)
+    record(context, f"menu {label}")

@@ -13,7 +13,7 @@ from .geometry import Rect, bounds
 from .scene import Scene
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CanvasContext
 
 _SIZE, _GAP, _PAD = (168.0, 112.0), 12.0, 6.0
 
@@ -22,6 +22,7 @@ _SIZE, _GAP, _PAD = (168.0, 112.0), 12.0, 6.0
 class Minimap:
     """The overview; `dragging` while the mouse holds it."""
 
+    context: CanvasContext
     dragging: bool = False
 
     def rect(self, panel: Rect) -> Rect | None:
@@ -32,7 +33,7 @@ class Minimap:
             return None
         return panel[2] - gap - width, panel[3] - gap - height, panel[2] - gap, panel[3] - gap
 
-    def draw(self, editor: Editor, brush: Brush, panel: Rect, scene: Scene) -> None:
+    def draw(self, brush: Brush, panel: Rect, scene: Scene) -> None:
         """Draw it, and pan where the mouse points in it."""
         rect = self.rect(panel)
         around = bounds([*(box.rect for box in scene.boxes.values()), brush.seen])
@@ -43,7 +44,7 @@ class Minimap:
         scale = min(across / (around[2] - around[0]), down / (around[3] - around[1]))
         left = (rect[0] + rect[2]) / 2 - (around[0] + around[2]) / 2 * scale
         top = (rect[1] + rect[3]) / 2 - (around[1] + around[3]) / 2 * scale
-        draw, palette, selection = brush.draw, editor.palette, editor.session.selection
+        draw, palette, selection = brush.draw, self.context.palette, self.context.session.selection
         rounding = 6.0 * ui_scale()
         draw.add_rect_filled(rect[:2], rect[2:], u32(palette.panel, 0.88), rounding)
         faint = u32(palette.dim, 0.2)
@@ -61,7 +62,7 @@ class Minimap:
         draw.add_rect(low, high, u32(palette.text, 0.55), 2.0)
         draw.pop_clip_rect()
         draw.add_rect(rect[:2], rect[2:], u32(palette.border), rounding)
-        editor.places["minimap"] = rect
+        self.context.places["minimap"] = rect
 
         imgui.set_cursor_screen_pos(rect[:2])
         imgui.set_next_item_allow_overlap()
@@ -71,4 +72,4 @@ class Minimap:
         self.dragging = imgui.is_item_active()
         if self.dragging:
             mouse = imgui.get_mouse_pos()
-            editor.canvas.center = (mouse.x - left) / scale, (mouse.y - top) / scale
+            self.context.canvas.center = (mouse.x - left) / scale, (mouse.y - top) / scale

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from imgui_bundle import imgui
 
 from ...graph import Group, Port
-from ..workflows.code_files import show_code
 from .frame import Frame, pan_at_border, turn_wheel
 from .geometry import Point, holds
 from .gestures import (
@@ -38,7 +37,7 @@ from .gestures import (
 from .scene import EMPTY, Hit, Scene
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CanvasContext
 
 LEFT, RIGHT, MIDDLE = imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.MouseButton_.middle
 
@@ -95,7 +94,7 @@ class Mouse:
     # --- beginning ---------------------------------------------------------------------------------------------------
 
     def _begin(self, frame: Frame, io: imgui.IO) -> None:
-        editor, view, hit = frame.editor, frame.editor.canvas, self.hit
+        context, view, hit = frame.context, frame.context.canvas, self.hit
         if imgui.is_mouse_clicked(MIDDLE) or (imgui.is_mouse_clicked(LEFT) and imgui.is_key_down(imgui.Key.space)):
             self.gesture = Pan(view.center, frame.screen)
         elif imgui.is_mouse_clicked(RIGHT):
@@ -114,30 +113,30 @@ class Mouse:
         if self._pressed and imgui.is_mouse_released(RIGHT):
             (hit, start), self._pressed = self._pressed, None
             if not frame.is_far(start):
-                self._menu(editor, hit)
+                self._menu(context, hit)
 
     def _press(self, frame: Frame, io: imgui.IO, hit: Hit) -> None:
-        editor, session = frame.editor, frame.editor.session
+        context, session = frame.context, frame.context.session
         match hit.part:
             case "pin" if hit.port:
                 self._take(frame, hit.port, hit.output, io.key_ctrl)
             case "field":
-                self._select(editor, hit.key, "replace")
+                self._select(context, hit.key, "replace")
             case "more":
                 self.asked.toggle = hit.key
             case "edge":
-                self._select(editor, hit.key, "replace")
+                self._select(context, hit.key, "replace")
                 rect = frame.scene.boxes[hit.key].rect
                 self.gesture = Resize(hit.key, hit.name, frame.at, rect, rect)
             case "title" | "body":
                 if io.key_ctrl and io.key_shift and frame.scene.boxes[hit.key].sort in ("node", "end"):
-                    editor.attempt(lambda: session.view_node(hit.key))
+                    context.log.attempt(lambda: session.view_node(hit.key))
                 elif io.key_ctrl or io.key_shift:
-                    self._select(editor, hit.key, "toggle")
+                    self._select(context, hit.key, "toggle")
                 else:
                     alone = hit.key in session.selection
                     if not alone:
-                        self._select(editor, hit.key, "replace")
+                        self._select(context, hit.key, "replace")
                     self.gesture = Move(hit.key, frame.at, alone=alone)
             case _:
                 mode = "add" if io.key_shift else "remove" if io.key_ctrl else "replace"
@@ -145,50 +144,52 @@ class Mouse:
 
     def _take(self, frame: Frame, port: Port, output: bool, keep: bool) -> None:
         """Begin a link from a pin; the link into an input comes along, unless it shall stay."""
-        graph = frame.editor.session.graph
+        graph = frame.context.session.graph
         detached = None if output or keep else port if port in graph.links else None
         start, is_output = (graph.links[port], True) if detached else (port, output)
         scene = frame.scene
         if detached:
             graph = graph.disconnect(detached)
-        targets = frame.editor.attempt(lambda: fitting(graph, scene, start, is_output), frozenset[Port]())
+        targets = frame.context.log.attempt(lambda: fitting(graph, scene, start, is_output), frozenset[Port]())
         self.gesture = Link(start, is_output, detached, targets or frozenset())
 
     def _double(self, frame: Frame, hit: Hit) -> None:
-        editor, session = frame.editor, frame.editor.session
+        context, session = frame.context, frame.context.session
         if hit.part == "link" and hit.port:
             target = hit.port
-            editor.attempt(lambda: session.add_dot(target, frame.at))
+            context.log.attempt(lambda: session.add_dot(target, frame.at))
         elif hit.key.startswith(("frames.", "comments.")):
             self.asked.rename = hit.key
         elif hit.part in ("title", "body") and not hit.key.startswith("dots."):
             item = session.graph.nodes.get(hit.key)
             if session.code(hit.key) is not None:
-                show_code(editor)
+                context.code_files.show()
                 return
-            editor.attempt(lambda: session.enter(hit.key) if isinstance(item, Group) else session.view_node(hit.key))
+            context.log.attempt(
+                lambda: session.enter(hit.key) if isinstance(item, Group) else session.view_node(hit.key)
+            )
         elif hit.part == "empty":
-            editor.canvas.searching = True
+            context.canvas.searching = True
 
-    def _menu(self, editor: Editor, hit: Hit) -> None:
+    def _menu(self, context: CanvasContext, hit: Hit) -> None:
         """A context menu acts on what is selected, so what was clicked is."""
-        if hit.key and hit.part != "pin" and hit.key not in editor.session.selection:
-            self._select(editor, hit.key, "replace")
+        if hit.key and hit.part != "pin" and hit.key not in context.session.selection:
+            self._select(context, hit.key, "replace")
         self.asked.menu = hit
 
-    def _select(self, editor: Editor, key: str, mode: str) -> None:
-        editor.attempt(lambda: editor.session.select((key,), mode))  # pyright: ignore[reportArgumentType]
+    def _select(self, context: CanvasContext, key: str, mode: str) -> None:
+        context.log.attempt(lambda: context.session.select((key,), mode))  # pyright: ignore[reportArgumentType]
 
     # --- going on ----------------------------------------------------------------------------------------------------
 
     def _go_on(self, frame: Frame, io: imgui.IO) -> None:
-        gesture, view = self.gesture, frame.editor.canvas
+        gesture, view = self.gesture, frame.context.canvas
         cancelled = imgui.is_key_pressed(imgui.Key.escape) or (
             not isinstance(gesture, Draw | Pan) and imgui.is_mouse_clicked(RIGHT)
         )
         if cancelled:
             if isinstance(gesture, Move):
-                frame.editor.session.abandon(gesture.merge)
+                frame.context.session.abandon(gesture.merge)
             self.gesture = IDLE
             return
         match gesture:
@@ -204,7 +205,7 @@ class Mouse:
                 self._until(not imgui.is_mouse_down(LEFT), lambda: self._moved(frame))
             case Resize():
                 self.gesture = changed = resized(gesture, frame.at, snap=io.key_ctrl)
-                self._until(not imgui.is_mouse_down(LEFT), lambda: _resize(frame.editor, changed))
+                self._until(not imgui.is_mouse_down(LEFT), lambda: _resize(frame.context, changed))
             case Draw():
                 released = not (imgui.is_mouse_down(LEFT) or imgui.is_mouse_down(RIGHT))
                 self._until(released, lambda: _drawn(frame, gesture))
@@ -219,7 +220,7 @@ class Mouse:
             self.gesture = IDLE
 
     def _moving(self, frame: Frame, move: Move, snap: bool, extract: bool) -> Move:
-        session = frame.editor.session
+        session = frame.context.session
         if not move.going:
             if not frame.is_far(move.start):
                 return move
@@ -232,42 +233,42 @@ class Mouse:
             if extract and any(wire.leaves(move.keys) for wire in frame.scene.wires):
                 self._moves += 1
                 merge, steps = f"move {self._moves}", session.history.position
-                frame.editor.attempt(lambda: session.extract(merge))
+                frame.context.log.attempt(lambda: session.extract(merge))
                 if session.history.position > steps:
                     move = replace(move, merge=merge)
         return moved(move, frame.scene, frame.at, snap)
 
     def _moved(self, frame: Frame) -> None:
-        move, session = self.gesture, frame.editor.session
+        move, session = self.gesture, frame.context.session
         if not isinstance(move, Move):
             return
         if not move.going:
             if move.alone:
-                self._select(frame.editor, move.key, "replace")
+                self._select(frame.context, move.key, "replace")
             return
         target = insertable(session.graph, shown(frame.scene, move), move.keys, frame.at, frame.reach)
         if target:
             ids, sizes = sorted(move.keys & session.graph.nodes.keys()), frame.scene.sizes
-            frame.editor.attempt(lambda: session.splice(ids, target, move.by, sizes, move.merge))
+            frame.context.log.attempt(lambda: session.splice(ids, target, move.by, sizes, move.merge))
         elif move.by != (0.0, 0.0):
             keys = sorted(move.keys & frame.scene.boxes.keys())
-            frame.editor.attempt(lambda: session.move(keys, *move.by, merge=move.merge))
+            frame.context.log.attempt(lambda: session.move(keys, *move.by, merge=move.merge))
         session.seal()
 
     def _banded(self, frame: Frame, band: Band) -> None:
-        editor = frame.editor
+        context = frame.context
         if not frame.is_far(band.start):
             hit = frame.scene.hit(*band.start, frame.reach)
             wire = frame.scene.by_target.get(hit.port) if hit.part == "link" and hit.port else None
             keys = {wire.stops[0], wire.stops[-1]} if wire else ()
             if keys or band.mode == "replace":
-                editor.attempt(lambda: editor.session.select(keys, band.mode))  # pyright: ignore[reportArgumentType]
+                context.log.attempt(lambda: context.session.select(keys, band.mode))  # pyright: ignore[reportArgumentType]
             return
         keys = touched(frame.scene, band_rect(band, frame.at))
-        editor.attempt(lambda: editor.session.select(keys, band.mode))  # pyright: ignore[reportArgumentType]
+        context.log.attempt(lambda: context.session.select(keys, band.mode))  # pyright: ignore[reportArgumentType]
 
     def _linked(self, frame: Frame, link: Link) -> None:
-        editor, session = frame.editor, frame.editor.session
+        context, session = frame.context, frame.context.session
         snap = nearest(frame.scene, link, frame.at, _SNAP * frame.scale / frame.to.scale)
         if snap:
             other = snap[0]
@@ -276,16 +277,16 @@ class Mouse:
             if detached == target:
                 return
             if detached:
-                editor.attempt(lambda: session.move_link(detached, target))
+                context.log.attempt(lambda: session.move_link(detached, target))
             else:
-                editor.attempt(lambda: session.connect(source, target))
+                context.log.attempt(lambda: session.connect(source, target))
         elif not frame.is_far(self._start(frame, link)):
             if link.output and link.detached is None:
-                editor.attempt(lambda: session.view(link.port))
+                context.log.attempt(lambda: session.view(link.port))
         elif refused(frame.scene, link, frame.at, frame.reach) is None and not frame.scene.node_at(*frame.at):
             if link.detached:
                 target = link.detached
-                editor.attempt(lambda: session.disconnect(target))
+                context.log.attempt(lambda: session.disconnect(target))
             elif holds(frame.panel, *frame.screen):
                 self.asked.search = link.port, link.output
 
@@ -299,9 +300,9 @@ class Mouse:
     # --- what is seen of it ------------------------------------------------------------------------------------------
 
     def _show(self, frame: Frame) -> None:
-        gesture, graph = self.gesture, frame.editor.session.graph
+        gesture, graph = self.gesture, frame.context.session.graph
         self.dragged = Dragged(shown(frame.scene, gesture))
-        frame.editor.canvas.refusal = ""
+        frame.context.canvas.refusal = ""
         match gesture:
             case Move() if gesture.going:
                 self.dragged.insert = insertable(graph, self.dragged.scene, gesture.keys, frame.at, frame.reach)
@@ -312,25 +313,25 @@ class Mouse:
                 if other := refused(frame.scene, gesture, frame.at, frame.reach):
                     source, target = (gesture.port, other) if gesture.output else (other, gesture.port)
                     if other != gesture.port and source.node != target.node:
-                        frame.editor.canvas.refusal = frame.editor.session.refusal(source, target) or ""
+                        frame.context.canvas.refusal = frame.context.session.refusal(source, target) or ""
                     self.dragged.snap = None
             case _:
                 pass
 
 
-def _resize(editor: Editor, resize: Resize) -> None:
+def _resize(context: CanvasContext, resize: Resize) -> None:
     left, top, right, bottom = resize.rect
     section, _, id = resize.key.partition(".")
     if resize.rect == resize.before:
         return
     if section == "frames":
-        editor.attempt(lambda: editor.session.resize_frame(id, left, top, right - left, bottom - top))
+        context.log.attempt(lambda: context.session.resize_frame(id, left, top, right - left, bottom - top))
     else:
-        editor.attempt(lambda: editor.session.resize_comment(id, left, top, right - left))
+        context.log.attempt(lambda: context.session.resize_comment(id, left, top, right - left))
 
 
 def _drawn(frame: Frame, draw: Draw) -> None:
-    editor, session = frame.editor, frame.editor.session
+    context, session = frame.context, frame.context.session
     crossings = frame.scene.net.crossed(draw.start, frame.at)
     if not crossings:
         return
@@ -339,4 +340,4 @@ def _drawn(frame: Frame, draw: Draw) -> None:
         graph, keys = dotted(session.graph, crossings)
         session.edit("Add dots", graph, keys)
 
-    editor.attempt(dots if draw.dots else lambda: session.cut(tuple(crossings)))
+    context.log.attempt(dots if draw.dots else lambda: session.cut(tuple(crossings)))

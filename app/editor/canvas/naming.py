@@ -13,22 +13,23 @@ from .geometry import Rect
 from .scene import Scene
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CanvasContext
 
 
 @dataclass
 class Naming:
     """The element that is being named or written in."""
 
+    context: CanvasContext
     key: str = ""
     rect: Rect | None = None
     """Where the field is, on the screen."""
     _text: str = ""
     _starting: bool = False
 
-    def begin(self, editor: Editor, key: str) -> None:
+    def begin(self, key: str) -> None:
         """Open a field on an element."""
-        facts = entry(editor.session.graph, key)
+        facts = entry(self.context.session.graph, key)
         if key.startswith("frames."):
             self._text = str(facts.get("title", ""))
         elif key.startswith("comments."):
@@ -38,7 +39,7 @@ class Naming:
             self._text = end.socket if end else key
         self.key, self._starting = key, True
 
-    def draw(self, editor: Editor, brush: Brush, scene: Scene) -> None:
+    def draw(self, brush: Brush, scene: Scene) -> None:
         """Draw the field, and keep what was typed once that is over."""
         self.rect = None
         if not self.key:
@@ -72,11 +73,11 @@ class Naming:
             escaped = imgui.is_key_pressed(imgui.Key.escape)
             key, self.key = self.key, ""
             if not escaped:
-                editor.attempt(lambda: _keep(editor, key, self._text))
+                self.context.log.attempt(lambda: _keep(self.context, key, self._text))
 
 
-def _keep(editor: Editor, key: str, text: str) -> None:
-    session, id = editor.session, key.partition(".")[2]
+def _keep(context: CanvasContext, key: str, text: str) -> None:
+    session, id = context.session, key.partition(".")[2]
     if key.startswith("frames."):
         session.set_frame(id, title=text.strip())
     elif key.startswith("comments."):

@@ -9,7 +9,7 @@ from ...authoring.edits.elements import Sizes
 from .layout import HEADER, PAD, PICTURE
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CanvasContext
 
 
 @dataclass
@@ -24,10 +24,10 @@ class Pictures:
     _paths: frozenset[str] = frozenset()
     _keys: frozenset[str] = frozenset()
 
-    def of(self, editor: Editor) -> frozenset[str]:
+    def of(self, context: CanvasContext) -> frozenset[str]:
         """Keys of those at the session's place; the same object while they stay the same."""
-        wanted, paths = editor.store.now.thumbnails, editor.preview.thumbnails
-        place = editor.session.place
+        wanted, paths = context.store.now.thumbnails, context.preview.thumbnails
+        place = context.session.place
         if self._of != (wanted, place) or self._paths is not paths:
             self._of, self._paths = (wanted, place), paths
             prefix = "".join(f"{id}/" for id in place)
@@ -36,12 +36,12 @@ class Pictures:
         return self._keys
 
 
-def with_room(editor: Editor) -> Sizes:
+def with_room(context: CanvasContext) -> Sizes:
     """The sizes of all elements as if every open node had its picture: room for those that come later."""
-    sizes = editor.canvas.sizes or {}
-    if not editor.store.now.thumbnails:
+    sizes = context.canvas.sizes or {}
+    if not context.store.now.thumbnails:
         return sizes
-    known, nodes = Pictures().of(editor), editor.session.graph.nodes
+    known, nodes = Pictures().of(context), context.session.graph.nodes
     return {
         key: (width, height + PICTURE + PAD / 2)
         if key in nodes and key not in known and height > HEADER

@@ -11,7 +11,7 @@ from .link_index import Net, Wire
 from .scene import Box, Scene
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CanvasContext
 
 _PIN = 5.0
 
@@ -22,17 +22,18 @@ Found = dict[str, Rect]
 class Places:
     """Keeps what was found of every element and of all links for as long as it does not move."""
 
+    context: CanvasContext
     _of: tuple[object, ...] = ()
     _boxes: dict[str, tuple[Box, Found]] = field(default_factory=dict[str, tuple[Box, Found]])
     _net: tuple[Net, Found] = field(default_factory=lambda: (Net(), {}))
 
-    def record(self, editor: Editor, scene: Scene, brush: Brush) -> None:
+    def record(self, scene: Scene, brush: Brush) -> None:
         """Note where everything visible is."""
         of = brush.to, brush.seen
         if self._of != of:
             self._of, self._boxes, self._net = of, {}, (Net(), {})
         known, boxes = self._boxes, dict[str, tuple[Box, Found]]()
-        places = editor.places
+        places = self.context.places
         for key, box in scene.boxes.items():
             one = known.get(key)
             boxes[key] = one = one if one and one[0] is box else (box, _of_box(box, brush))

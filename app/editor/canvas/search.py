@@ -32,7 +32,7 @@ from ..toolkit.places import record
 from .geometry import Point
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CanvasContext
 
 _POPUP = "add to the graph"
 _RECENT = 5
@@ -44,6 +44,7 @@ _WIDTH, _HEIGHT = 300.0, 360.0
 class Search:
     """What is typed, which line is marked, and where the new node goes."""
 
+    context: CanvasContext
     is_open: bool = False
     _query: str = ""
     _marked: int = 0
@@ -61,29 +62,29 @@ class Search:
     def _fixed(self) -> tuple[Entry, ...]:
         return (*code_entries(), *preset_entries(preset_paths()), *graph_entries())
 
-    def begin(self, editor: Editor, at: Point, port: Port | None = None, output: bool = True) -> None:
+    def begin(self, at: Point, port: Port | None = None, output: bool = True) -> None:
         """Open it for something at a canvas position; with a port, for what can be linked with it."""
-        session = editor.session
+        session = self.context.session
         self._replaced = ""
         nodes = node_entries(session.types)
         if port is None:
             self._link, self._entries = None, (*nodes, *self._fixed)
         else:
             self._link = port, output
-            fits = editor.attempt(lambda: session.fitting(port, output), ()) or ()
-            files = editor.attempt(lambda: session.fitting_files(preset_paths(), port, output), ()) or ()
+            fits = self.context.log.attempt(lambda: session.fitting(port, output), ()) or ()
+            files = self.context.log.attempt(lambda: session.fitting_files(preset_paths(), port, output), ()) or ()
             self._entries = narrowed((*nodes, *self._fixed), {*fits, *map(str, files)})
         self._at, self._query, self._marked, self._opening, self._awaits = at, "", 0, True, True
 
-    def begin_replacing(self, editor: Editor, id: str) -> None:
+    def begin_replacing(self, id: str) -> None:
         """Open it for another type of a node."""
-        now = editor.session.graph.nodes.get(id)
-        others = [type for type in editor.session.types if not isinstance(now, editor.session.types[type])]
+        now = self.context.session.graph.nodes.get(id)
+        others = [type for type in self.context.session.types if not isinstance(now, self.context.session.types[type])]
         self._link, self._replaced = None, id
-        self._entries = (*narrowed(node_entries(editor.session.types), others), *code_entries())
+        self._entries = (*narrowed(node_entries(self.context.session.types), others), *code_entries())
         self._query, self._marked, self._opening, self._awaits = "", 0, True, False
 
-    def draw(self, editor: Editor) -> None:
+    def draw(self) -> None:
         """Draw the popup, if it is open, and add what is chosen."""
         scale = ui_scale()
         if self._opening:
@@ -96,35 +97,35 @@ class Search:
             self._opening = False
             return
         if self._awaits:
-            self._add_shaders(editor)
+            self._add_shaders()
         if self._opening:
             imgui.set_keyboard_focus_here()
             self._opening = False
-        chosen = self._contents(editor)
+        chosen = self._contents()
         if chosen or imgui.is_key_pressed(imgui.Key.escape):
             imgui.close_current_popup()
         imgui.end_popup()
         if chosen:
-            editor.attempt(lambda: self._add(editor, chosen))
+            self.context.log.attempt(lambda: self._add(chosen))
 
-    def _add_shaders(self, editor: Editor) -> None:
-        files = editor.shaders.find(editor.store.now.isf_folders)
+    def _add_shaders(self) -> None:
+        files = self.context.shaders.find(self.context.store.now.isf_folders)
         if files is None:
             return
         self._awaits = False
         if self._link is not None:
             port, output = self._link
-            takes = editor.attempt(lambda: editor.session.fits_picture(port, output), False)
+            takes = self.context.log.attempt(lambda: self.context.session.fits_picture(port, output), False)
             files = [one for one in files if takes and (one.takes or not output)]
         self._entries = (*self._entries, *shader_entries(files))
 
-    def _contents(self, editor: Editor) -> Entry | None:
+    def _contents(self) -> Entry | None:
         imgui.set_next_item_width(-1)
         hint = f"Search what fits {self._link[0]}" if self._link else "Search nodes, presets, frames ..."
         hint = f"Replace {self._replaced} by ..." if self._replaced else hint
         before = self._query
         _, self._query = imgui.input_text_with_hint("##search", hint, self._query)
-        record(editor, "search field")
+        record(self.context, "search field")
         if self._query != before:
             self._marked = 0
         sections = found(self._entries, self._query, self._recent)
@@ -134,19 +135,19 @@ class Search:
         chosen = None
         foot = imgui.get_text_line_height() * 2 + imgui.get_style().item_spacing.y * 2 + 2.0 * ui_scale()
         if imgui.begin_child("##found", (0, -foot)):
-            chosen = self._list(editor, sections, bool(moved) or self._query != before)
+            chosen = self._list(sections, bool(moved) or self._query != before)
         imgui.end_child()
-        self._foot(editor, lines)
+        self._foot(lines)
         entered = imgui.is_key_pressed(imgui.Key.enter) or imgui.is_key_pressed(imgui.Key.keypad_enter)
         return lines[self._marked] if entered and lines else chosen
 
-    def _list(self, editor: Editor, sections: tuple[Section, ...], follow: bool) -> Entry | None:
+    def _list(self, sections: tuple[Section, ...], follow: bool) -> Entry | None:
         chosen, index = None, 0
-        palette, scale = editor.palette, ui_scale()
+        palette, scale = self.context.palette, ui_scale()
         draw = imgui.get_window_draw_list()
         for section in sections:
             if section.title:
-                imgui.push_font(editor.fonts.bold if editor.fonts else None, 12.0)
+                imgui.push_font(self.context.fonts.bold if self.context.fonts else None, 12.0)
                 imgui.text_colored(vec4(palette.dim), section.title.upper())
                 imgui.pop_font()
             for entry in section.entries:
@@ -154,7 +155,7 @@ class Search:
                 marked = index == self._marked
                 if imgui.selectable(f"      {entry.title}##{section.title} {entry.id}", marked)[0]:
                     chosen = entry
-                record(editor, f"search {entry.title}")
+                record(self.context, f"search {entry.title}")
                 if imgui.is_item_hovered() and _mouse_moved():
                     self._marked = index
                 if marked and follow:
@@ -176,16 +177,16 @@ class Search:
             imgui.text_colored(vec4(palette.dim), "Nothing is called like that.")
         return chosen
 
-    def _foot(self, editor: Editor, lines: list[Entry]) -> None:
+    def _foot(self, lines: list[Entry]) -> None:
         imgui.separator()
         doc = lines[self._marked].doc if lines else ""
-        imgui.push_style_color(imgui.Col_.text, vec4(editor.palette.dim))
+        imgui.push_style_color(imgui.Col_.text, vec4(self.context.palette.dim))
         keys = f"{icons.ICON_FA_ARROW_UP}{icons.ICON_FA_ARROW_DOWN} choose, Enter adds, Escape leaves"
         imgui.text_wrapped(doc or keys)
         imgui.pop_style_color()
 
-    def _add(self, editor: Editor, entry: Entry) -> None:
-        session, at = editor.session, self._at
+    def _add(self, entry: Entry) -> None:
+        session, at = self.context.session, self._at
         if self._replaced:
             session.replace(self._replaced, entry.id)
             return
@@ -206,11 +207,11 @@ class Search:
             session.add_comment(at, "")
         else:
             side, _, kind = entry.id.partition(":")
-            _add_end(editor, side, Kind(kind), at)
+            _add_end(self.context, side, Kind(kind), at)
 
 
-def _add_end(editor: Editor, side: str, kind: Kind, at: Point) -> None:
-    session = editor.session
+def _add_end(context: CanvasContext, side: str, kind: Kind, at: Point) -> None:
+    session = context.session
     taken = session.graph.inputs if side == "input" else session.graph.outputs
     name = fresh_name(kind.lower(), taken)
     if side == "input":

@@ -18,7 +18,7 @@ from ..toolkit.places import record
 from ..toolkit.words import dim, font, tip
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CodeContext
     from .page import Page
 
 _POPUP = "help for code"
@@ -53,19 +53,22 @@ NOTES = (
 class Help:
     """The question mark, and the list that it opens."""
 
-    def draw(self, editor: Editor, page: Page, code: Code) -> None:
+    def __init__(self, context: CodeContext) -> None:
+        self._context = context
+
+    def draw(self, page: Page, code: Code) -> None:
         """Draw the button, and the list if it is open."""
-        if quiet(editor, icons.ICON_FA_CIRCLE_QUESTION, "button code help", "What can be written"):
+        if quiet(self._context, icons.ICON_FA_CIRCLE_QUESTION, "button code help", "What can be written"):
             imgui.open_popup(_POPUP)
         scale = ui_scale()
         imgui.set_next_window_size_constraints((420 * scale, 60 * scale), (620 * scale, 560 * scale))
         if imgui.begin_popup(_POPUP):
             if code.language == "isf":
-                dim(editor, "Shaders in the Interactive Shader Format: isf.video describes it.")
+                dim(self._context, "Shaders in the Interactive Shader Format: isf.video describes it.")
             else:
-                _table(editor, "Names", NAMES)
-                _table(editor, "// after a parameter", NOTES)
-                _includes(editor, page)
+                _table(self._context, "Names", NAMES)
+                _table(self._context, "// after a parameter", NOTES)
+                _includes(self._context, page)
             imgui.end_popup()
 
 
@@ -82,32 +85,32 @@ def includes() -> Iterator[tuple[str, str]]:
             )
 
 
-def _table(editor: Editor, title: str, lines: tuple[tuple[str, str], ...]) -> None:
-    _title(editor, title)
+def _table(context: CodeContext, title: str, lines: tuple[tuple[str, str], ...]) -> None:
+    _title(context, title)
     if imgui.begin_table(title, 2, int(imgui.TableFlags_.sizing_fixed_fit)):
         for name, does in lines:
             imgui.table_next_row()
             imgui.table_next_column()
-            with font(editor, "mono", 14.0):
+            with font(context, "mono", 14.0):
                 imgui.text_unformatted(name)
             imgui.table_next_column()
-            dim(editor, does)
+            dim(context, does)
         imgui.end_table()
 
 
-def _includes(editor: Editor, page: Page) -> None:
+def _includes(context: CodeContext, page: Page) -> None:
     """Files to include; a click writes the line."""
-    _title(editor, "#include")
+    _title(context, "#include")
     for name, functions in includes():
-        with font(editor, "mono", 14.0):
+        with font(context, "mono", 14.0):
             chosen = imgui.selectable(f"{name}.glsl", False)[0]
-        record(editor, f"include {name}")
+        record(context, f"include {name}")
         tip(functions)
         if chosen:
             start = TextEditor.DocPos(0, 0)
             page.widget.replace_section_text(start, start, f'#include "{name}.glsl"\n')
 
 
-def _title(editor: Editor, title: str) -> None:
-    with font(editor, "bold"):
-        imgui.text_colored(vec4(editor.palette.accent), title)
+def _title(context: CodeContext, title: str) -> None:
+    with font(context, "bold"):
+        imgui.text_colored(vec4(context.palette.accent), title)

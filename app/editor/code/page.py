@@ -15,7 +15,7 @@ from ...graph import Unknown
 from ..theme.style import mix, u32
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CodeContext
 
 PAUSE = 0.25
 """Seconds without a key after which what was typed is taken over."""
@@ -42,6 +42,7 @@ class Fault:
 class Page:
     """A widget, the text that was in it last, and the text that the document has."""
 
+    context: CodeContext
     id: str
     place: tuple[str, ...]
     widget: TextEditor = field(default_factory=TextEditor)
@@ -71,16 +72,16 @@ class Page:
         """The path of the node, through groups."""
         return "/".join((*self.place, self.id))
 
-    def draw(self, editor: Editor, size: tuple[float, float]) -> None:
+    def draw(self, size: tuple[float, float]) -> None:
         """Draw the text, and take over what is typed once there is a pause."""
-        widget, theme = self.widget, editor.palette.name
+        widget, theme = self.widget, self.context.palette.name
         if theme != self._theme:
             self._theme, self._marked = theme, ()
             dark = theme == "dark"
             widget.set_palette(TextEditor.get_dark_palette() if dark else TextEditor.get_light_palette())
-        self._follow(editor)
-        self._mark(editor)
-        widget.set_read_only_enabled(bool(editor.session.borrowed))
+        self._follow()
+        self._mark()
+        widget.set_read_only_enabled(bool(self.context.session.borrowed))
         widget.render(f"##code {self.path}", ImVec2(*size))
         text = widget.get_text()
         now = time.monotonic()
@@ -89,18 +90,18 @@ class Page:
                 self._bursts += 1
             self._text, self._typed, self._waits = text, now, True
         if self._waits and now - self._typed >= PAUSE:
-            self.take(editor)
+            self.take()
 
-    def take(self, editor: Editor) -> None:
+    def take(self) -> None:
         """Make what was typed the code of the node."""
         if not self._waits:
             return
         self._waits = False
-        if self.place != editor.session.place or editor.session.code(self.id) is None:
+        if self.place != self.context.session.place or self.context.session.code(self.id) is None:
             return
         self._taken = self._text
         merge = f"code {self.path} {id(self)} {self._bursts}"
-        editor.attempt(lambda: editor.session.set_code(self.id, self._text, merge))
+        self.context.log.attempt(lambda: self.context.session.set_code(self.id, self._text, merge))
 
     def end_burst(self) -> None:
         """What is typed from now on is another step."""
@@ -111,9 +112,9 @@ class Page:
         self.widget.set_cursor(TextEditor.DocPos(max(line - 1, 0), 0))
         self.widget.set_focus()
 
-    def _follow(self, editor: Editor) -> None:
+    def _follow(self) -> None:
         """Show what the document has, if that was changed elsewhere."""
-        code = editor.session.code(self.id)
+        code = self.context.session.code(self.id)
         if code is None or code.text == self._taken or self._waits:
             return
         at = self.widget.get_main_cursor_position()
@@ -124,29 +125,29 @@ class Page:
         if not first:
             self.widget.set_cursor(TextEditor.DocPos(min(at.line, self.widget.get_line_count() - 1), at.index))
 
-    def _mark(self, editor: Editor) -> None:
+    def _mark(self) -> None:
         """Show what is wrong at its line."""
-        self.fault = self._found(editor)
+        self.fault = self._found()
         wanted = (self.fault, self._theme, self._taken)
         if wanted == self._marked:
             return
         self._marked = wanted
         self.widget.clear_markers()
         if self.fault and self.fault.line:
-            palette = editor.palette
+            palette = self.context.palette
             line = min(self.fault.line, self.widget.get_line_count()) - 1
             back = u32(mix(palette.field, palette.error, 0.35), 0.8)
             self.widget.add_marker(line, u32(palette.error, 0.45), back, self.fault.sentence, self.fault.sentence)
 
-    def _found(self, editor: Editor) -> Fault | None:
+    def _found(self) -> Fault | None:
         """What the text says no node for, else what the driver said when it was drawn last."""
-        item = editor.session.graph.nodes.get(self.id)
+        item = self.context.session.graph.nodes.get(self.id)
         if isinstance(item, Unknown):
-            code = editor.session.code(self.id)
+            code = self.context.session.code(self.id)
             if code is not None and self._checked[0] != code:
                 self._checked = code, _fault_of(code)
             return self._checked[1] or Fault(0, item.fault)
-        error = editor.preview.errors.get(self.path)
+        error = self.context.preview.errors.get(self.path)
         if isinstance(item, Written) and isinstance(error, ShaderError):
             if item.text is None or error.file == item.text.file:
                 return Fault(error.line, error.fault.removeprefix("error:").strip())

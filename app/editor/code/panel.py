@@ -16,12 +16,11 @@ from ..toolkit.buttons import quiet, right_aligned
 from ..toolkit.keys import chord
 from ..toolkit.places import record
 from ..toolkit.words import dim, elided, font, nothing_here, tip, wrapped
-from ..workflows.code_files import save_code
 from .help import Help
 from .page import Page
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CodeContext
 
 MOST = 16
 """Texts whose cursor and own history of undo are kept."""
@@ -34,59 +33,58 @@ class CodePanel:
 
     title = "Code"
 
-    def __init__(self) -> None:
+    def __init__(self, context: CodeContext) -> None:
+        self._context = context
         self._pages: OrderedDict[tuple[str, ...], Page] = OrderedDict()
         self._page: Page | None = None
-        self._editor: Editor | None = None
-        self._help = Help()
+        self._help = Help(context)
         self._focused = False
 
-    def draw(self, editor: Editor) -> None:
+    def draw(self) -> None:
         """Draw into the current window."""
-        self._editor = editor
-        editor.code.flush = self._flush
-        page = self._choose(editor)
-        code = editor.session.code(page.id) if page else None
+        self._context.code.flush = self._flush
+        page = self._choose()
+        code = self._context.session.code(page.id) if page else None
         if page is None or code is None:
             nothing_here(
-                editor,
+                self._context,
                 icons.ICON_FA_CODE,
                 "No code",
                 "Add a Code node to the graph, or select one: what you write here is what it does.",
             )
             return
         focused = imgui.is_window_focused(imgui.FocusedFlags_.root_and_child_windows.value)
-        if editor.code.focus:
-            editor.code.focus = False
+        if self._context.code.focus:
+            self._context.code.focus = False
             page.widget.set_focus()
         if focused:
-            self._keys(editor, page, code)
-        self._head(editor, page, code)
+            self._keys(page, code)
+        self._head(page, code)
         fault = page.fault
         room = imgui.get_content_region_avail()
         foot = 0.0
         if fault:
             text_width = max(room.x - 26 * ui_scale(), 1.0)
             foot = imgui.calc_text_size(fault.words, wrap_width=text_width).y + 2 * imgui.get_style().item_spacing.y
-        with font(editor, "mono", _SIZE):
-            page.draw(editor, (room.x, max(room.y - foot, 40 * ui_scale())))
-        record(editor, "code text")
+        with font(self._context, "mono", _SIZE):
+            page.draw((room.x, max(room.y - foot, 40 * ui_scale())))
+        record(self._context, "code text")
         if fault:
-            self._fault(editor, page)
+            self._fault(page)
         if self._focused and not focused:
-            page.take(editor)
+            page.take()
             page.end_burst()
         self._focused = focused
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _choose(self, editor: Editor) -> Page | None:
+    def _choose(self) -> Page | None:
         """The page of the active node, else the one before."""
-        session = editor.session
+        session = self._context.session
         if session.code(session.active) is not None:
             key = (*session.place, session.active)
             if key not in self._pages:
-                self._pages[key] = Page(session.active, session.place)
+                self._pages[key] = Page(self._context, session.active, session.place)
                 if len(self._pages) > MOST:
                     self._pages.popitem(last=False)
             self._pages.move_to_end(key)
@@ -98,30 +96,30 @@ class CodePanel:
         return self._page
 
     def _flush(self) -> None:
-        if self._page and self._editor:
-            self._page.take(self._editor)
+        if self._page:
+            self._page.take()
 
-    def _keys(self, editor: Editor, page: Page, code: Code) -> None:
+    def _keys(self, page: Page, code: Code) -> None:
         """Keys that mean the text while it has the keyboard; the widget takes those for undo and the clipboard."""
         if imgui.is_key_chord_pressed(chord("Ctrl+Enter")):
-            page.take(editor)
+            page.take()
             page.end_burst()
         if imgui.is_key_chord_pressed(chord("Ctrl+S")):
-            page.take(editor)
+            page.take()
             page.end_burst()
-            self._save(editor, page, code)
+            self._save(page, code)
 
-    def _save(self, editor: Editor, page: Page, code: Code) -> None:
+    def _save(self, page: Page, code: Code) -> None:
         if code.file:
-            editor.attempt(lambda: save_code(editor, page.id))
+            self._context.log.attempt(lambda: self._context.code_files.save(page.id))
         else:
-            editor.actions.run("file.save", editor)
+            self._context.actions.run("file.save")
 
-    def _head(self, editor: Editor, page: Page, code: Code) -> None:
+    def _head(self, page: Page, code: Code) -> None:
         """Which node it is, where the code is kept, and what can be done with that."""
-        session, style = editor.session, imgui.get_style()
+        session, style = self._context.session, imgui.get_style()
         imgui.align_text_to_frame_padding()
-        with font(editor, "bold"):
+        with font(self._context, "bold"):
             imgui.text_unformatted(page.id)
         imgui.same_line()
         glyphs = (icons.ICON_FA_FLOPPY_DISK, icons.ICON_FA_FILE_IMPORT, icons.ICON_FA_CIRCLE_QUESTION)
@@ -130,35 +128,37 @@ class CodePanel:
         where = f"{PurePath(code.file).name}{' *' if draft else ''}" if code.file else "in the graph"
         room = imgui.get_content_region_avail().x - len(glyphs) * (imgui.get_frame_height() + style.item_spacing.x)
         imgui.align_text_to_frame_padding()
-        dim(editor, elided(where, max(room, 1.0)))
-        record(editor, "code where")
+        dim(self._context, elided(where, max(room, 1.0)))
+        record(self._context, "code where")
         tip((f"{code.file}: not saved yet" if draft else code.file) if code.file else "Saved with the graph")
         ours = not session.borrowed
         right_aligned(*glyphs)
         if code.file:
-            if quiet(editor, glyphs[0], "button save code", "Save to the file (Ctrl+S)", enabled=draft and ours):
-                page.take(editor)
-                self._save(editor, page, code)
+            if quiet(self._context, glyphs[0], "button save code", "Save to the file (Ctrl+S)", enabled=draft and ours):
+                page.take()
+                self._save(page, code)
             imgui.same_line()
-            if quiet(editor, glyphs[1], "button inline code", "Move into the graph; the file stays", enabled=ours):
-                page.take(editor)
-                editor.attempt(lambda: session.inline_code(page.id))
-        elif quiet(editor, glyphs[0], "button export code", "Move to a file of its own ...", enabled=ours):
-            page.take(editor)
-            editor.actions.run("code.export", editor)
+            if quiet(
+                self._context, glyphs[1], "button inline code", "Move into the graph; the file stays", enabled=ours
+            ):
+                page.take()
+                self._context.log.attempt(lambda: session.inline_code(page.id))
+        elif quiet(self._context, glyphs[0], "button export code", "Move to a file of its own ...", enabled=ours):
+            page.take()
+            self._context.actions.run("code.export")
         imgui.same_line()
-        self._help.draw(editor, page, code)
+        self._help.draw(page, code)
 
-    def _fault(self, editor: Editor, page: Page) -> None:
+    def _fault(self, page: Page) -> None:
         """What is wrong, below the text; a click goes there."""
         fault = page.fault
         if fault is None:
             return
-        editor.code.telling = page.path
-        imgui.text_colored(vec4(editor.palette.error), icons.ICON_FA_TRIANGLE_EXCLAMATION)
+        self._context.code.telling = page.path
+        imgui.text_colored(vec4(self._context.palette.error), icons.ICON_FA_TRIANGLE_EXCLAMATION)
         imgui.same_line()
-        wrapped(editor.palette.error, fault.words)
-        record(editor, "code fault")
+        wrapped(self._context.palette.error, fault.words)
+        record(self._context, "code fault")
         if fault.line and imgui.is_item_hovered():
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
             if imgui.is_item_clicked():

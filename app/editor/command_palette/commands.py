@@ -13,10 +13,9 @@ from ...graph import Group
 from ..shared.action import Action
 from ..shared.entries import code_entries, words
 from ..shared.fuzzy import Match, match
-from ..workflows.documents import open_preset
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import PaletteContext
 
 
 @dataclass(frozen=True)
@@ -34,9 +33,9 @@ class Command:
     """Added to how well it matches: what is wanted less often stands lower."""
 
 
-def commands(editor: Editor) -> tuple[Command, ...]:
+def commands(context: PaletteContext) -> tuple[Command, ...]:
     """Every action, node type, preset, and node of the graph; `run` does it within `editor.attempt`."""
-    return tuple(_all(editor))
+    return tuple(_all(context))
 
 
 def ranked(query: str, offered: tuple[Command, ...], recent: Collection[str]) -> tuple[tuple[Command, Match], ...]:
@@ -54,19 +53,19 @@ def ranked(query: str, offered: tuple[Command, ...], recent: Collection[str]) ->
     return tuple(sorted(found, key=lambda pair: (order.get(pair[0].id, last), bool(pair[0].reason), pair[1].index)))
 
 
-def reason(editor: Editor, action: Action) -> str:
+def reason(context: PaletteContext, action: Action) -> str:
     """Why an action cannot be done now, "" if it can."""
-    if action.enabled(editor):
+    if context.actions.is_enabled(action):
         return ""
     if action.id == "edit.undo":
         return "nothing was done yet"
     if action.id == "edit.redo":
         return "nothing was undone"
-    return "select something first" if action.scope == "graph" and not editor.session.selection else "not possible now"
+    return "select something first" if action.scope == "graph" and not context.session.selection else "not possible now"
 
 
-def _all(editor: Editor) -> Iterator[Command]:
-    for action in editor.actions.all:
+def _all(context: PaletteContext) -> Iterator[Command]:
+    for action in context.actions.all:
         label = action.label.removesuffix("...")
         menu = action.menu.split("/")
         full = f"{menu[1]} {label}" if len(menu) > 1 and menu[1].lower() not in label.lower() else label
@@ -74,40 +73,40 @@ def _all(editor: Editor) -> Iterator[Command]:
             action.id,
             full,
             menu[0] or "Action",
-            partial(editor.actions.run, action.id, editor),
-            editor.actions.shortcut(action.id),
+            partial(context.actions.run, action.id),
+            context.actions.shortcut(action.id),
             action.doc,
-            reason(editor, action),
+            reason(context, action),
         )
-    for id, type in editor.session.types.items():
+    for id, type in context.session.types.items():
         doc = (type.__doc__ or "").strip().splitlines()
         yield Command(
             f"add {id}",
             f"Add {type.title.title()}",
             words(type.category).capitalize(),
-            partial(_add, editor, id),
+            partial(_add, context, id),
             doc=doc[0] if doc else "",
         )
     for entry in code_entries():
-        yield Command(f"add {entry.id}", "Add Code", "Code", partial(_add, editor, entry.id), doc=entry.doc)
+        yield Command(f"add {entry.id}", "Add Code", "Code", partial(_add, context, entry.id), doc=entry.doc)
     for path in preset_paths():
         name = words(path.stem).title()
-        opens, adds = partial(open_preset, editor, path), partial(_add_preset, editor, path)
+        opens, adds = partial(context.documents.open_preset, path), partial(_add_preset, context, path)
         yield Command(f"preset {path.stem}", f"Open Preset {name}", "Preset", opens, weight=-4.0)
         yield Command(f"group {path.stem}", f"Add Preset {name}", "Preset", adds, weight=-5.0)
-    for key, item in editor.session.graph.nodes.items():
+    for key, item in context.session.graph.nodes.items():
         kind = "Group" if isinstance(item, Group) else "Node"
-        yield Command(f"go {key}", f"Go to {key}", kind, partial(_go, editor, key), weight=-6.0)
+        yield Command(f"go {key}", f"Go to {key}", kind, partial(_go, context, key), weight=-6.0)
 
 
-def _add(editor: Editor, type_id: str) -> None:
-    editor.session.select((editor.session.add_node(type_id, editor.canvas.pointer),))
+def _add(context: PaletteContext, type_id: str) -> None:
+    context.session.select((context.session.add_node(type_id, context.canvas.pointer),))
 
 
-def _add_preset(editor: Editor, path: Path) -> None:
-    editor.session.select((editor.session.add_group(path, editor.canvas.pointer),))
+def _add_preset(context: PaletteContext, path: Path) -> None:
+    context.session.select((context.session.add_group(path, context.canvas.pointer),))
 
 
-def _go(editor: Editor, key: str) -> None:
-    editor.session.select((key,))
-    editor.canvas.fit((key,))
+def _go(context: PaletteContext, key: str) -> None:
+    context.session.select((key,))
+    context.canvas.fit((key,))

@@ -16,7 +16,7 @@ from ..toolkit.words import dim, font
 from .commands import Command, commands, ranked
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import PaletteContext
 
 _ROWS = 12
 
@@ -24,51 +24,52 @@ _ROWS = 12
 class CommandPalette:
     """A field and a list: arrows choose, Enter does it, Escape closes."""
 
-    def __init__(self) -> None:
+    def __init__(self, context: PaletteContext) -> None:
+        self._context = context
         self._query = ""
         self._chosen = 0
         self._offered: tuple[Command, ...] = ()
         self._recent = deque[str](maxlen=12)
         self._open = False
 
-    def draw(self, editor: Editor) -> None:
+    def draw(self) -> None:
         """Draw over everything, if it is open."""
-        if "palette" not in editor.dialogs.open:
+        if "palette" not in self._context.dialogs.open:
             self._open = False
             return
         if not self._open:
-            self._open, self._query, self._chosen, self._offered = True, "", 0, commands(editor)
+            self._open, self._query, self._chosen, self._offered = True, "", 0, commands(self._context)
         found = ranked(self._query, self._offered, self._recent)
-        close = backdrop(editor, "palette", 0.3)
+        close = backdrop(self._context, "palette", 0.3)
         done: Command | None = None
-        with dialog(editor, "Command palette", (620, 0), top=0.18):
-            self._field(editor)
+        with dialog(self._context, "Command palette", (620, 0), top=0.18):
+            self._field()
             moved = self._steer(len(found))
             entered = any(imgui.is_key_pressed(key, False) for key in (imgui.Key.enter, imgui.Key.keypad_enter))
             if entered and found:
                 done = found[self._chosen][0]
-            done = self._list(editor, found, moved) or done
+            done = self._list(found, moved) or done
             close = close or escaped()
         if done is not None and not done.reason:
-            self._do(editor, done)
+            self._do(done)
         if close or (done is not None and not done.reason):
-            editor.dialogs.open.discard("palette")
+            self._context.dialogs.open.discard("palette")
 
-    def _do(self, editor: Editor, command: Command) -> None:
+    def _do(self, command: Command) -> None:
         if command.id in self._recent:
             self._recent.remove(command.id)
         self._recent.append(command.id)
-        editor.dialogs.open.discard("palette")
-        editor.attempt(command.run)
+        self._context.dialogs.open.discard("palette")
+        self._context.log.attempt(command.run)
 
-    def _field(self, editor: Editor) -> None:
+    def _field(self) -> None:
         if not imgui.is_any_item_active():
             imgui.set_keyboard_focus_here()
         imgui.set_next_item_width(-1)
-        with font(editor, "text", 18.0):
+        with font(self._context, "text", 18.0):
             hint = "Do anything: type a command, a node, a preset"
             changed, self._query = imgui.input_text_with_hint("##command", hint, self._query)
-        record(editor, "palette field")
+        record(self._context, "palette field")
         if changed:
             self._chosen = 0
 
@@ -78,9 +79,9 @@ class CommandPalette:
         self._chosen = min(max(self._chosen + step, 0), max(count - 1, 0))
         return step != 0
 
-    def _list(self, editor: Editor, found: tuple[tuple[Command, Match], ...], moved: bool) -> Command | None:
+    def _list(self, found: tuple[tuple[Command, Match], ...], moved: bool) -> Command | None:
         if not found:
-            dim(editor, "Nothing is called that.")
+            dim(self._context, "Nothing is called that.")
             return None
         height = imgui.get_text_line_height() + 8 * ui_scale()
         done: Command | None = None
@@ -92,7 +93,7 @@ class CommandPalette:
         while clipper.step():
             for index in range(clipper.display_start, clipper.display_end):
                 command, one = found[index]
-                if self._row(editor, index, command, one, height):
+                if self._row(index, command, one, height):
                     done = command
                 if moved and index == self._chosen:
                     imgui.internal.scroll_to_item()
@@ -100,15 +101,15 @@ class CommandPalette:
         imgui.pop_style_var()
         imgui.end_child()
         doc = found[self._chosen][0].doc if self._chosen < len(found) else ""
-        dim(editor, doc or " ")
+        dim(self._context, doc or " ")
         return done
 
-    def _row(self, editor: Editor, index: int, command: Command, one: Match, height: float) -> bool:
-        palette, scale = editor.palette, ui_scale()
+    def _row(self, index: int, command: Command, one: Match, height: float) -> bool:
+        palette, scale = self._context.palette, ui_scale()
         start = imgui.get_cursor_pos()
         edge = start.x + imgui.get_content_region_avail().x
         clicked, _ = imgui.selectable(f"##{index}", index == self._chosen, 0, ImVec2(0, height))
-        record(editor, f"command {command.id}")
+        record(self._context, f"command {command.id}")
         if imgui.is_item_hovered() and imgui.get_io().mouse_delta != ImVec2(0, 0):
             self._chosen = index
         after = imgui.get_cursor_pos()
@@ -116,11 +117,11 @@ class CommandPalette:
         imgui.set_cursor_pos(ImVec2(start.x + 6 * scale, line))
         color = palette.dim if command.reason else palette.text
         for piece, matched in runs(command.label, one.positions):
-            with font(editor, "bold" if matched else "text"):
+            with font(self._context, "bold" if matched else "text"):
                 imgui.text_colored(vec4(palette.accent if matched and not command.reason else color), piece)
             imgui.same_line(0, 0)
         right = command.reason or shown(command.shortcut) or command.kind
         imgui.set_cursor_pos(ImVec2(edge - imgui.calc_text_size(right).x - 6 * scale, line))
-        dim(editor, right)
+        dim(self._context, right)
         imgui.set_cursor_pos(after)
         return clicked

@@ -10,7 +10,7 @@ from . import commands
 from .commands import some
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CurvesContext
 
 _KEYS = frozenset({"keys"})
 _HOW: tuple[tuple[Interpolation, str], ...] = (
@@ -46,15 +46,15 @@ def _outside(how: Outside, label: str, doc: str) -> Action:
         f"Outside: {label}",
         commands.go_on(how),
         scope="animation",
-        enabled=lambda e: bool(e.curves.spots or e.curves.shown),
-        checked=lambda e: commands.goes_on(e, how),
+        enabled=lambda context: bool(context.curves.spots or context.curves.shown),
+        checked=lambda context: commands.goes_on(context, how),
         contexts=frozenset({"keys outside"}),
         doc=doc,
     )
 
 
-def _toggle_snap(editor: Editor) -> None:
-    editor.curves.snap = not editor.curves.snap
+def _toggle_snap(context: CurvesContext) -> None:
+    context.curves.snap = not context.curves.snap
 
 
 ANIMATION: tuple[Action, ...] = (
@@ -65,7 +65,7 @@ ANIMATION: tuple[Action, ...] = (
         commands.key_here,
         shortcut="K",
         scope="animation",
-        enabled=lambda e: bool(e.session.graph.animation),
+        enabled=lambda context: bool(context.session.graph.animation),
         doc="A key on the curve of every selected row, or of all rows.",
     ),
     Action("keys.cut", "Cut Keys", commands.cut, shortcut="Ctrl+X", scope="animation", enabled=some, contexts=_KEYS),
@@ -184,9 +184,15 @@ ANIMATION: tuple[Action, ...] = (
         _toggle_snap,
         shortcut="Shift+S",
         scope="animation",
-        checked=lambda e: e.curves.snap,
+        checked=lambda context: context.curves.snap,
         doc="Keys that are moved land on whole frames.",
     ),
-    Action("keys.fit_all", "Show All Keys", lambda e: e.curves.fit(), shortcut="A", scope="animation"),
-    Action("keys.fit_chosen", "Show Selected Keys", lambda e: e.curves.fit("chosen"), shortcut="F", scope="animation"),
+    Action("keys.fit_all", "Show All Keys", lambda context: context.curves.fit(), shortcut="A", scope="animation"),
+    Action(
+        "keys.fit_chosen",
+        "Show Selected Keys",
+        lambda context: context.curves.fit("chosen"),
+        shortcut="F",
+        scope="animation",
+    ),
 )

@@ -15,13 +15,15 @@ from .rows import Row, Spot, limits, spots_of, width
 from .shapes import Samples, heights
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CurvesContext
 
 
-def put(editor: Editor, changes: Mapping[Port, Keys], label: str, merge: str = "") -> None:
+def put(context: CurvesContext, changes: Mapping[Port, Keys], label: str, merge: str = "") -> None:
     """Give values other keys, as one step; a value without any stays as it is at this frame."""
-    before = editor.session.graph.animation
-    editor.session.animate_all({port: keys for port, keys in changes.items() if before.get(port) != keys}, label, merge)
+    before = context.session.graph.animation
+    context.session.animate_all(
+        {port: keys for port, keys in changes.items() if before.get(port) != keys}, label, merge
+    )
 
 
 def spoken(spots: frozenset[Spot]) -> str:
@@ -30,102 +32,102 @@ def spoken(spots: frozenset[Spot]) -> str:
     return "a key" if count == 1 else f"{count} keys"
 
 
-def some(editor: Editor) -> bool:
+def some(context: CurvesContext) -> bool:
     """True if keys are chosen."""
-    return bool(editor.curves.spots)
+    return bool(context.curves.spots)
 
 
-def choose_all(editor: Editor) -> None:
+def choose_all(context: CurvesContext) -> None:
     """Choose every key that has a row."""
-    state, session = editor.curves, editor.session
+    state, session = context.curves, context.session
     found = state.rows(session.graph, session.selection)
     rows = found if state.mode == "sheet" else state.curves(found)
-    state.choose(frozenset(spot for row in rows if row.port and row.keys for spot in _seen(editor, row)))
+    state.choose(frozenset(spot for row in rows if row.port and row.keys for spot in _seen(context, row)))
 
 
-def choose_none(editor: Editor) -> None:
+def choose_none(context: CurvesContext) -> None:
     """Choose nothing."""
-    editor.curves.spots = frozenset()
+    context.curves.spots = frozenset()
 
 
-def delete(editor: Editor) -> None:
+def delete(context: CurvesContext) -> None:
     """Remove chosen keys."""
-    _change(editor, lambda graph, spots: removed(graph.animation, spots), "Delete")
+    _change(context, lambda graph, spots: removed(graph.animation, spots), "Delete")
 
 
-def interpolate(how: Interpolation) -> Callable[[Editor], None]:
+def interpolate(how: Interpolation) -> Callable[[CurvesContext], None]:
     """Chosen keys go to the next in that way."""
-    return lambda editor: _change(
-        editor, lambda graph, spots: interpolated(graph.animation, spots, how), f"Make {how}:"
+    return lambda context: _change(
+        context, lambda graph, spots: interpolated(graph.animation, spots, how), f"Make {how}:"
     )
 
 
-def ease(how: Ease) -> Callable[[Editor], None]:
+def ease(how: Ease) -> Callable[[CurvesContext], None]:
     """Chosen keys are come to, or left, gently."""
     words = {"in": "Ease into", "out": "Ease out of", "both": "Ease"}[how]
-    return lambda editor: _change(editor, lambda graph, spots: eased(graph.animation, spots, how), words)
+    return lambda context: _change(context, lambda graph, spots: eased(graph.animation, spots, how), words)
 
 
-def make_automatic(editor: Editor) -> None:
+def make_automatic(context: CurvesContext) -> None:
     """Handles go along the smooth curve."""
-    editor.curves.free -= _keys_of(editor)
-    _change(editor, lambda graph, spots: automatic(graph.animation, spots), "Automatic handles of")
+    context.curves.free -= _keys_of(context)
+    _change(context, lambda graph, spots: automatic(graph.animation, spots), "Automatic handles of")
 
 
-def make_aligned(editor: Editor) -> None:
+def make_aligned(context: CurvesContext) -> None:
     """Both handles lie on one line, and turn together."""
-    editor.curves.free -= _keys_of(editor)
-    _change(editor, lambda graph, spots: straightened(graph.animation, spots), "Align handles of")
+    context.curves.free -= _keys_of(context)
+    _change(context, lambda graph, spots: straightened(graph.animation, spots), "Align handles of")
 
 
-def make_free(editor: Editor) -> None:
+def make_free(context: CurvesContext) -> None:
     """Each handle turns alone."""
-    _change(editor, lambda graph, spots: fixed(graph.animation, spots), "Free handles of")
-    editor.curves.free |= _keys_of(editor)
+    _change(context, lambda graph, spots: fixed(graph.animation, spots), "Free handles of")
+    context.curves.free |= _keys_of(context)
 
 
-def go_on(how: Outside) -> Callable[[Editor], None]:
+def go_on(how: Outside) -> Callable[[CurvesContext], None]:
     """What the values of the chosen keys, or else of the chosen rows, do outside of their keys."""
 
-    def act(editor: Editor) -> None:
-        state, graph = editor.curves, editor.session.graph
+    def act(context: CurvesContext) -> None:
+        state, graph = context.curves, context.session.graph
         ports = {port for port, _, _ in state.spots} or state.shown
         if not ports:
             raise UsageError("no keys are selected: select some of the values that this is about")
-        put(editor, going_on(graph.animation, ports, how), f"Outside of keys: {how}")
+        put(context, going_on(graph.animation, ports, how), f"Outside of keys: {how}")
 
     return act
 
 
-def goes_on(editor: Editor, how: Outside) -> bool:
+def goes_on(context: CurvesContext, how: Outside) -> bool:
     """True if all values of the chosen keys do that outside of their keys."""
-    state, animation = editor.curves, editor.session.graph.animation
+    state, animation = context.curves, context.session.graph.animation
     found = [animation.get(port) for port in ({port for port, _, _ in state.spots} or state.shown)]
     return bool(found) and all(isinstance(keys, Keys) and keys.outside == how for keys in found)
 
 
-def copy(editor: Editor) -> None:
+def copy(context: CurvesContext) -> None:
     """Chosen keys go to the clipboard."""
-    editor.clipboard.put(copied(editor.session.graph.animation, editor.curves.spots))
+    context.clipboard.put(copied(context.session.graph.animation, context.curves.spots))
 
 
-def cut(editor: Editor) -> None:
+def cut(context: CurvesContext) -> None:
     """Chosen keys go to the clipboard, and away."""
-    copy(editor)
-    _change(editor, lambda graph, spots: removed(graph.animation, spots), "Cut")
+    copy(context)
+    _change(context, lambda graph, spots: removed(graph.animation, spots), "Cut")
 
 
-def paste(editor: Editor) -> None:
+def paste(context: CurvesContext) -> None:
     """Keys of the clipboard come in from the current frame on, and are chosen."""
-    session, state = editor.session, editor.curves
-    change = pasted(session.graph, read(editor.clipboard.get()), session.frame, state.shown)
-    put(editor, change.made, f"Paste {spoken(change.spots)}")
+    session, state = context.session, context.curves
+    change = pasted(session.graph, read(context.clipboard.get()), session.frame, state.shown)
+    put(context, change.made, f"Paste {spoken(change.spots)}")
     state.spots = change.spots
 
 
-def duplicate(editor: Editor) -> None:
+def duplicate(context: CurvesContext) -> None:
     """Chosen keys once more, behind themselves; the copies are chosen."""
-    state, graph = editor.curves, editor.session.graph
+    state, graph = context.curves, context.session.graph
     span = extent(state.spots)
     if span is None:
         raise UsageError("no keys are selected: select what to duplicate")
@@ -135,49 +137,49 @@ def duplicate(editor: Editor) -> None:
         for port, keys in change.made.items()
         if isinstance(before := graph.animation[port], Keys)
     }
-    put(editor, made, f"Duplicate {spoken(state.spots)}")
+    put(context, made, f"Duplicate {spoken(state.spots)}")
     state.spots = change.spots
 
 
-def nudge(by: float) -> Callable[[Editor], None]:
+def nudge(by: float) -> Callable[[CurvesContext], None]:
     """Chosen keys so many frames later."""
 
-    def act(editor: Editor) -> None:
-        state = editor.curves
-        change = moved(editor.session.graph.animation, state.spots, by)
-        put(editor, change.made, f"Move {spoken(state.spots)}", "nudge keys")
+    def act(context: CurvesContext) -> None:
+        state = context.curves
+        change = moved(context.session.graph.animation, state.spots, by)
+        put(context, change.made, f"Move {spoken(state.spots)}", "nudge keys")
         state.spots = change.spots
 
     return act
 
 
-def insert(editor: Editor, port: Port, frame: float) -> None:
+def insert(context: CurvesContext, port: Port, frame: float) -> None:
     """A key on the curve, which is chosen."""
-    keys = editor.session.graph.animation.get(port)
+    keys = context.session.graph.animation.get(port)
     if isinstance(keys, Keys):
         frame = round(frame, 6)
         made = keys.insert(frame)
-        put(editor, {port: made}, f"Key {port}")
-        editor.curves.choose(spots_of(port, made, (frame,)))
+        put(context, {port: made}, f"Key {port}")
+        context.curves.choose(spots_of(port, made, (frame,)))
 
 
-def key_here(editor: Editor) -> None:
+def key_here(context: CurvesContext) -> None:
     """A key at the current frame for every chosen row, or for all."""
-    state, session = editor.curves, editor.session
+    state, session = context.curves, context.session
     found = state.curves(state.rows(session.graph, session.selection))
     made = {row.port: row.keys.insert(float(session.frame)) for row in found if row.port and row.keys}
-    put(editor, made, f"Key at frame {session.frame}")
+    put(context, made, f"Key at frame {session.frame}")
     state.choose(frozenset().union(*(spots_of(port, keys, (float(session.frame),)) for port, keys in made.items())))
 
 
-def swap_mode(editor: Editor) -> None:
+def swap_mode(context: CurvesContext) -> None:
     """From the dope sheet to curves, and back."""
-    editor.curves.mode = "curves" if editor.curves.mode == "sheet" else "sheet"
+    context.curves.mode = "curves" if context.curves.mode == "sheet" else "sheet"
 
 
-def fitted(editor: Editor, samples: Samples) -> View:
+def fitted(context: CurvesContext, samples: Samples) -> View:
     """The view that shows what is wanted: all rows and the range, or the chosen keys."""
-    state, session = editor.curves, editor.session
+    state, session = context.curves, context.session
     graph = session.graph
     spots = state.spots if state.wanted == "chosen" else frozenset[Spot]()
     rows = [row for row in state.curves(state.rows(graph, session.selection)) if row.port]
@@ -197,14 +199,14 @@ def fitted(editor: Editor, samples: Samples) -> View:
     return state.view.fitted(ends, _around(tops) or (0.0, 1.0))
 
 
-def bounds(editor: Editor) -> Callable[[Port], tuple[float, float]]:
+def bounds(context: CurvesContext) -> Callable[[Port], tuple[float, float]]:
     """What the values of the graph cannot leave."""
-    return lambda port: limits(editor.session.graph, port)
+    return lambda port: limits(context.session.graph, port)
 
 
-def animatable(editor: Editor) -> tuple[Port, ...]:
+def animatable(context: CurvesContext) -> tuple[Port, ...]:
     """Values of the selected nodes that could be keyed and are not yet."""
-    session = editor.session
+    session = context.session
     return tuple(
         port
         for id in session.graph.nodes
@@ -214,20 +216,20 @@ def animatable(editor: Editor) -> tuple[Port, ...]:
     )
 
 
-def _change(editor: Editor, make: Callable[[Graph, frozenset[Spot]], Mapping[Port, Keys]], words: str) -> None:
-    state, graph = editor.curves, editor.session.graph
+def _change(context: CurvesContext, make: Callable[[Graph, frozenset[Spot]], Mapping[Port, Keys]], words: str) -> None:
+    state, graph = context.curves, context.session.graph
     if not state.spots:
         raise UsageError("no keys are selected: click some, or drag a box around them")
-    put(editor, make(graph, state.spots), f"{words} {spoken(state.spots)}")
+    put(context, make(graph, state.spots), f"{words} {spoken(state.spots)}")
 
 
-def _keys_of(editor: Editor) -> set[tuple[Port, float]]:
-    return {(port, frame) for port, frame, _ in editor.curves.spots}
+def _keys_of(context: CurvesContext) -> set[tuple[Port, float]]:
+    return {(port, frame) for port, frame, _ in context.curves.spots}
 
 
-def _seen(editor: Editor, row: Row) -> frozenset[Spot]:
+def _seen(context: CurvesContext, row: Row) -> frozenset[Spot]:
     assert row.port and row.keys
-    spots, state = spots_of(row.port, row.keys), editor.curves
+    spots, state = spots_of(row.port, row.keys), context.curves
     return (
         spots if state.mode == "sheet" else frozenset(spot for spot in spots if (spot[0], spot[2]) not in state.hidden)
     )

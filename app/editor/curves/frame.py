@@ -17,7 +17,7 @@ from .rows import Lane, Row
 from .state import CurvesState
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CurvesContext
 
 TOOLBAR, LIST, RULER, BAR, ROW = 36.0, 224.0, 34.0, 12.0, 22.0
 """Sizes at UI scale 1: the tools, the names of rows, the ruler, the bar of what is chosen, and a row."""
@@ -30,7 +30,7 @@ SMALL = 12.5
 class Frame:
     """Where the parts of the panel are, and what is in them."""
 
-    editor: Editor
+    context: CurvesContext
     rows: tuple[Row, ...]
     plane: Plane
     """Time and values on the part with the keys."""
@@ -55,12 +55,12 @@ class Frame:
     @property
     def state(self) -> CurvesState:
         """What the panel shows."""
-        return self.editor.curves
+        return self.context.curves
 
     @property
     def graph(self) -> Graph:
         """The graph that one is in."""
-        return self.editor.session.graph
+        return self.context.session.graph
 
     @property
     def sheet(self) -> bool:
@@ -97,9 +97,9 @@ def holds(rect: Rect, at: tuple[float, float]) -> bool:
     return rect[0] <= at[0] < rect[2] and rect[1] <= at[1] < rect[3]
 
 
-def color_of(editor: Editor, row: Row, channel: int, place: int) -> RGB:
+def color_of(context: CurvesContext, row: Row, channel: int, place: int) -> RGB:
     """The color of a curve: red, green and blue for channels, for numbers one of a few in turn."""
-    palette = editor.palette
+    palette = context.palette
     if row.channels:
         dark = palette.name == "dark"
         lanes: tuple[RGB, ...] = (
@@ -114,7 +114,7 @@ def color_of(editor: Editor, row: Row, channel: int, place: int) -> RGB:
 
 def small(frame: Frame, x: float, y: float, text: str, color: RGB, alpha: float = 1.0, align: float = 0.0) -> float:
     """A line of small letters: its left end (or with `align` 1 its right one) at `x`, its middle at `y`. Its width."""
-    fonts = frame.editor.fonts
+    fonts = frame.context.fonts
     font, size = (fonts.text if fonts else imgui.get_font()), SMALL * frame.scale
     wide = imgui.calc_text_size(text).x * size / imgui.get_font_size()
     lines = imgui.get_window_draw_list()

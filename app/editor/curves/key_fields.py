@@ -23,7 +23,7 @@ from .hits import SIDES
 from .rows import spots_of
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    pass
 
 _LABEL, _SHARE, _INF = 46.0, 0.6, float("inf")
 
@@ -41,8 +41,8 @@ class KeyFields:
 
     def draw(self, frame: Frame, top: float) -> None:
         """Draw them; what was changed goes into the graph."""
-        editor, fields = frame.editor, self._fields
-        fields.palette, fields.places = editor.palette, editor.places
+        context, fields = frame.context, self._fields
+        fields.palette, fields.places = context.palette, context.places
         dragged = fields.dragging
         fields.begin(imgui.is_mouse_down(imgui.MouseButton_.left))
         scale = ui_scale()
@@ -51,22 +51,22 @@ class KeyFields:
         for name, label, numbers, declaration in self._shown(frame):
             imgui.set_cursor_screen_pos((left + 8.0 * scale, y))
             rect = place(_LABEL * scale)
-            write(rect, label, editor.palette.dim)
+            write(rect, label, context.palette.dim)
             imgui.set_cursor_screen_pos((left + (_LABEL + 10.0) * scale, y))
             width = right - left - (_LABEL + 18.0) * scale
             id, start = f"keys {name}", left + (_LABEL + 10.0) * scale
-            editor.places[f"field {id}"] = (start, y, right - 8.0 * scale, y + rect[3] - rect[1])
+            context.places[f"field {id}"] = (start, y, right - 8.0 * scale, y + rect[3] - rect[1])
             edit = row_of_numbers(fields, id, numbers, declaration, width, ("",) * len(numbers), keep_type=True)
             if edit:
-                editor.attempt(lambda name=name, edit=edit: self._apply(frame, name, edit))
+                context.log.attempt(lambda name=name, edit=edit: self._apply(frame, name, edit))
             y += self._line(frame)
         if dragged and not fields.dragging:
-            editor.session.seal()
+            context.session.seal()
         left_over = fields.end()
         if left_over and frame.state.single:
             id, edit = left_over
-            editor.attempt(lambda: self._apply(frame, id.removeprefix("keys ").partition("#")[0], edit))
-        editor.dragging |= fields.dragging
+            context.log.attempt(lambda: self._apply(frame, id.removeprefix("keys ").partition("#")[0], edit))
+        context.interface.dragging |= fields.dragging
 
     def _line(self, frame: Frame) -> float:
         return imgui.get_frame_height() + 3.0 * frame.scale
@@ -85,7 +85,7 @@ class KeyFields:
         index = keys.frames.index(at)
         key = keys.keys[index]
         declaration = declared(frame.graph.node(port.node), port.socket, port.node)
-        first, last = frame.editor.session.frames
+        first, last = frame.context.session.frames
         time = Value("frame", "float", 1.0, low=float(first), high=float(max(last, first + 1)))
         rows: list[tuple[str, str, tuple[float, ...], Value]] = [("frame", "Frame", (key.frame,), time)]
         if key.parts and len(key.parts) <= 4:
@@ -113,7 +113,7 @@ class KeyFields:
         if found is None or not isinstance(edit.value, tuple):
             return
         port, keys, at = found
-        editor, state = frame.editor, frame.state
+        context, state = frame.context, frame.state
         numbers = edit.value
         if name == "frame":
             change = moved(frame.graph.animation, spots_of(port, keys, (at,)), numbers[0] - at)
@@ -128,7 +128,7 @@ class KeyFields:
             made = keys.with_handles(at, **{name: handle})
             state.free.add((port, at))
             change = Change({port: made}, state.spots)
-        commands.put(editor, change.made, f"Set {name} of a key", edit.merge)
+        commands.put(context, change.made, f"Set {name} of a key", edit.merge)
         state.spots = change.spots
 
 
@@ -137,9 +137,9 @@ def _found(frame: Frame) -> tuple[Port, Keys, float] | None:
     keys = frame.graph.animation.get(single[0]) if single else None
     if single is None or not isinstance(keys, Keys) or keys.key(single[1]) is None:
         return None
-    if not frame.editor.session.can_animate(single[0]):
+    if not frame.context.session.can_animate(single[0]):
         return None
     return single[0], keys, single[1]
 
 
-__all__ = ["Editor", "KeyFields"]
+__all__ = ["KeyFields"]

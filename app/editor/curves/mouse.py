@@ -18,7 +18,7 @@ from .rows import Lane, Spot, limits
 from .shapes import level
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    pass
 
 LEFT, RIGHT, MIDDLE = imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.MouseButton_.middle
 CLICK = 3.0
@@ -73,7 +73,7 @@ class Mouse:
             self.part, self.tip = "tip", tip
         elif mark := frame.near(x, y, reach):
             self.part, self.mark = "key", mark
-        elif abs(x - frame.plane.x(frame.editor.session.frame)) <= _LINE * frame.scale:
+        elif abs(x - frame.plane.x(frame.context.session.frame)) <= _LINE * frame.scale:
             self.part = "now"
         else:
             self.lane = frame.lane_at(x, y, reach)
@@ -183,7 +183,7 @@ class Mouse:
         row = frame.row_at(frame.at[1]) if frame.sheet else None
         port = self.lane[0] if self.lane else row.port if row else None
         if port:
-            frame.editor.attempt(lambda: commands.insert(frame.editor, port, at))
+            frame.context.log.attempt(lambda: commands.insert(frame.context, port, at))
 
     def _token(self) -> str:
         self._count += 1
@@ -192,7 +192,7 @@ class Mouse:
     # --- going on ----------------------------------------------------------------------------------------------------
 
     def _go_on(self, frame: Frame, io: imgui.IO) -> None:
-        editor, state, gesture = frame.editor, frame.state, self.gesture
+        context, state, gesture = frame.context, frame.state, self.gesture
         if imgui.is_key_pressed(imgui.Key.escape):
             self._cancel(frame)
             return
@@ -208,8 +208,8 @@ class Mouse:
                 if frame.sheet:
                     state.scroll = gesture.scroll - y
             case Seek():
-                editor.dragging = True
-                editor.session.seek(at[0])
+                context.interface.dragging = True
+                context.session.seek(at[0])
             case Move():
                 if not gesture.going and not self._far(frame):
                     return
@@ -237,14 +237,14 @@ class Mouse:
                 pass
 
     def _put(self, frame: Frame, change: Change, label: str, merge: str) -> None:
-        editor, state = frame.editor, frame.state
-        editor.dragging = True
+        context, state = frame.context, frame.state
+        context.interface.dragging = True
 
         def act() -> None:
-            commands.put(editor, change.made, label, merge)
+            commands.put(context, change.made, label, merge)
             state.spots = change.spots
 
-        editor.attempt(act)
+        context.log.attempt(act)
 
     def _end(self, frame: Frame, io: imgui.IO) -> None:
         gesture, self.gesture = self.gesture, None
@@ -260,16 +260,16 @@ class Mouse:
             case Move():
                 if not gesture.going and gesture.clicked is not None:
                     state.choose(gesture.clicked)
-                frame.editor.session.seal()
+                frame.context.session.seal()
             case Scale() | Bend():
-                frame.editor.session.seal()
+                frame.context.session.seal()
             case _:
                 pass
 
     def _cancel(self, frame: Frame) -> None:
         gesture, self.gesture = self.gesture, None
         if isinstance(gesture, Move | Scale | Bend):
-            frame.editor.session.abandon(gesture.merge)
+            frame.context.session.abandon(gesture.merge)
         if isinstance(gesture, Move | Scale):
             frame.state.spots = gesture.spots
 
@@ -305,4 +305,4 @@ def hot_of(mouse: Mouse) -> Mark | Tip | None:
     return mouse.tip or mouse.mark
 
 
-__all__ = ["Editor", "Mouse", "hot_of"]
+__all__ = ["Mouse", "hot_of"]

@@ -19,7 +19,7 @@ from .rows import Row
 from .shapes import number
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CurvesContext
 
 _BUTTONS = int(imgui.ButtonFlags_.mouse_button_left) | int(imgui.ButtonFlags_.mouse_button_right)
 _KEY, _LETTER = 20.0, 15.0
@@ -36,7 +36,7 @@ class Names:
 
     def draw(self, frame: Frame, entries: Entries, bottom: float) -> bool:
         """Draw them down to `bottom`; True if the menu of a value is asked for."""
-        draw, palette = imgui.get_window_draw_list(), frame.editor.palette
+        draw, palette = imgui.get_window_draw_list(), frame.context.palette
         left, top, right, _ = frame.list
         imgui.set_cursor_screen_pos((left, top))
         pressed = imgui.invisible_button("##names", (max(right - left, 1.0), max(bottom - top, 1.0)), _BUTTONS)
@@ -61,7 +61,7 @@ class Names:
     # --- the mouse ---------------------------------------------------------------------------------------------------
 
     def _click(self, frame: Frame, row: Row, entries: Entries) -> None:
-        state, editor, scale = frame.state, frame.editor, frame.scale
+        state, context, scale = frame.state, frame.context, frame.scale
         left, _, right, _ = frame.list
         x = frame.at[0]
         io = imgui.get_io()
@@ -73,7 +73,7 @@ class Names:
             return
         port = row.port
         if x > right - _KEY * scale and not self._expressed(row):
-            editor.attempt(lambda: editor.session.toggle_key(port))
+            context.log.attempt(lambda: context.session.toggle_key(port))
             return
         letter = self._letter_at(frame, row, x)
         if letter is not None:
@@ -100,7 +100,7 @@ class Names:
     # --- painting ----------------------------------------------------------------------------------------------------
 
     def _row(self, frame: Frame, row: Row, y: float, place: int, hot: bool) -> None:
-        draw, palette, scale = imgui.get_window_draw_list(), frame.editor.palette, frame.scale
+        draw, palette, scale = imgui.get_window_draw_list(), frame.context.palette, frame.scale
         left, _, right, _ = frame.list
         middle = y + frame.high * 0.5
         chosen = row.port in frame.state.shown
@@ -108,13 +108,13 @@ class Names:
             color = u32(palette.accent, 0.16) if chosen else u32(palette.text, 0.07 if hot else 0.035)
             draw.add_rect_filled((left, y), (right, y + frame.high), color)
         name = f"keys row {row.port or row.node}"
-        frame.editor.places[name] = (left, y, right, y + frame.high)
+        frame.context.places[name] = (left, y, right, y + frame.high)
         if row.port is None:
             icon = icons.ICON_FA_CARET_RIGHT if row.node in frame.state.folded else icons.ICON_FA_CARET_DOWN
             small(frame, left + 10.0 * scale, middle, icon, palette.dim)
             self._label(frame, left + 24.0 * scale, right - 6.0 * scale, middle, row.label, bold=True)
             return
-        dot = color_of(frame.editor, row, 0, self._order(frame, place))
+        dot = color_of(frame.context, row, 0, self._order(frame, place))
         end = right - (_KEY + 6.0) * scale
         if not frame.sheet:
             if 1 < len(row.channels) <= 4:
@@ -126,7 +126,7 @@ class Names:
         self._diamond(frame, row, middle, hot)
 
     def _label(self, frame: Frame, left: float, right: float, y: float, text: str, bold: bool = False) -> None:
-        fonts, palette = frame.editor.fonts, frame.editor.palette
+        fonts, palette = frame.context.fonts, frame.context.palette
         size = 14.0 * frame.scale
         imgui.push_font(fonts.bold if bold and fonts else None, size / imgui.get_style().font_scale_main)
         text = fitted(text, max(right - left, 0.0))
@@ -137,14 +137,14 @@ class Names:
 
     def _channels(self, frame: Frame, row: Row, y: float) -> float:
         """The letters of the channels in their colors; a hidden one is grey. Returns where they begin."""
-        palette, start, scale = frame.editor.palette, self._letters(frame, row), frame.scale
+        palette, start, scale = frame.context.palette, self._letters(frame, row), frame.scale
         assert row.port
         for channel, letter in enumerate(row.channels):
             hidden = (row.port, channel) in frame.state.hidden
-            color = mix(palette.dim, palette.panel, 0.5) if hidden else color_of(frame.editor, row, channel, 0)
+            color = mix(palette.dim, palette.panel, 0.5) if hidden else color_of(frame.context, row, channel, 0)
             x = start + (channel + 0.5) * _LETTER * scale
             small(frame, x, y, letter, color, align=0.5)
-            frame.editor.places[f"keys channel {row.port} {letter}"] = (
+            frame.context.places[f"keys channel {row.port} {letter}"] = (
                 x - _LETTER * 0.5 * scale,
                 y - 8.0 * scale,
                 x + _LETTER * 0.5 * scale,
@@ -155,7 +155,7 @@ class Names:
     def _value(self, frame: Frame, row: Row, right: float, y: float) -> float:
         """What the value is now, right-aligned. Returns its width."""
         assert row.port
-        session = frame.editor.session
+        session = frame.context.session
         of = session.graph, session.settings, session.frame
         if of[:2] != self._of[:2] or of[2] != self._of[2]:
             self._values, self._of = {}, of
@@ -173,20 +173,20 @@ class Names:
             text = "  ".join(f"{number(value, place):.2f}" for place in range(len(value))) if len(value) < 4 else ""
         else:
             text = f"{value:.5g}" if isinstance(value, int | float) else str(value)
-        return small(frame, right, y, text, frame.editor.palette.dim, align=1.0) + 4.0 * frame.scale if text else 0.0
+        return small(frame, right, y, text, frame.context.palette.dim, align=1.0) + 4.0 * frame.scale if text else 0.0
 
     def _diamond(self, frame: Frame, row: Row, y: float, hot: bool) -> None:
         """Filled where there is a key at the current frame; a click makes or removes it."""
         assert row.port
-        draw, palette, scale = imgui.get_window_draw_list(), frame.editor.palette, frame.scale
+        draw, palette, scale = imgui.get_window_draw_list(), frame.context.palette, frame.scale
         x = frame.list[2] - (_KEY * 0.5 + 2.0) * scale
         if self._expressed(row):
             small(frame, x, y, "=", palette.good, align=0.5)
             return
         half = 7.0 * scale
-        frame.editor.places[f"keys diamond {row.port}"] = (x - half, y - half, x + half, y + half)
+        frame.context.places[f"keys diamond {row.port}"] = (x - half, y - half, x + half, y + half)
         lit = hot and frame.at[0] > frame.list[2] - _KEY * scale
-        if frame.editor.session.key_at(row.port):
+        if frame.context.session.key_at(row.port):
             paint_key(draw, x, y, 4.5 * scale, "linear", u32(palette.accent))
         else:
             color = u32(palette.accent if lit else palette.dim, 1.0 if lit else 0.7)
@@ -199,13 +199,13 @@ class Names:
         return sum(1 for row in frame.rows[:place] if row.port)
 
 
-def value_menu(editor: Editor, port: Port) -> None:
+def value_menu(context: CurvesContext, port: Port) -> None:
     """The context menu of a value."""
-    session = editor.session
+    session = context.session
 
     def entry(icon: str, label: str, act: object, enabled: bool = True) -> None:
         if imgui.menu_item(f"{icon}  {label}", "", False, enabled)[0]:
-            editor.attempt(act)  # type: ignore[arg-type]
+            context.log.attempt(act)  # type: ignore[arg-type]
 
     animation = session.animation(port)
     keyed = isinstance(animation, Keys)

@@ -36,10 +36,10 @@ def ground(palette: Palette) -> int:
 
 def paint_time(frame: Frame) -> None:
     """Behind everything: the frames of the graph lighter than what lies outside, and lines of the ruler."""
-    draw, palette, plane = imgui.get_window_draw_list(), frame.editor.palette, frame.plane
+    draw, palette, plane = imgui.get_window_draw_list(), frame.context.palette, frame.plane
     left, top, right, bottom = plane.rect
     draw.add_rect_filled((left, top), (right, bottom), ground(palette))
-    first, last = frame.editor.session.frames
+    first, last = frame.context.session.frames
     shade = u32(palette.shadow, 0.26 if palette.name == "dark" else 0.09)
     a, b = min(max(plane.x(first), left), right), min(max(plane.x(last), left), right)
     draw.add_rect_filled((left, top), (a, bottom), shade)
@@ -52,8 +52,8 @@ def paint_time(frame: Frame) -> None:
 
 def paint_ruler(frame: Frame) -> None:
     """Frames above, seconds below."""
-    draw, palette, plane, scale = imgui.get_window_draw_list(), frame.editor.palette, frame.plane, frame.scale
-    session = frame.editor.session
+    draw, palette, plane, scale = imgui.get_window_draw_list(), frame.context.palette, frame.plane, frame.scale
+    session = frame.context.session
     left, top, right, bottom = frame.ruler
     draw.push_clip_rect((left, top), (right, bottom), True)
     draw.add_rect_filled((left, top), (right, bottom), u32(palette.window))
@@ -83,12 +83,12 @@ def paint_ruler(frame: Frame) -> None:
 
 def paint_now(frame: Frame, held: bool) -> None:
     """The current frame, over everything."""
-    draw, palette, plane, scale = imgui.get_window_draw_list(), frame.editor.palette, frame.plane, frame.scale
+    draw, palette, plane, scale = imgui.get_window_draw_list(), frame.context.palette, frame.plane, frame.scale
     left, top, right, bottom = frame.ruler
-    x = round(plane.x(frame.editor.session.frame)) + 0.5
-    text = str(frame.editor.session.frame)
+    x = round(plane.x(frame.context.session.frame)) + 0.5
+    text = str(frame.context.session.frame)
     wide = imgui.calc_text_size(text).x * 0.8 * 0.5 + 6.0 * scale
-    frame.editor.places["keys now"] = (x - wide, top, x + wide, top + (bottom - top) * 0.55)
+    frame.context.places["keys now"] = (x - wide, top, x + wide, top + (bottom - top) * 0.55)
     if not left - wide <= x <= right + wide:
         return
     color = u32(palette.accent)
@@ -111,7 +111,7 @@ def grips(frame: Frame) -> tuple[float, float, float] | None:
 
 def paint_bar(frame: Frame, hot: str) -> None:
     """The bar above the keys: it spans what is chosen, its ends draw that out."""
-    draw, palette, scale = imgui.get_window_draw_list(), frame.editor.palette, frame.scale
+    draw, palette, scale = imgui.get_window_draw_list(), frame.context.palette, frame.scale
     left, top, right, bottom = frame.bar
     draw.push_clip_rect((left, top), (right, bottom), True)
     draw.add_rect_filled((left, top), (right, bottom), u32(mix(palette.canvas, palette.window, 0.55)))
@@ -124,13 +124,13 @@ def paint_bar(frame: Frame, hot: str) -> None:
         for name, x in (("left", start), ("right", end - grip)):
             color = u32(mix(palette.accent, palette.text, 0.25 if hot == name else 0.0))
             draw.add_rect_filled((x, low), (x + grip, high), color, 3.0 * scale)
-            frame.editor.places[f"keys {name} end"] = (x, top, x + grip, bottom)
+            frame.context.places[f"keys {name} end"] = (x, top, x + grip, bottom)
     draw.pop_clip_rect()
 
 
 def paint_box(frame: Frame, rect: Rect) -> None:
     """What is being drawn around keys."""
-    draw, palette = imgui.get_window_draw_list(), frame.editor.palette
+    draw, palette = imgui.get_window_draw_list(), frame.context.palette
     low, high = (min(rect[0], rect[2]), min(rect[1], rect[3])), (max(rect[0], rect[2]), max(rect[1], rect[3]))
     draw.add_rect_filled(low, high, u32(palette.accent, 0.12))
     draw.add_rect(low, high, u32(palette.accent, 0.8))

@@ -26,7 +26,7 @@ from .sheet import SheetPainter
 from .toolbar import draw_toolbar, keys_menu, offered
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CurvesContext
 
 _ANY_TIME = int(imgui.HoveredFlags_.allow_when_blocked_by_active_item)
 _BUTTONS = (
@@ -41,7 +41,8 @@ class Animation:
 
     title = "Animation"
 
-    def __init__(self) -> None:
+    def __init__(self, context: CurvesContext) -> None:
+        self._context = context
         self._mouse = Mouse()
         self._entries = Entries()
         self._sheet = SheetPainter()
@@ -54,50 +55,50 @@ class Animation:
         """The view that showed everything."""
         self._of: tuple[object, tuple[int, int]] = None, (0, 0)
 
-    def draw(self, editor: Editor) -> None:
+    def draw(self) -> None:
         """Draw into the current window."""
-        state, session, scale = editor.curves, editor.session, ui_scale()
+        state, session, scale = self._context.curves, self._context.session, ui_scale()
         start, size = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail()
         state.hovered = imgui.is_window_hovered(_ANY_TIME | int(imgui.HoveredFlags_.child_windows))
-        if min(size.x, size.y) < 16 or editor.fonts is None:
+        if min(size.x, size.y) < 16 or self._context.fonts is None:
             return
         state.tidy(session.graph)
         if not session.graph.animation:
-            self._nothing(editor)
+            self._nothing()
             return
-        self._enter(editor)
+        self._enter()
         imgui.set_cursor_screen_pos((start.x + 8 * scale, start.y + 5 * scale))
-        draw_toolbar(editor, size.x - 16 * scale)
-        frame = self._frame(editor, (start.x, start.y + TOOLBAR * scale, start.x + size.x, start.y + size.y))
+        draw_toolbar(self._context, size.x - 16 * scale)
+        frame = self._frame((start.x, start.y + TOOLBAR * scale, start.x + size.x, start.y + size.y))
         if frame.plane.rect[3] - frame.plane.rect[1] > 8 and frame.plane.rect[2] - frame.plane.rect[0] > 8:
             self._draw(frame)
 
-    def _enter(self, editor: Editor) -> None:
+    def _enter(self) -> None:
         """Another graph is shown whole."""
-        place = editor.session.path, editor.session.place
+        place = self._context.session.path, self._context.session.place
         if place != self._place:
             self._place = place
-            editor.curves.fit()
+            self._context.curves.fit()
 
     # --- where things are --------------------------------------------------------------------------------------------
 
-    def _frame(self, editor: Editor, area: tuple[float, float, float, float]) -> Frame:
-        state, session, scale = editor.curves, editor.session, ui_scale()
+    def _frame(self, area: tuple[float, float, float, float]) -> Frame:
+        state, session, scale = self._context.curves, self._context.session, ui_scale()
         left, top, right, bottom = map(round, area)
         rows = state.rows(session.graph, session.selection)
         middle = left + round(min(LIST * scale, (right - left) * 0.4))
         ruler, bar = top + round(RULER * scale), top + round((RULER + BAR) * scale)
-        if self._grown(editor) and self._mouse.gesture is None:
+        if self._grown() and self._mouse.gesture is None:
             state.fit()
         if state.wanted and bottom > bar:
-            state.view = commands.fitted(editor, self._plot.samples)
+            state.view = commands.fitted(self._context, self._plot.samples)
             self._untouched = state.view if state.wanted == "all" else None
             state.wanted = ""
         room = max(len(rows) * round(ROW * scale) - (bottom - bar), 0.0)
         state.scroll = min(max(state.scroll, 0.0), room)
         mouse = imgui.get_mouse_pos()
         return Frame(
-            editor,
+            self._context,
             rows,
             Plane(state.view, (middle, bar, right, bottom)),
             (left, bar, middle, bottom),
@@ -107,9 +108,9 @@ class Animation:
             (mouse.x, mouse.y),
         )
 
-    def _grown(self, editor: Editor) -> bool:
+    def _grown(self) -> bool:
         """True if there are new keys outside of a view that shows everything and that nobody has moved."""
-        state, session = editor.curves, editor.session
+        state, session = self._context.curves, self._context.session
         of = session.graph.animation, session.frames
         if state.view != self._untouched or (self._of[0] is of[0] and self._of[1] == of[1]):
             return False
@@ -121,19 +122,19 @@ class Animation:
     # --- drawing -----------------------------------------------------------------------------------------------------
 
     def _draw(self, frame: Frame) -> None:
-        editor, state, rect = frame.editor, frame.state, frame.plane.rect
+        context, state, rect = frame.context, frame.state, frame.plane.rect
         left, top, right, bottom = frame.ruler[0], frame.ruler[1], rect[2], rect[3]
         imgui.set_cursor_screen_pos((left, top))
         imgui.push_item_flag(int(imgui.ItemFlags_.no_nav), True)
         imgui.invisible_button("##keys", (right - left, bottom - top), _BUTTONS)
         imgui.pop_item_flag()
         frame.over = imgui.is_item_hovered()
-        editor.places["keys area"], editor.places["keys ruler"] = rect, frame.ruler
+        context.places["keys area"], context.places["keys ruler"] = rect, frame.ruler
         shown = state.curves(frame.rows)
         self._see(frame, shown)
         self._mouse.update(frame)
         if frame.plane.view != state.view or self._mouse.gesture:
-            frame = self._frame(editor, (frame.list[0], frame.ruler[1], right, bottom))
+            frame = self._frame((frame.list[0], frame.ruler[1], right, bottom))
             shown = state.curves(frame.rows)
             self._see(frame, shown)
         draw = imgui.get_window_draw_list()
@@ -152,7 +153,7 @@ class Animation:
         paint_ruler(frame)
         paint_bar(frame, "bar" if isinstance(self._mouse.gesture, Scale) else self._mouse.part)
         paint_now(frame, isinstance(self._mouse.gesture, Seek) or self._mouse.part == "now")
-        draw.add_line((left, rect[1]), (right, rect[1]), u32(editor.palette.border))
+        draw.add_line((left, rect[1]), (right, rect[1]), u32(context.palette.border))
         self._left(frame)
         self._menus(frame)
         self._record(frame)
@@ -174,7 +175,7 @@ class Animation:
 
     def _left(self, frame: Frame) -> None:
         """The names, and the numbers of the key that is chosen."""
-        draw, palette = imgui.get_window_draw_list(), frame.editor.palette
+        draw, palette = imgui.get_window_draw_list(), frame.context.palette
         left, _, right, bottom = frame.list
         draw.add_rect_filled((left, frame.ruler[1]), (right, bottom), u32(palette.panel))
         draw.add_line((right - 0.5, frame.ruler[1]), (right - 0.5, bottom), u32(palette.border))
@@ -192,16 +193,16 @@ class Animation:
         if self._mouse.menu:
             imgui.open_popup("menu of keys")
         if imgui.begin_popup("menu of keys"):
-            keys_menu(frame.editor)
+            keys_menu(frame.context)
             imgui.end_popup()
         if imgui.begin_popup("value of keys"):
             if self._names.menu_for:
-                value_menu(frame.editor, self._names.menu_for)
+                value_menu(frame.context, self._names.menu_for)
             imgui.end_popup()
 
     def _record(self, frame: Frame) -> None:
         """Where keys and handles are."""
-        places, size = frame.editor.places, 4.0 * frame.scale
+        places, size = frame.context.places, 4.0 * frame.scale
         for mark in frame.marks() if frame.count <= 200 else ():
             if frame.sheet and len({spot[0] for spot in mark.spots}) > 1:
                 continue
@@ -216,9 +217,9 @@ class Animation:
                 tip.y + size,
             )
 
-    def _nothing(self, editor: Editor) -> None:
+    def _nothing(self) -> None:
         nothing_here(
-            editor,
+            self._context,
             icons.ICON_FA_BEZIER_CURVE,
             "Nothing moves yet",
             "A value that has keys changes over time. Click the diamond beside a value in the Inspector, go to another "
@@ -227,7 +228,14 @@ class Animation:
         label = f"{icons.ICON_FA_PLUS}  Key a value"
         width = imgui.calc_text_size(label).x + 2 * imgui.get_style().frame_padding.x
         imgui.set_cursor_pos_x(max((imgui.get_window_width() - width) * 0.5, 0.0))
-        dropdown(editor, label, "button keys add", "Values of the selected nodes", lambda: offered(editor), lit=True)
+        dropdown(
+            self._context,
+            label,
+            "button keys add",
+            "Values of the selected nodes",
+            lambda: offered(self._context),
+            lit=True,
+        )
 
 
 def _count(frame: Frame) -> str:

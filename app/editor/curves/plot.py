@@ -78,7 +78,7 @@ class Plot:
             self._made_of = rows, hidden
             self._bundle = self._bundles.make(rows, hidden)
         graph = frame.graph
-        of = self._bundle, graph.animation, graph.nodes, graph.controls, frame.editor.session.settings
+        of = self._bundle, graph.animation, graph.nodes, graph.controls, frame.context.session.settings
         also = frame.plane, frame.scale
         if not _same(self._seen_of[:5], of) or self._seen_of[5:] != also:
             self._seen_of = *of, *also
@@ -115,7 +115,7 @@ class Plot:
         plane, view, scale = frame.plane, frame.plane.view, frame.scale
         found: list[tuple[Lane, Drawn]] = []
         lane = port, channel
-        settings = frame.editor.session.settings
+        settings = frame.context.session.settings
         for line in self.samples.line(frame.graph, settings, port, channel, view.first, view.last):
             line[:, 0] = plane.rect[0] + (line[:, 0] - view.first) * plane.across
             line[:, 1] = (plane.rect[3] - (line[:, 1] - view.low) * plane.up).clip(-1e6, 1e6)
@@ -134,7 +134,7 @@ class Plot:
         for lane, dash in self._dashes:
             draw.add_polyline(dash, inks[lane][0], 1.6 * scale, 0)
         self._tips(frame)
-        palette, size = frame.editor.palette, KEY * scale * 0.85
+        palette, size = frame.context.palette, KEY * scale * 0.85
         colors = [inks[lane][0] for lane in self._bundle.lanes]
         chosen = [self._chosen[key] for key in self._seen.shown.tolist()] if self._chosen else None
         if chosen is None and len(colors) and len(self._keys[0]) > CROWD:
@@ -156,20 +156,20 @@ class Plot:
 
     def _colors(self, frame: Frame, rows: tuple[Row, ...]) -> dict[Lane, tuple[int, int]]:
         """What curves are drawn with inside and outside of their keys."""
-        of = frame.rows, rows, frame.editor.palette
+        of = frame.rows, rows, frame.context.palette
         if not _same(self._inks_of, of):
             self._inks_of, self._inks = of, {}
             shown = {row.port for row in rows}
             for place, row in enumerate(row for row in frame.rows if row.port):
                 for channel in range(len(row.channels) or 1):
                     if row.port and row.port in shown:
-                        color = color_of(frame.editor, row, channel, place)
+                        color = color_of(frame.context, row, channel, place)
                         self._inks[row.port, channel] = u32(color), u32(color, 0.32)
         return self._inks
 
     def grid(self, frame: Frame) -> None:
         """Lines of values."""
-        draw, palette, plane = imgui.get_window_draw_list(), frame.editor.palette, frame.plane
+        draw, palette, plane = imgui.get_window_draw_list(), frame.context.palette, frame.plane
         left, _, right, _ = plane.rect
         strong, faint = u32(mix(palette.grid, palette.dim, 0.22)), u32(mix(palette.canvas, palette.grid, 0.9))
         zero = u32(mix(palette.grid, palette.dim, 0.55))
@@ -179,7 +179,7 @@ class Plot:
 
     def labels(self, frame: Frame) -> None:
         """The numbers of the lines of values, over the curves."""
-        draw, palette, plane, scale = imgui.get_window_draw_list(), frame.editor.palette, frame.plane, frame.scale
+        draw, palette, plane, scale = imgui.get_window_draw_list(), frame.context.palette, frame.plane, frame.scale
         left, top, _, bottom = plane.rect
         ground, half = u32(palette.canvas, 0.82), 8.0 * scale
         for tick in ticks(plane.view.low, plane.view.high, plane.up, 36.0 * scale):
@@ -193,7 +193,7 @@ class Plot:
             small(frame, left + 6.0 * scale, y, tick.label, palette.dim)
 
     def _tips(self, frame: Frame) -> None:
-        draw, palette, scale = imgui.get_window_draw_list(), frame.editor.palette, frame.scale
+        draw, palette, scale = imgui.get_window_draw_list(), frame.context.palette, frame.scale
         line, fill = u32(palette.text, 0.55), u32(palette.text)
         for tip in frame.tips:
             draw.add_line(tip.root, (tip.x, tip.y), line, 1.25 * scale)

@@ -21,7 +21,7 @@ class SheetPainter:
 
     def paint(self, frame: Frame, marks: list[list[Mark]], hot: Mark | None) -> None:
         """Draw all rows that are seen."""
-        draw, palette, scale = imgui.get_window_draw_list(), frame.editor.palette, frame.scale
+        draw, palette, scale = imgui.get_window_draw_list(), frame.context.palette, frame.scale
         left, top, right, bottom = frame.plane.rect
         band, chosen_band = u32(palette.text, 0.035), u32(palette.accent, 0.07)
         line = u32(mix(palette.canvas, palette.grid, 0.8))
@@ -60,7 +60,7 @@ class SheetPainter:
         known = self._held.get(row.port)
         if known is None or known[0] is not keys:
             known = self._held[row.port] = keys, _held(keys)
-        draw, plane, palette = imgui.get_window_draw_list(), frame.plane, frame.editor.palette
+        draw, plane, palette = imgui.get_window_draw_list(), frame.plane, frame.context.palette
         draw.add_line((plane.x(keys.frames[0]), y), (plane.x(keys.frames[-1]), y), u32(palette.dim, 0.35), frame.scale)
         thick, high = u32(palette.dim, 0.32), 2.5 * frame.scale
         for start, end in known[1]:
@@ -68,7 +68,7 @@ class SheetPainter:
 
     def _expression(self, frame: Frame, expression: Expression, y: float) -> None:
         """A bar with the text, cut to fit."""
-        draw, palette, scale = imgui.get_window_draw_list(), frame.editor.palette, frame.scale
+        draw, palette, scale = imgui.get_window_draw_list(), frame.context.palette, frame.scale
         left, _, right, _ = frame.plane.rect
         ink = palette.error if expression.fault else palette.good
         low, high = (left - 8.0, y + 3.0 * scale), (right + 8.0, y + frame.high - 3.0 * scale)

@@ -20,7 +20,7 @@ from .paint import paint_key
 from .state import Mode
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import CurvesContext
 
 LOOKS: tuple[Interpolation, ...] = ("constant", "linear", "smooth", "bezier")
 _GAP, _APART = 2.0, 10.0
@@ -49,10 +49,10 @@ class _Tool:
     apart: bool = False
 
 
-def draw_toolbar(editor: Editor, room: float) -> None:
+def draw_toolbar(context: CurvesContext, room: float) -> None:
     """Draw the tools in one row; what does not fit is in the context menu, behind dots."""
     scale = ui_scale()
-    tools = _tools(editor)
+    tools = _tools(context)
     more = room_for(icons.ICON_FA_ELLIPSIS) + _APART * scale
     first = True
     for place, one in enumerate(tools):
@@ -60,7 +60,7 @@ def draw_toolbar(editor: Editor, room: float) -> None:
         needed = gap + one.width + (more if place + 1 < len(tools) else 0.0)
         if needed > room:
             imgui.same_line(0.0, _APART * scale)
-            dropdown(editor, icons.ICON_FA_ELLIPSIS, "button more keys", "More tools", lambda: keys_menu(editor))
+            dropdown(context, icons.ICON_FA_ELLIPSIS, "button more keys", "More tools", lambda: keys_menu(context))
             return
         if not first:
             imgui.same_line(0.0, gap)
@@ -69,21 +69,21 @@ def draw_toolbar(editor: Editor, room: float) -> None:
         one.draw()
 
 
-def _tools(editor: Editor) -> list[_Tool]:
-    state = editor.curves
-    some, square = commands.some(editor), imgui.get_frame_height()
+def _tools(context: CurvesContext) -> list[_Tool]:
+    state = context.curves
+    some, square = commands.some(context), imgui.get_frame_height()
 
     def mode(which: Mode, icon: str, label: str) -> _Tool:
         def draw() -> None:
-            if quiet(editor, icon, f"button keys {which}", f"{label} (Tab)", lit=state.mode == which):
+            if quiet(context, icon, f"button keys {which}", f"{label} (Tab)", lit=state.mode == which):
                 state.mode = which
 
         return _Tool(square, draw)
 
-    def menu(icon: str, name: str, doc: str, context: str, apart: bool = False) -> _Tool:
+    def menu(icon: str, name: str, doc: str, actions: str, apart: bool = False) -> _Tool:
         return _Tool(
             room_for(icon),
-            lambda: dropdown(editor, icon, f"button keys {name}", doc, lambda: listed(editor, context)),
+            lambda: dropdown(context, icon, f"button keys {name}", doc, lambda: draw_entries(context, actions)),
             apart,
         )
 
@@ -95,11 +95,11 @@ def _tools(editor: Editor) -> list[_Tool]:
         _Tool(
             width,
             lambda: dropdown(
-                editor,
+                context,
                 f"{icons.ICON_FA_FILTER}  {rows}",
                 "button keys filter",
                 "Which values have a row",
-                lambda: _filters(editor),
+                lambda: _filters(context),
                 lit=state.only_selected,
                 width=width,
             ),
@@ -108,17 +108,17 @@ def _tools(editor: Editor) -> list[_Tool]:
         _Tool(
             square,
             lambda: dropdown(
-                editor,
+                context,
                 icons.ICON_FA_PLUS,
                 "button keys add",
                 "Key a value of the selected nodes",
-                lambda: offered(editor),
+                lambda: offered(context),
             ),
         ),
     ]
-    found += [_Tool(square, lambda look=look: _shape(editor, look, some), look == "constant") for look in LOOKS]
+    found += [_Tool(square, lambda look=look: _shape(context, look, some), look == "constant") for look in LOOKS]
     found += [
-        _Tool(square, lambda how=how: _ease(editor, how), how == "keys.ease_in")
+        _Tool(square, lambda how=how: _ease(context, how), how == "keys.ease_in")
         for how in ("keys.ease_in", "keys.ease", "keys.ease_out")
     ]
     found += [
@@ -132,38 +132,38 @@ def _tools(editor: Editor) -> list[_Tool]:
         menu(
             f"Outside  {icons.ICON_FA_CARET_DOWN}", "outside", "Before the first and after the last key", "keys outside"
         ),
-        _Tool(square, lambda: tool(editor, icons.ICON_FA_MAGNET, "keys.snap"), True),
-        _Tool(square, lambda: tool(editor, icons.ICON_FA_EXPAND, "keys.fit_all")),
+        _Tool(square, lambda: tool(context, icons.ICON_FA_MAGNET, "keys.snap"), True),
+        _Tool(square, lambda: tool(context, icons.ICON_FA_EXPAND, "keys.fit_all")),
         _Tool(
             square,
             lambda: dropdown(
-                editor,
+                context,
                 icons.ICON_FA_CIRCLE_QUESTION,
                 "button keys legend",
                 "What the shapes mean, what the mouse does",
-                lambda: legend(editor),
+                lambda: legend(context),
             ),
         ),
     ]
     return found
 
 
-def _shape(editor: Editor, look: Interpolation, some: bool) -> None:
-    action = editor.actions[f"keys.{look}"]
-    if quiet(editor, " ", f"button keys.{look}", tip_of(editor, action), enabled=some):
-        editor.actions.run(action.id, editor)
-    left, top, right, bottom = editor.places[f"button keys.{look}"]
-    ink = u32(editor.palette.text, 1.0 if some else 0.4)
+def _shape(context: CurvesContext, look: Interpolation, some: bool) -> None:
+    action = context.actions[f"keys.{look}"]
+    if quiet(context, " ", f"button keys.{look}", tip_of(context, action), enabled=some):
+        context.actions.run(action.id)
+    left, top, right, bottom = context.places[f"button keys.{look}"]
+    ink = u32(context.palette.text, 1.0 if some else 0.4)
     paint_key(imgui.get_window_draw_list(), (left + right) / 2, (top + bottom) / 2, 5.5 * ui_scale(), look, ink)
 
 
-def _ease(editor: Editor, id: str) -> None:
+def _ease(context: CurvesContext, id: str) -> None:
     """A button with a small curve on it."""
-    action = editor.actions[id]
-    enabled = action.enabled(editor)
-    if quiet(editor, " ", f"button {id}", tip_of(editor, action), enabled=enabled):
-        editor.actions.run(id, editor)
-    left, top, right, bottom = editor.places[f"button {id}"]
+    action = context.actions[id]
+    enabled = context.actions.is_enabled(action)
+    if quiet(context, " ", f"button {id}", tip_of(context, action), enabled=enabled):
+        context.actions.run(id)
+    left, top, right, bottom = context.places[f"button {id}"]
     pad = (right - left) * 0.26
     way = {
         "keys.ease_in": lambda t: math.sin(t * math.pi / 2),
@@ -174,55 +174,55 @@ def _ease(editor: Editor, id: str) -> None:
         imgui.ImVec2(left + pad + (right - left - 2 * pad) * t, bottom - pad - (bottom - top - 2 * pad) * way(t))
         for t in (place / 12 for place in range(13))
     ]
-    ink = u32(editor.palette.text, 1.0 if enabled else 0.4)
+    ink = u32(context.palette.text, 1.0 if enabled else 0.4)
     imgui.get_window_draw_list().add_polyline(line, ink, 1.8 * ui_scale(), 0)
 
 
-def _filters(editor: Editor) -> None:
+def _filters(context: CurvesContext) -> None:
     for label, only in (("All Values", False), ("Selected Nodes", True)):
-        if imgui.menu_item(label, "", editor.curves.only_selected == only)[0]:
-            editor.curves.only_selected = only
+        if imgui.menu_item(label, "", context.curves.only_selected == only)[0]:
+            context.curves.only_selected = only
 
 
-def listed(editor: Editor, context: str) -> None:
+def draw_entries(context: CurvesContext, menu: str) -> None:
     """The actions of a context, as entries of the menu that is open."""
-    for action in editor.actions.context(context):
-        entry(editor, action)
+    for action in context.actions.in_menu(menu):
+        entry(context, action)
 
 
-def offered(editor: Editor) -> None:
+def offered(context: CurvesContext) -> None:
     """Values of the selected nodes that can be keyed."""
-    found = commands.animatable(editor)
+    found = commands.animatable(context)
     if not found:
-        imgui.text_colored(vec4(editor.palette.dim), "Select a node whose values can be keyed")
+        imgui.text_colored(vec4(context.palette.dim), "Select a node whose values can be keyed")
     node = ""
     for port in found:
         if port.node != node:
             node = port.node
             imgui.separator_text(node)
-        if imgui.menu_item(f"{called(editor.session.graph, port)}##{port}", "", False)[0]:
-            editor.attempt(lambda port=port: editor.session.key(port))
+        if imgui.menu_item(f"{called(context.session.graph, port)}##{port}", "", False)[0]:
+            context.log.attempt(lambda port=port: context.session.key(port))
 
 
-def keys_menu(editor: Editor) -> None:
+def keys_menu(context: CurvesContext) -> None:
     """What can be done to chosen keys."""
-    for label, context in (
+    for label, menu in (
         ("Interpolation", "keys interpolation"),
         ("Ease", "keys ease"),
         ("Handles", "keys handles"),
         ("Outside of Keys", "keys outside"),
     ):
         if imgui.begin_menu(label):
-            listed(editor, context)
+            draw_entries(context, menu)
             imgui.end_menu()
     imgui.separator()
-    listed(editor, "keys")
+    draw_entries(context, "keys")
     imgui.separator()
     for id in ("keys.here", "keys.all", "keys.fit_all", "keys.fit_chosen", "keys.snap"):
-        entry(editor, editor.actions[id])
+        entry(context, context.actions[id])
 
 
-def legend(editor: Editor) -> None:
+def legend(context: CurvesContext) -> None:
     """What the shapes of keys mean."""
     scale, line = ui_scale(), imgui.get_text_line_height()
     for look in LOOKS:
@@ -233,18 +233,18 @@ def legend(editor: Editor) -> None:
             corner.y + line / 2,
             5.0 * scale,
             look,
-            u32(editor.palette.text),
+            u32(context.palette.text),
         )
         imgui.dummy((18 * scale, line))
         imgui.same_line()
         imgui.text(look.title())
         imgui.same_line(100 * scale)
-        imgui.text_colored(vec4(editor.palette.dim), _MEANING[look])
+        imgui.text_colored(vec4(context.palette.dim), _MEANING[look])
     imgui.separator()
     for keys, act in _MOUSE:
         imgui.text(keys)
         imgui.same_line(210 * scale)
-        imgui.text_colored(vec4(editor.palette.dim), act)
+        imgui.text_colored(vec4(context.palette.dim), act)
 
 
-__all__ = ["draw_toolbar", "keys_menu", "legend", "listed", "offered", "tip"]
+__all__ = ["draw_entries", "draw_toolbar", "keys_menu", "legend", "offered", "tip"]

@@ -15,7 +15,7 @@ from ..toolkit.dialogs import backdrop, dialog, escaped
 from ..toolkit.words import dim, font, wrapped
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import DialogContext
 
 _LIBRARIES = ("moderngl", "imgui-bundle", "OpenImageIO", "opencolorio", "numpy")
 
@@ -23,15 +23,18 @@ _LIBRARIES = ("moderngl", "imgui-bundle", "OpenImageIO", "opencolorio", "numpy")
 class About:
     """Version and what it runs on, ready to be copied into a report."""
 
-    def draw(self, editor: Editor) -> None:
+    def __init__(self, context: DialogContext) -> None:
+        self._context = context
+
+    def draw(self) -> None:
         """Draw over everything, if it is open."""
-        if "about" not in editor.dialogs.open:
+        if "about" not in self._context.dialogs.open:
             return
-        close = backdrop(editor, "about")
-        with dialog(editor, "About", (440, 0)):
-            with font(editor, "bold", 26.0):
+        close = backdrop(self._context, "about")
+        with dialog(self._context, "About", (440, 0)):
+            with font(self._context, "bold", 26.0):
                 imgui.text_unformatted("Halation")
-            wrapped(editor.palette.dim, metadata.metadata("halation")["Summary"])
+            wrapped(self._context.palette.dim, metadata.metadata("halation")["Summary"])
             imgui.dummy((0, 6 * ui_scale()))
             lines = _versions()
             if imgui.begin_table("versions", 2):
@@ -40,17 +43,17 @@ class About:
                 for name, version in lines:
                     imgui.table_next_row()
                     imgui.table_next_column()
-                    dim(editor, name)
+                    dim(self._context, name)
                     imgui.table_next_column()
                     imgui.text_wrapped(version)
                 imgui.end_table()
             imgui.dummy((0, 6 * ui_scale()))
-            if quiet(editor, f"{icons.ICON_FA_COPY}  Copy", "copy versions", "Copy for a report"):
-                editor.clipboard.put("\n".join(f"{name}: {version}" for name, version in lines))
+            if quiet(self._context, f"{icons.ICON_FA_COPY}  Copy", "copy versions", "Copy for a report"):
+                self._context.clipboard.put("\n".join(f"{name}: {version}" for name, version in lines))
             imgui.same_line()
-            close = close_button(editor, "close about") or close or escaped()
+            close = close_button(self._context, "close about") or close or escaped()
         if close:
-            editor.dialogs.open.discard("about")
+            self._context.dialogs.open.discard("about")
 
 
 def _versions() -> list[tuple[str, str]]:

@@ -16,7 +16,7 @@ from ..toolkit.keys import shown
 from ..toolkit.words import dim, font
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import DialogContext
 
 Blocks = Sequence[tuple[str, tuple[tuple[str, str], ...]]]
 """Titles, and lines of keys and what they do."""
@@ -27,30 +27,36 @@ _WIDTH = 1340.0
 class CheatSheet:
     """Columns by subject; Preferences is where they are changed."""
 
-    def draw(self, editor: Editor) -> None:
+    def __init__(self, context: DialogContext) -> None:
+        self._context = context
+
+    def draw(self) -> None:
         """Draw over everything, if it is open."""
-        if "shortcuts" not in editor.dialogs.open:
+        if "shortcuts" not in self._context.dialogs.open:
             return
-        close = backdrop(editor, "shortcuts")
-        with dialog(editor, "Shortcuts", (_WIDTH, 0)):
-            with font(editor, "bold", 20.0):
+        close = backdrop(self._context, "shortcuts")
+        with dialog(self._context, "Shortcuts", (_WIDTH, 0)):
+            with font(self._context, "bold", 20.0):
                 imgui.text_unformatted("Shortcuts")
-            blocks = [*((title, _lines(editor, actions)) for title, actions in groups(editor)), ("Mouse", MOUSE)]
+            blocks = [
+                *((title, _lines(self._context, actions)) for title, actions in groups(self._context.actions)),
+                ("Mouse", MOUSE),
+            ]
             room = imgui.get_content_region_avail().x
             count = max(int(room / (310 * ui_scale())), 1)
             made = columns(tuple(len(lines) + 2 for _, lines in blocks), count)
-            _sheet(editor, blocks, made)
+            _sheet(self._context, blocks, made)
             if imgui.button("Change shortcuts"):
-                editor.dialogs.open.add("preferences")
+                self._context.dialogs.open.add("preferences")
                 close = True
             imgui.same_line()
-            close = close_button(editor, "close shortcuts") or close or escaped()
+            close = close_button(self._context, "close shortcuts") or close or escaped()
             close = close or (imgui.is_key_pressed(imgui.Key.f1, False) and not imgui.is_window_appearing())
         if close:
-            editor.dialogs.open.discard("shortcuts")
+            self._context.dialogs.open.discard("shortcuts")
 
 
-def _sheet(editor: Editor, blocks: Blocks, made: Sequence[Sequence[int]]) -> None:
+def _sheet(context: DialogContext, blocks: Blocks, made: Sequence[Sequence[int]]) -> None:
     """The columns; they scroll where they are longer than the window."""
     line = imgui.get_text_line_height_with_spacing()
     longest = max(sum(len(blocks[index][1]) + 2 for index in indices) for indices in made) * line
@@ -60,27 +66,27 @@ def _sheet(editor: Editor, blocks: Blocks, made: Sequence[Sequence[int]]) -> Non
         for indices in made:
             imgui.table_next_column()
             for index in indices:
-                _block(editor, *blocks[index])
+                _block(context, *blocks[index])
         imgui.end_table()
     imgui.end_child()
 
 
-def _lines(editor: Editor, actions: tuple[Action, ...]) -> tuple[tuple[str, str], ...]:
-    lines = ((shown(editor.actions.shortcut(action.id)), action.label.removesuffix("...")) for action in actions)
+def _lines(context: DialogContext, actions: tuple[Action, ...]) -> tuple[tuple[str, str], ...]:
+    lines = ((shown(context.actions.shortcut(action.id)), action.label.removesuffix("...")) for action in actions)
     return condensed(lines)
 
 
-def _block(editor: Editor, title: str, lines: tuple[tuple[str, str], ...]) -> None:
+def _block(context: DialogContext, title: str, lines: tuple[tuple[str, str], ...]) -> None:
     scale = ui_scale()
     imgui.dummy(ImVec2(0, 4 * scale))
-    imgui.text_colored(vec4(editor.palette.accent), title)
+    imgui.text_colored(vec4(context.palette.accent), title)
     start = imgui.get_cursor_screen_pos()
     right = start.x + imgui.get_content_region_avail().x - 12 * scale
-    imgui.get_window_draw_list().add_line(start, ImVec2(right, start.y), u32(editor.palette.raised), scale)
+    imgui.get_window_draw_list().add_line(start, ImVec2(right, start.y), u32(context.palette.raised), scale)
     imgui.dummy(ImVec2(0, scale))
     left = imgui.get_cursor_pos_x()
     for keys, label in lines:
         imgui.text_unformatted(label)
         imgui.same_line()
         imgui.set_cursor_pos_x(left + (right - start.x) - imgui.calc_text_size(keys).x)
-        dim(editor, keys)
+        dim(context, keys)

@@ -14,36 +14,39 @@ from ..toolkit.places import record
 from ..toolkit.words import font
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import DialogContext
 
 
 class QuestionDialog:
     """Answers as buttons: Enter chooses the first, Escape the last, which is the safest."""
 
-    def draw(self, editor: Editor) -> None:
+    def __init__(self, context: DialogContext) -> None:
+        self._context = context
+
+    def draw(self) -> None:
         """Draw over everything, if there is a question."""
-        question = editor.dialogs.question
+        question = self._context.dialogs.question
         if question is None:
             return
-        backdrop(editor, "question")
+        backdrop(self._context, "question")
         chosen: int | None = None
-        with dialog(editor, "Question", (460, 0), top=0.4):
-            with font(editor, "bold", 18.0):
+        with dialog(self._context, "Question", (460, 0), top=0.4):
+            with font(self._context, "bold", 18.0):
                 imgui.text_unformatted(question.title)
             imgui.dummy((0, 2 * ui_scale()))
             imgui.text_wrapped(question.sentence)
             imgui.dummy((0, 8 * ui_scale()))
-            chosen = _buttons(editor, question)
+            chosen = _buttons(self._context, question)
             if escaped():
                 chosen = len(question.answers) - 1
             elif imgui.is_key_pressed(imgui.Key.enter, False) and not imgui.is_window_appearing():
                 chosen = 0
         if chosen is not None:
-            editor.dialogs.question = None
-            editor.attempt(question.answers[chosen][1])
+            self._context.dialogs.question = None
+            self._context.log.attempt(question.answers[chosen][1])
 
 
-def _buttons(editor: Editor, question: Question) -> int | None:
+def _buttons(context: DialogContext, question: Question) -> int | None:
     """Side by side from the right, or one above the other where they do not fit; the index of the one clicked."""
     style = imgui.get_style()
     labels = [answer for answer, _ in question.answers]
@@ -56,9 +59,9 @@ def _buttons(editor: Editor, question: Question) -> int | None:
     chosen = None
     for index, label in enumerate(labels):
         name, across = f"answer {index}", 0.0 if beside else -1.0
-        if main_button(editor, label, name, width=across) if index == 0 else imgui.button(label, (across, 0)):
+        if main_button(context, label, name, width=across) if index == 0 else imgui.button(label, (across, 0)):
             chosen = index
-        record(editor, name)
+        record(context, name)
         if beside and index + 1 < len(labels):
             imgui.same_line()
     return chosen

@@ -13,7 +13,7 @@ from ..theme.palette import Palette
 from .numbers import Drag, typed
 
 if TYPE_CHECKING:
-    from ..window.editor import Rectangle
+    from ..toolkit.places import Rect
 
 
 @dataclass(frozen=True)
@@ -71,8 +71,8 @@ class Fields:
     """The fields of one panel: at most one is dragged and at most one typed in."""
 
     palette: Palette
-    places: dict[str, Rectangle] = field(default_factory=dict[str, "Rectangle"])
-    """The editor's: where things were drawn."""
+    places: dict[str, Rect] = field(default_factory=dict[str, "Rect"])
+    """Those of the window: where widgets were drawn."""
     typing: Typing | None = None
     drag: Drag | None = None
     drag_id: str = ""
@@ -89,7 +89,7 @@ class Fields:
     point: tuple[str, int] = ("", -1)
     """The curve or ramp field whose point of that number is selected."""
     lights: dict[str, int] = field(default_factory=dict[str, int])
-    """The editor's: the light that is selected, by its field."""
+    """Those of the window: the light that is selected, by its field."""
     lights_shown: dict[str, int] = field(default_factory=dict[str, int])
     """The light that each field has scrolled to."""
     lights_gesture: str = ""

@@ -13,7 +13,7 @@ from ..toolkit.places import record
 from ..toolkit.words import nothing_here
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import HistoryContext
 
 
 class HistoryPanel:
@@ -21,15 +21,16 @@ class HistoryPanel:
 
     title = "History"
 
-    def __init__(self) -> None:
+    def __init__(self, context: HistoryContext) -> None:
+        self._context = context
         self._seen = (0, 0)
 
-    def draw(self, editor: Editor) -> None:
+    def draw(self) -> None:
         """Draw into the current window."""
-        history = editor.session.history
+        history = self._context.session.history
         if not history.steps:
             icon = icons.ICON_FA_CLOCK_ROTATE_LEFT
-            nothing_here(editor, icon, "Nothing was changed yet", "Every step can be gone back to.")
+            nothing_here(self._context, icon, "Nothing was changed yet", "Every step can be gone back to.")
             return
         labels = ("The beginning", *history.steps)
         moved, self._seen = self._seen != (len(labels), history.position), (len(labels), history.position)
@@ -39,29 +40,29 @@ class HistoryPanel:
             clipper.include_item_by_index(history.position)
         while clipper.step():
             for index in range(clipper.display_start, clipper.display_end):
-                self._row(editor, index, labels[index])
+                self._row(index, labels[index])
                 if moved and index == history.position:
                     imgui.set_scroll_here_y(0.5)
         clipper.end()
 
-    def _row(self, editor: Editor, index: int, label: str) -> None:
-        palette, position = editor.palette, editor.session.history.position
+    def _row(self, index: int, label: str) -> None:
+        palette, position = self._context.palette, self._context.session.history.position
         current, undone = index == position, index > position
         color = mix(palette.dim, palette.panel, 0.35) if undone else palette.text
         imgui.push_style_color(imgui.Col_.text, vec4(palette.accent if current else color))
         imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + 20 * ui_scale())
         if imgui.selectable(f"{label}##{index}", current)[0] and not current:
-            editor.attempt(lambda: editor.session.go_to(index))
+            self._context.log.attempt(lambda: self._context.session.go_to(index))
         imgui.pop_style_color()
-        record(editor, f"history {index}")
-        _mark(editor, palette.accent if current else color, first=index == 0)
+        record(self._context, f"history {index}")
+        _mark(self._context, palette.accent if current else color, first=index == 0)
 
 
-def _mark(editor: Editor, color: RGB, first: bool) -> None:
+def _mark(context: HistoryContext, color: RGB, first: bool) -> None:
     """A dot left of the last item, joined with the one above."""
     low, high, scale = imgui.get_item_rect_min(), imgui.get_item_rect_max(), ui_scale()
     x, y, lines = low.x - 10 * scale, (low.y + high.y) / 2, imgui.get_window_draw_list()
     if not first:
         above = y - imgui.get_text_line_height_with_spacing() + 5 * scale
-        lines.add_line(ImVec2(x, above), ImVec2(x, y - 5 * scale), u32(editor.palette.raised), 2 * scale)
+        lines.add_line(ImVec2(x, above), ImVec2(x, y - 5 * scale), u32(context.palette.raised), 2 * scale)
     lines.add_circle_filled(ImVec2(x, y), 3.5 * scale, u32(color))

@@ -12,7 +12,7 @@ from ...color.management import builtin_configs, color_mark, managed, ocio
 from ..fields.choice_field import choose
 from ..fields.fields import Edit, Fields
 from ..fields.text_field import text_field
-from ..shared.coloring import coloring
+from ..shared.coloring import settings_in_use
 from ..shared.dialogs import Browse
 from .rows import Rows
 
@@ -46,8 +46,8 @@ def _linear(color: ColorSettings, mark: str) -> tuple[str, ...]:
 
 def color_rows(rows: Rows, fields: Fields) -> None:
     """The rows of the settings of a graph."""
-    editor = rows.editor
-    session = editor.session
+    context = rows.context
+    session = context.session
     color = session.root.settings.color
     rows.name(
         "color config",
@@ -69,16 +69,16 @@ def color_rows(rows: Rows, fields: Fields) -> None:
         index = choose(fields, "color config", color.config or _ENVIRONMENT, choices, rows.field())
         rows.record("color config")
         if index == 1:
-            editor.dialogs.browse = Browse(
+            context.dialogs.browse = Browse(
                 "Choose a Color Config",
                 "config",
-                lambda path: editor.attempt(lambda: session.set_color(config=session.relative(path))),
+                lambda path: context.log.attempt(lambda: session.set_color(config=session.relative(path))),
             )
         elif index is not None:
             config = "" if index == 0 else choices[index]
             rows.act(lambda: session.set_color(config=config))
-    usable = coloring(editor)
-    if fault := editor.viewer.coloring.fault:
+    usable = settings_in_use(context)
+    if fault := context.coloring.fault:
         rows.field_note(fault, rows.palette.error)
     rows.name(
         "working space",
@@ -96,7 +96,7 @@ def color_rows(rows: Rows, fields: Fields) -> None:
 
 def space_field(rows: Rows, fields: Fields, key: str, now: str, width: float) -> Edit | None:
     """Which color space something is in, from those of the config; empty stands for finding out."""
-    color = coloring(rows.editor)
+    color = settings_in_use(rows.context)
     known = (FOUND, *space_names(color, color_mark(color)))
     shown = FOUND if now in ("", "auto") else now
     choices = known if shown in known else (shown, *known)

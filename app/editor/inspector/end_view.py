@@ -17,7 +17,7 @@ from ..fields.color_field import color_field
 from ..fields.fields import Edit, Fields
 from ..fields.number_field import number_field, row_of_numbers
 from ..fields.text_field import text_field
-from ..shared.coloring import coloring
+from ..shared.coloring import settings_in_use
 from ..toolkit.words import tip
 from .color_rows import space_field
 from .file_field import PICTURE, FileField
@@ -53,12 +53,12 @@ class EndView:
 
     def draw(self, rows: Rows, port: Port) -> None:
         """The end that `port` names."""
-        graph = rows.editor.session.graph
+        graph = rows.context.session.graph
         end = graph.inputs[port.socket] if port.node == INPUTS else graph.outputs[port.socket]
         width = str(end.width) if end.kind is Kind.VECTOR else ""
         word = "Input" if isinstance(end, Input) else "Output"
         heading(rows, f"{end.kind}{width} {word}", rows.palette.kinds[end.kind])
-        session, key = rows.editor.session, str(port)
+        session, key = rows.context.session, str(port)
         name_field(rows, self._fields, key, port.socket, lambda new: session.rename_end(key, new))
         faults(rows, key)
         if isinstance(end, Input):
@@ -69,8 +69,8 @@ class EndView:
     # --- parts -------------------------------------------------------------------------------------------------------
 
     def _input(self, rows: Rows, port: Port, end: Input) -> None:
-        editor, name, key = rows.editor, port.socket, str(port)
-        session = editor.session
+        context, name, key = rows.context, port.socket, str(port)
+        session = context.session
         bound = bound_to(session, name)
         if bound:
             rows.name(f"{key} bound", "bound to", doc="A file that was given for this window only; it is not saved")
@@ -113,7 +113,7 @@ class EndView:
 
     def _default(self, rows: Rows, key: str, end: Input, width: float) -> Edit | None:
         """The default, with a button that takes it away; or a button that makes one."""
-        session, name = rows.editor.session, key.removeprefix(f"{INPUTS}.").removesuffix(" default")
+        session, name = rows.context.session, key.removeprefix(f"{INPUTS}.").removesuffix(" default")
         channels = end.socket().channels
         if end.default is None:
             if imgui.button(f"None##{key}", (width, 0.0)):
@@ -138,8 +138,8 @@ class EndView:
         return edit
 
     def _output(self, rows: Rows, port: Port, end: Output) -> None:
-        editor, name, key = rows.editor, port.socket, str(port)
-        session = editor.session
+        context, name, key = rows.context, port.socket, str(port)
+        session = context.session
         rows.name(key, "from", doc="What leaves the graph here", color=rows.palette.kinds[end.kind])
         source, width = session.linked(port), rows.field()
         if source is not None:
@@ -158,7 +158,7 @@ class EndView:
         )
         if end.kind is Kind.IMAGE:
             rows.name(f"{key} view", "view", doc="How to show it unless someone chooses")
-            known = ("", *views(color=coloring(editor)))
+            known = ("", *views(color=settings_in_use(context)))
             index = choose(
                 self._fields, f"{key} view", end.view or DEFAULT_VIEW, (DEFAULT_VIEW, *known[1:]), rows.field()
             )

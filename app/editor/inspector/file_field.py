@@ -16,7 +16,7 @@ from ...media.sequences import find_sequence
 from ...watch.sequence_files import standing
 from ..fields.fields import Edit, Fields
 from ..fields.text_field import text_field
-from ..shared.coloring import coloring
+from ..shared.coloring import settings_in_use
 from ..shared.dialogs import browse
 from ..toolkit.fields import draw_arrow
 from ..toolkit.places import item_rect, place, union
@@ -68,11 +68,11 @@ class FileField:
         tip(str(self._full(rows, value)) if value else "")
         imgui.same_line(0.0, rows.gap * 0.5)
         if rows.icon(icons.ICON_FA_FOLDER_OPEN, f"browse {key}", "Choose a file"):
-            editor = rows.editor
-            editor.dialogs.browse = browse(
-                declaration, lambda path: editor.attempt(lambda: then(editor.session.relative(path)))
+            context = rows.context
+            context.dialogs.browse = browse(
+                declaration, lambda path: context.log.attempt(lambda: then(context.session.relative(path)))
             )
-        rows.editor.places[f"field {key}"] = union(first, item_rect())
+        rows.context.places[f"field {key}"] = union(first, item_rect())
         return edit
 
     def about(self, rows: Rows, value: str, declaration: Value, layer: str) -> None:
@@ -92,7 +92,7 @@ class FileField:
         said, wrong = (
             ("", False)
             if not value
-            else self.known.space(self._file(rows, value), layer, coloring(rows.editor), wanted)
+            else self.known.space(self._file(rows, value), layer, settings_in_use(rows.context), wanted)
         )
         if said:
             shown = said.removeprefix(f"{self._file(rows, value)}: ")
@@ -121,13 +121,13 @@ class FileField:
         if opened:
             if imgui.selectable(first, not value)[0]:
                 found = Edit("")
-            rows.editor.places[f"layer {key} "] = item_rect()
+            rows.context.places[f"layer {key} "] = item_rect()
             for name in names:
                 if self._choice(rows, path, name, name == value):
                     found = Edit(name)
-                rows.editor.places[f"layer {key} {name}"] = item_rect()
+                rows.context.places[f"layer {key} {name}"] = item_rect()
             imgui.end_combo()
-        rows.editor.places[f"field {key}"] = rect
+        rows.context.places[f"field {key}"] = rect
         return found
 
     def _choice(self, rows: Rows, path: Path, name: str, chosen: bool) -> bool:
@@ -157,10 +157,10 @@ class FileField:
 
     def _file(self, rows: Rows, value: str) -> Path:
         """The file; of a sequence one that is there."""
-        return standing(self._full(rows, value), rows.editor.session.frames[0])
+        return standing(self._full(rows, value), rows.context.session.frames[0])
 
     def _full(self, rows: Rows, value: str) -> Path:
-        return Path(rows.editor.session.graph.folder, value)
+        return Path(rows.context.session.graph.folder, value)
 
 
 def _frames(path: Path) -> str:

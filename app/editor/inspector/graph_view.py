@@ -53,7 +53,7 @@ class GraphView:
 
     def draw(self, rows: Rows) -> None:
         """The graph that the canvas shows."""
-        session = rows.editor.session
+        session = rows.context.session
         inside = session.place[-1] if session.place else ""
         heading(rows, f"Group {inside}" if inside else session.name, rows.palette.category("group" if inside else ""))
         faults(rows, "")
@@ -67,7 +67,7 @@ class GraphView:
 
     def frame(self, rows: Rows, id: str) -> None:
         """A frame: its title and color."""
-        session = rows.editor.session
+        session = rows.context.session
         facts = entry(session.graph, f"frames.{id}")
         heading(rows, "Frame", rows.palette.accent)
         draw_text(
@@ -90,7 +90,7 @@ class GraphView:
 
     def comment(self, rows: Rows, id: str) -> None:
         """A comment: its text."""
-        session = rows.editor.session
+        session = rows.context.session
         heading(rows, "Comment", rows.palette.accent)
         text = str(entry(session.graph, f"comments.{id}").get("text", ""))
         edit = text_field(self._fields, f"comments.{id} text", text, _TEXT, rows.width, hint="Type a comment", lines=6)
@@ -102,7 +102,7 @@ class GraphView:
     # --- parts -------------------------------------------------------------------------------------------------------
 
     def _size(self, rows: Rows) -> None:
-        session = rows.editor.session
+        session = rows.context.session
         size = session.graph.settings.size
         rows.name("size", "canvas", doc="The size of what is made from nothing; automatic is that of the first picture")
         width, side = rows.field(), imgui.get_frame_height()
@@ -133,7 +133,7 @@ class GraphView:
 
     def _time(self, rows: Rows) -> None:
         """Range, rate and pre-roll."""
-        session = rows.editor.session
+        session = rows.context.session
         settings, (first, last) = session.settings, session.frames
         rows.name("frames", "frames", doc="The first and the last frame", changed=settings.frames is not None)
         stated = settings.frames is not None
@@ -163,7 +163,7 @@ class GraphView:
         self._preroll(rows)
 
     def _preroll(self, rows: Rows) -> None:
-        session = rows.editor.session
+        session = rows.context.session
         preroll = session.settings.preroll
         doc = "How many frames before the one that is wanted nodes with a memory look back. Without one they begin "
         doc += "at the first frame, so that a frame is the same wherever a rendering begins."
@@ -186,7 +186,7 @@ class GraphView:
             rows.act(lambda: session.set_preroll(count, merge=token))
 
     def _ends(self, rows: Rows, side: str) -> None:
-        session = rows.editor.session
+        session = rows.context.session
         known = session.graph.inputs if side == "inputs" else session.graph.outputs
         rows.heading(side.title())
         rows.fit((f"{end.kind}2" for end in known.values()), least=0.0)
@@ -201,7 +201,7 @@ class GraphView:
                 rows.act(lambda key=key, edit=edit: session.rename_end(key, str(edit.value)))
             imgui.same_line(0.0, 0.0)
             if rows.icon(icons.ICON_FA_ARROW_RIGHT, f"go {key}", "Select it"):
-                rows.act(lambda name=name: go_to(rows.editor, Port(side, name)))
+                rows.act(lambda name=name: go_to(rows.context, Port(side, name)))
             imgui.same_line(0.0, 0.0)
             if rows.icon(icons.ICON_FA_XMARK, f"remove {key}", "Remove it and its links"):
                 rows.act(lambda key=key: session.remove_end(key))
@@ -214,7 +214,7 @@ class GraphView:
         if imgui.begin_popup(f"kinds {side}"):
             for label, kind, width in _KINDS:
                 chosen = imgui.menu_item(label, "", False)[0]
-                rows.editor.places[f"menu {label}"] = item_rect()
+                rows.context.places[f"menu {label}"] = item_rect()
                 if chosen:
                     name = fresh_name(kind.lower(), known)
                     add = session.add_input if side == "inputs" else session.add_output
@@ -222,7 +222,7 @@ class GraphView:
             imgui.end_popup()
 
     def _controls(self, rows: Rows) -> None:
-        session = rows.editor.session
+        session = rows.context.session
         rows.heading("Controls")
         rows.fit(session.graph.controls)
         if not session.graph.controls:
@@ -242,7 +242,7 @@ class GraphView:
             opened = imgui.tree_node(f"{target}##{key}")
             imgui.pop_style_color()
             tip("Name, label and description of the control")
-            rows.editor.places[f"more {key}"] = item_rect()
+            rows.context.places[f"more {key}"] = item_rect()
             if opened:
                 inner = rows.inset()
                 draw_text(
@@ -272,7 +272,7 @@ class GraphView:
                     hint=declaration.doc if declaration else "",
                 )
                 if imgui.small_button(f"{icons.ICON_FA_ARROW_RIGHT}  Go to Node##{key}"):
-                    rows.act(lambda target=target: go_to(rows.editor, target))
+                    rows.act(lambda target=target: go_to(rows.context, target))
                 imgui.same_line()
                 if imgui.small_button(f"{icons.ICON_FA_XMARK}  Remove##{key}"):
                     rows.act(lambda name=name: session.hide(name))
@@ -285,7 +285,7 @@ class GraphView:
 
     def _candidates(self, rows: Rows) -> None:
         """Every value that is no control yet, by node."""
-        session = rows.editor.session
+        session = rows.context.session
         taken = {control.target for control in session.graph.controls.values()}
         found = False
         for id, item in session.graph.nodes.items():
@@ -308,7 +308,7 @@ class GraphView:
 
 def _comes_in(rows: Rows, name: str) -> tuple[str, RGB]:
     """What an input of the graph brings in as things are, and the color to say it in."""
-    session, palette = rows.editor.session, rows.palette
+    session, palette = rows.context.session, rows.palette
     end = session.graph.inputs[name]
     bound = bound_to(session, name)
     if bound:

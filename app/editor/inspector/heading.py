@@ -34,7 +34,7 @@ def heading(rows: Rows, kind: str, color: RGB, buttons: Callable[[], object] | N
     imgui.get_window_draw_list().add_rect_filled(
         (rect[0], rect[1] + 3 * scale), (rect[0] + bar, rect[3] - 3 * scale), u32(color), bar / 2
     )
-    with font(rows.editor, "bold", EM * 1.06):
+    with font(rows.context, "bold", EM * 1.06):
         write((rect[0] + bar + 7 * scale, rect[1], rect[2], rect[3]), kind, rows.palette.text)
     if buttons:
         imgui.same_line(0.0, 0.0)
@@ -65,19 +65,19 @@ def explanation(rows: Rows, doc: str, open: bool) -> bool:
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
         if imgui.is_item_clicked():
             open = not open
-        rows.editor.places["doc"] = item_rect()
+        rows.context.places["doc"] = item_rect()
     return open
 
 
 def faults(rows: Rows, key: str) -> None:
     """What is wrong with an element: what the graph says, and what happened while rendering."""
-    editor = rows.editor
-    path = "/".join((*editor.session.place, key))
-    known = editor.session.problems.get(key, ())
+    context = rows.context
+    path = "/".join((*context.session.place, key))
+    known = context.session.problems.get(key, ())
     for problem in known:
         color = rows.palette.error if problem.severity == "error" else rows.palette.warning
         rows.note(problem.sentence, color, icon=icons.ICON_FA_TRIANGLE_EXCLAMATION)
-    rendered = editor.preview.faults.get(path, "")
+    rendered = context.preview.faults.get(path, "")
     if rendered and all(rendered != problem.sentence for problem in known):
         rows.note(rendered, rows.palette.error, icon=icons.ICON_FA_TRIANGLE_EXCLAMATION)
 

@@ -18,7 +18,7 @@ from .rows import Rows
 from .value_rows import ValueRows
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import InspectorContext
 
 
 class Inspector:
@@ -26,7 +26,8 @@ class Inspector:
 
     title = "Inspector"
 
-    def __init__(self) -> None:
+    def __init__(self, context: InspectorContext) -> None:
+        self._context = context
         self._fields = Fields(DARK)
         self._files = FileField(self._fields)
         self._values = ValueRows(self._fields, self._files)
@@ -34,29 +35,29 @@ class Inspector:
         self._end = EndView(self._fields, self._files)
         self._graph = GraphView(self._fields, self._values)
 
-    def draw(self, editor: Editor) -> None:
+    def draw(self) -> None:
         """Draw into the current window."""
         fields = self._fields
-        fields.palette, fields.places, fields.lights = editor.palette, editor.places, editor.lights
+        fields.palette, fields.places, fields.lights = self._context.palette, self._context.places, self._context.lights
         self._values.begin()
         dragged = fields.dragging
         fields.begin(imgui.is_mouse_down(imgui.MouseButton_.left))
-        rows = Rows(editor, fields)
+        rows = Rows(self._context, fields)
         self._draw(rows)
         rows.finish()
         if dragged and not fields.dragging:
-            editor.session.seal()
+            self._context.session.seal()
         left = fields.end()
         if left:
-            self._values.left(editor, left)
-        editor.dragging |= fields.dragging
+            self._values.left(self._context, left)
+        self._context.interface.dragging |= fields.dragging
 
     def close(self) -> None:
         """End what runs, give back what is on the graphics card."""
         self._files.close()
 
     def _draw(self, rows: Rows) -> None:
-        session = rows.editor.session
+        session = rows.context.session
         graph, active = session.graph, session.active
         if session.borrowed:
             sentence = f"This group comes from {session.borrowed}: make it local to change it here."

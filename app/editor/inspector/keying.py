@@ -98,14 +98,14 @@ class Keying:
 
     def diamond(self, rows: Rows, ports: Ports) -> None:
         """The button at the end of a name: no keys, keys elsewhere, a key here."""
-        session, port, scale = rows.editor.session, ports[0], ui_scale()
+        session, port, scale = rows.context.session, ports[0], ui_scale()
         look = look_of(session, port)
         imgui.same_line(0.0, 0.0)
         rect = place(WIDTH * scale)
         imgui.push_item_flag(int(imgui.ItemFlags_.no_nav), True)
         pressed = imgui.invisible_button(f"##diamond {port}", (rect[2] - rect[0], rect[3] - rect[1]))
         imgui.pop_item_flag()
-        rows.editor.places[f"diamond {port}"] = rect
+        rows.context.places[f"diamond {port}"] = rect
         hovered = imgui.is_item_hovered()
         _paint(rows.palette, rect, look, hovered)
         tip(_DOCS[look])
@@ -131,8 +131,8 @@ class Keying:
 
     def field(self, rows: Rows, port: Port, width: float) -> bool:
         """The expression of a value in place of its field; False if it has none."""
-        editor, fields, key = rows.editor, self._fields, str(port)
-        session = editor.session
+        context, fields, key = rows.context, self._fields, str(port)
+        session = context.session
         animation, id = session.animation(port), f"{key} expression"
         known = animation.text if isinstance(animation, Expression) else ""
         if not known and key not in self._drafts:
@@ -152,14 +152,14 @@ class Keying:
         fault = session.expression_fault(port, text) or value_now(session, port)[1]
         background(rows.palette, rect, hovered=imgui.is_item_hovered(), fault=bool(fault))
         rows.record(key)
-        with font(editor, "mono", SMALL):
+        with font(context, "mono", SMALL):
             cut = _colored(rows.palette, rect, text)
         tip(f"= {text}" if cut else "")
         return True
 
     def note(self, rows: Rows, port: Port, shown: str) -> None:
         """Below the field: what the expression comes to, or what is wrong with it."""
-        session, key = rows.editor.session, str(port)
+        session, key = rows.context.session, str(port)
         animation = session.animation(port)
         text = self._drafts.get(key, animation.text if isinstance(animation, Expression) else "")
         if self._fields.typing and self._fields.typing.id == f"{key} expression":
@@ -167,14 +167,14 @@ class Keying:
         fault = session.expression_fault(port, text) if text else None
         fault = fault or value_now(session, port)[1]
         if fault:
-            with font(rows.editor, "mono", SMALL * 0.92):
+            with font(rows.context, "mono", SMALL * 0.92):
                 wrapped(rows.palette.error, fault.removeprefix(f"{port}: "))
         else:
             rows.field_note(f"= {shown}")
 
     def tint(self, rows: Rows, port: Port, rect: Rect) -> None:
         """Color the field of a value that changes over time."""
-        look = look_of(rows.editor.session, port)
+        look = look_of(rows.context.session, port)
         if look in ("keys", "key"):
             color, lines = color_of(rows.palette, look), imgui.get_window_draw_list()
             lines.add_rect_filled(rect[:2], rect[2:], u32(color, 0.13), imgui.get_style().frame_rounding)
@@ -182,21 +182,21 @@ class Keying:
 
     def menu(self, rows: Rows, ports: Ports, shown: str) -> None:
         """Entries of the menu that is open."""
-        editor, port = rows.editor, ports[0]
-        session, look = editor.session, look_of(editor.session, ports[0])
+        context, port = rows.context, ports[0]
+        session, look = context.session, look_of(context.session, ports[0])
         one, keyed = len(ports) == 1, look in ("keys", "key")
 
         def entry(icon: str, label: str, enabled: bool, act: Callable[[], object]) -> None:
             if imgui.menu_item(f"{icon}  {label}", "", False, enabled)[0]:
                 rows.act(act)
-            editor.places[f"menu {label}"] = item_rect()
+            context.places[f"menu {label}"] = item_rect()
 
         def all_still() -> None:
             session.animate_all(dict.fromkeys(ports), f"Still {ports[0].socket}")
 
         def jump(frame: int | None) -> None:
             if frame is not None:
-                editor.timeline.stop()
+                context.timeline.stop()
                 session.seek(frame)
 
         imgui.separator()
@@ -220,21 +220,21 @@ class Keying:
         entry(icons.ICON_FA_XMARK, "Remove Expression", look == "expression", all_still)
         entry(icons.ICON_FA_BARS_STAGGERED, "Bake to Keys", one and look != "still", lambda: session.bake(port))
         entry(
-            icons.ICON_FA_COPY, "Copy Animation", look != "still", lambda: editor.clipboard.put(as_text(session, port))
+            icons.ICON_FA_COPY, "Copy Animation", look != "still", lambda: context.clipboard.put(as_text(session, port))
         )
-        entry(icons.ICON_FA_PASTE, "Paste Animation", True, lambda: paste(session, ports, editor.clipboard.get()))
+        entry(icons.ICON_FA_PASTE, "Paste Animation", True, lambda: paste(session, ports, context.clipboard.get()))
 
     def _typed(self, rows: Rows, port: Port, id: str, text: str, width: float) -> None:
         """The field while it is typed in."""
-        fields, editor = self._fields, rows.editor
-        session = editor.session
+        fields, context = self._fields, rows.context
+        session = context.session
         edit = text_entry(fields, width)
         rows.record(str(port))
         typing = fields.typing
         if typing and typing.id == id:
             fault = session.expression_fault(port, typing.text) if typing.text.strip() else None
             if fault and not typing.starting:
-                with font(editor, "mono", SMALL):
+                with font(context, "mono", SMALL):
                     note_below(rows.palette, item_rect(), fault.removeprefix(f"{port}: "), rows.palette.error)
             return
         self._drafts.pop(str(port), None)

@@ -96,16 +96,16 @@ class _Row:
                 return number_field(fields, self.key, plain, declaration, width, suffix=part.unit(self.light.kind))
 
     def _menu(self) -> None:
-        editor, declaration = self.rows.editor, self.part.declaration
+        context, declaration = self.rows.context, self.part.declaration
 
         def entry(icon: str, label: str, act: Callable[[], object]) -> None:
             if imgui.menu_item(f"{icon}  {label}", "", False)[0]:
                 self.rows.act(act)
-            editor.places[f"menu {label}"] = item_rect()
+            context.places[f"menu {label}"] = item_rect()
 
         entry(icons.ICON_FA_ROTATE_LEFT, "Reset", lambda: self._now(Edit(declaration.default)))
-        entry(icons.ICON_FA_COPY, "Copy Value", lambda: editor.clipboard.put(as_text(self.plain)))
-        entry(icons.ICON_FA_PASTE, "Paste Value", lambda: self._now(Edit(self._pasted(editor.clipboard.get()))))
+        entry(icons.ICON_FA_COPY, "Copy Value", lambda: context.clipboard.put(as_text(self.plain)))
+        entry(icons.ICON_FA_PASTE, "Paste Value", lambda: self._now(Edit(self._pasted(context.clipboard.get()))))
 
     def _pasted(self, text: str) -> Plain:
         plain = from_text(text)

@@ -40,7 +40,7 @@ class MatteRows:
 
     def draw(self, rows: Rows, port: Port) -> None:
         """Everything about the names of one node; a click picks a name or no longer."""
-        matte, key = matte_at(rows.editor, port.node), str(port)
+        matte, key = matte_at(rows.context, port.node), str(port)
         if not isinstance(matte, Matte):
             if matte and matte != "no file":
                 rows.field_note(matte, rows.palette.warning)
@@ -48,7 +48,7 @@ class MatteRows:
         if not matte.ids:
             rows.field_note("The file has no manifest: names are typed, and hashed as the renderer did.")
             return
-        session = rows.editor.session
+        session = rows.context.session
         pick = str(session.value(port))
         picked = self._of(pick, matte)
         rows.field_note(f"{len(picked)} of {len(matte.ids)} picked. A click in the viewer picks, too.")
@@ -81,7 +81,7 @@ class MatteRows:
         hint = f"{icons.ICON_FA_MAGNIFYING_GLASS}  Find a name"
         _, text = imgui.input_text_with_hint(f"##search {key}", hint, self._search.get(key, ""))
         self._search[key] = text
-        rows.editor.places[f"search {key}"] = item_rect()
+        rows.context.places[f"search {key}"] = item_rect()
         return [name for name in names if text.strip().casefold() in name.casefold()]
 
     def _list(
@@ -108,14 +108,14 @@ class MatteRows:
         clipper.end()
         imgui.pop_style_var()
         imgui.end_child()
-        rows.editor.places[f"names {key}"] = item_rect()
+        rows.context.places[f"names {key}"] = item_rect()
 
     def _name(self, rows: Rows, key: str, name: str, on: bool, height: float) -> bool:
         """A box to tick, and a name; True if it was clicked."""
         palette, scale = rows.palette, ui_scale()
         rect = place(imgui.get_content_region_avail().x, height)
         pressed = imgui.invisible_button(f"##{key} {name}", (rect[2] - rect[0], height))
-        rows.editor.places[f"name {key} {name}"] = item_rect()
+        rows.context.places[f"name {key} {name}"] = item_rect()
         lines = imgui.get_window_draw_list()
         if imgui.is_item_hovered():
             fill = mix(palette.field, palette.hover, 0.45)
@@ -137,14 +137,14 @@ class MatteRows:
 
     def _buttons(self, rows: Rows, port: Port) -> None:
         """Everything, or nothing."""
-        session = rows.editor.session
+        session = rows.context.session
         rows.indent()
         width = (rows.field_width - rows.gap) / 2
-        with font(rows.editor, "text", SMALL):
+        with font(rows.context, "text", SMALL):
             for label, pick in (("All", "*"), ("None", "")):
                 if imgui.button(f"{label}##{port} {label}", (width, 0.0)):
                     rows.act(lambda pick=pick: session.set(port, pick))
-                rows.editor.places[f"button {label} {port}"] = item_rect()
+                rows.context.places[f"button {label} {port}"] = item_rect()
                 if not pick:
                     break
                 imgui.same_line(0.0, rows.gap)

@@ -36,7 +36,7 @@ class NodeView:
 
     def draw(self, rows: Rows, id: str) -> None:
         """One node: header, values, inputs."""
-        session = rows.editor.session
+        session = rows.context.session
         item = session.graph.nodes[id]
         face = signature(item)
         rows.fit(("name", *face.inputs, *(value.label or name for name, value in face.values.items())))
@@ -67,7 +67,7 @@ class NodeView:
 
     def several(self, rows: Rows, ids: tuple[str, ...]) -> None:
         """The values that several nodes share; the first one is the active one."""
-        session = rows.editor.session
+        session = rows.context.session
         items = [session.graph.nodes[id] for id in ids]
         kinds = {title_of(item) for item in items}
         kind = f"{len(ids)} × {kinds.pop()}" if len(kinds) == 1 else f"{len(ids)} Nodes"  # noqa: RUF001
@@ -85,8 +85,8 @@ class NodeView:
     # --- parts -------------------------------------------------------------------------------------------------------
 
     def _buttons(self, rows: Rows, id: str, item: Item) -> None:
-        editor = rows.editor
-        session = editor.session
+        context = rows.context
+        session = context.session
         if rows.icon(icons.ICON_FA_EYE, f"view {id}", "Show in the viewer"):
             rows.act(lambda: session.view_node(id))
         imgui.same_line()
@@ -100,7 +100,7 @@ class NodeView:
         self._mute(rows, ids)
 
     def _mute(self, rows: Rows, ids: tuple[str, ...]) -> None:
-        session = rows.editor.session
+        session = rows.context.session
         muted = session.graph.muted.issuperset(ids)
         doc = "Muted: it passes its first input through. Click to let it work again" if muted else "Mute"
         glyph = icons.ICON_FA_EYE_SLASH if muted else icons.ICON_FA_POWER_OFF
@@ -108,17 +108,17 @@ class NodeView:
             rows.act(session.mute)
 
     def _code(self, rows: Rows, id: str, code: Code) -> None:
-        editor = rows.editor
+        context = rows.context
         if code.file:
             rows.name(f"{id} file", "file", doc="The file that the code of this node is in")
-            draft = " *" if paths.full(code.file, editor.session.graph.folder) in editor.session.drafts else ""
+            draft = " *" if paths.full(code.file, context.session.graph.folder) in context.session.drafts else ""
             rows.chip(PurePath(code.file).name + draft, f"{id} file", rows.field(), rows.palette.good, code.file)
         label = f"{icons.ICON_FA_CODE}  Edit Code"
         if rows.wide_button(label, f"code {id}", f"Show the {LANGUAGES[code.language]} of this node"):
-            rows.act(lambda: editor.actions.run("code.edit", editor))
+            rows.act(lambda: context.actions.run("code.edit"))
 
     def _group(self, rows: Rows, id: str, item: Group) -> None:
-        editor, half = rows.editor, (rows.width - rows.gap) / 2
+        context, half = rows.context, (rows.width - rows.gap) / 2
         if item.path:
             rows.name(f"{id} path", "file", doc="The graph file that this group comes from")
             rows.chip(PurePath(item.path).name, f"{id} path", rows.field(), rows.palette.good, item.path)
@@ -126,23 +126,23 @@ class NodeView:
         beside = imgui.calc_text_size(local).x + 2 * imgui.get_style().frame_padding.x <= half
         width = half if item.path and beside else rows.width
         if imgui.button(f"{icons.ICON_FA_RIGHT_TO_BRACKET}  Enter##{id}", (width, 0.0)):
-            rows.act(lambda: editor.session.enter(id))
+            rows.act(lambda: context.session.enter(id))
         tip("Show what is in the group")
-        editor.places[f"button enter {id}"] = item_rect()
+        context.places[f"button enter {id}"] = item_rect()
         if item.path:
             if beside:
                 imgui.same_line(0.0, rows.gap)
             if imgui.button(f"{local}##{id}", (width, 0.0)):
-                rows.act(lambda: editor.session.make_local(id))
+                rows.act(lambda: context.session.make_local(id))
             tip("Make it part of this document, so that it can be changed here")
-            editor.places[f"button local {id}"] = item_rect()
+            context.places[f"button local {id}"] = item_rect()
 
 
 def _input(rows: Rows, port: Port, socket: Socket) -> None:
     """A socket: what is linked to it, or what it does without a link."""
     doc = "\n".join(part for part in (socket.doc, f"{socket.kind}, {socket.channels} channels") if part)
     rows.name(str(port), port.socket, doc=doc, color=rows.palette.kinds[socket.kind])
-    source = rows.editor.session.linked(port)
+    source = rows.context.session.linked(port)
     width = rows.field()
     if source is not None:
         link_chip(rows, port, source, width)

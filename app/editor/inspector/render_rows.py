@@ -39,8 +39,8 @@ class RenderRows:
 
     def draw(self, rows: Rows, id: str, item: Node) -> None:
         """The values, then what there is to know."""
-        editor, path = rows.editor, render_path(item)
-        seen = overview_of(editor, id)
+        context, path = rows.context, render_path(item)
+        seen = overview_of(context, id)
         others = [value for value in item.values.values() if not value.role]
         rows.fit([*(value.name for value in others), *(_label(value) for value in item.values.values() if value.role)])
         for value in others:
@@ -111,7 +111,7 @@ class RenderRows:
             self._other(rows, id, [value for value in roles if value.type == "text"], item)
 
     def _other(self, rows: Rows, id: str, roles: Sequence[Value], item: Pass) -> None:
-        key, session = f"{id} {item.layer.name}", rows.editor.session
+        key, session = f"{id} {item.layer.name}", rows.context.session
         button = f"{_USE_AS}  {icons.ICON_FA_CHEVRON_DOWN}"
         room = imgui.calc_text_size(button).x + 2 * imgui.get_style().frame_padding.x
         rect = place(rows.width - room - rows.gap)
@@ -125,16 +125,16 @@ class RenderRows:
             for value in (*likely, *(value for value in roles if value not in likely)):
                 if imgui.menu_item(f"{_label(value)}###{value.name}", "", value in likely)[0]:
                     rows.act(lambda value=value: session.set(Port(id, value.name), item.layer.name))
-                rows.editor.places[f"menu {_label(value)}"] = item_rect()
+                rows.context.places[f"menu {_label(value)}"] = item_rect()
 
-        dropdown(rows.editor, button, f"button use {key}", "Choose what this layer is used for", offer)
+        dropdown(rows.context, button, f"button use {key}", "Choose what this layer is used for", offer)
         maybe = item.role is None and bool(item.candidates)
         words = (
             f"may be {either([role.words for role in item.candidates])}"
             if maybe
             else (item.role.words if item.role else item.reason)
         )
-        with font(rows.editor, "text", SMALL):
+        with font(rows.context, "text", SMALL):
             wrapped(rows.palette.warning if maybe else rows.palette.dim, words)
 
     def _offer_mattes(self, rows: Rows, id: str, seen: Overview) -> None:
@@ -145,7 +145,7 @@ class RenderRows:
             for matte in seen.mattes
         ]
         rows.note(", ".join(words))
-        session = rows.editor.session
+        session = rows.context.session
         if rows.wide_button(f"{icons.ICON_FA_OBJECT_GROUP}  Pick Objects", f"matte {id}", "Add a cryptomatte node"):
             rows.act(lambda: session.add_matte(id, seen.mattes[0].kind))
 
@@ -167,7 +167,7 @@ def _camera(rows: Rows, id: str, seen: Overview) -> None:
     for name in ("found", "none", "residual", "field of view"):
         if name in facts:
             _fact(rows, name, facts[name], rows.palette.warning if name == "none" else None)
-    rows.editor.places[f"camera {id}"] = item_rect()
+    rows.context.places[f"camera {id}"] = item_rect()
 
 
 def _file(rows: Rows, id: str, seen: Overview) -> None:
@@ -191,12 +191,12 @@ def _file(rows: Rows, id: str, seen: Overview) -> None:
             rows, [(name, words if len(words) <= _LONGEST else f"{words[:_LONGEST]}…") for name, words in seen.metadata]
         )
     if seen.report and rows.wide_button(f"{icons.ICON_FA_COPY}  Copy Report", f"report {id}", "All of it, as text"):
-        rows.editor.clipboard.put(seen.report)
+        rows.context.clipboard.put(seen.report)
 
 
 def _facts(rows: Rows, facts: Sequence[tuple[str, str]]) -> None:
     """Small rows whose names have the room that they ask for, as far as there is some."""
-    with font(rows.editor, "text", SMALL):
+    with font(rows.context, "text", SMALL):
         longest = max(imgui.calc_text_size(name).x for name, _ in facts)
     width = min(max(longest, rows.name_width), rows.width * 0.42)
     for name, words in facts:
@@ -205,7 +205,7 @@ def _facts(rows: Rows, facts: Sequence[tuple[str, str]]) -> None:
 
 def _fact(rows: Rows, name: str, words: str, color: RGB | None = None, width: float = 0.0) -> None:
     """A small row of two words: the name at the left, without its middle where it is too long."""
-    with font(rows.editor, "text", SMALL):
+    with font(rows.context, "text", SMALL):
         rect = place(width or rows.name_width, imgui.get_text_line_height())
         imgui.dummy((rect[2] - rect[0], rect[3] - rect[1]))
         tip(name)
@@ -219,7 +219,7 @@ def _opened(rows: Rows, label: str, key: str) -> bool:
     imgui.push_style_color(imgui.Col_.text, imgui.get_color_u32((*rows.palette.dim, 1.0)))
     opened = imgui.tree_node_ex(label, int(imgui.TreeNodeFlags_.no_tree_push_on_open))
     imgui.pop_style_color()
-    rows.editor.places[key] = item_rect()
+    rows.context.places[key] = item_rect()
     return opened
 
 

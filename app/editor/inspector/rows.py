@@ -15,14 +15,14 @@ from ..toolkit.words import SMALL, font, tip, wrapped, write
 
 if TYPE_CHECKING:
     from ..fields.fields import Fields
-    from ..window.editor import Editor
+    from .context import InspectorContext
 
 
 class Rows:
     """Where names and fields go in this frame."""
 
-    def __init__(self, editor: Editor, fields: Fields) -> None:
-        self.editor, self.fields, self.palette = editor, fields, editor.palette
+    def __init__(self, context: InspectorContext, fields: Fields) -> None:
+        self.context, self.fields, self.palette = context, fields, context.palette
         self.gap = imgui.get_style().item_inner_spacing.x
         width = imgui.get_content_region_avail().x
         self.width = width
@@ -36,11 +36,11 @@ class Rows:
     def finish(self) -> None:
         """Do what was asked for."""
         for act in self._acts:
-            self.editor.attempt(act)
+            self.context.log.attempt(act)
 
     def inset(self) -> Rows:
         """Rows for what is left of the width after an indent."""
-        inner = Rows(self.editor, self.fields)
+        inner = Rows(self.context, self.fields)
         inner._acts = self._acts
         return inner
 
@@ -68,7 +68,7 @@ class Rows:
         """
         rect = place(self.name_width - spare)
         imgui.invisible_button(f"##name {key}", (rect[2] - rect[0], rect[3] - rect[1]))
-        self.editor.places[f"name {key}"] = rect
+        self.context.places[f"name {key}"] = rect
         hovered, palette, scale = imgui.is_item_hovered(), self.palette, ui_scale()
         if changed:
             center = rect[0] + 3.0 * scale, (rect[1] + rect[3]) * 0.5
@@ -92,12 +92,12 @@ class Rows:
 
     def record(self, key: str) -> None:
         """Note where the field of a row is: the last item."""
-        self.editor.places[f"field {key}"] = item_rect()
+        self.context.places[f"field {key}"] = item_rect()
 
     def heading(self, text: str) -> None:
         """The title of a section."""
         imgui.spacing()
-        with font(self.editor, "bold", SMALL):
+        with font(self.context, "bold", SMALL):
             rect = place(self.width, imgui.get_text_line_height() * 1.3)
             imgui.dummy((self.width, rect[3] - rect[1]))
             used = write(rect, text, mix(self.palette.dim, self.palette.text, 0.35))
@@ -113,12 +113,12 @@ class Rows:
     def field_note(self, text: str, color: RGB | None = None) -> None:
         """A sentence below a field."""
         self.indent()
-        with font(self.editor, "text", SMALL):
+        with font(self.context, "text", SMALL):
             wrapped(color or self.palette.dim, text)
 
     def icon(self, glyph: str, key: str, doc: str, *, lit: bool = False, enabled: bool = True) -> bool:
         """A quiet square button."""
-        return quiet(self.editor, glyph, f"button {key}", doc, lit=lit, enabled=enabled)
+        return quiet(self.context, glyph, f"button {key}", doc, lit=lit, enabled=enabled)
 
     def chip(self, text: str, key: str, width: float, color: RGB, doc: str) -> bool:
         """A link or the like, as a button cut to a width."""
@@ -128,13 +128,13 @@ class Rows:
         fill = mix(self.palette.panel, color, 0.35 if hovered else 0.2)
         lines.add_rect_filled(rect[:2], rect[2:], u32(fill), imgui.get_style().frame_rounding)
         write((rect[0] + pad, rect[1], rect[2] - pad, rect[3]), text, self.palette.text)
-        self.editor.places[f"chip {key}"] = rect
+        self.context.places[f"chip {key}"] = rect
         tip(doc)
         return pressed
 
     def wide_button(self, label: str, key: str, doc: str = "") -> bool:
         """A button over the whole width."""
         pressed = imgui.button(f"{label}##{key}", (self.width, 0.0))
-        self.editor.places[f"button {key}"] = item_rect()
+        self.context.places[f"button {key}"] = item_rect()
         tip(doc)
         return pressed

@@ -26,7 +26,7 @@ from .keying import WIDTH, Keying, spoken, value_now
 from .light_rows import light_rows
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import InspectorContext
     from .rows import Rows
 
 _MENU = "value menu"
@@ -46,8 +46,8 @@ class ValueRows:
 
     def draw(self, rows: Rows, ports: Ports, declaration: Value, label: str = "", color: RGB | None = None) -> None:
         """One row; `ports` are the same value of several nodes, the active one first."""
-        editor, port = rows.editor, ports[0]
-        session, key = editor.session, str(port)
+        context, port = rows.context, ports[0]
+        session, key = context.session, str(port)
         graph = session.graph
         source = session.linked(port)
         moves = source is None and session.can_animate(port)
@@ -99,7 +99,7 @@ class ValueRows:
             if declaration.type == "lights" and isinstance(value, tuple):
                 light_rows(rows, key, value, lambda edit: apply(session, ports, declaration, edit))
         if self.fields.eyedropper == key:
-            editor.viewer.picking = key
+            context.viewer.picking = key
         self._targets[key] = ports, declaration
         if menu:
             imgui.open_popup(f"{_MENU} {key}")
@@ -107,13 +107,13 @@ class ValueRows:
             self._menu(rows, ports, declaration, value, source, control)
             imgui.end_popup()
 
-    def left(self, editor: Editor, left: tuple[str, Edit]) -> None:
+    def left(self, context: InspectorContext, left: tuple[str, Edit]) -> None:
         """What was typed in a field before something else was selected goes where it belongs."""
         id, edit = left
-        graph = editor.session.graph
+        graph = context.session.graph
         ports, declaration = self._targets.get(id, ((), None))
         if declaration and all(port.node in graph.nodes for port in ports):
-            editor.attempt(lambda: apply(editor.session, ports, declaration, edit))
+            context.log.attempt(lambda: apply(context.session, ports, declaration, edit))
 
     def begin(self) -> None:
         """Call once a frame, before the rows."""
@@ -124,7 +124,7 @@ class ValueRows:
 
     def _take(self, rows: Rows, ports: Ports, declaration: Value, edit: Edit) -> None:
         """Put an edit where it belongs."""
-        session = rows.editor.session
+        session = rows.context.session
         if edit.expression:
             self._keying.typed(session, ports[0], edit.expression)
         elif edit.merge and imgui.is_key_pressed(imgui.Key.escape) and session.animation(ports[0]) is not None:
@@ -136,7 +136,7 @@ class ValueRows:
         self, rows: Rows, ports: Ports, declaration: Value, value: Plain, width: float, mixed: bool
     ) -> Edit | None:
         port = ports[0]
-        graph = rows.editor.session.graph
+        graph = rows.context.session.graph
         if declaration.type == "path" and isinstance(value, str):
             return self.files.path(
                 rows,
@@ -144,7 +144,7 @@ class ValueRows:
                 value,
                 declaration,
                 width,
-                lambda path: apply(rows.editor.session, ports, declaration, Edit(path)),
+                lambda path: apply(rows.context.session, ports, declaration, Edit(path)),
             )
         if declaration.role and isinstance(value, str):
             return self._of_layer(rows, port, declaration, value, width, mixed)
@@ -157,7 +157,7 @@ class ValueRows:
 
     def _about_space(self, rows: Rows, port: Port, value: str) -> None:
         """The color space of what a reader reads."""
-        item = rows.editor.session.graph.nodes.get(port.node)
+        item = rows.context.session.graph.nodes.get(port.node)
         file, layer = (getattr(item, name, None) for name in ("path", "layer"))
         if isinstance(file, str):
             self.files.space(rows, file, layer if isinstance(layer, str) else "", value)
@@ -166,13 +166,13 @@ class ValueRows:
         self, rows: Rows, port: Port, declaration: Value, value: str, width: float, mixed: bool
     ) -> Edit | None:
         """The field of what is said about a layer of a render: which it is, or what it holds."""
-        use, key = use_of(rows.editor, port, declaration), str(port)
+        use, key = use_of(rows.context, port, declaration), str(port)
         if declaration.type == "choice":
             words = convention_words(declaration, use)
             now = words[declaration.choices.index(value)] if value in declaration.choices else value
             index = choose(self.fields, key, now, words, width, mixed=mixed)
             return None if index is None else Edit(declaration.choices[index])
-        item = rows.editor.session.graph.nodes.get(port.node)
+        item = rows.context.session.graph.nodes.get(port.node)
         file = str(getattr(item, declaration.file)) if isinstance(item, Node) else ""
         return self.files.layer(rows, key, file, value, width, first_words(use), bool(use and use.fault))
 
@@ -190,7 +190,7 @@ class ValueRows:
                 "##control name", self._renaming, int(imgui.InputTextFlags_.enter_returns_true)
             )
             if entered:
-                session, new = rows.editor.session, self._renaming
+                session, new = rows.context.session, self._renaming
                 rows.act(lambda: session.rename_control(control, new))
                 imgui.close_current_popup()
             imgui.end_popup()
@@ -198,21 +198,21 @@ class ValueRows:
     def _menu(
         self, rows: Rows, ports: Ports, declaration: Value, value: Plain, source: Port | None, control: str | None
     ) -> None:
-        editor, port = rows.editor, ports[0]
-        session = editor.session
+        context, port = rows.context, ports[0]
+        session = context.session
 
         def entry(icon: str, label: str, enabled: bool, act: Callable[[], object]) -> None:
             if imgui.menu_item(f"{icon}  {label}", "", False, enabled)[0]:
                 rows.act(act)
-            editor.places[f"menu {label}"] = item_rect()
+            context.places[f"menu {label}"] = item_rect()
 
         entry(icons.ICON_FA_ROTATE_LEFT, "Reset", True, lambda: reset(session, ports))
-        entry(icons.ICON_FA_COPY, "Copy Value", True, lambda: editor.clipboard.put(as_text(value)))
+        entry(icons.ICON_FA_COPY, "Copy Value", True, lambda: context.clipboard.put(as_text(value)))
         entry(
             icons.ICON_FA_PASTE,
             "Paste Value",
             source is None,
-            lambda: apply(session, ports, declaration, Edit(from_text(editor.clipboard.get()))),
+            lambda: apply(session, ports, declaration, Edit(from_text(context.clipboard.get()))),
         )
         imgui.separator()
         if control is None:
@@ -223,13 +223,13 @@ class ValueRows:
             self._keying.menu(rows, ports, as_text(value))
         if source is not None:
             imgui.separator()
-            entry(icons.ICON_FA_ARROW_LEFT, "Go to Source", True, lambda: go_to(editor, source))
+            entry(icons.ICON_FA_ARROW_LEFT, "Go to Source", True, lambda: go_to(context, source))
             entry(icons.ICON_FA_LINK_SLASH, "Unlink", True, lambda: session.disconnect(port))
 
 
 def _crosshair(rows: Rows, key: str) -> None:
     """A switch: the next click on the picture says where."""
-    viewer = rows.editor.viewer
+    viewer = rows.context.viewer
     imgui.same_line(0.0, 0.0)
     lit = viewer.picking == key
     if rows.icon(icons.ICON_FA_CROSSHAIRS, f"place {key}", "Click on the picture to put it there", lit=lit):
@@ -238,25 +238,25 @@ def _crosshair(rows: Rows, key: str) -> None:
 
 def link_chip(rows: Rows, target: Port, source: Port, width: float) -> None:
     """Where a value or input comes from; a click goes there, the cross unlinks."""
-    editor, side = rows.editor, imgui.get_frame_height()
-    start = editor.session.graph.source(source)
+    context, side = rows.context, imgui.get_frame_height()
+    start = context.session.graph.source(source)
     color = rows.palette.kinds[start.kind] if start else rows.palette.dim
     text = f"{icons.ICON_FA_ARROW_LEFT}  {source.socket if source.node == INPUTS else source}"
     if rows.chip(text, str(target), max(width - side, 1.0), color, f"Linked from {source}: click to go there"):
-        rows.act(lambda: go_to(editor, source))
+        rows.act(lambda: go_to(context, source))
     first = item_rect()
     imgui.same_line(0.0, 0.0)
     if rows.icon(icons.ICON_FA_XMARK, f"unlink {target}", "Unlink"):
-        rows.act(lambda: editor.session.disconnect(target))
+        rows.act(lambda: context.session.disconnect(target))
     last = item_rect()
-    editor.places[f"field {target}"] = (first[0], first[1], last[2], last[3])
+    context.places[f"field {target}"] = (first[0], first[1], last[2], last[3])
 
 
-def go_to(editor: Editor, port: Port) -> None:
+def go_to(context: InspectorContext, port: Port) -> None:
     """Select the element of a port and bring it into view."""
     key = str(port) if port.node in ("inputs", "outputs") else port.node
-    editor.session.select(key)
-    editor.canvas.fit((key,))
+    context.session.select(key)
+    context.canvas.fit((key,))
 
 
 def _file_of(graph: Graph, port: Port) -> str | None:

@@ -15,7 +15,7 @@ from ..toolkit.places import record
 from ..toolkit.words import ICONS, dim, font, level_color, nothing_here, wrapped
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import LogContext
 
 _LEVELS: tuple[tuple[Level, str], ...] = (("info", "All"), ("warning", "Warnings"), ("error", "Errors"))
 _ORDER: tuple[Level, ...] = ("info", "warning", "error")
@@ -26,65 +26,68 @@ class LogPanel:
 
     title = "Log"
 
-    def __init__(self) -> None:
+    def __init__(self, context: LogContext) -> None:
+        self._context = context
         self._least: Level = "info"
 
-    def draw(self, editor: Editor) -> None:
+    def draw(self) -> None:
         """Draw into the current window."""
-        entries = [entry for entry in editor.log.entries if _ORDER.index(entry.level) >= _ORDER.index(self._least)]
-        self._toolbar(editor, entries)
+        entries = [
+            entry for entry in self._context.log.entries if _ORDER.index(entry.level) >= _ORDER.index(self._least)
+        ]
+        self._toolbar(entries)
         if not entries:
             what = "was said yet" if self._least == "info" else "of this kind happened"
             sentence = "Messages stay here until they are cleared."
-            nothing_here(editor, icons.ICON_FA_FILE_LINES, f"Nothing {what}", sentence)
+            nothing_here(self._context, icons.ICON_FA_FILE_LINES, f"Nothing {what}", sentence)
             return
         if imgui.begin_child("entries"):
             at_end = imgui.get_scroll_y() >= imgui.get_scroll_max_y() - 1
             for index, entry in enumerate(entries):
                 imgui.push_id(index)
-                _row(editor, index, entry)
+                _row(self._context, index, entry)
                 imgui.pop_id()
             if at_end:
                 imgui.set_scroll_here_y(1.0)
         imgui.end_child()
 
-    def _toolbar(self, editor: Editor, entries: list[Entry]) -> None:
+    def _toolbar(self, entries: list[Entry]) -> None:
         for level, label in _LEVELS:
-            palette = editor.palette
+            palette = self._context.palette
             chosen = level == self._least
             imgui.push_style_color(imgui.Col_.button, vec4(palette.raised, 1.0 if chosen else 0.0))
             imgui.push_style_color(imgui.Col_.text, vec4(palette.text if chosen else palette.dim))
             if imgui.button(label):
                 self._least = level
             imgui.pop_style_color(2)
-            record(editor, f"log {level}")
+            record(self._context, f"log {level}")
             imgui.same_line(0, 2 * ui_scale())
         right_aligned(icons.ICON_FA_COPY, icons.ICON_FA_TRASH)
-        if quiet(editor, icons.ICON_FA_COPY, "copy log", "Copy what is listed", enabled=bool(entries)):
-            editor.clipboard.put("\n".join(_text(entry) for entry in entries))
+        if quiet(self._context, icons.ICON_FA_COPY, "copy log", "Copy what is listed", enabled=bool(entries)):
+            self._context.clipboard.put("\n".join(_text(entry) for entry in entries))
         imgui.same_line()
-        some = bool(editor.log.entries)
-        if quiet(editor, icons.ICON_FA_TRASH, "clear log", "Forget all messages", enabled=some):
-            editor.log.entries.clear()
+        some = bool(self._context.log.entries)
+        if quiet(self._context, icons.ICON_FA_TRASH, "clear log", "Forget all messages", enabled=some):
+            self._context.log.entries.clear()
 
 
-def _row(editor: Editor, index: int, entry: Entry) -> None:
+def _row(context: LogContext, index: int, entry: Entry) -> None:
     scale = ui_scale()
-    with font(editor, "mono", 14.0):
-        dim(editor, strftime("%H:%M:%S", localtime(entry.at)))
+    with font(context, "mono", 14.0):
+        dim(context, strftime("%H:%M:%S", localtime(entry.at)))
     imgui.same_line(0, 8 * scale)
-    imgui.text_colored(vec4(level_color(editor.palette, entry.level)), ICONS[entry.level])
+    imgui.text_colored(vec4(level_color(context.palette, entry.level)), ICONS[entry.level])
     imgui.same_line(0, 6 * scale)
     imgui.begin_group()
-    wrapped(editor.palette.text, entry.sentence)
-    record(editor, f"log entry {index}")
+    wrapped(context.palette.text, entry.sentence)
+    record(context, f"log entry {index}")
     if imgui.begin_popup_context_item("menu"):
         if imgui.menu_item(f"{icons.ICON_FA_COPY} Copy", "", False)[0]:
-            editor.clipboard.put(_text(entry))
+            context.clipboard.put(_text(entry))
         imgui.end_popup()
     if entry.detail and imgui.tree_node("Details for a report"):
-        with font(editor, "mono", 13.0):
-            wrapped(editor.palette.dim, entry.detail.rstrip())
+        with font(context, "mono", 13.0):
+            wrapped(context.palette.dim, entry.detail.rstrip())
         imgui.tree_pop()
     imgui.end_group()
     imgui.dummy(ImVec2(0, 0))

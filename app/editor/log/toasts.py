@@ -13,7 +13,7 @@ from ..toolkit.dialogs import FIXED
 from ..toolkit.words import ICONS, level_color, wrapped
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import LogContext
 
 _WIDTH, _GAP, _BELOW, _MOST, _FADE = 360.0, 8.0, 34.0, 5, 0.6
 _TOAST = (
@@ -28,19 +28,20 @@ _TOAST = (
 class Toasts:
     """The newest sentences, stacked upwards from the bottom right; each fades after a while, a click ends it."""
 
-    def __init__(self) -> None:
+    def __init__(self, context: LogContext) -> None:
+        self._context = context
         self._dismissed = frozenset[float]()
 
-    def draw(self, editor: Editor) -> None:
+    def draw(self) -> None:
         """Draw over everything."""
-        entries = [entry for entry in editor.log.toasts() if entry.at not in self._dismissed][-_MOST:]
-        self._dismissed &= {entry.at for entry in editor.log.toasts()}
+        entries = [entry for entry in self._context.log.toasts() if entry.at not in self._dismissed][-_MOST:]
+        self._dismissed &= {entry.at for entry in self._context.log.toasts()}
         view, scale = imgui.get_main_viewport(), ui_scale()
         right, bottom = view.pos.x + view.size.x - 12 * scale, view.pos.y + view.size.y - _BELOW * scale
         for index, entry in enumerate(reversed(entries)):
-            bottom -= self._draw_one(editor, entry, index, ImVec2(right, bottom)) + _GAP * scale
+            bottom -= self._draw_one(entry, index, ImVec2(right, bottom)) + _GAP * scale
 
-    def _draw_one(self, editor: Editor, entry: Entry, index: int, corner: ImVec2) -> float:
+    def _draw_one(self, entry: Entry, index: int, corner: ImVec2) -> float:
         """Draw with the lower right corner there; the height."""
         scale = ui_scale()
         left = TOAST_SECONDS - (time() - entry.at)
@@ -49,20 +50,20 @@ class Toasts:
         imgui.set_next_window_size_constraints(ImVec2(_WIDTH * scale, 0), ImVec2(_WIDTH * scale, 400 * scale))
         imgui.push_style_var(imgui.StyleVar_.alpha, opacity)
         imgui.push_style_var(imgui.StyleVar_.window_rounding, 6.0 * scale)
-        imgui.push_style_color(imgui.Col_.window_bg, vec4(editor.palette.raised))
+        imgui.push_style_color(imgui.Col_.window_bg, vec4(self._context.palette.raised))
         imgui.begin(f"##toast {entry.at}", None, _TOAST)
         imgui.internal.bring_window_to_display_front(imgui.internal.get_current_window())
-        imgui.text_colored(vec4(level_color(editor.palette, entry.level)), ICONS[entry.level])
+        imgui.text_colored(vec4(level_color(self._context.palette, entry.level)), ICONS[entry.level])
         imgui.same_line()
         imgui.push_text_wrap_pos((_WIDTH - 12) * scale)
-        wrapped(editor.palette.text, entry.sentence)
+        wrapped(self._context.palette.text, entry.sentence)
         imgui.pop_text_wrap_pos()
         if imgui.is_window_hovered():
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand.value)
             if imgui.is_mouse_clicked(imgui.MouseButton_.left):
                 self._dismissed |= {entry.at}
         low, extent = imgui.get_window_pos(), imgui.get_window_size()
-        editor.places[f"toast {index}"] = (low.x, low.y, low.x + extent.x, low.y + extent.y)
+        self._context.places[f"toast {index}"] = (low.x, low.y, low.x + extent.x, low.y + extent.y)
         imgui.end()
         imgui.pop_style_color()
         imgui.pop_style_var(2)

@@ -5,24 +5,24 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import PreferencesContext
 
 
-def assigned(editor: Editor, id: str, keys: str) -> None:
+def assigned(context: PreferencesContext, id: str, keys: str) -> None:
     """Give an action a shortcut, "" for none."""
-    own = {**editor.store.now.shortcuts, id: keys}
-    if editor.actions[id].shortcut == keys:
+    own = {**context.store.now.shortcuts, id: keys}
+    if context.actions[id].shortcut == keys:
         del own[id]
-    editor.store.change(shortcuts=own)
+    context.store.change(shortcuts=own)
 
 
-def taken_over(editor: Editor, id: str, keys: str) -> None:
+def taken_over(context: PreferencesContext, id: str, keys: str) -> None:
     """Give an action a shortcut that others have: they have none then."""
-    for other in editor.actions.conflicts(id, keys):
-        assigned(editor, other.id, "")
-    assigned(editor, id, keys)
+    for other in context.actions.conflicts(id, keys):
+        assigned(context, other.id, "")
+    assigned(context, id, keys)
 
 
-def reset(editor: Editor, id: str) -> None:
+def reset(context: PreferencesContext, id: str) -> None:
     """Give an action the shortcut that it came with; who has it meanwhile loses it."""
-    taken_over(editor, id, editor.actions[id].shortcut)
+    taken_over(context, id, context.actions[id].shortcut)

@@ -18,13 +18,14 @@ from ..toolkit.words import dim, tip, wrapped
 from .shortcut_changes import assigned, reset, taken_over
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import PreferencesContext
 
 
 class ShortcutEditor:
     """A list of actions: click a shortcut, then press the keys that shall set it off."""
 
-    def __init__(self) -> None:
+    def __init__(self, context: PreferencesContext) -> None:
+        self._context = context
         self._query = ""
         self._waiting = ""
         self._offered: tuple[str, str] | None = None
@@ -34,35 +35,35 @@ class ShortcutEditor:
         """True while the next keys are taken as a shortcut."""
         return bool(self._waiting)
 
-    def draw(self, editor: Editor) -> None:
+    def draw(self) -> None:
         """Draw into the current window."""
         label = f"{icons.ICON_FA_ROTATE_LEFT} Reset all"
         imgui.set_next_item_width(220 * ui_scale())
         hint = f"{icons.ICON_FA_MAGNIFYING_GLASS}  Search actions"
         self._query = imgui.input_text_with_hint("##actions", hint, self._query)[1]
-        record(editor, "shortcut search")
+        record(self._context, "shortcut search")
         right_aligned(label)
-        own, icon = bool(editor.store.now.shortcuts), icons.ICON_FA_ROTATE_LEFT
-        if quiet(editor, f"{icon}  Reset all", "reset shortcuts", "As it came", enabled=own):
-            editor.attempt(lambda: editor.store.change(shortcuts={}))
-        self._listen(editor)
-        self._ask(editor)
+        own, icon = bool(self._context.store.now.shortcuts), icons.ICON_FA_ROTATE_LEFT
+        if quiet(self._context, f"{icon}  Reset all", "reset shortcuts", "As it came", enabled=own):
+            self._context.log.attempt(lambda: self._context.store.change(shortcuts={}))
+        self._listen()
+        self._ask()
         if imgui.begin_child("list"):
-            for title, actions in groups(editor, every=True):
+            for title, actions in groups(self._context.actions, every=True):
                 labels = tuple(action.label for action in actions)
                 kept = sorted(one.index for one in match(self._query, labels))
                 if kept:
                     imgui.separator_text(title)
                 for index in kept:
-                    self._row(editor, actions[index])
+                    self._row(actions[index])
         imgui.end_child()
 
     def stop(self) -> None:
         """Listen no more."""
         self._waiting, self._offered = "", None
 
-    def _row(self, editor: Editor, action: Action) -> None:
-        scale, palette = ui_scale(), editor.palette
+    def _row(self, action: Action) -> None:
+        scale, palette = ui_scale(), self._context.palette
         left = imgui.get_cursor_pos_x()
         room = imgui.get_content_region_avail().x
         imgui.align_text_to_frame_padding()
@@ -72,20 +73,20 @@ class ShortcutEditor:
         width = 170 * scale
         imgui.same_line(left + room - width - 34 * scale)
         waiting = self._waiting == action.id
-        text = "Press keys..." if waiting else shown(editor.actions.shortcut(action.id)) or "none"
-        changed = action.id in editor.store.now.shortcuts
+        text = "Press keys..." if waiting else shown(self._context.actions.shortcut(action.id)) or "none"
+        changed = action.id in self._context.store.now.shortcuts
         imgui.push_style_color(imgui.Col_.button, vec4(palette.field))
         imgui.push_style_color(imgui.Col_.text, vec4(palette.accent if waiting or changed else palette.text))
         if imgui.button(f"{text}##{action.id}", ImVec2(width, 0)):
             self._waiting, self._offered = ("" if waiting else action.id), None
         imgui.pop_style_color(2)
-        record(editor, f"shortcut {action.id}")
+        record(self._context, f"shortcut {action.id}")
         if changed:
             imgui.same_line(0, 4 * scale)
-            if quiet(editor, icons.ICON_FA_ROTATE_LEFT, f"reset {action.id}", "As it came"):
-                editor.attempt(lambda: reset(editor, action.id))
+            if quiet(self._context, icons.ICON_FA_ROTATE_LEFT, f"reset {action.id}", "As it came"):
+                self._context.log.attempt(lambda: reset(self._context, action.id))
 
-    def _listen(self, editor: Editor) -> None:
+    def _listen(self) -> None:
         if not self._waiting:
             return
         if imgui.is_key_pressed(imgui.Key.escape, False):
@@ -95,29 +96,29 @@ class ShortcutEditor:
         if not keys:
             return
         id, self._waiting = self._waiting, ""
-        if keys in ("Delete", "Backspace") and editor.actions[id].shortcut != keys:
-            editor.attempt(lambda: assigned(editor, id, ""))
-        elif editor.actions.conflicts(id, keys):
+        if keys in ("Delete", "Backspace") and self._context.actions[id].shortcut != keys:
+            self._context.log.attempt(lambda: assigned(self._context, id, ""))
+        elif self._context.actions.conflicts(id, keys):
             self._offered = (id, keys)
         else:
-            editor.attempt(lambda: assigned(editor, id, keys))
+            self._context.log.attempt(lambda: assigned(self._context, id, keys))
 
-    def _ask(self, editor: Editor) -> None:
+    def _ask(self) -> None:
         """Say who has a shortcut already, and offer to take it over."""
         if self._waiting:
-            dim(editor, "Press the keys; Escape keeps what was, Delete leaves the action without a shortcut.")
+            dim(self._context, "Press the keys; Escape keeps what was, Delete leaves the action without a shortcut.")
             return
         if self._offered is None:
-            dim(editor, "Click a shortcut to change it.")
+            dim(self._context, "Click a shortcut to change it.")
             return
         id, keys = self._offered
-        others = " and ".join(f"'{other.label}'" for other in editor.actions.conflicts(id, keys))
-        wrapped(editor.palette.warning, f"{shown(keys)} is the shortcut of {others}.")
+        others = " and ".join(f"'{other.label}'" for other in self._context.actions.conflicts(id, keys))
+        wrapped(self._context.palette.warning, f"{shown(keys)} is the shortcut of {others}.")
         if imgui.button("Take it over"):
             self._offered = None
-            editor.attempt(lambda: taken_over(editor, id, keys))
-        record(editor, "take over")
+            self._context.log.attempt(lambda: taken_over(self._context, id, keys))
+        record(self._context, "take over")
         imgui.same_line()
         if imgui.button("Leave it"):
             self._offered = None
-        record(editor, "leave it")
+        record(self._context, "leave it")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ...authoring.log import Level
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import ProblemsContext
 
 
 @dataclass(frozen=True)
@@ -22,36 +22,36 @@ class Finding:
     detail: str = ""
 
 
-def findings(editor: Editor) -> tuple[Finding, ...]:
+def findings(context: ProblemsContext) -> tuple[Finding, ...]:
     """Problems of the graph, of its pictures, of the services and of panels; worst first, each once."""
-    found = dict.fromkeys(_found(editor))
+    found = dict.fromkeys(_found(context))
     return tuple(sorted(found, key=lambda finding: finding.level != "error"))
 
 
-def _found(editor: Editor) -> Iterator[Finding]:
+def _found(context: ProblemsContext) -> Iterator[Finding]:
     """What the preview says about a node that the graph itself has a problem with is the same thing in other words."""
-    inside = "/".join(editor.session.place)
-    for node, problems in editor.session.problems.items():
+    inside = "/".join(context.session.place)
+    for node, problems in context.session.problems.items():
         for problem in problems:
             yield Finding(problem.severity, "/".join(filter(None, (inside, node))), problem.sentence)
-    known = {"/".join(filter(None, (inside, node))) for node in editor.session.problems}
-    for where, sentence in editor.preview.faults.items():
+    known = {"/".join(filter(None, (inside, node))) for node in context.session.problems}
+    for where, sentence in context.preview.faults.items():
         if where not in known:
             yield Finding("error", where, sentence)
-    for sentence in _services(editor):
+    for sentence in _services(context):
         yield Finding("warning", "", sentence)
-    for name, detail in editor.faults.items():
+    for name, detail in context.faults.items():
         yield Finding("error", "", f"the panel {name} failed; the document is safe", detail)
 
 
-def _services(editor: Editor) -> Iterable[str]:
-    return filter(None, (editor.recovery.fault, editor.watcher.fault, *editor.store.faults))
+def _services(context: ProblemsContext) -> Iterable[str]:
+    return filter(None, (context.recovery.fault, context.watcher.fault, *context.store.faults))
 
 
-def show(editor: Editor, where: str) -> None:
+def show(context: ProblemsContext, where: str) -> None:
     """Go to a node by its path, select it and bring it into view."""
     *place, key = where.split("/")
-    if tuple(place) != editor.session.place:
-        editor.session.go(tuple(place))
-    editor.session.select((key,))
-    editor.canvas.fit((key,))
+    if tuple(place) != context.session.place:
+        context.session.go(tuple(place))
+    context.session.select((key,))
+    context.canvas.fit((key,))

@@ -14,7 +14,7 @@ from ..toolkit.words import ICONS, dim, font, level_color, nothing_here, tip, wr
 from .findings import Finding, findings, show
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import ProblemsContext
 
 _COPY = f"{icons.ICON_FA_COPY} Copy"
 
@@ -24,25 +24,30 @@ class Problems:
 
     title = "Problems"
 
-    def draw(self, editor: Editor) -> None:
+    def __init__(self, context: ProblemsContext) -> None:
+        self._context = context
+
+    def draw(self) -> None:
         """Draw into the current window."""
-        found = findings(editor)
+        found = findings(self._context)
         if not found:
-            nothing_here(editor, icons.ICON_FA_CIRCLE_CHECK, "Nothing is wrong", "What stops a picture appears here.")
+            nothing_here(
+                self._context, icons.ICON_FA_CIRCLE_CHECK, "Nothing is wrong", "What stops a picture appears here."
+            )
             return
         imgui.align_text_to_frame_padding()
-        dim(editor, "1 problem" if len(found) == 1 else f"{len(found)} problems")
+        dim(self._context, "1 problem" if len(found) == 1 else f"{len(found)} problems")
         right_aligned(_COPY)
-        if quiet(editor, f"{icons.ICON_FA_COPY}  Copy", "copy problems", "Copy all as text"):
-            editor.clipboard.put("\n".join(_text(finding) for finding in found))
+        if quiet(self._context, f"{icons.ICON_FA_COPY}  Copy", "copy problems", "Copy all as text"):
+            self._context.clipboard.put("\n".join(_text(finding) for finding in found))
         if imgui.begin_child("problems"):
             for index, finding in enumerate(found):
                 imgui.push_id(index)
-                self._row(editor, index, finding)
+                self._row(index, finding)
                 imgui.pop_id()
         imgui.end_child()
 
-    def _row(self, editor: Editor, index: int, finding: Finding) -> None:
+    def _row(self, index: int, finding: Finding) -> None:
         scale, style = ui_scale(), imgui.get_style()
         indent = 26 * scale
         room = imgui.get_content_region_avail().x - indent - 6 * scale
@@ -51,42 +56,42 @@ class Problems:
         height = lines + (imgui.get_text_line_height_with_spacing() if title else 0) + 2 * style.frame_padding.y
         start = imgui.get_cursor_pos()
         if imgui.selectable("##row", False, 0, ImVec2(0, height))[0] and finding.where:
-            editor.attempt(lambda: show(editor, finding.where))
-        record(editor, f"problem {index}")
+            self._context.log.attempt(lambda: show(self._context, finding.where))
+        record(self._context, f"problem {index}")
         if finding.where:
             tip("Click to show the node")
         if imgui.begin_popup_context_item("menu"):
             if imgui.menu_item(_COPY, "", False)[0]:
-                editor.clipboard.put(_text(finding))
+                self._context.clipboard.put(_text(finding))
             imgui.end_popup()
         after = imgui.get_cursor_pos()
         imgui.set_cursor_pos(ImVec2(start.x + 4 * scale, start.y + style.frame_padding.y))
-        imgui.text_colored(vec4(level_color(editor.palette, finding.level)), ICONS[finding.level])
+        imgui.text_colored(vec4(level_color(self._context.palette, finding.level)), ICONS[finding.level])
         imgui.set_cursor_pos(ImVec2(start.x + indent, start.y + style.frame_padding.y))
         imgui.begin_group()
         imgui.push_text_wrap_pos(start.x + indent + room)
         if title:
-            with font(editor, "bold"):
+            with font(self._context, "bold"):
                 imgui.text_unformatted(title)
-        wrapped(editor.palette.text, finding.sentence)
+        wrapped(self._context.palette.text, finding.sentence)
         imgui.pop_text_wrap_pos()
         imgui.end_group()
         imgui.set_cursor_pos(after)
         imgui.dummy(ImVec2(0, 0))
         if finding.detail:
-            _detail(editor, finding.detail, f"detail {index}")
+            _detail(self._context, finding.detail, f"detail {index}")
 
 
-def _detail(editor: Editor, detail: str, name: str) -> None:
+def _detail(context: ProblemsContext, detail: str, name: str) -> None:
     """A traceback, for whoever reports it."""
     opened = imgui.tree_node("Details for a report")
-    record(editor, name)
+    record(context, name)
     if not opened:
         return
-    if quiet(editor, f"{icons.ICON_FA_COPY}  Copy", f"copy {name}", "Copy the details"):
-        editor.clipboard.put(detail)
-    with font(editor, "mono", 13.0):
-        wrapped(editor.palette.dim, detail.rstrip())
+    if quiet(context, f"{icons.ICON_FA_COPY}  Copy", f"copy {name}", "Copy the details"):
+        context.clipboard.put(detail)
+    with font(context, "mono", 13.0):
+        wrapped(context.palette.dim, detail.rstrip())
     imgui.tree_pop()
 
 

@@ -19,7 +19,7 @@ from ...media.sequences import find_sequence
 from ...media.video.library import library
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import RendersContext
 
 Sizing = Literal["as it is", "scale", "size"]
 Extent = Literal["this frame", "all frames", "what is played", "some frames"]
@@ -54,6 +54,7 @@ class Aim:
 class Form:
     """What was chosen. `files` are the paths that were typed, by output; "" takes the suggestion."""
 
+    context: RendersContext
     chosen: dict[str, bool] = field(default_factory=dict[str, bool])
     files: dict[str, str] = field(default_factory=dict[str, str])
     format: str = ".exr"
@@ -72,33 +73,33 @@ class Form:
 
     # --- frames ------------------------------------------------------------------------------------------------------
 
-    def extents(self, editor: Editor) -> dict[Extent, tuple[int, ...]]:
+    def extents(self) -> dict[Extent, tuple[int, ...]]:
         """The frames that can be chosen. Typed ones are none while they make no sense."""
-        session = editor.session
+        session = self.context.session
         first, last = session.frames
         found: dict[Extent, tuple[int, ...]] = {"this frame": (session.frame,)}
         if first < last:
             found["all frames"] = tuple(range(first, last + 1))
-            low, high = editor.timeline.span(session)
+            low, high = self.context.timeline.span(session)
             if (low, high) != (first, last):
                 found["what is played"] = tuple(range(low, high + 1))
         found["some frames"] = _listed(self.listed)[0]
         return found
 
-    def extent_of(self, editor: Editor) -> Extent:
+    def extent_of(self) -> Extent:
         """Which of them are to be rendered."""
-        offered = self.extents(editor)
+        offered = self.extents()
         usual: Extent = "all frames" if "all frames" in offered else "this frame"
         return self.extent if self.extent in offered else usual
 
-    def frames(self, editor: Editor) -> tuple[int, ...]:
+    def frames(self) -> tuple[int, ...]:
         """The frames to render; none while those that are typed make no sense."""
-        return self.extents(editor)[self.extent_of(editor)]
+        return self.extents()[self.extent_of()]
 
-    def extend(self, editor: Editor, extent: Extent) -> None:
+    def extend(self, extent: Extent) -> None:
         """Render other frames. Names that were typed get a place for the number, where they need one."""
         if extent == "some frames" and not self.listed:
-            self.listed = format_frames(self.frames(editor))
+            self.listed = format_frames(self.frames())
         self.extent = extent
         if extent != "this frame":
             self.files = {name: _numbered(path) if path else "" for name, path in self.files.items()}
@@ -110,23 +111,23 @@ class Form:
 
     # --- files -------------------------------------------------------------------------------------------------------
 
-    def suggested(self, editor: Editor, output: str) -> Path:
+    def suggested(self, output: str) -> Path:
         """Where an output goes if nothing else is said."""
-        last = editor.store.folder("export")
-        session = editor.session
+        last = self.context.store.folder("export")
+        session = self.context.session
         folder = Path(last) if last else session.path.absolute().parent if session.path else Path.home()
         name = session.name if len(session.root.outputs) == 1 else f"{session.name}_{output}"
         plain = f"{name}{self.format}"
-        return folder / (plain if self.extent_of(editor) == "this frame" else _numbered(plain))
+        return folder / (plain if self.extent_of() == "this frame" else _numbered(plain))
 
-    def file(self, editor: Editor, output: str) -> Path:
+    def file(self, output: str) -> Path:
         """Where an output goes."""
         typed = self.files.get(output, "")
-        return Path(typed).expanduser() if typed else self.suggested(editor, output)
+        return Path(typed).expanduser() if typed else self.suggested(output)
 
-    def wanted(self, editor: Editor) -> tuple[str, ...]:
+    def wanted(self) -> tuple[str, ...]:
         """The outputs that are chosen; at first those that are pictures."""
-        kinds = {name: output.kind for name, output in editor.session.root.outputs.items()}
+        kinds = {name: output.kind for name, output in self.context.session.root.outputs.items()}
         return tuple(name for name, kind in kinds.items() if self.chosen.get(name, kind in (Kind.IMAGE, Kind.FIELD)))
 
     def reform(self, format: str) -> None:
@@ -135,43 +136,45 @@ class Form:
         named = {name: str(Path(path).with_suffix(format)) for name, path in self.files.items() if path}
         self.files = {name: unnumbered(path) if is_video(path) else path for name, path in named.items()}
 
-    def number(self, editor: Editor) -> None:
+    def number(self) -> None:
         """Give all files a place for the frame number."""
-        self.files = {name: _numbered(str(self.file(editor, name))) for name in self.wanted(editor)}
+        self.files = {name: _numbered(str(self.file(name))) for name in self.wanted()}
 
     # --- all together ------------------------------------------------------------------------------------------------
 
-    def aim(self, editor: Editor) -> Aim:
+    def aim(self) -> Aim:
         """What would be written now."""
-        frames = self.frames(editor)
-        paths = tuple(dict.fromkeys(str(self.file(editor, name)) for name in self.wanted(editor)))
+        frames = self.frames()
+        paths = tuple(dict.fromkeys(str(self.file(name)) for name in self.wanted()))
         key, now = (paths, frames, self.list_fault if not frames else ""), time.monotonic()
         if self._seen[0] != key or now - self._seen[1] > _FRESH:
             self._seen = (key, now, _aim(paths, frames, key[2]))
         return self._seen[2]
 
-    def options(self, editor: Editor) -> RenderJob:
+    def options(self) -> RenderJob:
         """The choices as the exporter wants them."""
-        frames = self.frames(editor)
+        frames = self.frames()
         made = RenderJob(
             frames=frames,
             precision=self.precision or None,
             view=self.view,
-            resume=self.resume and not any(is_video(str(self.file(editor, name))) for name in self.wanted(editor)),
+            resume=self.resume and not any(is_video(str(self.file(name))) for name in self.wanted()),
             processes=self.jobs if len(frames) > 1 else 1,
         )
         if self.sizing == "scale":
             return replace(made, scale=self.scale)
         return replace(made, size=self.size) if self.sizing == "size" else made
 
-    def start(self, editor: Editor) -> Export:
+    def start(self) -> Export:
         """Put it into the queue. Raises UsageError or GraphError."""
-        files = [(name, self.file(editor, name)) for name in self.wanted(editor)]
-        if not self.frames(editor):
+        files = [(name, self.file(name)) for name in self.wanted()]
+        if not self.frames():
             raise UsageError(self.list_fault)
-        made = editor.exports.start(editor.session.root, files, dict(editor.session.bindings), self.options(editor))
+        made = self.context.exports.start(
+            self.context.session.root, files, dict(self.context.session.bindings), self.options()
+        )
         if files:
-            editor.store.used("export", files[0][1])
+            self.context.store.used("export", files[0][1])
         self._seen = (None, 0.0, Aim())
         return made
 

@@ -12,7 +12,7 @@ from imgui_bundle import imgui
 
 from ...color.transforms import views
 from ...graph.frames import format_frames
-from ..shared.coloring import coloring
+from ..shared.coloring import settings_in_use
 from ..shared.dialogs import Browse
 from ..theme.style import ui_scale, vec4
 from ..toolkit.buttons import main_button, quiet, room_for
@@ -23,75 +23,75 @@ from .form import DEPTHS, VIEWED, Aim, Extent, Form, Sizing, formats
 from .wording import aim_text, exist_text
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import RendersContext
 
 _LABELS = 80.0
 _SIZINGS: tuple[Sizing, ...] = ("as it is", "scale", "size")
 _LONGEST = 24
 
 
-def draw_form(editor: Editor, form: Form) -> None:
+def draw_form(context: RendersContext, form: Form) -> None:
     """Everything that can be chosen, what would be written, and the button."""
-    _files(editor, form)
-    _frames(editor, form)
-    _options(editor, form)
-    aim = form.aim(editor)
+    _files(context, form)
+    _frames(context, form)
+    _options(context, form)
+    aim = form.aim()
     imgui.dummy((0, 2 * ui_scale()))
-    _consequences(editor, form, aim)
-    waits = bool(editor.exports.unfinished)
+    _consequences(context, form, aim)
+    waits = bool(context.exports.unfinished)
     title = f"{icons.ICON_FA_FILM}  {'Add to the queue' if waits else 'Render'}"
-    if main_button(editor, title, "render", enabled=not aim.fault, width=imgui.get_content_region_avail().x):
-        editor.attempt(lambda: form.start(editor))
+    if main_button(context, title, "render", enabled=not aim.fault, width=imgui.get_content_region_avail().x):
+        context.log.attempt(lambda: form.start())
 
 
-def _files(editor: Editor, form: Form) -> None:
-    wanted = form.wanted(editor)
+def _files(context: RendersContext, form: Form) -> None:
+    wanted = form.wanted()
     button = room_for(icons.ICON_FA_FOLDER_OPEN)
-    for name in editor.session.root.outputs:
+    for name in context.session.root.outputs:
         imgui.push_id(name)
         left, column = imgui.get_cursor_pos_x(), _LABELS * ui_scale()
         shown = fitted(name, column - imgui.get_frame_height() - imgui.get_style().item_spacing.x)
         changed, on = imgui.checkbox(f"{shown}##on", name in wanted)
-        record(editor, f"render {name}")
+        record(context, f"render {name}")
         tip(name)
         if changed:
             form.chosen[name] = on
         imgui.begin_disabled(name not in wanted)
         imgui.same_line(left + column)
         imgui.set_next_item_width(imgui.get_content_region_avail().x - button - 4 * ui_scale())
-        path = str(form.file(editor, name))
+        path = str(form.file(name))
         edited, path = imgui.input_text("##file", path)
         if edited:
             form.files[name] = path
         tip(path)
-        record(editor, f"render file {name}")
+        record(context, f"render file {name}")
         imgui.same_line(0, 4 * ui_scale())
-        if quiet(editor, icons.ICON_FA_FOLDER_OPEN, f"choose {name}", "Choose where to write"):
-            chosen = partial(_chosen, editor, form, name)
-            file = form.file(editor, name)
-            editor.dialogs.browse = Browse(f"Render {name} to", "export", chosen, saving=True, name=file.name)
+        if quiet(context, icons.ICON_FA_FOLDER_OPEN, f"choose {name}", "Choose where to write"):
+            chosen = partial(_chosen, context, form, name)
+            file = form.file(name)
+            context.dialogs.browse = Browse(f"Render {name} to", "export", chosen, saving=True, name=file.name)
         imgui.end_disabled()
         imgui.pop_id()
 
 
-def _chosen(editor: Editor, form: Form, output: str, path: Path) -> None:
+def _chosen(context: RendersContext, form: Form, output: str, path: Path) -> None:
     form.files[output] = str(path)
-    form.extend(editor, form.extent_of(editor))
+    form.extend(form.extent_of())
 
 
-def _frames(editor: Editor, form: Form) -> None:
-    offered, now = form.extents(editor), form.extent_of(editor)
+def _frames(context: RendersContext, form: Form) -> None:
+    offered, now = form.extents(), form.extent_of()
     labels: dict[str, Extent] = {_extent_text(extent, frames): extent for extent, frames in offered.items()}
-    if chosen := choice(editor, "Frames", _extent_text(now, offered[now]), tuple(labels)):
-        form.extend(editor, labels[chosen])
+    if chosen := choice(context, "Frames", _extent_text(now, offered[now]), tuple(labels)):
+        form.extend(labels[chosen])
     if now == "some frames":
-        _list(editor, form)
+        _list(context, form)
     if now != "this frame":
         label("Processes", _LABELS)
         imgui.set_next_item_width(-1)
         most = max(os.cpu_count() or 1, 1)
         form.jobs = min(max(imgui.slider_int("##jobs", form.jobs, 1, most)[1], 1), 256)
-        record(editor, "render jobs")
+        record(context, "render jobs")
         tip(
             "So many processes share the frames, each with pictures of its own on the device. "
             "Where nodes make a frame of the one before, one process renders all."
@@ -112,32 +112,32 @@ def _short(frames: tuple[int, ...]) -> str:
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}\u2026"
 
 
-def _list(editor: Editor, form: Form) -> None:
+def _list(context: RendersContext, form: Form) -> None:
     """Frames that are typed, checked while they are."""
     label("", _LABELS)
     imgui.set_next_item_width(-1)
     wrong = bool(form.list_fault)
     if wrong:
-        imgui.push_style_color(imgui.Col_.text, vec4(editor.palette.error))
+        imgui.push_style_color(imgui.Col_.text, vec4(context.palette.error))
     form.listed = imgui.input_text_with_hint("##listed", "1-24x2,40", form.listed)[1]
     if wrong:
         imgui.pop_style_color()
-    record(editor, "render frames")
+    record(context, "render frames")
     tip("1-24, 1-24x2 for every second one, 10-1 backwards; several of them with commas between.")
     if wrong:
         imgui.indent(_LABELS * ui_scale())
-        with font(editor, "text", SMALL):
-            wrapped(editor.palette.error, form.list_fault)
-        record(editor, "render list fault")
+        with font(context, "text", SMALL):
+            wrapped(context.palette.error, form.list_fault)
+        record(context, "render list fault")
         imgui.unindent(_LABELS * ui_scale())
 
 
-def _options(editor: Editor, form: Form) -> None:
-    kinds = {form.file(editor, name).suffix.lower() for name in form.wanted(editor)}
+def _options(context: RendersContext, form: Form) -> None:
+    kinds = {form.file(name).suffix.lower() for name in form.wanted()}
     now = kinds.pop() if len(kinds) == 1 else "mixed"
-    if chosen := choice(editor, "Format", now, formats()):
+    if chosen := choice(context, "Format", now, formats()):
         form.reform(chosen)
-    if chosen := choice(editor, "Size", form.sizing, _SIZINGS):
+    if chosen := choice(context, "Size", form.sizing, _SIZINGS):
         form.sizing = next(one for one in _SIZINGS if one == chosen)
     if form.sizing == "scale":
         label("", _LABELS)
@@ -149,51 +149,51 @@ def _options(editor: Editor, form: Form) -> None:
         width, height = imgui.input_int2("##size", list(form.size))[1]
         form.size = (min(max(width, 1), 16384), min(max(height, 1), 16384))
     depth = dict(DEPTHS)
-    if chosen := choice(editor, "Precision", depth[form.precision], tuple(depth.values())):
+    if chosen := choice(context, "Precision", depth[form.precision], tuple(depth.values())):
         form.precision = next(name for name, text in DEPTHS if text == chosen)
     if now in VIEWED or now == "mixed":
         own = "as the output says"
-        if chosen := choice(editor, "View", form.view or own, (own, *views(color=coloring(editor)))):
+        if chosen := choice(context, "View", form.view or own, (own, *views(color=settings_in_use(context)))):
             form.view = "" if chosen == own else chosen
     label("", _LABELS)
     form.resume = imgui.checkbox("Resume", form.resume)[1]
-    record(editor, "render resume")
+    record(context, "render resume")
     tip(
         "Keep frames whose files are there and would come out the same: after a render that was stopped, or a change "
         "that only some frames see."
     )
 
 
-def _consequences(editor: Editor, form: Form, aim: Aim) -> None:
+def _consequences(context: RendersContext, form: Form, aim: Aim) -> None:
     """What would be written, and what is in the way."""
-    palette = editor.palette
+    palette = context.palette
     if aim.fault:
         if aim.fault != form.list_fault:
             wrapped(palette.error, aim.fault)
-            record(editor, "render fault")
-        if len(form.frames(editor)) > 1 and quiet(
-            editor, f"{icons.ICON_FA_HASHTAG}  Add a place for the frame number", "render number", "shot.####.exr"
+            record(context, "render fault")
+        if len(form.frames()) > 1 and quiet(
+            context, f"{icons.ICON_FA_HASHTAG}  Add a place for the frame number", "render number", "shot.####.exr"
         ):
-            form.number(editor)
+            form.number()
         return
-    dim(editor, elided(aim_text(aim), imgui.get_content_region_avail().x))
-    record(editor, "render aim")
+    dim(context, elided(aim_text(aim), imgui.get_content_region_avail().x))
+    record(context, "render aim")
     tip(aim.first if aim.files == 1 else f"{aim.first}\n{aim.last}")
     if aim.exist:
         if not form.resume:
             imgui.align_text_to_frame_padding()
         wrapped(palette.dim if form.resume else palette.warning, exist_text(aim, form.resume))
-        record(editor, "render exists")
+        record(context, "render exists")
         if not form.resume:
             imgui.same_line()
             if imgui.get_content_region_avail().x < room_for("Resume instead"):
                 imgui.new_line()
             doc = "Keep those that would come out the same"
-            if quiet(editor, "Resume instead", "render resume instead", doc):
+            if quiet(context, "Resume instead", "render resume instead", doc):
                 form.resume = True
 
 
-def choice(editor: Editor, title: str, now: str, choices: tuple[str, ...]) -> str:
+def choice(context: RendersContext, title: str, now: str, choices: tuple[str, ...]) -> str:
     """A labelled choice; what was chosen in this frame, or ""."""
     label(title, _LABELS)
-    return combo(editor, title, now, choices)
+    return combo(context, title, now, choices)

@@ -15,7 +15,7 @@ from .form_view import draw_form
 from .queue_view import Queue
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import RendersContext
 
 _FORM, _WIDE = 420.0, 760.0
 """Width of the form, and from which width on the queue is beside it."""
@@ -26,32 +26,33 @@ class Renders:
 
     title = "Renders"
 
-    def __init__(self) -> None:
+    def __init__(self, context: RendersContext) -> None:
+        self._context = context
         self._forms: dict[Path | None, Form] = {}
         """What was chosen last, by document."""
-        self._queue = Queue()
+        self._queue = Queue(context)
 
     def close(self) -> None:
         """Give back what the window holds."""
         self._queue.close()
 
-    def draw(self, editor: Editor) -> None:
+    def draw(self) -> None:
         """Draw into the current window."""
-        if not editor.session.root.outputs and not editor.exports.all:
+        if not self._context.session.root.outputs and not self._context.exports.all:
             sentence = "Add a graph output and link a node to it."
-            nothing_here(editor, icons.ICON_FA_FILM, "There is nothing to render", sentence)
+            nothing_here(self._context, icons.ICON_FA_FILM, "There is nothing to render", sentence)
             return
-        form = self._forms.setdefault(editor.session.path, Form())
+        form = self._forms.setdefault(self._context.session.path, Form(self._context))
         room, scale = imgui.get_content_region_avail(), ui_scale()
         if room.x < _WIDE * scale:
-            draw_form(editor, form)
+            draw_form(self._context, form)
             imgui.separator()
-            self._queue.draw(editor)
+            self._queue.draw()
             return
         imgui.begin_child("form", ImVec2(_FORM * scale, room.y))
-        draw_form(editor, form)
+        draw_form(self._context, form)
         imgui.end_child()
         imgui.same_line(0, 20 * scale)
         imgui.begin_child("queue", ImVec2(0, room.y))
-        self._queue.draw(editor)
+        self._queue.draw()
         imgui.end_child()

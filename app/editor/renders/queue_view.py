@@ -20,12 +20,11 @@ from ..toolkit.places import record
 from ..toolkit.textures import Textures, fitted
 from ..toolkit.thumbnails import Pictures
 from ..toolkit.words import SMALL, dim, elided, font, nothing_here, tip, wrapped
-from ..workflows.flipbook import choose_flipbook, open_flipbook
 from .folders import show_folder
 from .wording import progress_text, state_text, title, under_way
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import RendersContext
 
 _WIDTH, _HEIGHT = 92.0, 56.0
 _PAUSE = 1.5
@@ -52,7 +51,8 @@ class _Button(NamedTuple):
 class Queue:
     """What runs is on top, then what waits, then what has ended, the last one first."""
 
-    def __init__(self) -> None:
+    def __init__(self, context: RendersContext) -> None:
+        self._context = context
         self._open: set[Export] = set()
         """Those whose notes are shown."""
         self._pictures: Pictures | None = None
@@ -67,66 +67,66 @@ class Queue:
             self._pictures.close()
         self._textures.clear()
 
-    def draw(self, editor: Editor) -> None:
+    def draw(self) -> None:
         """Draw into the current window."""
-        exports = editor.exports
+        exports = self._context.exports
         if not exports.all:
             sentence = "They appear here; you can go on working meanwhile."
-            nothing_here(editor, icons.ICON_FA_FILM, "No renders yet", sentence)
+            nothing_here(self._context, icons.ICON_FA_FILM, "No renders yet", sentence)
             return
         running, waiting = exports.running, exports.waiting
         ended = [one for one in exports.all if one not in running and one not in waiting]
         ended.sort(key=lambda one: -one.ended)
         imgui.align_text_to_frame_padding()
         counts = ((len(running), "running"), (len(waiting), "waiting"), (len(ended), "ended"))
-        dim(editor, ", ".join(f"{count} {what}" for count, what in counts if count))
+        dim(self._context, ", ".join(f"{count} {what}" for count, what in counts if count))
         right_aligned(f"{icons.ICON_FA_TRASH} Clear")
         doc = "Forget what has ended"
-        if quiet(editor, f"{icons.ICON_FA_TRASH}  Clear", "clear renders", doc, enabled=bool(ended)):
+        if quiet(self._context, f"{icons.ICON_FA_TRASH}  Clear", "clear renders", doc, enabled=bool(ended)):
             exports.clear()
         self._forget(exports.all)
         for index, export in enumerate((*running, *waiting, *ended)):
             imgui.push_id(index)
             if index:
                 imgui.dummy((0, 2 * ui_scale()))
-            self._row(editor, index, export, waiting.index(export) + len(running) if export in waiting else 0)
+            self._row(index, export, waiting.index(export) + len(running) if export in waiting else 0)
             imgui.pop_id()
 
     # --- one of them -------------------------------------------------------------------------------------------------
 
-    def _row(self, editor: Editor, index: int, export: Export, turn: int) -> None:
-        scale, palette = ui_scale(), editor.palette
+    def _row(self, index: int, export: Export, turn: int) -> None:
+        scale, palette = ui_scale(), self._context.palette
         start = imgui.get_cursor_screen_pos()
-        self._picture(editor, export, start)
+        self._picture(export, start)
         indent = (_WIDTH + 12) * scale
         imgui.indent(indent)
-        self._head(editor, index, export, turn)
+        self._head(index, export, turn)
         if export.state == "running":
             high = imgui.get_text_line_height() + 2 * scale
             imgui.progress_bar(export.fraction, ImVec2(-1, high), progress_text(export))
         else:
             words = state_text(export, turn)
             imgui.text_colored(vec4(getattr(palette, _COLORS[export.state])), words[:1].upper() + words[1:])
-        record(editor, f"export {index}")
-        with font(editor, "text", SMALL):
-            self._details(editor, export)
+        record(self._context, f"export {index}")
+        with font(self._context, "text", SMALL):
+            self._details(export)
         if export.sentence:
             wrapped(palette.error, export.sentence)
-            record(editor, f"export fault {index}")
+            record(self._context, f"export fault {index}")
         if export in self._open:
             for note in export.notes:
                 wrapped(palette.dim, note)
-            record(editor, f"export notes {index}")
+            record(self._context, f"export notes {index}")
         imgui.unindent(indent)
         low = start.y + _HEIGHT * scale
         if imgui.get_cursor_screen_pos().y < low:
             imgui.dummy((0, max(low - imgui.get_cursor_screen_pos().y - imgui.get_style().item_spacing.y, 0.0)))
 
-    def _head(self, editor: Editor, index: int, export: Export, turn: int) -> None:
-        buttons = self._buttons(editor, index, export, turn)
+    def _head(self, index: int, export: Export, turn: int) -> None:
+        buttons = self._buttons(index, export, turn)
         shown, spacing = [button.icon for button in buttons], 2 * ui_scale()
         imgui.align_text_to_frame_padding()
-        with font(editor, "bold"):
+        with font(self._context, "bold"):
             room = imgui.get_content_region_avail().x - room_for(*shown) - 12 * ui_scale()
             imgui.text_unformatted(elided(title(export), room))
         tip("\n".join(str(path) for _, path in export.destinations))
@@ -135,83 +135,87 @@ class Queue:
         for place, button in enumerate(buttons):
             if place:
                 imgui.same_line()
-            if quiet(editor, button.icon, f"{button.name} {index}", button.doc, lit=button.lit):
-                editor.attempt(button.act)
+            if quiet(self._context, button.icon, f"{button.name} {index}", button.doc, lit=button.lit):
+                self._context.log.attempt(button.act)
         imgui.pop_style_var()
-        self._compare_menu(editor, index, export)
+        self._compare_menu(index, export)
 
-    def _buttons(self, editor: Editor, index: int, export: Export, turn: int) -> list[_Button]:
+    def _buttons(self, index: int, export: Export, turn: int) -> list[_Button]:
         found: list[_Button] = []
         first, folder = export.destinations[0][1], export.destinations[0][1].parent
         over = export.state not in ("running", "waiting")
         if export.written:
             doc = "Compare it with another version, in the viewer"
-            found.append(_Button(icons.ICON_FA_PLAY, "play", "Play it in the viewer", partial(_play, editor, export)))
+            found.append(
+                _Button(icons.ICON_FA_PLAY, "play", "Play it in the viewer", partial(_play, self._context, export))
+            )
             found.append(
                 _Button(icons.ICON_FA_TABLE_COLUMNS, "compare", doc, partial(imgui.open_popup, f"compare {index}"))
             )
-        if export.state == "waiting" and turn > len(editor.exports.running):
-            sooner = partial(editor.exports.move, export, -1)
+        if export.state == "waiting" and turn > len(self._context.exports.running):
+            sooner = partial(self._context.exports.move, export, -1)
             found.append(_Button(icons.ICON_FA_ARROW_UP, "earlier", "Earlier", sooner))
         if export.state in ("failed", "cancelled"):
             doc = "Go on: frames that are there, and would come out the same, are kept" if export.done else "Try again"
-            found.append(_Button(icons.ICON_FA_ROTATE_RIGHT, "again", doc, partial(editor.exports.again, export)))
+            found.append(
+                _Button(icons.ICON_FA_ROTATE_RIGHT, "again", doc, partial(self._context.exports.again, export))
+            )
         if export.notes:
             lit = export in self._open
             found.append(_Button(icons.ICON_FA_LIST_UL, "notes", "What it says", partial(self._flip, export), lit))
         if over:
-            copy = partial(editor.clipboard.put, str(first))
+            copy = partial(self._context.clipboard.put, str(first))
             found.append(_Button(icons.ICON_FA_COPY, "copy path", "Copy the path", copy))
-        show = partial(_open, editor, folder)
+        show = partial(_open, self._context, folder)
         found.append(_Button(icons.ICON_FA_FOLDER_OPEN, "open folder", f"Show {folder}", show))
         if not over:
             doc = "Take it out of the queue" if export.state == "waiting" else "Stop it. Finished frames stay."
             found.append(_Button(icons.ICON_FA_XMARK, "cancel", doc, export.cancel))
         return found
 
-    def _compare_menu(self, editor: Editor, index: int, export: Export) -> None:
+    def _compare_menu(self, index: int, export: Export) -> None:
         """What it can be compared with."""
         if not imgui.begin_popup(f"compare {index}"):
             return
-        others = [one for one in editor.exports.all if one is not export and one.written]
+        others = [one for one in self._context.exports.all if one is not export and one.written]
         for place, other in enumerate(others):
             path = other.destinations[0][1]
             name = f"{path.parent.name}/{title(other)}" if title(other) == title(export) else title(other)
             left, wide = imgui.get_cursor_pos_x(), imgui.calc_text_size(name).x
             if imgui.selectable(f"##{place}", False, 0, ImVec2(wide, 0))[0]:
-                editor.attempt(partial(_compare, editor, export, other))
-            record(editor, f"compare with {place}")
+                self._context.log.attempt(partial(_compare, self._context, export, other))
+            record(self._context, f"compare with {place}")
             tip(str(path))
             imgui.same_line(left)
             imgui.text_unformatted(name)
         if others:
             imgui.separator()
         if imgui.menu_item("Other pictures...", "", False)[0]:
-            editor.attempt(partial(_choose, editor, export))
-        record(editor, "compare with other")
+            self._context.log.attempt(partial(_choose, self._context, export))
+        record(self._context, "compare with other")
         imgui.end_popup()
 
-    def _details(self, editor: Editor, export: Export) -> None:
+    def _details(self, export: Export) -> None:
         """What is computed, and the file that was written last."""
         last = export.written[-1] if export.written else None
         parts = [under_way(export)] if export.state == "running" else [str(export.destinations[0][1].parent)]
         if last is not None and export.state == "running":
             parts.append(f"last: {last.name}")
-        dim(editor, elided("   ".join(parts), imgui.get_content_region_avail().x))
+        dim(self._context, elided("   ".join(parts), imgui.get_content_region_avail().x))
         tip(f"{last}" if last is not None else "")
 
     # --- small pictures ----------------------------------------------------------------------------------------------
 
-    def _picture(self, editor: Editor, export: Export, start: ImVec2) -> None:
+    def _picture(self, export: Export, start: ImVec2) -> None:
         """The last file that it wrote, or what stands for it."""
-        scale, palette, lines = ui_scale(), editor.palette, imgui.get_window_draw_list()
+        scale, palette, lines = ui_scale(), self._context.palette, imgui.get_window_draw_list()
         width, height = _WIDTH * scale, _HEIGHT * scale
         corner = ImVec2(start.x + width, start.y + height)
         lines.add_rect_filled(start, corner, u32(palette.field), 4 * scale)
         chosen = self._chosen(export)
         if chosen is not None:
             if self._pictures is None:
-                self._pictures = Pictures(editor.store.file.parent / "thumbnails")
+                self._pictures = Pictures(self._context.store.file.parent / "thumbnails")
             found = self._pictures.get(*chosen)
             if found is not None and not isinstance(found, str):
                 self._shown[export] = chosen
@@ -220,7 +224,7 @@ class Queue:
         if shown is None or pixels is None or isinstance(pixels, str):
             size = 20 * scale
             middle = start.x + (width - size) / 2, start.y + (height - size) / 2
-            face = editor.fonts.text if editor.fonts else imgui.get_font()
+            face = self._context.fonts.text if self._context.fonts else imgui.get_font()
             lines.add_text(face, size, middle, u32(palette.dim, 0.6), _ICONS[export.state])
             return
         across, down = fitted(pixels, width, height)
@@ -254,19 +258,19 @@ class Queue:
         self._open ^= {export}
 
 
-def _play(editor: Editor, export: Export) -> None:
-    open_flipbook(editor, Strip.rendered(export))
+def _play(context: RendersContext, export: Export) -> None:
+    context.flipbooks.open(Strip.rendered(export))
 
 
-def _compare(editor: Editor, one: Export, other: Export) -> None:
-    open_flipbook(editor, Strip.rendered(one), Strip.rendered(other))
+def _compare(context: RendersContext, one: Export, other: Export) -> None:
+    context.flipbooks.open(Strip.rendered(one), Strip.rendered(other))
 
 
-def _choose(editor: Editor, export: Export) -> None:
-    choose_flipbook(editor, Strip.rendered(export))
+def _choose(context: RendersContext, export: Export) -> None:
+    context.flipbooks.choose(Strip.rendered(export))
 
 
-def _open(editor: Editor, folder: Path) -> None:
+def _open(context: RendersContext, folder: Path) -> None:
     if not show_folder(folder):
-        editor.clipboard.put(str(folder))
-        editor.say(f"no program here shows folders; the path is on the clipboard: {folder}")
+        context.clipboard.put(str(folder))
+        context.log.add(f"no program here shows folders; the path is on the clipboard: {folder}")

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
+
+from ...authoring.log import Log
 
 Scope = Literal["", "graph", "viewer", "animation"]
 """Where a shortcut works: everywhere, or while the mouse is over that panel."""
 
 Act = Callable[[Any], object]
 Ask = Callable[[Any], bool]
-"""What is done to, and asked of, the editor."""
+"""What an action does with its context, and a question about that context."""
 
 
-def always(editor: object) -> bool:
+def always(context: object) -> bool:
     """For what can be done at any time."""
     return True
 
@@ -43,30 +45,47 @@ class Action:
     """True does it again and again while its keys are held."""
 
 
-@dataclass(frozen=True)
 class Actions:
-    """The table with a person's own shortcuts; `overrides` gives those by action id, "" for none at all."""
+    """The table of actions with the user's own shortcuts, each action with the context that it works on.
 
-    all: tuple[Action, ...]
-    overrides: Callable[[], Mapping[str, str]]
+    `overrides` gives the user's shortcuts by action id, "" for none at all. Contexts are bound after they are made,
+    since panels, which are part of them, run actions themselves.
+    """
+
+    def __init__(self, all: tuple[Action, ...], overrides: Callable[[], Mapping[str, str]], log: Log) -> None:
+        self.all = all
+        self.overrides = overrides
+        self._log = log
+        self._contexts: dict[str, object] = {}
 
     def __getitem__(self, id: str) -> Action:
         return next(action for action in self.all if action.id == id)
+
+    def bind(self, actions: Iterable[Action], context: object) -> None:
+        """Let actions work on a context."""
+        self._contexts.update((action.id, context) for action in actions)
 
     def shortcut(self, id: str) -> str:
         """The shortcut that is in force."""
         return self.overrides().get(id, self[id].shortcut)
 
-    def context(self, name: str) -> Iterator[Action]:
+    def in_menu(self, name: str) -> Iterator[Action]:
         """The actions of a context menu."""
         return (action for action in self.all if name in action.contexts)
 
-    def run(self, id: str, editor: Any) -> None:
-        """Do it, if it can be done now. What is seen and played may be a flipbook, not the document."""
+    def is_enabled(self, action: Action) -> bool:
+        """True if it can be done now."""
+        return action.enabled(self._contexts[action.id])
+
+    def is_checked(self, action: Action) -> bool:
+        """True if it is a switch that is on."""
+        return action.checked is not None and action.checked(self._contexts[action.id])
+
+    def run(self, id: str) -> None:
+        """Do it, if it can be done now."""
         action = self[id]
-        editor = getattr(editor, "stage", editor) if id.startswith(("viewer.", "time.")) else editor
-        if action.enabled(editor):
-            editor.attempt(lambda: action.run(editor))
+        if self.is_enabled(action):
+            self._log.attempt(lambda: action.run(self._contexts[id]))
 
     def conflicts(self, id: str, shortcut: str) -> tuple[Action, ...]:
         """Other actions that this shortcut would set off too."""

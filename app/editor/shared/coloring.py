@@ -1,17 +1,28 @@
-"""How the colors of what is open are managed."""
+"""The color settings of the open document."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from halation.nodes import ColorSettings
 
 from ...graph import color_settings
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from ...authoring.services.coloring import Coloring
+    from ...authoring.session import Session
 
 
-def coloring(editor: Editor) -> ColorSettings:
-    """The settings of the open document, or of the built-in config where its own cannot be read."""
-    return editor.viewer.coloring.of(color_settings(editor.session.root))
+class ColorContext(Protocol):
+    """The context of a panel that shows managed colors."""
+
+    @property
+    def session(self) -> Session: ...
+
+    @property
+    def coloring(self) -> Coloring: ...
+
+
+def settings_in_use(context: ColorContext) -> ColorSettings:
+    """The color settings of the document, or of the built-in config where its own cannot be read."""
+    return context.coloring.of(color_settings(context.session.root))

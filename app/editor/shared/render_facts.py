@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from halation.nodes import Matte, Node, Value, matte_of
 
@@ -15,7 +15,19 @@ from ...render_layers.overview import Overview, Use
 from ...render_layers.report import certainty
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from ...authoring.services.renders import Renders
+    from ...authoring.session import Session
+
+
+class RenderContext(Protocol):
+    """The context of a panel that shows what is known of renders."""
+
+    @property
+    def session(self) -> Session: ...
+
+    @property
+    def renders(self) -> Renders: ...
+
 
 FOUND = "found"
 """The choice that leaves a convention to what the file shows."""
@@ -35,11 +47,11 @@ def render_file(graph: Graph, id: str) -> Path | None:
     return Path(graph.folder, path) if path else None
 
 
-def overview_of(editor: Editor, id: str) -> Overview | str | None:
+def overview_of(context: RenderContext, id: str) -> Overview | str | None:
     """What the render of a node holds, a sentence if it cannot be read or none is named, None while nobody knows."""
-    graph = editor.session.graph
+    graph = context.session.graph
     file = render_file(graph, id)
-    return "no file" if file is None else editor.renders.overview(file, named(graph.nodes[id]))
+    return "no file" if file is None else context.renders.overview(file, named(graph.nodes[id]))
 
 
 def named(item: object) -> Mapping[str, str]:
@@ -48,9 +60,9 @@ def named(item: object) -> Mapping[str, str]:
     return {value.role: str(getattr(item, value.name)) for value in values if value.role and value.type == "text"}
 
 
-def use_of(editor: Editor, port: Port, declaration: Value) -> Use | None:
+def use_of(context: RenderContext, port: Port, declaration: Value) -> Use | None:
     """What is known of the layer that a value is about."""
-    seen = overview_of(editor, port.node) if declaration.role else None
+    seen = overview_of(context, port.node) if declaration.role else None
     return seen.uses.get(Role(declaration.role)) if isinstance(seen, Overview) else None
 
 
@@ -72,9 +84,9 @@ def rule_words(rule: Convention, *, told: bool) -> str:
     return f"{certainty(rule)}: {rule.reason}" if told else f"{rule.words}, {certainty(rule)}: {rule.reason}"
 
 
-def matte_at(editor: Editor, id: str) -> Matte | str | None:
+def matte_at(context: RenderContext, id: str) -> Matte | str | None:
     """The cryptomatte that a node picks from, a sentence if there is none, None while nobody knows."""
-    item, seen = editor.session.graph.nodes.get(id), overview_of(editor, id)
+    item, seen = context.session.graph.nodes.get(id), overview_of(context, id)
     pick = pick_value(item)
     if not isinstance(seen, Overview) or pick is None:
         return seen if isinstance(seen, str) else None

@@ -4,12 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING
 
-from .action import Action
-
-if TYPE_CHECKING:
-    from ..window.editor import Editor
+from .action import Action, Actions
 
 _SCOPES = {
     "graph": "Graph, with the mouse over it",
@@ -27,14 +23,14 @@ MOUSE: tuple[tuple[str, str], ...] = (
 )
 
 
-def groups(editor: Editor, every: bool = False) -> Iterator[tuple[str, tuple[Action, ...]]]:
+def groups(actions: Actions, every: bool = False) -> Iterator[tuple[str, tuple[Action, ...]]]:
     """Actions by scope and menu, those with a shortcut; `every` gives all of them."""
     found: dict[str, list[Action]] = {}
-    for action in editor.actions.all:
-        if every or editor.actions.shortcut(action.id):
+    for action in actions.all:
+        if every or actions.shortcut(action.id):
             title = _SCOPES.get(action.scope, action.menu.split("/")[0] or "Everywhere")
             found.setdefault(title, []).append(action)
-    return ((title, tuple(actions)) for title, actions in found.items())
+    return ((title, tuple(group)) for title, group in found.items())
 
 
 def condensed(lines: Iterable[tuple[str, str]]) -> tuple[tuple[str, str], ...]:

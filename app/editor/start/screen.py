@@ -21,10 +21,9 @@ from ..toolkit.keys import chord
 from ..toolkit.places import record
 from ..toolkit.textures import Textures
 from ..toolkit.words import dim, elided, font, tip, wrapped
-from ..workflows.documents import open_graph, open_preset, recover
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import StartContext
 
 _CARD, _PICTURE_HEIGHT = 200.0, 112.0
 
@@ -40,7 +39,8 @@ HINTS = (
 class StartScreen:
     """Shown when nothing is open, and from the File menu."""
 
-    def __init__(self) -> None:
+    def __init__(self, context: StartContext) -> None:
+        self._context = context
         self._textures = Textures()
         self._found: tuple[Recovered, ...] | None = None
         self._there: dict[str, bool] = {}
@@ -50,128 +50,128 @@ class StartScreen:
         """Give pictures back."""
         self._textures.clear()
 
-    def draw(self, editor: Editor) -> None:
+    def draw(self) -> None:
         """Draw over everything, if it is open."""
-        if "start" not in editor.dialogs.open:
+        if "start" not in self._context.dialogs.open:
             self._found = None
             return
         if self._found is None:
-            self._found = editor.recovery.found()
-            self._there = {recent.path: recent.exists for recent in editor.store.now.recent}
-        covered = editor.dialogs.browse is not None or editor.dialogs.question is not None
-        close = backdrop(editor, "start") and not covered
-        with dialog(editor, "Start", (1180, 560)):
+            self._found = self._context.recovery.found()
+            self._there = {recent.path: recent.exists for recent in self._context.store.now.recent}
+        covered = self._context.dialogs.browse is not None or self._context.dialogs.question is not None
+        close = backdrop(self._context, "start") and not covered
+        with dialog(self._context, "Start", (1180, 560)):
             height = imgui.get_content_region_avail().y
             imgui.begin_child("left", ImVec2(290 * ui_scale(), height), imgui.ChildFlags_.nav_flattened.value)
-            self._begin(editor)
-            self._recent(editor)
+            self._begin()
+            self._recent()
             imgui.end_child()
             imgui.same_line(0, 18 * ui_scale())
             imgui.begin_child("right", ImVec2(0, height), imgui.ChildFlags_.nav_flattened.value)
-            self._recoveries(editor, self._found)
-            self._presets(editor)
+            self._recoveries(self._found)
+            self._presets()
             imgui.end_child()
             if not covered:
                 close = close or escaped()
-                self._keys(editor)
+                self._keys()
         if close:
-            editor.dialogs.open.discard("start")
+            self._context.dialogs.open.discard("start")
 
-    def _keys(self, editor: Editor) -> None:
+    def _keys(self) -> None:
         """The shortcuts that make sense here."""
         for id in ("file.new", "file.open", "file.quit", "help.shortcuts"):
-            keys = editor.actions.shortcut(id)
+            keys = self._context.actions.shortcut(id)
             if keys and imgui.is_key_chord_pressed(chord(keys)):
-                editor.actions.run(id, editor)
+                self._context.actions.run(id)
 
-    def _begin(self, editor: Editor) -> None:
-        with font(editor, "bold", 30.0):
+    def _begin(self) -> None:
+        with font(self._context, "bold", 30.0):
             imgui.text_unformatted("Halation")
-        dim(editor, "Screen-space effects, node by node")
+        dim(self._context, "Screen-space effects, node by node")
         imgui.dummy(ImVec2(0, 8 * ui_scale()))
         width = imgui.get_content_region_avail().x
-        if main_button(editor, f"{icons.ICON_FA_PLUS}  New graph", "start new", width=width):
-            editor.actions.run("file.new", editor)
+        if main_button(self._context, f"{icons.ICON_FA_PLUS}  New graph", "start new", width=width):
+            self._context.actions.run("file.new")
         if imgui.button(f"{icons.ICON_FA_FOLDER_OPEN}  Open...", ImVec2(width, 0)):
-            editor.actions.run("file.open", editor)
-        record(editor, "start open")
-        if not editor.store.now.hint_seen:
-            self._hint(editor)
+            self._context.actions.run("file.open")
+        record(self._context, "start open")
+        if not self._context.store.now.hint_seen:
+            self._hint()
 
-    def _hint(self, editor: Editor) -> None:
+    def _hint(self) -> None:
         imgui.dummy(ImVec2(0, 4 * ui_scale()))
-        with font(editor, "bold"):
+        with font(self._context, "bold"):
             imgui.text_unformatted("First time here?")
         for line in HINTS:
-            wrapped(editor.palette.dim, line)
-        if quiet(editor, f"{icons.ICON_FA_CHECK}  Got it", "hint seen", "Show this no more"):
-            editor.attempt(lambda: editor.store.change(hint_seen=True))
+            wrapped(self._context.palette.dim, line)
+        if quiet(self._context, f"{icons.ICON_FA_CHECK}  Got it", "hint seen", "Show this no more"):
+            self._context.log.attempt(lambda: self._context.store.change(hint_seen=True))
 
-    def _recent(self, editor: Editor) -> None:
+    def _recent(self) -> None:
         imgui.dummy(ImVec2(0, 4 * ui_scale()))
-        with font(editor, "bold"):
+        with font(self._context, "bold"):
             imgui.text_unformatted("Recent")
-        if not editor.store.now.recent:
-            dim(editor, "Files that you open appear here.")
-        for index, recent in enumerate(editor.store.now.recent):
+        if not self._context.store.now.recent:
+            dim(self._context, "Files that you open appear here.")
+        for index, recent in enumerate(self._context.store.now.recent):
             imgui.push_id(index)
-            self._recent_row(editor, index, recent)
+            self._recent_row(index, recent)
             imgui.pop_id()
 
-    def _recent_row(self, editor: Editor, index: int, recent: Recent) -> None:
+    def _recent_row(self, index: int, recent: Recent) -> None:
         scale, path, there = ui_scale(), Path(recent.path), self._there.get(recent.path, True)
         line = imgui.get_text_line_height()
         room = imgui.get_content_region_avail().x - 30 * scale
         start = imgui.get_cursor_pos()
         imgui.set_next_item_allow_overlap()
         clicked, _ = imgui.selectable("##recent", False, 0, ImVec2(0, 2 * line + 4 * scale))
-        record(editor, f"recent {index}")
+        record(self._context, f"recent {index}")
         tip(str(path) if there else f"{path}\nThis file is not there any more.")
         over = imgui.is_mouse_hovering_rect(imgui.get_item_rect_min(), imgui.get_item_rect_max())
         after = imgui.get_cursor_pos()
         imgui.set_cursor_pos(ImVec2(start.x + 4 * scale, start.y + scale))
-        faint = mix(editor.palette.dim, editor.palette.panel, 0.4)
-        imgui.text_colored(vec4(editor.palette.text if there else faint), elided(path.stem, room))
+        faint = mix(self._context.palette.dim, self._context.palette.panel, 0.4)
+        imgui.text_colored(vec4(self._context.palette.text if there else faint), elided(path.stem, room))
         imgui.set_cursor_pos(ImVec2(start.x + 4 * scale, start.y + line + 3 * scale))
-        imgui.text_colored(vec4(editor.palette.dim if there else faint), elided(str(path.parent), room))
+        imgui.text_colored(vec4(self._context.palette.dim if there else faint), elided(str(path.parent), room))
         if over:
             imgui.set_cursor_pos(ImVec2(start.x + room + 2 * scale, start.y + 4 * scale))
-            if quiet(editor, icons.ICON_FA_XMARK, f"forget {index}", "Take it off this list"):
-                editor.store.forget(recent.path)
+            if quiet(self._context, icons.ICON_FA_XMARK, f"forget {index}", "Take it off this list"):
+                self._context.store.forget(recent.path)
                 clicked = False
         imgui.set_cursor_pos(after)
         imgui.dummy(ImVec2(0, 0))
         if clicked and there:
-            open_graph(editor, path)
+            self._context.documents.open_graph(path)
         elif clicked:
-            editor.log.add(f"{path} is not there any more; take it off the list or bring it back", "warning")
+            self._context.log.add(f"{path} is not there any more; take it off the list or bring it back", "warning")
 
-    def _recoveries(self, editor: Editor, found: tuple[Recovered, ...]) -> None:
+    def _recoveries(self, found: tuple[Recovered, ...]) -> None:
         if not found:
             return
-        with font(editor, "bold"):
-            imgui.text_colored(vec4(editor.palette.warning), "Recover unsaved work")
+        with font(self._context, "bold"):
+            imgui.text_colored(vec4(self._context.palette.warning), "Recover unsaved work")
         for index, one in enumerate(found):
             when = strftime("%Y-%m-%d %H:%M", localtime(one.time))
             nodes = "1 node" if one.nodes == 1 else f"{one.nodes} nodes"
-            if main_button(editor, "Recover", f"recover {index}", enabled=not one.fault):
-                recover(editor, one)
+            if main_button(self._context, "Recover", f"recover {index}", enabled=not one.fault):
+                self._context.documents.recover(one)
                 self._found = None
             imgui.same_line()
             if imgui.button(f"Discard##{index}"):
-                editor.attempt(one.discard)
+                self._context.log.attempt(one.discard)
                 self._found = None
-            record(editor, f"discard {index}")
+            record(self._context, f"discard {index}")
             imgui.same_line()
             imgui.text_unformatted(elided(one.title, 200 * ui_scale()))
             tip(str(one.path or "never saved"))
             imgui.same_line()
-            dim(editor, elided(one.fault or f"{when}, {nodes}", imgui.get_content_region_avail().x))
+            dim(self._context, elided(one.fault or f"{when}, {nodes}", imgui.get_content_region_avail().x))
         imgui.dummy(ImVec2(0, 6 * ui_scale()))
 
-    def _presets(self, editor: Editor) -> None:
+    def _presets(self) -> None:
         scale = ui_scale()
-        with font(editor, "bold"):
+        with font(self._context, "bold"):
             imgui.text_unformatted("Presets")
         gap = imgui.get_style().item_spacing.x
         room = imgui.get_content_region_avail().x
@@ -180,15 +180,15 @@ class StartScreen:
         for index, path in enumerate(self._pictured):
             if index % count:
                 imgui.same_line()
-            self._card(editor, path, width)
+            self._card(path, width)
 
-    def _card(self, editor: Editor, path: Path, width: float) -> None:
-        scale, palette = ui_scale(), editor.palette
+    def _card(self, path: Path, width: float) -> None:
+        scale, palette = ui_scale(), self._context.palette
         name = path.stem.replace("_", " ")
         picture_height = width * _PICTURE_HEIGHT / _CARD
         size = ImVec2(width, picture_height + 26 * scale)
         clicked = imgui.invisible_button(f"##{path}", size)
-        record(editor, f"preset {path.stem}")
+        record(self._context, f"preset {path.stem}")
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
         lines, rounding = imgui.get_window_draw_list(), imgui.get_style().frame_rounding
         lines.add_rect_filled(low, high, u32(palette.hover if imgui.is_item_hovered() else palette.raised), rounding)
@@ -200,4 +200,4 @@ class StartScreen:
         if imgui.is_item_hovered():
             outline(palette.accent)
         if clicked:
-            open_preset(editor, path)
+            self._context.documents.open_preset(path)

@@ -8,23 +8,23 @@ from ..shared.action import Act, Action
 from .playback import LOOPS, Loop
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import TimelineContext
 
 
-def play(editor: Editor) -> None:
+def play(context: TimelineContext) -> None:
     """Play, or stop."""
-    editor.timeline.play(editor.session, editor.preview.remembers)
+    context.timeline.play(context.session, context.preview.remembers)
 
 
 def _step(by: int) -> Act:
     """One frame on; within what is played, the other end comes after the last one."""
 
-    def step(editor: Editor) -> None:
-        editor.timeline.stop()
-        session = editor.session
-        first, last = editor.timeline.span(session)
+    def step(context: TimelineContext) -> None:
+        context.timeline.stop()
+        session = context.session
+        first, last = context.timeline.span(session)
         wanted = session.frame + by
-        if session.frame in (first, last) and not first <= wanted <= last and editor.timeline.loop == "loop":
+        if session.frame in (first, last) and not first <= wanted <= last and context.timeline.loop == "loop":
             wanted = first if by > 0 else last
         session.seek(wanted)
 
@@ -32,19 +32,19 @@ def _step(by: int) -> Act:
 
 
 def _end(place: int) -> Act:
-    def jump(editor: Editor) -> None:
-        if editor.timeline.playback.playing and place:
-            editor.timeline.stop()
-        editor.session.seek(editor.timeline.span(editor.session)[place])
+    def jump(context: TimelineContext) -> None:
+        if context.timeline.playback.playing and place:
+            context.timeline.stop()
+        context.session.seek(context.timeline.span(context.session)[place])
 
     return jump
 
 
 def _to_key(later: bool) -> Act:
-    def jump(editor: Editor) -> None:
-        session = editor.session
+    def jump(context: TimelineContext) -> None:
+        session = context.session
         frame = session.next_key() if later else session.previous_key()
-        editor.timeline.stop()
+        context.timeline.stop()
         if frame is not None:
             session.seek(frame)
 
@@ -52,37 +52,37 @@ def _to_key(later: bool) -> Act:
 
 
 def _set_loop(loop: Loop) -> Act:
-    def choose(editor: Editor) -> None:
-        editor.timeline.loop = loop
+    def choose(context: TimelineContext) -> None:
+        context.timeline.loop = loop
 
     return choose
 
 
-def _every(editor: Editor) -> None:
-    editor.timeline.every = not editor.timeline.every
+def _every(context: TimelineContext) -> None:
+    context.timeline.every = not context.timeline.every
 
 
-def _in(editor: Editor) -> None:
-    session, timeline = editor.session, editor.timeline
+def _in(context: TimelineContext) -> None:
+    session, timeline = context.session, context.timeline
     timeline.set_part(session, session.frame, max(timeline.span(session)[1], session.frame))
 
 
-def _out(editor: Editor) -> None:
-    session, timeline = editor.session, editor.timeline
+def _out(context: TimelineContext) -> None:
+    session, timeline = context.session, context.timeline
     timeline.set_part(session, min(timeline.span(session)[0], session.frame), session.frame)
 
 
-def _whole(editor: Editor) -> None:
-    editor.timeline.part = editor.timeline.view = None
+def _whole(context: TimelineContext) -> None:
+    context.timeline.part = context.timeline.view = None
 
 
-def _range_from_part(editor: Editor) -> None:
-    first, last = editor.timeline.span(editor.session)
-    editor.session.set_frames(first, last)
+def _range_from_part(context: TimelineContext) -> None:
+    first, last = context.timeline.span(context.session)
+    context.session.set_frames(first, last)
 
 
-def _has_part(editor: Editor) -> bool:
-    return editor.timeline.part is not None
+def _has_part(context: TimelineContext) -> bool:
+    return context.timeline.part is not None
 
 
 def _loop(loop: Loop, label: str, doc: str) -> Action:
@@ -92,7 +92,7 @@ def _loop(loop: Loop, label: str, doc: str) -> Action:
         _set_loop(loop),
         "Time",
         doc=doc,
-        checked=lambda e: e.timeline.loop == loop,
+        checked=lambda context: context.timeline.loop == loop,
         contexts=frozenset({"timeline"}),
     )
 
@@ -111,7 +111,7 @@ PLAYBACK: tuple[Action, ...] = (
         play,
         "Time",
         "Space",
-        checked=lambda e: e.timeline.playback.playing,
+        checked=lambda context: context.timeline.playback.playing,
         doc="At the graph's rate; frames that are not ready in time are left out, and counted.",
     ),
     Action("time.next", "Next Frame", _step(1), "Time", "RightArrow", repeats=True, separated=True),
@@ -162,7 +162,7 @@ PLAYBACK: tuple[Action, ...] = (
         "Time",
         "Alt+P",
         contexts=_KEYED,
-        enabled=lambda e: e.timeline.part is not None or e.timeline.view is not None,
+        enabled=lambda context: context.timeline.part is not None or context.timeline.view is not None,
     ),
     Action(
         "time.range", "Make This Part the Graph's Range", _range_from_part, "Time", enabled=_has_part, contexts=_KEYED
@@ -173,7 +173,7 @@ PLAYBACK: tuple[Action, ...] = (
         "Every Frame",
         _every,
         "Time",
-        checked=lambda e: e.timeline.every,
+        checked=lambda context: context.timeline.every,
         contexts=_KEYED,
         separated=True,
         doc="Leave none out, however slow that makes it.",

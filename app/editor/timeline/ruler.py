@@ -15,7 +15,7 @@ from ..toolkit.words import SMALL, font, tip
 from .gaps import Missing
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import TimelineContext
 
 Hold = Literal["", "now", "in", "out", "pan"]
 
@@ -35,37 +35,38 @@ LEFT, RIGHT, MIDDLE = imgui.MouseButton_.left, imgui.MouseButton_.right, imgui.M
 class Ruler:
     """Scrubbing, the part that is played, and the part that is seen."""
 
+    context: TimelineContext
     missing: Missing = field(default_factory=Missing)
     _hold: Hold = ""
     _played: bool = False
 
-    def draw(self, editor: Editor, rect: Rect) -> bool:
+    def draw(self, rect: Rect) -> bool:
         """Draw into a rectangle; True if its menu is asked for."""
-        session, timeline = editor.session, editor.timeline
+        session, timeline = self.context.session, self.context.timeline
         imgui.set_cursor_screen_pos(rect[:2])
         imgui.push_item_flag(int(imgui.ItemFlags_.no_nav), True)
         imgui.invisible_button("##ruler", (rect[2] - rect[0], rect[3] - rect[1]), _BUTTONS)
         imgui.pop_item_flag()
         hovered, active = imgui.is_item_hovered(), imgui.is_item_active()
-        editor.places["ruler"] = rect
-        plane = _plane(editor, rect)
-        self._mouse(editor, plane, hovered, active)
-        plane = _plane(editor, rect)
+        self.context.places["ruler"] = rect
+        plane = _plane(self.context, rect)
+        self._mouse(plane, hovered, active)
+        plane = _plane(self.context, rect)
         timeline.hovered = hovered or active
-        self._paint(editor, plane)
+        self._paint(plane)
         for frame in (session.frame, *session.frames):
             x = plane.x(frame)
-            editor.places[f"ruler {frame}"] = (x - 2.0, rect[1], x + 2.0, rect[3])
+            self.context.places[f"ruler {frame}"] = (x - 2.0, rect[1], x + 2.0, rect[3])
         if hovered and not active and self._hold == "":
-            _tell(editor, plane)
+            _tell(self.context, plane)
         return hovered and imgui.is_mouse_released(RIGHT)
 
     # --- the mouse ---------------------------------------------------------------------------------------------------
 
-    def _mouse(self, editor: Editor, plane: Plane, hovered: bool, active: bool) -> None:
-        session, timeline, io = editor.session, editor.timeline, imgui.get_io()
+    def _mouse(self, plane: Plane, hovered: bool, active: bool) -> None:
+        session, timeline, io = self.context.session, self.context.timeline, imgui.get_io()
         mouse = imgui.get_mouse_pos()
-        near = _handle(editor, plane, mouse.x, mouse.y) if hovered else ""
+        near = _handle(self.context, plane, mouse.x, mouse.y) if hovered else ""
         if near in ("in", "out") or self._hold in ("in", "out"):
             imgui.set_mouse_cursor(imgui.MouseCursor_.resize_ew)
         if imgui.is_item_activated():
@@ -81,7 +82,7 @@ class Ruler:
         timeline.scrubbing = self._hold == "now"
         frame = math.floor(plane.frame(mouse.x) + 0.5)
         if self._hold == "now":
-            self._edge(editor, plane, mouse.x)
+            self._edge(plane, mouse.x)
             session.seek(frame)
         elif self._hold == "pan":
             timeline.pan(session, -io.mouse_delta.x / plane.across)
@@ -90,20 +91,20 @@ class Ruler:
             low, high = (min(frame, high), high) if self._hold == "in" else (low, max(frame, low))
             timeline.set_part(session, low, high)
 
-    def _edge(self, editor: Editor, plane: Plane, x: float) -> None:
+    def _edge(self, plane: Plane, x: float) -> None:
         """Beyond the border of a part that is seen, go on to what lies there."""
         left, _, right, _ = plane.rect
-        if editor.timeline.view is not None and not left <= x <= right:
+        if self.context.timeline.view is not None and not left <= x <= right:
             over = min(x - left, 0.0) + max(x - right, 0.0)
-            editor.timeline.pan(editor.session, over / plane.across * 0.1)
+            self.context.timeline.pan(self.context.session, over / plane.across * 0.1)
 
     # --- what is drawn -----------------------------------------------------------------------------------------------
 
-    def _paint(self, editor: Editor, plane: Plane) -> None:
-        draw, palette, scale = imgui.get_window_draw_list(), editor.palette, ui_scale()
+    def _paint(self, plane: Plane) -> None:
+        draw, palette, scale = imgui.get_window_draw_list(), self.context.palette, ui_scale()
         left, top, right, bottom = plane.rect
-        session, rounding = editor.session, imgui.get_style().frame_rounding
-        low, high = editor.timeline.span(session)
+        session, rounding = self.context.session, imgui.get_style().frame_rounding
+        low, high = self.context.timeline.span(session)
         draw.add_rect_filled((left, top), (right, bottom), u32(mix(palette.window, palette.field, 0.35)), rounding)
         draw.push_clip_rect((left, top), (right, bottom), True)
         first, last = session.frames
@@ -115,19 +116,19 @@ class Ruler:
             draw.add_rect_filled((whole[0], top), (inside[0], bottom), shade)
             draw.add_rect_filled((inside[1], top), (whole[1], bottom), shade)
             draw.add_rect_filled((inside[0], top), (inside[1], top + 2.0 * scale), u32(palette.accent, 0.9))
-        self._frames(editor, plane)
-        self._ready(editor, plane)
-        _keys(editor, plane)
-        _handles(editor, plane, low, high)
-        _now(editor, plane, self._hold == "now")
+        self._frames(plane)
+        self._ready(plane)
+        _keys(self.context, plane)
+        _handles(self.context, plane, low, high)
+        _now(self.context, plane, self._hold == "now")
         draw.pop_clip_rect()
 
-    def _frames(self, editor: Editor, plane: Plane) -> None:
+    def _frames(self, plane: Plane) -> None:
         """Lines and numbers."""
-        draw, palette, scale = imgui.get_window_draw_list(), editor.palette, ui_scale()
+        draw, palette, scale = imgui.get_window_draw_list(), self.context.palette, ui_scale()
         _, top, _, bottom = plane.rect
         line, faint = u32(palette.dim, 0.5), u32(palette.dim, 0.22)
-        with font(editor, "text", SMALL * 0.92):
+        with font(self.context, "text", SMALL * 0.92):
             for tick in ticks(plane.view.first, plane.view.last, plane.across, 58.0 * scale, whole=True):
                 x = round(plane.x(tick.at)) + 0.5
                 draw.add_line(
@@ -139,21 +140,21 @@ class Ruler:
                     wide = imgui.calc_text_size(tick.label).x
                     draw.add_text((round(x - wide * 0.5), top + 3.0 * scale), u32(palette.dim), tick.label)
 
-    def _ready(self, editor: Editor, plane: Plane) -> None:
+    def _ready(self, plane: Plane) -> None:
         """What can be shown at once is green, what has no file is red."""
-        draw, palette, scale = imgui.get_window_draw_list(), editor.palette, ui_scale()
+        draw, palette, scale = imgui.get_window_draw_list(), self.context.palette, ui_scale()
         bottom = plane.rect[3]
         for frames, color in (
-            (_runs(editor.preview.frames), palette.good),
-            (self.missing.gaps(editor.session), palette.error),
+            (_runs(self.context.preview.frames), palette.good),
+            (self.missing.gaps(self.context.session), palette.error),
         ):
             for first, last in frames:
                 a, b = plane.x(first - 0.5), max(plane.x(last + 0.5), plane.x(first - 0.5) + 1.5)
                 draw.add_rect_filled((a, bottom - 3.0 * scale), (b, bottom), u32(color, 0.95))
 
 
-def _plane(editor: Editor, rect: Rect) -> Plane:
-    low, high = editor.timeline.seen(editor.session)
+def _plane(context: TimelineContext, rect: Rect) -> Plane:
+    low, high = context.timeline.seen(context.session)
     return Plane(View(low, high), rect)
 
 
@@ -168,9 +169,9 @@ def _runs(frames: tuple[int, ...]) -> list[tuple[int, int]]:
     return found
 
 
-def _keys(editor: Editor, plane: Plane) -> None:
+def _keys(context: TimelineContext, plane: Plane) -> None:
     """Keys of the selected nodes, else of all, as diamonds."""
-    draw, palette, session, size = imgui.get_window_draw_list(), editor.palette, editor.session, KEY * ui_scale()
+    draw, palette, session, size = imgui.get_window_draw_list(), context.palette, context.session, KEY * ui_scale()
     y = plane.rect[3] - 8.0 * ui_scale()
     edge = u32(palette.window, 0.9)
     for frame in session.key_frames():
@@ -181,38 +182,38 @@ def _keys(editor: Editor, plane: Plane) -> None:
             draw.add_ngon_filled((x, y), size, u32(color), 4)
 
 
-def _handle(editor: Editor, plane: Plane, x: float, y: float) -> Hold:
+def _handle(context: TimelineContext, plane: Plane, x: float, y: float) -> Hold:
     """The handle under the mouse: only the upper half of the ruler has any."""
     if y > plane.rect[1] + (plane.rect[3] - plane.rect[1]) * 0.45:
         return ""
-    low, high = editor.timeline.span(editor.session)
+    low, high = context.timeline.span(context.session)
     ends: tuple[tuple[Hold, float], ...] = (("in", plane.x(low - 0.5)), ("out", plane.x(high + 0.5)))
     name, at = min(ends, key=lambda end: abs(x - end[1]))
     return name if abs(x - at) <= NEAR * ui_scale() else ""
 
 
-def _handles(editor: Editor, plane: Plane, low: int, high: int) -> None:
+def _handles(context: TimelineContext, plane: Plane, low: int, high: int) -> None:
     """Where what is played begins and ends."""
-    draw, palette, scale = imgui.get_window_draw_list(), editor.palette, ui_scale()
+    draw, palette, scale = imgui.get_window_draw_list(), context.palette, ui_scale()
     top, size = plane.rect[1], 7.0 * scale
-    lit = editor.timeline.part is not None
+    lit = context.timeline.part is not None
     color = u32(palette.accent if lit else palette.dim, 1.0 if lit else 0.7)
     for name, x, way in (("in", plane.x(low - 0.5), 1.0), ("out", plane.x(high + 0.5), -1.0)):
         draw.add_triangle_filled((x, top), (x + way * size, top), (x, top + size * 1.3), color)
-        editor.places[f"ruler {name}"] = (x - 3.0 * scale, top, x + 3.0 * scale, top + size)
+        context.places[f"ruler {name}"] = (x - 3.0 * scale, top, x + 3.0 * scale, top + size)
 
 
-def _now(editor: Editor, plane: Plane, held: bool) -> None:
+def _now(context: TimelineContext, plane: Plane, held: bool) -> None:
     """The frame that is looked at."""
-    draw, palette, scale = imgui.get_window_draw_list(), editor.palette, ui_scale()
+    draw, palette, scale = imgui.get_window_draw_list(), context.palette, ui_scale()
     left, top, right, bottom = plane.rect
-    frame = editor.session.frame
+    frame = context.session.frame
     wide = plane.across
     x = plane.x(frame)
     if 6.0 * scale < wide < 90.0 * scale:
         draw.add_rect_filled((x - wide * 0.5, top), (x + wide * 0.5, bottom), u32(palette.accent, 0.16))
     draw.add_line((round(x) + 0.5, top), (round(x) + 0.5, bottom), u32(palette.accent), (2.0 if held else 1.5) * scale)
-    with font(editor, "bold", SMALL * 0.92):
+    with font(context, "bold", SMALL * 0.92):
         text = str(frame)
         half = imgui.calc_text_size(text).x * 0.5 + 5.0 * scale
         middle = min(max(x, left + half), right - half)
@@ -220,17 +221,17 @@ def _now(editor: Editor, plane: Plane, held: bool) -> None:
         box = (middle - half, top + 1.0), (middle + half, top + 1.0 + high)
         draw.add_rect_filled(*box, u32(palette.accent), 3.0 * scale)
         draw.add_text((round(box[0][0] + 5.0 * scale), round(top + 1.0 + scale)), u32(palette.on_accent), text)
-    editor.places["ruler now"] = (middle - half, top, middle + half, top + high)
+    context.places["ruler now"] = (middle - half, top, middle + half, top + high)
 
 
-def _tell(editor: Editor, plane: Plane) -> None:
+def _tell(context: TimelineContext, plane: Plane) -> None:
     """What is at the frame under the mouse."""
     frame = math.floor(plane.frame(imgui.get_mouse_pos().x) + 0.5)
-    session = editor.session
+    session = context.session
     seconds = (frame - session.frames[0]) / session.settings.rate
     facts = [f"frame {frame}, {seconds:.2f} s"]
     if frame in session.key_frames():
         facts.append("a key")
-    if frame in editor.preview.frames:
+    if frame in context.preview.frames:
         facts.append("ready")
     tip(" · ".join(facts))

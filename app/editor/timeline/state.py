@@ -34,6 +34,11 @@ class TimelineState:
     report: str = ""
     """How playing went last."""
 
+    @property
+    def playing(self) -> bool:
+        """True while frames are played."""
+        return self.playback.playing
+
     def span(self, session: Session) -> tuple[int, int]:
         """The frames that are played: the chosen part as far as it lies in the range."""
         first, last = session.frames

@@ -19,7 +19,7 @@ from .playback import Loop
 from .ruler import Ruler
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import TimelineContext
 
 HEIGHT = 40.0
 """Of the bar, at UI scale 1."""
@@ -38,14 +38,15 @@ class Timeline:
 
     title = "Timeline"
 
-    def __init__(self) -> None:
+    def __init__(self, context: TimelineContext) -> None:
+        self._context = context
         self._fields = Fields(DARK)
-        self._ruler = Ruler()
+        self._ruler = Ruler(context)
 
-    def draw(self, editor: Editor) -> None:
+    def draw(self) -> None:
         """Draw into the current window."""
         fields, scale = self._fields, ui_scale()
-        fields.palette, fields.places, fields.lights = editor.palette, editor.places, editor.lights
+        fields.palette, fields.places, fields.lights = self._context.palette, self._context.places, self._context.lights
         dragged = fields.dragging
         fields.begin(imgui.is_mouse_down(imgui.MouseButton_.left))
         start, size = imgui.get_cursor_screen_pos(), imgui.get_content_region_avail()
@@ -53,90 +54,92 @@ class Timeline:
         top = start.y + max((size.y - high) * 0.5, 0.0)
         imgui.set_cursor_screen_pos((start.x + 6.0 * scale, top))
         imgui.push_style_var(imgui.StyleVar_.item_spacing, (2.0 * scale, 0.0))
-        self._transport(editor)
+        self._transport()
         imgui.same_line(0.0, 6.0 * scale)
-        self._frame(editor, 60.0 * scale)
+        self._frame(60.0 * scale)
         imgui.same_line(0.0, 8.0 * scale)
         left = imgui.get_cursor_screen_pos().x
         wide = size.x / scale
         words, range_wide = (196.0 if wide > _ROOMY else 0.0) * scale, (196.0 if wide > _NARROW else 0.0) * scale
         right = start.x + size.x - words - range_wide - 8.0 * scale
         pad = 4.0 * scale
-        asked = self._ruler.draw(editor, (left, start.y + pad, max(right, left + 8.0), start.y + size.y - pad))
+        asked = self._ruler.draw((left, start.y + pad, max(right, left + 8.0), start.y + size.y - pad))
         if range_wide:
             imgui.set_cursor_screen_pos((right + 8.0 * scale, top))
-            self._range(editor, scale)
+            self._range(scale)
         if words:
-            self._words(editor, (right + range_wide + 12.0 * scale, top, start.x + size.x - 8.0 * scale, top + high))
+            self._words((right + range_wide + 12.0 * scale, top, start.x + size.x - 8.0 * scale, top + high))
         imgui.pop_style_var()
         if asked:
             imgui.open_popup("timeline menu")
         if imgui.begin_popup("timeline menu"):
-            for action in editor.actions.context("timeline"):
+            for action in self._context.actions.in_menu("timeline"):
                 if action.separated:
                     imgui.separator()
-                entry(editor, action)
+                entry(self._context, action)
             imgui.end_popup()
         if dragged and not fields.dragging:
-            editor.session.seal()
+            self._context.session.seal()
         fields.end()
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _transport(self, editor: Editor) -> None:
-        playing, timeline = editor.timeline.playback.playing, editor.timeline
-        tool(editor, icons.ICON_FA_BACKWARD_FAST, "time.first")
+    def _transport(self) -> None:
+        playing, timeline = self._context.timeline.playing, self._context.timeline
+        tool(self._context, icons.ICON_FA_BACKWARD_FAST, "time.first")
         imgui.same_line()
-        tool(editor, icons.ICON_FA_BACKWARD_STEP, "time.previous")
+        tool(self._context, icons.ICON_FA_BACKWARD_STEP, "time.previous")
         imgui.same_line()
-        tool(editor, icons.ICON_FA_PAUSE if playing else icons.ICON_FA_PLAY, "time.play")
+        tool(self._context, icons.ICON_FA_PAUSE if playing else icons.ICON_FA_PLAY, "time.play")
         imgui.same_line()
-        tool(editor, icons.ICON_FA_FORWARD_STEP, "time.next")
+        tool(self._context, icons.ICON_FA_FORWARD_STEP, "time.next")
         imgui.same_line()
-        tool(editor, icons.ICON_FA_FORWARD_FAST, "time.last")
+        tool(self._context, icons.ICON_FA_FORWARD_FAST, "time.last")
         imgui.same_line()
-        action = editor.actions[f"time.{timeline.loop.replace('-', '_')}"]
-        doc = f"{tip_of(editor, action)}\nClick for another way"
-        if quiet(editor, _LOOPS[timeline.loop], "button time.loops", doc):
+        action = self._context.actions[f"time.{timeline.loop.replace('-', '_')}"]
+        doc = f"{tip_of(self._context, action)}\nClick for another way"
+        if quiet(self._context, _LOOPS[timeline.loop], "button time.loops", doc):
             timeline.next_loop()
 
-    def _frame(self, editor: Editor, width: float) -> None:
-        edit = self._number(editor, "timeline frame", editor.session.frame, width, "The frame that is looked at")
+    def _frame(self, width: float) -> None:
+        edit = self._number("timeline frame", self._context.session.frame, width, "The frame that is looked at")
         if edit and isinstance(edit.value, int | float):
-            editor.timeline.stop()
-            editor.session.seek(edit.value)
+            self._context.timeline.stop()
+            self._context.session.seek(edit.value)
 
-    def _range(self, editor: Editor, scale: float) -> None:
+    def _range(self, scale: float) -> None:
         """The range and the rate, which are the document's."""
-        session = editor.session
+        session = self._context.session
         first, last = session.frames
         stated = session.settings.frames is not None
         doc = "frame of the graph" + ("" if stated else ": as what it reads, or its keys, say; a number here states it")
         for name, value, gap in (("first", first, 3.0), ("last", last, 8.0)):
-            edit = self._number(editor, f"timeline {name}", value, 52.0 * scale, f"{name.title()} {doc}")
+            edit = self._number(f"timeline {name}", value, 52.0 * scale, f"{name.title()} {doc}")
             imgui.same_line(0.0, gap * scale)
             if edit and isinstance(edit.value, int | float):
                 at, merge = int(edit.value), edit.merge
                 low, high = (at, max(last, at)) if name == "first" else (min(first, at), at)
-                editor.attempt(lambda low=low, high=high, merge=merge: session.set_frames(low, high, merge=merge))
+                self._context.log.attempt(
+                    lambda low=low, high=high, merge=merge: session.set_frames(low, high, merge=merge)
+                )
         rate = number_field(
             self._fields, "timeline rate", session.settings.rate, RATE, 76.0 * scale, suffix="fps", plain=True
         )
-        editor.places["field timeline rate"] = item_rect()
+        self._context.places["field timeline rate"] = item_rect()
         tip("Frames per second of the graph")
         if rate and isinstance(rate.value, int | float):
             value, merge = float(rate.value), rate.merge
-            editor.attempt(lambda: session.set_rate(value, merge=merge))
+            self._context.log.attempt(lambda: session.set_rate(value, merge=merge))
 
-    def _number(self, editor: Editor, id: str, value: int, width: float, doc: str) -> Edit | None:
+    def _number(self, id: str, value: int, width: float, doc: str) -> Edit | None:
         edit = number_field(self._fields, id, value, near(value), width, plain=True)
-        editor.places[f"field {id}"] = item_rect()
+        self._context.places[f"field {id}"] = item_rect()
         tip(doc)
         return edit
 
-    def _words(self, editor: Editor, rect: tuple[float, float, float, float]) -> None:
+    def _words(self, rect: tuple[float, float, float, float]) -> None:
         """How playing goes, else what is computed, else what is ready."""
-        timeline, preview, palette = editor.timeline, editor.preview, editor.palette
+        timeline, preview, palette = self._context.timeline, self._context.preview, self._context.palette
         text, color = timeline.playback.words, palette.text
         lead = preview.lead
         if lead:
@@ -144,14 +147,14 @@ class Timeline:
             text = f"pre-roll {done} of {total}" if kind == "pre-roll" else f"planning {done} of {total} frames"
             color = palette.accent
         elif not text:
-            first, last = editor.session.frames
+            first, last = self._context.session.frames
             ready = sum(first <= frame <= last for frame in preview.frames)
             text, color = timeline.report, palette.dim
             if last > first and not text:
                 text = f"{ready} of {last - first + 1} ready, {preview.frames_bytes / 2**20:.0f} MiB"
-        with font(editor, "text", SMALL):
+        with font(self._context, "text", SMALL):
             write(rect, text, color)
-        editor.places["timeline words"] = rect
+        self._context.places["timeline words"] = rect
         imgui.set_cursor_screen_pos(rect[:2])
         imgui.dummy((max(rect[2] - rect[0], 1.0), rect[3] - rect[1]))
         tip("Frames that are ready are shown at once. They keep to a half of the memory budget.")

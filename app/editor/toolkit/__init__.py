@@ -1,1 +1,1 @@
-"""Widgets that all panels share. Everything that a person can press or read notes its place in `editor.places`."""
+"""Widgets that all panels share. Each widget notes under a name where it is, in the `places` of its surface."""

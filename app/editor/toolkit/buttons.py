@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from imgui_bundle import ImVec2, imgui
 
@@ -14,8 +14,14 @@ from .places import Surface, item_rect, record
 from .words import tip
 
 if TYPE_CHECKING:
-    from ..shared.action import Action
-    from ..window.editor import Editor
+    from ..shared.action import Action, Actions
+
+
+class ActionSurface(Surface, Protocol):
+    """A surface whose widgets run actions."""
+
+    @property
+    def actions(self) -> Actions: ...
 
 
 def quiet(
@@ -112,36 +118,38 @@ def dropdown(
 # --- actions ---------------------------------------------------------------------------------------------------------
 
 
-def tip_of(editor: Editor, action: Action) -> str:
+def tip_of(surface: ActionSurface, action: Action) -> str:
     """What the tooltip of an action says."""
-    shortcut = editor.actions.shortcut(action.id)
+    shortcut = surface.actions.shortcut(action.id)
     title = action.label.removesuffix("...")
     title = f"{title} ({shown(shortcut)})" if shortcut else title
     return f"{title}\n{action.doc}" if action.doc else title
 
 
-def tool(editor: Editor, icon: str, id: str) -> None:
+def tool(surface: ActionSurface, icon: str, id: str) -> None:
     """A quiet button that runs an action, lit while the action is checked."""
-    action = editor.actions[id]
-    lit = action.checked is not None and action.checked(editor)
-    if quiet(editor, icon, f"button {id}", tip_of(editor, action), lit=lit, enabled=action.enabled(editor)):
-        editor.actions.run(id, editor)
+    action = surface.actions[id]
+    lit = surface.actions.is_checked(action)
+    if quiet(
+        surface, icon, f"button {id}", tip_of(surface, action), lit=lit, enabled=surface.actions.is_enabled(action)
+    ):
+        surface.actions.run(id)
 
 
-def entry(editor: Editor, action: Action, icon: str = "") -> None:
+def entry(surface: ActionSurface, action: Action, icon: str = "") -> None:
     """An action as an entry of the menu that is open."""
-    checked = action.checked is not None and action.checked(editor)
+    checked = surface.actions.is_checked(action)
     label = f"{icon}  {action.label}" if icon else action.label
-    shortcut = shown(editor.actions.shortcut(action.id))
-    clicked, _ = imgui.menu_item(f"{label}##{action.id}", shortcut, checked, action.enabled(editor))
-    record(editor, f"menu {action.id}")
+    shortcut = shown(surface.actions.shortcut(action.id))
+    clicked, _ = imgui.menu_item(f"{label}##{action.id}", shortcut, checked, surface.actions.is_enabled(action))
+    record(surface, f"menu {action.id}")
     tip(action.doc)
     if clicked:
-        editor.actions.run(action.id, editor)
+        surface.actions.run(action.id)
 
 
-def entries(editor: Editor, menu: str) -> None:
+def entries(surface: ActionSurface, menu: str) -> None:
     """The actions of a menu of the menu bar, as entries of the menu that is open."""
-    for action in editor.actions.all:
+    for action in surface.actions.all:
         if action.menu == menu:
-            entry(editor, action)
+            entry(surface, action)

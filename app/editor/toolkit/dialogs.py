@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
 
 from imgui_bundle import ImVec2, imgui
 
 from ..theme.style import ui_scale, vec4
-
-if TYPE_CHECKING:
-    from ..window.editor import Editor
+from .places import Surface
 
 FIXED = (
     int(imgui.WindowFlags_.no_docking)
@@ -22,12 +19,12 @@ FIXED = (
 )
 
 
-def backdrop(editor: Editor, name: str, opacity: float = 0.45) -> bool:
+def backdrop(surface: Surface, name: str, opacity: float = 0.45) -> bool:
     """Cover everything below a dialog, so that nothing else can be clicked; True if it was clicked itself."""
     view = imgui.get_main_viewport()
     imgui.set_next_window_pos(view.pos)
     imgui.set_next_window_size(view.size)
-    imgui.push_style_color(imgui.Col_.window_bg, vec4(editor.palette.shadow, opacity))
+    imgui.push_style_color(imgui.Col_.window_bg, vec4(surface.palette.shadow, opacity))
     imgui.push_style_var(imgui.StyleVar_.window_border_size, 0.0)
     still = int(imgui.WindowFlags_.no_decoration) | int(imgui.WindowFlags_.no_nav)
     imgui.begin(f"##behind {name}", None, FIXED | still | int(imgui.WindowFlags_.no_bring_to_front_on_focus))
@@ -41,7 +38,7 @@ def backdrop(editor: Editor, name: str, opacity: float = 0.45) -> bool:
 
 @contextmanager
 def dialog(
-    editor: Editor,
+    surface: Surface,
     title: str,
     size: tuple[float, float],
     *,
@@ -72,7 +69,7 @@ def dialog(
     _to_front()
     yield
     corner, extent = imgui.get_window_pos(), imgui.get_window_size()
-    editor.places[f"dialog {title}"] = (corner.x, corner.y, corner.x + extent.x, corner.y + extent.y)
+    surface.places[f"dialog {title}"] = (corner.x, corner.y, corner.x + extent.x, corner.y + extent.y)
     imgui.end()
 
 

@@ -6,6 +6,7 @@ from typing import Protocol
 
 from imgui_bundle import imgui
 
+from ..theme.fonts import Fonts
 from ..theme.palette import Palette
 
 Rect = tuple[float, float, float, float]
@@ -13,13 +14,20 @@ Rect = tuple[float, float, float, float]
 
 
 class Surface(Protocol):
-    """What widgets are drawn on, such as the editor: it knows their colors, and keeps where they are."""
+    """What widgets are drawn on, such as the context of a panel: it knows their colors, and keeps where they are."""
 
     @property
     def palette(self) -> Palette: ...
 
     @property
     def places(self) -> dict[str, Rect]: ...
+
+
+class TextSurface(Surface, Protocol):
+    """A surface with the fonts of the window."""
+
+    @property
+    def fonts(self) -> Fonts | None: ...
 
 
 def item_rect() -> Rect:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
@@ -12,10 +12,7 @@ from imgui_bundle import imgui
 from ...authoring.log import Level
 from ..theme.palette import RGB, Palette
 from ..theme.style import EM, mix, u32, ui_scale, vec4
-from .places import Rect, Surface
-
-if TYPE_CHECKING:
-    from ..window.editor import Editor
+from .places import Rect, Surface, TextSurface
 
 SMALL, TITLE, BIG = EM * 0.86, EM * 1.125, EM * 1.6
 """Font sizes besides that of everything else: notes and headings of sections, titles of dialogs, the program's name."""
@@ -33,9 +30,9 @@ def level_color(palette: Palette, level: Level) -> RGB:
 
 
 @contextmanager
-def font(editor: Editor, name: Literal["text", "bold", "mono"], size: float = EM) -> Iterator[None]:
+def font(surface: TextSurface, name: Literal["text", "bold", "mono"], size: float = EM) -> Iterator[None]:
     """Text in another font; `size` in pixels at scale 1."""
-    imgui.push_font(getattr(editor.fonts, name, None), size)
+    imgui.push_font(getattr(surface.fonts, name, None), size)
     try:
         yield
     finally:
@@ -108,7 +105,7 @@ def note_below(palette: Palette, rect: Rect, text: str, color: RGB) -> None:
     lines.add_text(imgui.get_font(), imgui.get_font_size(), (x + pad.x, y + pad.y), u32(color), text, wrap_width=wrap)
 
 
-def nothing_here(editor: Editor, icon: str, title: str, sentence: str) -> None:
+def nothing_here(surface: TextSurface, icon: str, title: str, sentence: str) -> None:
     """What an empty panel says, in its middle."""
     room, scale = imgui.get_content_region_avail(), ui_scale()
     width = max(min(room.x, 320 * scale), 1.0)
@@ -117,13 +114,13 @@ def nothing_here(editor: Editor, icon: str, title: str, sentence: str) -> None:
     left, top = imgui.get_cursor_pos_x(), imgui.get_cursor_pos_y() + max((room.y - height) * 0.4, 0.0)
     imgui.set_cursor_pos_y(top)
     for text, base, color in (
-        (icon, 22.0, mix(editor.palette.dim, editor.palette.panel, 0.35)),
-        (title, EM, editor.palette.text),
+        (icon, 22.0, mix(surface.palette.dim, surface.palette.panel, 0.35)),
+        (title, EM, surface.palette.text),
     ):
-        with font(editor, "bold", base):
+        with font(surface, "bold", base):
             imgui.set_cursor_pos_x(left + max((room.x - imgui.calc_text_size(text).x) / 2, 0.0))
             imgui.text_colored(vec4(color), text)
     imgui.set_cursor_pos_x(left + max((room.x - min(size.x, width)) / 2, 0.0))
     imgui.push_text_wrap_pos(imgui.get_cursor_pos_x() + min(size.x, width) + scale)
-    dim(editor, sentence)
+    dim(surface, sentence)
     imgui.pop_text_wrap_pos()

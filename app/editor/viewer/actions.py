@@ -8,7 +8,7 @@ from ..shared.action import Action
 from .state import BACKGROUNDS, PROXIES, SCOPES, Background, Channels, Compare
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import ViewerContext
 
 _CHANNELS: tuple[tuple[Channels, str, str], ...] = (
     ("color", "Color", "C"),
@@ -31,62 +31,62 @@ _SHOWN = frozenset({"viewer"})
 def _set(**values: Any):
     """An act that sets fields of the viewer."""
 
-    def act(editor: Editor) -> None:
+    def act(context: ViewerContext) -> None:
         for name, value in values.items():
-            setattr(editor.viewer, name, value)
+            setattr(context.viewer, name, value)
 
     return act
 
 
 def _flip(name: str):
-    def act(editor: Editor) -> None:
-        setattr(editor.viewer, name, not getattr(editor.viewer, name))
+    def act(context: ViewerContext) -> None:
+        setattr(context.viewer, name, not getattr(context.viewer, name))
 
     return act
 
 
 def _is(name: str, value: Any = True):
-    return lambda editor: getattr(editor.viewer, name) == value
+    return lambda context: getattr(context.viewer, name) == value
 
 
 def _expose(step: float):
-    def act(editor: Editor) -> None:
-        editor.viewer.exposure = round(editor.viewer.exposure + step, 3)
+    def act(context: ViewerContext) -> None:
+        context.viewer.exposure = round(context.viewer.exposure + step, 3)
 
     return act
 
 
 def _zoom(factor: float):
-    def act(editor: Editor) -> None:
-        editor.viewer.nearer *= factor
+    def act(context: ViewerContext) -> None:
+        context.viewer.nearer *= factor
 
     return act
 
 
-def _toggle(editor: Editor) -> None:
+def _toggle(context: ViewerContext) -> None:
     """Show B instead of A and back; comparing begins with B, which is what was asked for."""
-    viewer = editor.viewer
+    viewer = context.viewer
     viewer.toggled = not viewer.toggled if viewer.compare == "toggle" else True
     viewer.compare = "toggle"
 
 
-def _swap(editor: Editor) -> None:
-    session = editor.session
+def _swap(context: ViewerContext) -> None:
+    session = context.session
     first, second = session.viewed("A"), session.viewed("B")
     if first and second:
         session.view(second, "A")
         session.view(first, "B")
 
 
-def _region(editor: Editor) -> None:
+def _region(context: ViewerContext) -> None:
     """Begin to draw one; where there is one, or one is being drawn, end that."""
-    viewer = editor.viewer
+    viewer = context.viewer
     viewer.drawing_region = viewer.region is None and not viewer.drawing_region
     viewer.region = None
 
 
-def _shown(editor: Editor) -> bool:
-    return editor.session.viewed("A") is not None
+def _shown(context: ViewerContext) -> bool:
+    return context.session.viewed("A") is not None
 
 
 def _background(name: Background) -> Action:
@@ -111,11 +111,11 @@ def _proxy(scale: float) -> Action:
 
 
 def _scope(name: str) -> Action:
-    def act(editor: Editor) -> None:
-        editor.viewer.scopes ^= {name}
+    def act(context: ViewerContext) -> None:
+        context.viewer.scopes ^= {name}
 
     return Action(
-        f"scopes.{name}", name.capitalize(), act, "Viewer/Scopes", checked=lambda editor: name in editor.viewer.scopes
+        f"scopes.{name}", name.capitalize(), act, "Viewer/Scopes", checked=lambda context: name in context.viewer.scopes
     )
 
 
@@ -123,16 +123,16 @@ def _numbered(number: int) -> tuple[Action, Action]:
     recall = Action(
         f"viewer.recall.{number}",
         f"Show {number}",
-        lambda e: e.session.recall_viewer(number),
+        lambda context: context.session.recall_viewer(number),
         "Viewer/Bookmarks",
         str(number),
-        enabled=lambda e: number in e.session.viewers,
+        enabled=lambda context: number in context.session.viewers,
         doc="Show what this key was given to.",
     )
     assign = Action(
         f"viewer.assign.{number}",
         f"Assign {number}",
-        lambda e: e.session.assign_viewer(number),
+        lambda context: context.session.assign_viewer(number),
         "Viewer/Bookmarks",
         f"Ctrl+{number}",
         enabled=_shown,
@@ -147,12 +147,12 @@ VIEWER: tuple[Action, ...] = (
     Action(
         "viewer.fit",
         "Fit",
-        lambda e: e.viewer.fit(),
+        lambda context: context.viewer.fit(),
         "Viewer",
         "F",
         "viewer",
         contexts=_SHOWN,
-        checked=lambda e: e.viewer.zoom == 0.0,
+        checked=lambda context: context.viewer.zoom == 0.0,
         doc="The whole picture, whatever the size of the panel.",
     ),
     Action(
@@ -172,7 +172,7 @@ VIEWER: tuple[Action, ...] = (
         Action(
             f"viewer.{name.replace(' ', '_')}",
             label,
-            lambda e, name=name: e.viewer.show(name),
+            lambda context, name=name: context.viewer.show(name),
             "Viewer/Channels",
             key,
             "viewer",
@@ -184,7 +184,7 @@ VIEWER: tuple[Action, ...] = (
         Action(
             f"viewer.{name}",
             label,
-            lambda e, name=name: e.viewer.comparing(name),
+            lambda context, name=name: context.viewer.comparing(name),
             "Viewer/Compare",
             key,
             "viewer",
@@ -202,7 +202,7 @@ VIEWER: tuple[Action, ...] = (
         "Viewer/Compare",
         "Shift+X",
         "viewer",
-        lambda e: _shown(e) and e.session.viewed("B") is not None,
+        lambda context: _shown(context) and context.session.viewed("B") is not None,
     ),
     Action(
         "viewer.brighter",
@@ -231,7 +231,7 @@ VIEWER: tuple[Action, ...] = (
         "Viewer/Exposure",
         "Backslash",
         "viewer",
-        lambda e: e.viewer.exposure != 0.0 or e.viewer.gamma != 1.0,
+        lambda context: context.viewer.exposure != 0.0 or context.viewer.gamma != 1.0,
     ),
     *(_background(name) for name in BACKGROUNDS),
     *(_proxy(scale) for scale in PROXIES),
@@ -280,7 +280,7 @@ VIEWER: tuple[Action, ...] = (
         "Shift+R",
         "viewer",
         _shown,
-        lambda e: e.viewer.drawing_region or e.viewer.region is not None,
+        lambda context: context.viewer.drawing_region or context.viewer.region is not None,
         contexts=_SHOWN,
         doc="Drag a rectangle: scopes and the pixel table measure only that, and the rest is dimmed.",
     ),
@@ -302,7 +302,7 @@ VIEWER: tuple[Action, ...] = (
         "Viewer",
         "",
         "viewer",
-        lambda e: bool(e.viewer.markers or e.viewer.measured),
+        lambda context: bool(context.viewer.markers or context.viewer.measured),
         contexts=_SHOWN,
     ),
     Action(

@@ -15,7 +15,7 @@ from .orbit import Orbit, aspect_of, scene_at
 from .strokes import BLACK, WHITE, around
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import ViewerContext
 
 _COLORS: dict[str, RGB] = {"x": (0.95, 0.30, 0.33), "y": (0.42, 0.78, 0.25), "z": (0.30, 0.56, 0.98)}
 _ARM, _MARGIN, _KNOB = 30.0, 16.0, 7.5
@@ -28,17 +28,17 @@ def axes(camera: Camera) -> tuple[tuple[str, Point, float], ...]:
     return tuple(sorted(found, key=lambda axis: -axis[2]))
 
 
-def draw_axes(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None:
+def draw_axes(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None:
     """Those of the scene that the mouse goes around, in the lower left corner."""
-    scene, scale = scene_at(editor), ui_scale()
+    scene, scale = scene_at(context), ui_scale()
     if scene is None:
         return
     arm, reach = _ARM * scale, (_ARM + _KNOB) * scale
     x = sight.origin[0] + _MARGIN * scale + reach
     y = sight.origin[1] + sight.panel[1] / sight.density - _MARGIN * scale - reach
     lines.add_circle_filled((x, y), reach + 4.0 * scale, u32(BLACK, 0.35))
-    editor.places["viewer axes"] = around((x, y), reach)
-    for name, (right, down), ahead in axes(Orbit.of(scene).camera(aspect_of(editor))):
+    context.places["viewer axes"] = around((x, y), reach)
+    for name, (right, down), ahead in axes(Orbit.of(scene).camera(aspect_of(context))):
         color = mix(_COLORS[name], BLACK, 0.25 + 0.25 * ahead)
         end = x + right * arm, y + down * arm
         lines.add_line((x, y), end, u32(color), 2.5 * scale)
@@ -46,4 +46,4 @@ def draw_axes(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None:
         size = imgui.calc_text_size(name.upper())
         ink = BLACK if math.hypot(*color) > 0.8 else WHITE
         lines.add_text((round(end[0] - size.x / 2), round(end[1] - size.y / 2)), u32(ink), name.upper())
-        editor.places[f"axis {name}"] = around(end, _KNOB * scale)
+        context.places[f"axis {name}"] = around(end, _KNOB * scale)

@@ -13,18 +13,18 @@ from ..toolkit.buttons import quiet, room_for
 from ..toolkit.words import dim, elided, font, tip
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import ViewerContext
 
 _WITH = f"{icons.ICON_FA_TABLE_COLUMNS}  Compare with..."
 _BACK = f"{icons.ICON_FA_XMARK}  Back to the graph"
 
 
-def draw_banner(editor: Editor) -> None:
+def draw_banner(context: ViewerContext) -> None:
     """Draw it, if there is a flipbook."""
-    book = editor.viewer.flipbook
+    book = context.stage.flipbook
     if book is None:
         return
-    palette, scale = editor.palette, ui_scale()
+    palette, scale = context.palette, ui_scale()
     inner, start = imgui.internal.get_current_window().inner_rect, imgui.get_cursor_screen_pos()
     high = imgui.get_frame_height()
     bottom, color = start.y + high + 3 * scale, u32(mix(palette.panel, palette.accent, 0.16))
@@ -33,7 +33,7 @@ def draw_banner(editor: Editor) -> None:
     imgui.align_text_to_frame_padding()
     imgui.text_colored(vec4(palette.accent), f"{icons.ICON_FA_FILM} ")
     imgui.same_line(0.0, 2 * scale)
-    with font(editor, "bold"):
+    with font(context, "bold"):
         imgui.text_unformatted("Flipbook")
     buttons = (_BACK,) if len(book.strips) > 1 else (_WITH, _BACK)
     room = (inner.max.x - imgui.get_cursor_screen_pos().x - room_for(*buttons) - 130 * scale) / len(book.strips)
@@ -49,14 +49,14 @@ def draw_banner(editor: Editor) -> None:
         tip(str(strip.path))
         if strip.export is not None and strip.export.state in ("running", "waiting"):
             imgui.same_line(0.0, 6 * scale)
-            dim(editor, f"{strip.export.done} of {strip.export.total}")
+            dim(context, f"{strip.export.done} of {strip.export.total}")
     imgui.same_line(0.0, 0.0)
     imgui.set_cursor_screen_pos((inner.max.x - room_for(*buttons) - 4 * scale, start.y))
     if len(book.strips) == 1:
-        if quiet(editor, _WITH, "compare flipbook", "Play other pictures beside these"):
-            editor.actions.run("flipbook.compare", editor)
+        if quiet(context, _WITH, "compare flipbook", "Play other pictures beside these"):
+            context.actions.run("flipbook.compare")
         imgui.same_line()
     doc = "The viewer and the timeline show the document again"
-    if quiet(editor, _BACK, "close flipbook", doc):
-        editor.actions.run("flipbook.close", editor)
+    if quiet(context, _BACK, "close flipbook", doc):
+        context.actions.run("flipbook.close")
     imgui.set_cursor_screen_pos((start.x, bottom + 3 * scale))

@@ -10,7 +10,7 @@ from ...graph import Port
 from ...renderer import Nonfinite, RenderRequest, first_nonfinite
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import ViewerContext
 
 BUDGET = 0.010
 """Seconds per frame."""
@@ -19,30 +19,31 @@ BUDGET = 0.010
 class Finder:
     """A search that goes on while `editor.viewer.finding`."""
 
-    def __init__(self) -> None:
+    def __init__(self, context: ViewerContext) -> None:
+        self._context = context
         self._steps: Iterator[Nonfinite | None] | None = None
         self._of: object = None
 
-    def step(self, editor: Editor) -> None:
+    def step(self) -> None:
         """Go on; at the end, select the node and say what was found. Another graph starts it anew."""
-        if not editor.viewer.finding:
+        if not self._context.viewer.finding:
             self._stop()
             return
-        port = editor.session.viewed_in_root("A")
+        port = self._context.session.viewed_in_root("A")
         if port is None:
-            editor.viewer.finding = False
+            self._context.viewer.finding = False
             return
-        if self._of != (id(editor.session.root), port):
+        if self._of != (id(self._context.session.root), port):
             self._stop()
-            self._of = (id(editor.session.root), port)
-            self._steps = _search(editor, port)
+            self._of = (id(self._context.session.root), port)
+            self._steps = _search(self._context, port)
         try:
-            self._go_on(editor)
+            self._go_on()
         except Exception:
-            editor.viewer.finding = False
+            self._context.viewer.finding = False
             raise
 
-    def _go_on(self, editor: Editor) -> None:
+    def _go_on(self) -> None:
         assert self._steps is not None
         started = time.perf_counter()
         found = None
@@ -50,12 +51,12 @@ class Finder:
             if found is not None or time.perf_counter() - started > BUDGET:
                 break
         else:
-            editor.say("every number is finite up to here")
-            editor.viewer.finding = False
+            self._context.log.add("every number is finite up to here")
+            self._context.viewer.finding = False
         if found is not None:
-            editor.viewer.finding = False
-            _show(editor, found)
-        if not editor.viewer.finding:
+            self._context.viewer.finding = False
+            _show(self._context, found)
+        if not self._context.viewer.finding:
             self._stop()
 
     def _stop(self) -> None:
@@ -64,18 +65,20 @@ class Finder:
             steps.close()  # type: ignore[attr-defined]
 
 
-def _search(editor: Editor, port: Port) -> Iterator[Nonfinite | None]:
-    viewer = editor.viewer
-    wanted = RenderRequest(editor.session.bindings, {"A": port}, scale=viewer.proxy)
-    return first_nonfinite(editor.preview.renderer, editor.session.root, wanted, port)
+def _search(context: ViewerContext, port: Port) -> Iterator[Nonfinite | None]:
+    viewer = context.viewer
+    wanted = RenderRequest(context.session.bindings, {"A": port}, scale=viewer.proxy)
+    return first_nonfinite(context.preview.renderer, context.session.root, wanted, port)
 
 
-def _show(editor: Editor, found: Nonfinite) -> None:
+def _show(context: ViewerContext, found: Nonfinite) -> None:
     """Go to the node that was found, and mark the pixel."""
     x, y = found.pixel
-    editor.log.add(f"{found.path} is the first node that makes {found.value} (pixel {x}, {y} of its output)", "warning")
+    context.log.add(
+        f"{found.path} is the first node that makes {found.value} (pixel {x}, {y} of its output)", "warning"
+    )
     *place, name = found.path.split("/")
-    editor.attempt(lambda: editor.session.go(tuple(place)))
-    key = name if name in editor.session.graph.nodes else f"{found.port.node.split('/')[-1]}.{found.port.socket}"
-    editor.attempt(lambda: editor.session.select({key}))
-    editor.canvas.fit({key})
+    context.log.attempt(lambda: context.session.go(tuple(place)))
+    key = name if name in context.session.graph.nodes else f"{found.port.node.split('/')[-1]}.{found.port.socket}"
+    context.log.attempt(lambda: context.session.select({key}))
+    context.canvas.fit({key})

@@ -10,7 +10,7 @@ from ...graph import Port
 
 if TYPE_CHECKING:
     from ...authoring.session import Session
-    from ..window.editor import Editor
+    from .context import ViewerContext
 
 _CHOICE, _POINT, _DISTANCE = "focus", "focus_point", "focus_distance"
 
@@ -45,11 +45,11 @@ def focused_by(session: Session, id: str) -> str:
     return str(session.value(Port(id, _CHOICE)))
 
 
-def pick_focus(editor: Editor) -> None:
+def pick_focus(context: ViewerContext) -> None:
     """Let the next click on the picture say what is sharp; asked for again, not."""
-    port = focused(editor.session)
+    port = focused(context.session)
     if port is not None:
-        editor.viewer.picking = "" if editor.viewer.picking == str(port) else str(port)
+        context.viewer.picking = "" if context.viewer.picking == str(port) else str(port)
 
 
 def distance_in_words(depth: float | None) -> str:

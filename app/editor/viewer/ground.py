@@ -14,7 +14,7 @@ from .orbit import scene_at
 from .perspective import Place, project, unproject
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import ViewerContext
 
 SCENE, DEPTH, PLACE = "scene depth", "depth", "place"
 """Under which names the depth of the scene that is orbited, and depth and places of the active node, are wanted."""
@@ -26,11 +26,11 @@ _ASTRAY = 0.02
 """How far from its pixel, as a part of the picture, a place may be seen that is really there."""
 
 
-def depths(editor: Editor) -> dict[str, Port]:
+def depths(context: ViewerContext) -> dict[str, Port]:
     """What is to be computed for handles, by name."""
-    session, found = editor.session, dict[str, Port]()
-    if editor.viewer.orbits and (scene := scene_at(editor)) is not None and "depth" in scene.outputs:
-        found[SCENE] = Port(editor.viewer.scene, "depth")
+    session, found = context.session, dict[str, Port]()
+    if context.viewer.orbits and (scene := scene_at(context)) is not None and "depth" in scene.outputs:
+        found[SCENE] = Port(context.viewer.scene, "depth")
     item = session.graph.nodes.get(session.active)
     if isinstance(item, Node) and (focuses(item) or any(value.type == "lights" for value in item.values.values())):
         linked = {DEPTH: session.linked(Port(session.active, "depth"))}
@@ -40,32 +40,32 @@ def depths(editor: Editor) -> dict[str, Port]:
     return found
 
 
-def depth_at(editor: Editor, at: Point, name: str = DEPTH) -> float | None:
+def depth_at(context: ViewerContext, at: Point, name: str = DEPTH) -> float | None:
     """How far away it is what is seen at a fraction of the picture; 1e10 for the background, None if unknown."""
-    values = _read(editor, name, at)
+    values = _read(context, name, at)
     if not values or not values[0] > 0.0:
         return None
     return values[0] if values[0] < FAR else 1e10
 
 
-def surface_at(editor: Editor, camera: Camera, at: Point) -> tuple[Place, float] | None:
+def surface_at(context: ViewerContext, camera: Camera, at: Point) -> tuple[Place, float] | None:
     """The place in the world that is seen there, and its depth; None for the background, or if unknown."""
-    values = _read(editor, PLACE, at)
+    values = _read(context, PLACE, at)
     if values is not None:
         x, y, z = values[:3]
         seen = project(camera, (x, y, z)) if math.isfinite(x + y + z) else None
         return ((x, y, z), seen[2]) if seen and math.dist(seen[:2], at) < _ASTRAY else None
-    depth = depth_at(editor, at)
+    depth = depth_at(context, at)
     return (unproject(camera, *at, depth), depth) if depth is not None and depth < FAR else None
 
 
-def _read(editor: Editor, name: str, at: Point) -> tuple[float, ...] | None:
+def _read(context: ViewerContext, name: str, at: Point) -> tuple[float, ...] | None:
     """Once it is there: until then, what was read of another node is shown under that name."""
-    port, shown = depths(editor).get(name), editor.preview.shown(name)
+    port, shown = depths(context).get(name), context.preview.shown(name)
     inside = 0.0 <= at[0] < 1.0 and 0.0 <= at[1] < 1.0
     if port is None or shown is None or not inside:
         return None
-    if shown.port != Port("/".join((*editor.session.place, port.node)), port.socket):
+    if shown.port != Port("/".join((*context.session.place, port.node)), port.socket):
         return None
     width, height = shown.full_size
-    return editor.viewer.reader.pixel(editor.probe, name, shown, (int(at[0] * width), int(at[1] * height)))
+    return context.viewer.reader.pixel(context.probe, name, shown, (int(at[0] * width), int(at[1] * height)))

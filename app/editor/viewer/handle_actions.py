@@ -10,20 +10,20 @@ from .lights import can_remove, remove
 from .orbit import frame_scene
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import ViewerContext
 
 
-def _orbit(editor: Editor) -> None:
-    editor.viewer.orbiting = not editor.viewer.orbiting
+def _orbit(context: ViewerContext) -> None:
+    context.viewer.orbiting = not context.viewer.orbiting
 
 
-def _has_scene(editor: Editor) -> bool:
-    return editor.viewer.scene != ""
+def _has_scene(context: ViewerContext) -> bool:
+    return context.viewer.scene != ""
 
 
-def _picks(editor: Editor) -> bool:
-    port = focused(editor.session)
-    return port is not None and editor.viewer.picking == str(port)
+def _picks(context: ViewerContext) -> bool:
+    port = focused(context.session)
+    return port is not None and context.viewer.picking == str(port)
 
 
 HANDLES: tuple[Action, ...] = (
@@ -35,7 +35,7 @@ HANDLES: tuple[Action, ...] = (
         "O",
         "viewer",
         _has_scene,
-        lambda e: e.viewer.orbits,
+        lambda context: context.viewer.orbits,
         contexts=frozenset({"viewer"}),
         doc="Drag to go around the scene that is seen, Shift or the middle button to move it, the wheel to go nearer. "
         "Space and drag pans the picture as before. Alt does the same while it is held.",
@@ -59,7 +59,7 @@ HANDLES: tuple[Action, ...] = (
         "Viewer/Handles",
         "E",
         "viewer",
-        lambda e: focused(e.session) is not None,
+        lambda context: focused(context.session) is not None,
         _picks,
         doc="Of the selected depth of field: click on the picture, and what is there is sharp.",
     ),

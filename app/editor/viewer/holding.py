@@ -19,7 +19,7 @@ from .orbit import Orbit, aspect_of, scene_at
 from .orbit import put as put_camera
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import ViewerContext
 
 What = Literal[
     "pan",
@@ -62,7 +62,7 @@ class Aim:
 
 
 def aim(
-    editor: Editor,
+    context: ViewerContext,
     sight: Sight,
     at: Point,
     scale: float = 1.0,
@@ -72,17 +72,17 @@ def aim(
     shift: bool = False,
 ) -> Aim:
     """What is under the mouse. `scale` is that of the interface."""
-    viewer, reach = editor.viewer, REACH * scale
+    viewer, reach = context.viewer, REACH * scale
     if viewer.picking:
         return Aim("pick")
     if viewer.drawing_region:
         return Aim("new region")
     if ctrl:
         return Aim("measure")
-    for handle in handles(editor.session):
+    for handle in handles(context.session):
         if math.dist(at, sight.place(handle.at)) <= reach * 1.6:
             return Aim("handle", port=handle.port)
-    if found := _light(editor, sight, at, scale, alt, shift):
+    if found := _light(context, sight, at, scale, alt, shift):
         return found
     if viewer.compare == "wipe" and sight.under(at):
         grip = wipe_grip(at, sight.place(viewer.wipe), viewer.wipe_angle, ARM * scale, reach)
@@ -94,17 +94,17 @@ def aim(
             return Aim("region", grip)
     if viewer.orbits or (alt and viewer.scene):
         return Aim("track" if shift else "orbit")
-    return Aim("matte" if picks(editor) else "pan")
+    return Aim("matte" if picks(context) else "pan")
 
 
-def _light(editor: Editor, sight: Sight, at: Point, scale: float, alt: bool, shift: bool) -> Aim | None:
+def _light(context: ViewerContext, sight: Sight, at: Point, scale: float, alt: bool, shift: bool) -> Aim | None:
     """The light there, or what it shines to; the selected one first."""
     near = REACH * scale * 1.6
     if math.dist(at, middle_of(sight, scale)) <= RADIUS * scale + near:
-        for lamp in reversed(suns(editor)):
+        for lamp in reversed(suns(context)):
             if math.dist(at, knob_of(sight, scale, lamp.camera, lamp.light.direction)) <= near:
                 return Aim("sun", lamp=lamp)
-    for lamp in reversed(lamps(editor)):
+    for lamp in reversed(lamps(context)):
         if math.dist(at, sight.place(lamp.at)) <= near:
             return Aim("light depth" if alt else "light drop" if shift else "light", lamp=lamp)
         if lamp.aims and math.dist(at, sight.place(lamp.aims[0])) <= near:
@@ -116,6 +116,7 @@ def _light(editor: Editor, sight: Sight, at: Point, scale: float, alt: bool, shi
 class Hold:
     """Something that the mouse holds, from press to release."""
 
+    context: ViewerContext
     aim: Aim
     start: Point
     """Where it was pressed on the screen."""
@@ -131,44 +132,44 @@ class Hold:
     """How far away it is what was pressed on."""
 
     @classmethod
-    def begin(cls, editor: Editor, sight: Sight, at: Point, aim: Aim, scale: float = 1.0) -> Hold:
+    def begin(cls, context: ViewerContext, sight: Sight, at: Point, aim: Aim, scale: float = 1.0) -> Hold:
         """Take hold of what is aimed at."""
-        hold, (x, y) = cls(aim, at, scale=scale), sight.fraction(at)
-        held = next((one.at for one in handles(editor.session) if one.port == aim.port), None)
+        hold, (x, y) = cls(context, aim, at, scale=scale), sight.fraction(at)
+        held = next((one.at for one in handles(context.session) if one.port == aim.port), None)
         if aim.lamp is not None:
-            held, editor.lights[str(aim.lamp.port)] = aim.lamp.at, aim.lamp.index
+            held, context.lights[str(aim.lamp.port)] = aim.lamp.at, aim.lamp.index
             if aim.what in ("goal", "goal depth") and aim.lamp.aims:
                 held, hold.depth = aim.lamp.aims
             elif aim.what == "sun":
                 knob = knob_of(sight, scale, aim.lamp.camera, aim.lamp.light.direction)
                 held, hold.offset = None, (knob[0] - at[0], knob[1] - at[1])
-        if aim.what in ("orbit", "track") and (scene := scene_at(editor)) is not None:
+        if aim.what in ("orbit", "track") and (scene := scene_at(context)) is not None:
             hold.orbit = Orbit.of(scene)
-            depth = depth_at(editor, (x, y), SCENE) if aim.what == "track" else None
+            depth = depth_at(context, (x, y), SCENE) if aim.what == "track" else None
             hold.depth = depth if depth is not None and depth < FAR else hold.orbit.distance
         if aim.what == "wipe" and aim.grip == "line":
-            held = editor.viewer.wipe
+            held = context.viewer.wipe
         if held is not None:
             hold.offset = held[0] - x, held[1] - y
-        if aim.what == "region" and editor.viewer.region:
-            hold.box = editor.viewer.region
+        if aim.what == "region" and context.viewer.region:
+            hold.box = context.viewer.region
         return hold
 
-    def drag(self, editor: Editor, sight: Sight, at: Point, by: Point) -> None:
+    def drag(self, sight: Sight, at: Point, by: Point) -> None:
         """Follow the mouse to `at`, `by` screen units from where it was a frame ago."""
         self.moved = self.moved or math.dist(at, self.start) > 3.0
-        viewer, (x, y), begun = editor.viewer, sight.fraction(at), sight.fraction(self.start)
+        viewer, (x, y), begun = self.context.viewer, sight.fraction(at), sight.fraction(self.start)
         match self.aim.what:
             case "pan" | "matte":
                 if by != (0.0, 0.0) and self.moved:
                     moved = sight.panned(*by)
                     viewer.zoom, viewer.pan = moved.zoom, moved.pan
             case "handle" if self.moved:
-                self._move_handle(editor, (x + self.offset[0], y + self.offset[1]))
+                self._move_handle((x + self.offset[0], y + self.offset[1]))
             case "light" | "light depth" | "light drop" | "goal" | "goal depth" | "sun" if self.moved:
-                self._move_light(editor, sight, at, (x + self.offset[0], y + self.offset[1]))
+                self._move_light(sight, at, (x + self.offset[0], y + self.offset[1]))
             case "orbit" | "track" if self.moved and self.orbit is not None:
-                self._move_camera(editor, sight, at, self.orbit)
+                self._move_camera(sight, at, self.orbit)
             case "wipe" if self.aim.grip == "angle":
                 viewer.wipe_angle = wipe_angle(at, sight.place(viewer.wipe))
             case "wipe":
@@ -183,13 +184,13 @@ class Hold:
             case _:
                 pass
 
-    def release(self, editor: Editor, sight: Sight, at: Point) -> None:
+    def release(self, sight: Sight, at: Point) -> None:
         """Let go."""
-        viewer = editor.viewer
+        viewer = self.context.viewer
         if self.token:
-            editor.session.seal()
+            self.context.session.seal()
         elif self.aim.what == "matte" and not self.moved:
-            click(editor, sight, at)
+            click(self.context, sight, at)
         elif self.aim.what == "new region":
             viewer.drawing_region = False
             viewer.region = viewer.region if self.moved else None
@@ -205,45 +206,45 @@ class Hold:
             return f"handle {self.aim.port}"
         return token(self.aim.lamp) if self.aim.lamp else "orbit" if self.orbit else ""
 
-    def _move_light(self, editor: Editor, sight: Sight, at: Point, to: Point) -> None:
+    def _move_light(self, sight: Sight, at: Point, to: Point) -> None:
         lamp = self.aim.lamp
         assert lamp is not None
         farther = 2.0 ** (DOUBLINGS * (self.start[1] - at[1]) * sight.density / sight.panel[1])
         match self.aim.what:
             case "light":
-                put(editor, lamp, to)
+                put(self.context, lamp, to)
             case "light depth":
-                put(editor, lamp, lamp.at, lamp.depth * farther)
+                put(self.context, lamp, lamp.at, lamp.depth * farther)
             case "light drop":
-                drop(editor, lamp, to)
+                drop(self.context, lamp, to)
             case "goal":
-                turn(editor, lamp, to, self.depth)
+                turn(self.context, lamp, to, self.depth)
             case "goal depth" if lamp.aims:
-                turn(editor, lamp, lamp.aims[0], self.depth * farther)
+                turn(self.context, lamp, lamp.aims[0], self.depth * farther)
             case "sun":
                 knob = at[0] + self.offset[0], at[1] + self.offset[1]
                 direction = direction_at(sight, self.scale, lamp.camera, knob)
-                change(editor, lamp, structs.replace(lamp.light, direction=direction))
+                change(self.context, lamp, structs.replace(lamp.light, direction=direction))
             case _:
                 pass
 
-    def _move_camera(self, editor: Editor, sight: Sight, at: Point, orbit: Orbit) -> None:
+    def _move_camera(self, sight: Sight, at: Point, orbit: Orbit) -> None:
         """From where it was: nothing adds up."""
-        editor.dragging = True
+        self.context.interface.dragging = True
         if self.aim.what == "orbit":
             across = sight.panel[0] / sight.density
             orbit = orbit.turned((at[0] - self.start[0]) / across, (at[1] - self.start[1]) / across)
         else:
             (x, y), (left, top) = sight.fraction(at), sight.fraction(self.start)
-            orbit = orbit.moved(x - left, y - top, self.depth, aspect_of(editor))
-        put_camera(editor, orbit, self.token)
+            orbit = orbit.moved(x - left, y - top, self.depth, aspect_of(self.context))
+        put_camera(self.context, orbit, self.token)
 
-    def _move_handle(self, editor: Editor, to: Point) -> None:
+    def _move_handle(self, to: Point) -> None:
         port = self.aim.port
         assert port is not None
-        editor.dragging = True
+        self.context.interface.dragging = True
         position = tuple(round(min(max(part, -1.0), 2.0), 5) for part in to)
-        editor.attempt(lambda: editor.session.set(port, position, merge=self.token))
+        self.context.log.attempt(lambda: self.context.session.set(port, position, merge=self.token))
 
 
 def toggled(markers: tuple[Point, ...], sight: Sight, at: Point) -> tuple[Point, ...]:

@@ -20,7 +20,7 @@ from .scopes import LUMINANCE
 
 if TYPE_CHECKING:
     from ...authoring.preview import Shown
-    from ..window.editor import Editor
+    from .context import ViewerContext
 
 _LETTERS = "RGBA"
 _CHANNEL_COLORS: tuple[RGB, ...] = ((0.93, 0.36, 0.36), (0.30, 0.72, 0.36), (0.36, 0.54, 0.98))
@@ -41,11 +41,11 @@ def row_height() -> float:
     return imgui.get_text_line_height() + 6 * ui_scale()
 
 
-def about(editor: Editor, side: str, shown: Shown | None, sight: Sight, seconds: float) -> list[Word]:
+def about(context: ViewerContext, side: str, shown: Shown | None, sight: Sight, seconds: float) -> list[Word]:
     """What a side shows, in a few words; for A also how, and how long it took."""
-    palette, preview = editor.palette, editor.preview
+    palette, preview = context.palette, context.preview
     words: list[Word] = []
-    if editor.viewer.compares:
+    if context.viewer.compares:
         words.append(Word(side, palette.accent if side == "A" else palette.good))
     if shown is not None:
         width, height = shown.full_size
@@ -73,9 +73,11 @@ def describe(kind: Kind, channels: int) -> str:
     return f"vector {channels}" if kind is Kind.VECTOR else kind.value.lower()
 
 
-def of_pixel(editor: Editor, pixel: Pixels | None, values: tuple[float, ...], kind: Kind, look: Look) -> list[Word]:
+def of_pixel(
+    context: ViewerContext, pixel: Pixels | None, values: tuple[float, ...], kind: Kind, look: Look
+) -> list[Word]:
     """The numbers of a pixel: scene-linear, then as displayed."""
-    palette = editor.palette
+    palette = context.palette
     if pixel is None or not values:
         return []
     words = [Word(f"{pixel[0]}, {pixel[1]}", palette.text, 1.5)]
@@ -98,15 +100,15 @@ def of_pixel(editor: Editor, pixel: Pixels | None, values: tuple[float, ...], ki
     return words
 
 
-def draw_line(editor: Editor, name: str, words: list[Word]) -> None:
+def draw_line(context: ViewerContext, name: str, words: list[Word]) -> None:
     """One line of words, as many as fit."""
     lines = imgui.get_window_draw_list()
     inner = imgui.internal.get_current_window().inner_rect
     left, top, right = inner.min.x, imgui.get_cursor_screen_pos().y, inner.max.x
     height, scale = row_height(), ui_scale()
-    lines.add_rect_filled((left, top), (right, top + height), u32(editor.palette.panel))
+    lines.add_rect_filled((left, top), (right, top + height), u32(context.palette.panel))
     x, y, end = left + 8 * scale, round(top + 3 * scale), right - 4 * scale
-    with font(editor, "mono"):
+    with font(context, "mono"):
         for number, word in enumerate(words):
             x += word.gap * imgui.get_font_size() if number else 0.0
             width = imgui.calc_text_size(word.text).x if word.text else height - 8 * scale
@@ -119,4 +121,4 @@ def draw_line(editor: Editor, name: str, words: list[Word]) -> None:
             x += width
     imgui.set_cursor_screen_pos((left, top))
     imgui.dummy((right - left, height))
-    editor.places[name] = left, top, right, top + height
+    context.places[name] = left, top, right, top + height

@@ -19,7 +19,7 @@ from .perspective import Place, dot, moved, project, unit
 from .strokes import BLACK, CHOSEN, SHADE, WHITE, around, dashed_circle, label, path
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import ViewerContext
 
 _STEPS = 64
 """Corners of circles in perspective."""
@@ -30,28 +30,28 @@ _WIDEST = 80.0
 _RINGS = 14
 
 
-def draw_lamps(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None:
+def draw_lamps(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None:
     """A disk in the color of each light, a line to where a spot shines; of the selected one, how far and how wide."""
     mouse = imgui.get_mouse_pos()
     at_mouse, reach = (mouse.x, mouse.y), 10.0 * ui_scale()
-    for lamp in lamps(editor):
+    for lamp in lamps(context):
         at = sight.place(lamp.at)
         near = math.dist(at_mouse, at) <= reach
         ring = CHOSEN if near or lamp.chosen else WHITE
         if lamp.chosen:
             _extent(lines, sight, lamp, ring)
         if lamp.aims:
-            _goal(editor, lines, sight, lamp, ring, near=math.dist(at_mouse, sight.place(lamp.aims[0])) <= reach)
+            _goal(context, lines, sight, lamp, ring, near=math.dist(at_mouse, sight.place(lamp.aims[0])) <= reach)
         _knob(lines, at, lamp.light, ring)
-        if near or (lamp.chosen and editor.dragging and editor.viewer.hovered):
+        if near or (lamp.chosen and context.interface.dragging and context.viewer.hovered):
             words = f"{title(lamp.light, lamp.index)}  depth {lamp.depth:.4g}"
-            editor.places[f"label {lamp.port} {lamp.index}"] = label(lines, (at[0], at[1] + 2.0 * reach), words)
-        editor.places[f"handle {lamp.port} {lamp.index}"] = around(at, 0.6 * reach)
+            context.places[f"label {lamp.port} {lamp.index}"] = label(lines, (at[0], at[1] + 2.0 * reach), words)
+        context.places[f"handle {lamp.port} {lamp.index}"] = around(at, 0.6 * reach)
 
 
-def draw_dome(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None:
+def draw_dome(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None:
     """A ball in the light of the selected sun, in a disk of all directions; every sun is a knob there."""
-    found, scale = suns(editor), ui_scale()
+    found, scale = suns(context), ui_scale()
     if not found:
         return
     middle, mouse, last = middle_of(sight, scale), imgui.get_mouse_pos(), found[-1]
@@ -68,8 +68,8 @@ def draw_dome(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None:
         _knob(lines, at, sun.light, CHOSEN if near or sun.chosen else WHITE)
         if near:
             label(lines, (at[0], at[1] - 20.0 * scale), title(sun.light, sun.index))
-        editor.places[f"handle {sun.port} {sun.index}"] = around(at, 6.0 * scale)
-    editor.places["viewer dome"] = around(middle, RADIUS * scale)
+        context.places[f"handle {sun.port} {sun.index}"] = around(at, 6.0 * scale)
+    context.places["viewer dome"] = around(middle, RADIUS * scale)
 
 
 def _knob(lines: imgui.ImDrawList, at: Point, light: Light, ring: RGB) -> None:
@@ -84,7 +84,7 @@ def _knob(lines: imgui.ImDrawList, at: Point, light: Light, ring: RGB) -> None:
         lines.add_line((at[0] - half, at[1]), (at[0] + half, at[1]), u32(ink), 1.5 * scale)
 
 
-def _goal(editor: Editor, lines: imgui.ImDrawList, sight: Sight, lamp: Lamp, ring: RGB, *, near: bool) -> None:
+def _goal(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight, lamp: Lamp, ring: RGB, *, near: bool) -> None:
     """What a spot shines to: a ring at the end of a line."""
     assert lamp.aims is not None
     scale, (seen, depth) = ui_scale(), lamp.aims
@@ -94,8 +94,8 @@ def _goal(editor: Editor, lines: imgui.ImDrawList, sight: Sight, lamp: Lamp, rin
     lines.add_circle(end, 5.0 * scale, u32(color), 0, 2.0 * scale)
     if near:
         words = f"{title(lamp.light, lamp.index)} shines here  depth {depth:.4g}"
-        editor.places[f"label goal {lamp.port} {lamp.index}"] = label(lines, (end[0], end[1] + 20 * scale), words)
-    editor.places[f"goal {lamp.port} {lamp.index}"] = around(end, 6.0 * scale)
+        context.places[f"label goal {lamp.port} {lamp.index}"] = label(lines, (end[0], end[1] + 20 * scale), words)
+    context.places[f"goal {lamp.port} {lamp.index}"] = around(end, 6.0 * scale)
 
 
 def _extent(lines: imgui.ImDrawList, sight: Sight, lamp: Lamp, color: RGB) -> None:

@@ -16,7 +16,7 @@ from .ground import surface_at
 from .perspective import Place, dot, moved, project, unit, unproject
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import ViewerContext
 
 MOST = 64
 """Lights that are shown together; of longer lists only the selected one is."""
@@ -68,21 +68,21 @@ class Lamp:
         return (seen[:2], seen[2]) if seen else None
 
 
-def lamps(editor: Editor) -> tuple[Lamp, ...]:
+def lamps(context: ViewerContext) -> tuple[Lamp, ...]:
     """Those that the camera sees, the selected one last; none if no camera is linked, or none is known yet."""
-    return tuple(lamp for lamp in _all(editor) if lamp.light.kind is not LightKind.SUN)
+    return tuple(lamp for lamp in _all(context) if lamp.light.kind is not LightKind.SUN)
 
 
-def suns(editor: Editor) -> tuple[Lamp, ...]:
+def suns(context: ViewerContext) -> tuple[Lamp, ...]:
     """The suns of the active node, the selected one last."""
-    return tuple(lamp for lamp in _all(editor) if lamp.light.kind is LightKind.SUN)
+    return tuple(lamp for lamp in _all(context) if lamp.light.kind is LightKind.SUN)
 
 
-def _all(editor: Editor) -> tuple[Lamp, ...]:
-    camera, found = _camera(editor), list[Lamp]()
-    for port in lists(editor) if camera else ():
-        numbers = _numbers(editor, port)
-        chosen = _chosen(editor, port)
+def _all(context: ViewerContext) -> tuple[Lamp, ...]:
+    camera, found = _camera(context), list[Lamp]()
+    for port in lists(context) if camera else ():
+        numbers = _numbers(context, port)
+        chosen = _chosen(context, port)
         few = count_of(numbers) <= MOST
         for index, light in enumerate(lights_of(numbers)) if few else ((chosen, light_at(numbers, chosen)),):
             assert camera is not None
@@ -92,9 +92,9 @@ def _all(editor: Editor) -> tuple[Lamp, ...]:
     return tuple(sorted(found, key=lambda lamp: lamp.chosen))
 
 
-def lists(editor: Editor) -> tuple[Port, ...]:
+def lists(context: ViewerContext) -> tuple[Port, ...]:
     """The values of the active node that list lights, and that nothing else drives."""
-    session = editor.session
+    session = context.session
     item = session.graph.nodes.get(session.active)
     if item is None or isinstance(item, Unknown):
         return ()
@@ -102,64 +102,64 @@ def lists(editor: Editor) -> tuple[Port, ...]:
     return tuple(port for port in ports if session.linked(port) is None)
 
 
-def _numbers(editor: Editor, port: Port) -> tuple[float, ...]:
-    value = editor.session.value(port)
+def _numbers(context: ViewerContext, port: Port) -> tuple[float, ...]:
+    value = context.session.value(port)
     return value if isinstance(value, tuple) else ()
 
 
-def _chosen(editor: Editor, port: Port) -> int:
+def _chosen(context: ViewerContext, port: Port) -> int:
     """The selected light; -1 if there is none."""
-    return min(max(editor.lights.get(str(port), 0), 0), count_of(_numbers(editor, port)) - 1)
+    return min(max(context.lights.get(str(port), 0), 0), count_of(_numbers(context, port)) - 1)
 
 
-def _camera(editor: Editor) -> Camera | None:
+def _camera(context: ViewerContext) -> Camera | None:
     """The one that is linked to the active node."""
-    session = editor.session
+    session = context.session
     item = session.graph.nodes.get(session.active)
     if item is None or isinstance(item, Unknown):
         return None
     path = "/".join((*session.place, session.active))
     inputs = [name for name, socket in signature(item).inputs.items() if socket.kind is Kind.CAMERA]
     linked = (name for name in inputs if session.linked(Port(session.active, name)) is not None)
-    found = (editor.preview.camera(Port(path, name)) for name in linked)
+    found = (context.preview.camera(Port(path, name)) for name in linked)
     return next((camera for camera in found if camera is not None), None)
 
 
 # --- what is done to them ------------------------------------------------------------------------------------------
 
 
-def put(editor: Editor, lamp: Lamp, to: Point, depth: float | None = None) -> None:
+def put(context: ViewerContext, lamp: Lamp, to: Point, depth: float | None = None) -> None:
     """Put a light elsewhere on the picture, as far from the camera as it is, or at another depth."""
     u, v = (min(max(part, -1.0), 2.0) for part in to)
-    change(editor, lamp, structs.replace(lamp.light, place=unproject(lamp.camera, u, v, depth or lamp.depth)))
+    change(context, lamp, structs.replace(lamp.light, place=unproject(lamp.camera, u, v, depth or lamp.depth)))
 
 
-def drop(editor: Editor, lamp: Lamp, to: Point) -> None:
+def drop(context: ViewerContext, lamp: Lamp, to: Point) -> None:
     """Put it before the surface that is seen there; where none is, it stays as far away as it is."""
-    place = _over(editor, lamp.camera, to, lamp.light)
+    place = _over(context, lamp.camera, to, lamp.light)
     if place is None:
-        put(editor, lamp, to)
+        put(context, lamp, to)
     else:
-        change(editor, lamp, structs.replace(lamp.light, place=place))
+        change(context, lamp, structs.replace(lamp.light, place=place))
 
 
-def turn(editor: Editor, lamp: Lamp, to: Point, depth: float) -> None:
+def turn(context: ViewerContext, lamp: Lamp, to: Point, depth: float) -> None:
     """Let a spot shine to a point of the picture at a depth."""
     u, v = (min(max(part, -1.0), 2.0) for part in to)
     direction = moved(unproject(lamp.camera, u, v, depth), lamp.light.place, -1.0)
     x, y, z = (round(part, 5) for part in direction)
     if any((x, y, z)):
-        change(editor, lamp, structs.replace(lamp.light, direction=(x, y, z)))
+        change(context, lamp, structs.replace(lamp.light, direction=(x, y, z)))
 
 
-def change(editor: Editor, lamp: Lamp, light: Light, merge: str = "") -> None:
+def change(context: ViewerContext, lamp: Lamp, light: Light, merge: str = "") -> None:
     """Let it be that one; what is done to it in a row is one step."""
-    numbers = _numbers(editor, lamp.port)
+    numbers = _numbers(context, lamp.port)
     if lamp.index >= count_of(numbers):
         return
     value = changed(numbers, lamp.index, light)
-    editor.dragging = True
-    editor.attempt(lambda: editor.session.set(lamp.port, value, merge=merge or token(lamp)))
+    context.interface.dragging = True
+    context.log.attempt(lambda: context.session.set(lamp.port, value, merge=merge or token(lamp)))
 
 
 def token(lamp: Lamp) -> str:
@@ -167,47 +167,49 @@ def token(lamp: Lamp) -> str:
     return f"light {lamp.port} {lamp.index}"
 
 
-def can_add(editor: Editor) -> bool:
+def can_add(context: ViewerContext) -> bool:
     """True if the active node has a list of lights, and is told what it sees them with."""
-    return bool(lists(editor)) and _camera(editor) is not None
+    return bool(lists(context)) and _camera(context) is not None
 
 
-def add(editor: Editor, to: Point) -> None:
+def add(context: ViewerContext, to: Point) -> None:
     """Add a point light before the surface that is seen there; where none is, as deep as the selected one."""
-    ports, camera = lists(editor), _camera(editor)
+    ports, camera = lists(context), _camera(context)
     if not ports or camera is None:
         return
     port, light = ports[0], fresh(LightKind.POINT)
-    numbers, chosen = _numbers(editor, port), _chosen(editor, port)
-    depths = [lamp.depth for lamp in lamps(editor)]
+    numbers, chosen = _numbers(context, port), _chosen(context, port)
+    depths = [lamp.depth for lamp in lamps(context)]
     deep = depths[-1] if depths else _DEFAULT_DEPTH
-    place = _over(editor, camera, to, light) or unproject(camera, *to, deep)
+    place = _over(context, camera, to, light) or unproject(camera, *to, deep)
     made, at = added(numbers, chosen, structs.replace(light, place=place))
     if made == numbers:
-        editor.say("there is no room for another light")
+        context.log.add("there is no room for another light")
         return
-    editor.lights[str(port)] = at
-    editor.attempt(lambda: editor.session.edit(f"Add light to {port.node}", editor.session.graph.set(port, made)))
+    context.lights[str(port)] = at
+    context.log.attempt(
+        lambda: context.session.edit(f"Add light to {port.node}", context.session.graph.set(port, made))
+    )
 
 
-def can_remove(editor: Editor) -> bool:
+def can_remove(context: ViewerContext) -> bool:
     """True if a light is selected."""
-    return any(_chosen(editor, port) >= 0 for port in lists(editor))
+    return any(_chosen(context, port) >= 0 for port in lists(context))
 
 
-def remove(editor: Editor) -> None:
+def remove(context: ViewerContext) -> None:
     """Remove the selected light."""
-    session = editor.session
-    port = next((port for port in lists(editor) if _chosen(editor, port) >= 0), None)
+    session = context.session
+    port = next((port for port in lists(context) if _chosen(context, port) >= 0), None)
     if port is not None:
-        made, at = removed(_numbers(editor, port), _chosen(editor, port))
-        editor.lights[str(port)] = max(at, 0)
-        editor.attempt(lambda: session.edit(f"Remove light of {port.node}", session.graph.set(port, made)))
+        made, at = removed(_numbers(context, port), _chosen(context, port))
+        context.lights[str(port)] = max(at, 0)
+        context.log.attempt(lambda: session.edit(f"Remove light of {port.node}", session.graph.set(port, made)))
 
 
-def _over(editor: Editor, camera: Camera, to: Point, light: Light) -> Place | None:
+def _over(context: ViewerContext, camera: Camera, to: Point, light: Light) -> Place | None:
     """A place before the surface that is seen at a point of the picture, on the way to it."""
-    found = surface_at(editor, camera, to)
+    found = surface_at(context, camera, to)
     if found is None:
         return None
     place, depth = found

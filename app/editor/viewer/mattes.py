@@ -15,7 +15,7 @@ from ..shared.render_facts import matte_at, pick_value, render_file
 from ..theme.style import u32, ui_scale
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import ViewerContext
     from .geometry import Point, Sight
 
 
@@ -37,51 +37,51 @@ class Under:
         return f"{icons.ICON_FA_CHECK}  {self.name}" if self.on else self.name
 
 
-def picks(editor: Editor) -> Port | None:
+def picks(context: ViewerContext) -> Port | None:
     """The list of names that a click changes: that of the active node, if its file has a cryptomatte."""
-    session = editor.session
+    session = context.session
     value = pick_value(session.graph.nodes.get(session.active))
-    if value is None or not isinstance(matte_at(editor, session.active), Matte):
+    if value is None or not isinstance(matte_at(context, session.active), Matte):
         return None
     return Port(session.active, value.name)
 
 
-def under(editor: Editor, sight: Sight, at: Point) -> Under | None:
+def under(context: ViewerContext, sight: Sight, at: Point) -> Under | None:
     """What a click there would pick; None for nothing, and while nobody knows yet."""
-    port = picks(editor)
-    file = render_file(editor.session.graph, port.node) if port else None
-    matte = matte_at(editor, port.node) if port else None
+    port = picks(context)
+    file = render_file(context.session.graph, port.node) if port else None
+    matte = matte_at(context, port.node) if port else None
     if port is None or file is None or not isinstance(matte, Matte) or sight.under(at) is None:
         return None
-    known = editor.renders.ids(file, matte)
+    known = context.renders.ids(file, matte)
     id = known.at(*sight.fraction(at)) if isinstance(known, IdMap) else 0
     if not id or not isinstance(known, IdMap):
         return None
     name = known.names.get(id, "")
     alone = {name: matte.ids[name]} if name in matte.ids else {}
-    on = bool(alone) and float_bits(matte.ids[name]) in picked(str(editor.session.value(port)), alone)
+    on = bool(alone) and float_bits(matte.ids[name]) in picked(str(context.session.value(port)), alone)
     return Under(port, matte, id, name if alone else "", on)
 
 
-def click(editor: Editor, sight: Sight, at: Point) -> None:
+def click(context: ViewerContext, sight: Sight, at: Point) -> None:
     """Pick what is there, or no longer, as one step."""
-    found = under(editor, sight, at)
+    found = under(context, sight, at)
     if found is None:
         return
     if not found.name:
-        editor.say(f"the file has no name for the id {found.id:08x}: it cannot be picked by name")
+        context.log.add(f"the file has no name for the id {found.id:08x}: it cannot be picked by name")
         return
-    session = editor.session
+    session = context.session
     pick = toggled(str(session.value(found.port)), found.name, found.matte.ids)
-    editor.attempt(lambda: session.set(found.port, pick))
+    context.log.attempt(lambda: session.set(found.port, pick))
 
 
-def draw_name(editor: Editor, sight: Sight) -> None:
+def draw_name(context: ViewerContext, sight: Sight) -> None:
     """The name of what is under the pointer, beside it."""
-    if not editor.viewer.hovered or picks(editor) is None:
+    if not context.viewer.hovered or picks(context) is None:
         return
     mouse, scale = imgui.get_mouse_pos(), ui_scale()
-    found = under(editor, sight, (mouse.x, mouse.y))
+    found = under(context, sight, (mouse.x, mouse.y))
     if found is None:
         return
     size, pad = imgui.calc_text_size(found.words), 6.0 * scale
@@ -93,8 +93,8 @@ def draw_name(editor: Editor, sight: Sight) -> None:
     box = round(left), round(top), round(left + size.x + 2.0 * pad), round(top + size.y + pad)
     lines = imgui.get_window_draw_list()
     lines.add_rect_filled(box[:2], box[2:], u32((0.0, 0.0, 0.0), 0.75), 4.0 * scale)
-    edge = editor.palette.accent if found.on else (1.0, 1.0, 1.0)
+    edge = context.palette.accent if found.on else (1.0, 1.0, 1.0)
     lines.add_rect(box[:2], box[2:], u32(edge, 0.9 if found.on else 0.25), 4.0 * scale)
     ink = (1.0, 1.0, 1.0) if found.name else (0.75, 0.75, 0.75)
     lines.add_text((round(left + pad), round(top + pad / 2)), u32(ink), found.words)
-    editor.places["matte name"] = box
+    context.places["matte name"] = box

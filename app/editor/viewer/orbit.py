@@ -17,7 +17,7 @@ from .perspective import Place, neat
 
 if TYPE_CHECKING:
     from ...authoring.session import Session
-    from ..window.editor import Editor
+    from .context import ViewerContext
 
 SENSOR = 36.0
 """Width in mm of what the focal length is measured against."""
@@ -137,41 +137,41 @@ def _is_free(graph: Graph, id: str) -> bool:
     return not any(port in graph.links or port in graph.animation for port in ports)
 
 
-def scene_at(editor: Editor) -> Node | None:
+def scene_at(context: ViewerContext) -> Node | None:
     """The node whose camera the viewer moves, as it is now."""
-    item = editor.session.graph.nodes.get(editor.viewer.scene)
+    item = context.session.graph.nodes.get(context.viewer.scene)
     return item if isinstance(item, Node) and _goes_around(item) else None
 
 
-def put(editor: Editor, orbit: Orbit, merge: str = "") -> None:
+def put(context: ViewerContext, orbit: Orbit, merge: str = "") -> None:
     """Move the camera there; equal `merge` tokens in a row make one step."""
-    session, id = editor.session, editor.viewer.scene
-    graph, before = session.graph, scene_at(editor)
+    session, id = context.session, context.viewer.scene
+    graph, before = session.graph, scene_at(context)
     if before is None:
         return
     for name in ("target", "distance", "azimuth", "elevation"):
         if getattr(orbit, name) != getattr(before, name):
             graph = graph.set(Port(id, name), getattr(orbit, name))
-    editor.attempt(lambda: session.edit(f"Orbit {id}", graph, merge=merge))
+    context.log.attempt(lambda: session.edit(f"Orbit {id}", graph, merge=merge))
 
 
-def aspect_of(editor: Editor) -> float:
+def aspect_of(context: ViewerContext) -> float:
     """Width over height of the picture."""
-    width, height = editor.viewer.picture
+    width, height = context.viewer.picture
     return max(width, 1) / max(height, 1)
 
 
-def frame_scene(editor: Editor) -> None:
+def frame_scene(context: ViewerContext) -> None:
     """Show all of the scene, as one step."""
-    node = scene_at(editor)
+    node = scene_at(context)
     if node is not None:
-        put(editor, Orbit.of(node).framing(_places(editor, node), aspect_of(editor)))
+        put(context, Orbit.of(node).framing(_places(context, node), aspect_of(context)))
 
 
-def _places(editor: Editor, node: Node) -> np.ndarray:
+def _places(context: ViewerContext, node: Node) -> np.ndarray:
     """Where the scene's triangles are, but for a floor or backdrop around the rest. It was loaded to be shown."""
     name, file, up = (getattr(node, value) for value in ("scene", "file", "up"))
-    path = str(PurePath(editor.session.graph.folder, file))
+    path = str(PurePath(context.session.graph.folder, file))
     mesh = load_mesh(SceneFile(path, up) if name == "file" else BuiltInScene(name))
     vertices = cast("np.ndarray", mesh.vertices)
     column = np.cumsum([0, *ATTRIBUTES.values()])[list(ATTRIBUTES).index("object_material_moving")]

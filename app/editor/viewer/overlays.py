@@ -20,30 +20,30 @@ from .mattes import draw_name
 from .strokes import BLACK, WHITE, around, cross, frame, label
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import ViewerContext
 
 
-def draw_overlays(editor: Editor, sight: Sight) -> None:
+def draw_overlays(context: ViewerContext, sight: Sight) -> None:
     """Everything that belongs to a place on the picture."""
     lines = imgui.get_window_draw_list()
     if sight.zoom >= GRID_FROM:
         _grid(lines, sight)
-    viewer = editor.viewer
+    viewer = context.viewer
     if viewer.region is not None:
-        _region(editor, lines, sight.rectangle(viewer.region))
+        _region(context, lines, sight.rectangle(viewer.region))
     if viewer.measured is not None:
-        frame(lines, sight.rectangle(viewer.measured), editor.palette.accent)
+        frame(lines, sight.rectangle(viewer.measured), context.palette.accent)
     for number, marker in enumerate(viewer.markers, 1):
         _marker(lines, sight.place(marker), str(number))
-    if viewer.compare == "wipe" and editor.session.viewed("B") is not None:
-        _wipe(editor, lines, sight)
-    _handles(editor, lines, sight)
-    draw_lamps(editor, lines, sight)
-    draw_dome(editor, lines, sight)
+    if viewer.compare == "wipe" and context.session.viewed("B") is not None:
+        _wipe(context, lines, sight)
+    _handles(context, lines, sight)
+    draw_lamps(context, lines, sight)
+    draw_dome(context, lines, sight)
     if viewer.orbits or (viewer.scene and viewer.hovered and imgui.get_io().key_alt):
-        draw_axes(editor, lines, sight)
-    _picked_depth(editor, lines, sight)
-    draw_name(editor, sight)
+        draw_axes(context, lines, sight)
+    _picked_depth(context, lines, sight)
+    draw_name(context, sight)
 
 
 def _grid(lines: imgui.ImDrawList, sight: Sight) -> None:
@@ -76,7 +76,7 @@ def _corners(sight: Sight) -> tuple[Point, Point]:
     return sight.origin, (sight.origin[0] + width, sight.origin[1] + height)
 
 
-def _region(editor: Editor, lines: imgui.ImDrawList, box: Box) -> None:
+def _region(context: ViewerContext, lines: imgui.ImDrawList, box: Box) -> None:
     left, top, right, bottom = box
     frame(lines, box)
     size = 3.5 * ui_scale()
@@ -87,12 +87,12 @@ def _region(editor: Editor, lines: imgui.ImDrawList, box: Box) -> None:
                 lines.add_rect_filled((x - size, y - size), (x + size, y + size), u32(BLACK, 0.7))
                 lines.add_rect_filled((x - size + 1, y - size + 1), (x + size - 1, y + size - 1), u32(WHITE))
     cross(lines, middle, 5.0 * ui_scale())
-    editor.places["viewer region"] = box
+    context.places["viewer region"] = box
 
 
-def _wipe(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None:
+def _wipe(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None:
     """Grips on the line, which the display draws."""
-    viewer, scale = editor.viewer, ui_scale()
+    viewer, scale = context.viewer, ui_scale()
     x, y = sight.place(viewer.wipe)
     dx, dy = wipe_direction(viewer.wipe_angle)
     end = x + dx * ARM * scale, y + dy * ARM * scale
@@ -103,36 +103,36 @@ def _wipe(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None:
     for name, away in (("A", -1.0), ("B", 1.0)):
         at = x + dy * away * 18 * scale, y - dx * away * 18 * scale
         label(lines, at, name)
-    editor.places["viewer wipe"] = around((x, y), 6.0 * scale)
-    editor.places["viewer wipe angle"] = around(end, 6.0 * scale)
+    context.places["viewer wipe"] = around((x, y), 6.0 * scale)
+    context.places["viewer wipe angle"] = around(end, 6.0 * scale)
 
 
-def _handles(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None:
+def _handles(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None:
     mouse = imgui.get_mouse_pos()
     scale = ui_scale()
-    for handle in handles(editor.session):
+    for handle in handles(context.session):
         x, y = sight.place(handle.at)
         near = math.dist((mouse.x, mouse.y), (x, y)) <= 10.0 * scale
-        color = editor.palette.accent if near else WHITE
+        color = context.palette.accent if near else WHITE
         cross(lines, (x, y), 9.0 * scale, color)
         lines.add_circle((x, y), 5.0 * scale, u32(BLACK, 0.6), 0, 3.0 * scale)
         lines.add_circle((x, y), 5.0 * scale, u32(color), 0, 1.5 * scale)
         port, words = handle.port, [str(handle.port)] if near else []
-        if port == focused(editor.session):
-            words.append(distance_in_words(depth_at(editor, handle.at)))
+        if port == focused(context.session):
+            words.append(distance_in_words(depth_at(context, handle.at)))
         if words:
-            editor.places[f"label {port}"] = label(lines, (x, y + 20 * scale), "  ".join(words))
-        editor.places[f"handle {handle.port}"] = around((x, y), 6.0 * scale)
+            context.places[f"label {port}"] = label(lines, (x, y + 20 * scale), "  ".join(words))
+        context.places[f"handle {handle.port}"] = around((x, y), 6.0 * scale)
 
 
-def _picked_depth(editor: Editor, lines: imgui.ImDrawList, sight: Sight) -> None:
+def _picked_depth(context: ViewerContext, lines: imgui.ImDrawList, sight: Sight) -> None:
     """While a distance is picked: the one that is under the pointer."""
-    viewer, port = editor.viewer, focused(editor.session)
+    viewer, port = context.viewer, focused(context.session)
     if not viewer.hovered or port is None or viewer.picking != str(port) or not is_distance(port):
         return
     mouse, scale = imgui.get_mouse_pos(), ui_scale()
-    words = distance_in_words(depth_at(editor, sight.fraction((mouse.x, mouse.y))))
-    editor.places[f"label {port}"] = label(lines, (mouse.x, mouse.y + 26 * scale), words)
+    words = distance_in_words(depth_at(context, sight.fraction((mouse.x, mouse.y))))
+    context.places[f"label {port}"] = label(lines, (mouse.x, mouse.y + 26 * scale), words)
 
 
 def _marker(lines: imgui.ImDrawList, at: Point, text: str) -> None:
@@ -144,18 +144,18 @@ def _marker(lines: imgui.ImDrawList, at: Point, text: str) -> None:
 # --- messages ------------------------------------------------------------------------------------------------------
 
 
-def draw_progress(editor: Editor, sight: Sight, fraction: float) -> None:
+def draw_progress(context: ViewerContext, sight: Sight, fraction: float) -> None:
     """A thin line at the top that grows."""
     (left, top), (right, _) = _corners(sight)
     lines, height = imgui.get_window_draw_list(), 2.0 * ui_scale()
     lines.add_rect_filled((left, top), (right, top + height), u32(BLACK, 0.4))
-    lines.add_rect_filled((left, top), (left + (right - left) * fraction, top + height), u32(editor.palette.accent))
+    lines.add_rect_filled((left, top), (left + (right - left) * fraction, top + height), u32(context.palette.accent))
 
 
-def draw_message(editor: Editor, sight: Sight, text: str, color: RGB, dim: bool = False) -> None:
+def draw_message(context: ViewerContext, sight: Sight, text: str, color: RGB, dim: bool = False) -> None:
     """A sentence in the middle of the panel; `dim` darkens what is behind it."""
     (left, top), (right, bottom) = _corners(sight)
-    palette, scale = editor.palette, ui_scale()
+    palette, scale = context.palette, ui_scale()
     lines = imgui.get_window_draw_list()
     if dim:
         lines.add_rect_filled((left, top), (right, bottom), u32(palette.surround, 0.6))
@@ -169,13 +169,13 @@ def draw_message(editor: Editor, sight: Sight, text: str, color: RGB, dim: bool 
     lines.add_rect_filled(*box, u32(palette.panel, 0.94), 6 * scale)
     lines.add_rect(*box, u32(color, 0.35), 6 * scale)
     lines.add_text(imgui.get_font(), imgui.get_font_size(), (x, y), u32(color), text, wrap_width=width)
-    editor.places["viewer message"] = (*box[0], *box[1])
+    context.places["viewer message"] = (*box[0], *box[1])
 
 
-def draw_badge(editor: Editor, sight: Sight, text: str, color: RGB) -> Box:
+def draw_badge(context: ViewerContext, sight: Sight, text: str, color: RGB) -> Box:
     """A few words in the upper right corner; returns where."""
     (_, top), (right, _) = _corners(sight)
-    palette, scale = editor.palette, ui_scale()
+    palette, scale = context.palette, ui_scale()
     size, pad = imgui.calc_text_size(text), 5 * scale
     box = right - size.x - 3 * pad, top + 2 * pad, right - pad, top + 2 * pad + size.y + pad
     lines = imgui.get_window_draw_list()

@@ -13,7 +13,7 @@ from ..toolkit.buttons import dropdown
 
 if TYPE_CHECKING:
     from ...graph import Graph
-    from ..window.editor import Editor
+    from .context import ViewerContext
 
 
 def ports_of(graph: Graph) -> tuple[tuple[str, tuple[Port, ...]], ...]:
@@ -34,20 +34,20 @@ def title(graph: Graph, port: Port) -> str:
     return port.node if len(signature(graph.nodes[port.node]).outputs) == 1 else f"{port.node}.{port.socket}"
 
 
-def pick_port(editor: Editor, side: str, label: str) -> None:
+def pick_port(context: ViewerContext, side: str, label: str) -> None:
     """A button that says what is shown, and a list to choose from."""
     name = f"button viewer {side}"
     doc = f"What {side} shows. Keys 1 to 9 recall what Ctrl+1 to Ctrl+9 kept."
-    dropdown(editor, label, name, doc, lambda: list_ports(editor, side))
-    left, _, right, bottom = editor.places[name]
-    color = editor.palette.accent if side == "A" else editor.palette.good
+    dropdown(context, label, name, doc, lambda: list_ports(context, side))
+    left, _, right, bottom = context.places[name]
+    color = context.palette.accent if side == "A" else context.palette.good
     line = 2.0 * ui_scale()
     imgui.get_window_draw_list().add_rect_filled((left, bottom - line), (right, bottom), u32(color), line / 2)
 
 
-def list_ports(editor: Editor, side: str) -> None:
+def list_ports(context: ViewerContext, side: str) -> None:
     """Everything that a side can show, as entries of the menu that is open."""
-    session = editor.session
+    session = context.session
     chosen = session.viewed("A" if side == "A" else "B")
     numbers = {port: number for number, port in session.viewers.items()}
     if side == "B" and imgui.menu_item("Nothing", "", chosen is None)[0]:
@@ -57,7 +57,7 @@ def list_ports(editor: Editor, side: str) -> None:
         for port in ports:
             key = str(numbers[port]) if port in numbers else ""
             if imgui.menu_item(f"{title(session.graph, port)}##{port}", key, port == chosen)[0]:
-                editor.attempt(lambda port=port: session.view(port, cast("Literal['A', 'B']", side)))
+                context.log.attempt(lambda port=port: session.view(port, cast("Literal['A', 'B']", side)))
 
 
 def _ordered(graph: Graph) -> tuple[str, ...]:

@@ -16,28 +16,28 @@ from .looking import picture_only
 if TYPE_CHECKING:
     from ...authoring.preview import Shown
     from ...renderer.viewing.look import Look
-    from ..window.editor import Editor
+    from .context import ViewerContext
 
 
-def ask_to_save(editor: Editor, a: Shown, b: Shown | None, look: Look) -> None:
+def ask_to_save(context: ViewerContext, a: Shown, b: Shown | None, look: Look) -> None:
     """Draw the picture at its own size, and ask where to keep it."""
     width, height = a.full_size
-    texture = editor.display.draw("saved", (width, height), a, b, picture_only(look))
+    texture = context.display.draw("saved", (width, height), a, b, picture_only(look))
     try:
-        pixels = editor.probe.region(texture, (0, 0, width, height))[..., :3]
+        pixels = context.probe.region(texture, (0, 0, width, height))[..., :3]
     finally:
-        editor.display.drop("saved")
-    name = f"{editor.session.name}.{a.port.node.rpartition('/')[2]}.png"
-    editor.dialogs.browse = Browse(
+        context.display.drop("saved")
+    name = f"{context.session.name}.{a.port.node.rpartition('/')[2]}.png"
+    context.dialogs.browse = Browse(
         "Save what is seen",
         "export",
-        lambda path: editor.attempt(lambda: _save(editor, path, pixels)),
+        lambda path: context.log.attempt(lambda: _save(context, path, pixels)),
         saving=True,
         name=name,
     )
 
 
-def _save(editor: Editor, path: Path, pixels: np.ndarray) -> None:
+def _save(context: ViewerContext, path: Path, pixels: np.ndarray) -> None:
     """Display-referred pixels 0..1: decoded, so that the view of the file encodes them as they are."""
     write_picture(path, {"image": decode_srgb(pixels).astype(np.float32)}, kinds={"image": Kind.IMAGE}, view="none")
-    editor.say(f"saved {path}")
+    context.log.add(f"saved {path}")

@@ -11,7 +11,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...renderer.viewing.plates import Plate
-from ..shared.coloring import coloring
+from ..shared.coloring import settings_in_use
 from ..theme.style import u32, ui_scale
 from ..toolkit.buttons import quiet, room_for, tool
 from ..toolkit.words import nothing_here
@@ -25,7 +25,7 @@ from .wanted import A
 
 if TYPE_CHECKING:
     from ...authoring.preview import Shown
-    from ..window.editor import Editor
+    from .context import ViewerContext
 
 SECONDS = 0.2
 """Between refreshes."""
@@ -38,7 +38,8 @@ class Scopes:
 
     title = "Scopes"
 
-    def __init__(self) -> None:
+    def __init__(self, context: ViewerContext) -> None:
+        self._context = context
         self._reader = Reader()
         self._plates: dict[str, Plate] = {}
         self._textures: dict[str, int] = {}
@@ -50,21 +51,27 @@ class Scopes:
         self._range = (0.0, 1.0)
         self._clipped = (0.0, 0.0)
 
-    def draw(self, editor: Editor) -> None:
+    def draw(self) -> None:
         """Tools, and every scope."""
-        shown = editor.preview.shown(A)
-        self._draw_tools(editor)
-        names = [name for name in SCOPES if name in editor.viewer.scopes]
+        shown = self._context.preview.shown(A)
+        self._draw_tools()
+        names = [name for name in SCOPES if name in self._context.viewer.scopes]
         if not names:
-            nothing_here(editor, icons.ICON_FA_CHART_AREA, "No scope is chosen", "The buttons above turn them on.")
+            nothing_here(
+                self._context, icons.ICON_FA_CHART_AREA, "No scope is chosen", "The buttons above turn them on."
+            )
             return
         if shown is None:
-            nothing_here(editor, icons.ICON_FA_CHART_AREA, "Nothing to measure yet", "Scopes measure what A shows.")
+            nothing_here(
+                self._context, icons.ICON_FA_CHART_AREA, "Nothing to measure yet", "Scopes measure what A shows."
+            )
             return
         if shown.kind in (Kind.NUMBER, Kind.COLOR):
-            nothing_here(editor, icons.ICON_FA_CHART_AREA, "Nothing to measure", "A shows one value, not a picture.")
+            nothing_here(
+                self._context, icons.ICON_FA_CHART_AREA, "Nothing to measure", "A shows one value, not a picture."
+            )
             return
-        self._refresh(editor, shown, names)
+        self._refresh(shown, names)
         room, gap = imgui.get_content_region_avail(), 6.0 * ui_scale()
         columns = _columns(room.x, room.y, len(names))
         rows = -(-len(names) // columns)
@@ -74,30 +81,30 @@ class Scopes:
         for index, name in enumerate(names):
             x = start.x + index % columns * (width + gap)
             y = start.y + index // columns * (height + gap)
-            self._draw_scope(editor, name, (round(x), round(y), round(x + width), round(y + height)))
+            self._draw_scope(name, (round(x), round(y), round(x + width), round(y + height)))
         imgui.dummy((room.x, rows * (height + gap) - gap))
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _draw_tools(self, editor: Editor) -> None:
-        viewer = editor.viewer
+    def _draw_tools(self) -> None:
+        viewer = self._context.viewer
         gap = 2.0 * ui_scale()
         for icon, name in zip(_ICONS, SCOPES, strict=True):
-            tool(editor, icon, f"scopes.{name}")
+            tool(self._context, icon, f"scopes.{name}")
             imgui.same_line(0.0, gap)
         _wrap("Log")
-        if quiet(editor, "Log", "button logarithmic", "Logarithmic histogram", lit=viewer.scopes_logarithmic):
+        if quiet(self._context, "Log", "button logarithmic", "Logarithmic histogram", lit=viewer.scopes_logarithmic):
             viewer.scopes_logarithmic = not viewer.scopes_logarithmic
         imgui.same_line(0.0, gap)
         label, lit = ("Scene", True) if viewer.scopes_of_scene else ("Display", False)
         _wrap(label)
         doc = "What is measured: scene-linear numbers, or what the display shows"
-        if quiet(editor, label, "button measured", doc, lit=lit):
+        if quiet(self._context, label, "button measured", doc, lit=lit):
             viewer.scopes_of_scene = not viewer.scopes_of_scene
 
-    def _refresh(self, editor: Editor, shown: Shown, names: list[str]) -> None:
+    def _refresh(self, shown: Shown, names: list[str]) -> None:
         """Measure again if the picture, or how it is shown, has changed, but not too often."""
-        viewer = editor.viewer
+        viewer = self._context.viewer
         mark = (
             shown.key,
             shown.revision,
@@ -112,29 +119,31 @@ class Scopes:
             viewer.low,
             viewer.high,
             viewer.meaning,
-            editor.palette.name,
+            self._context.palette.name,
         )
         now = time.monotonic()
         if self._waiting:
-            self._make(editor, self._waiting.pop(0))
+            self._make(self._waiting.pop(0))
             return
         if mark == self._mark or now < self._next:
             return
         self._mark, self._next = mark, now + SECONDS
-        self._rgb = self._measured(editor, shown)
+        self._rgb = self._measured(shown)
         self._range = extent(self._rgb) if viewer.scopes_of_scene else (0.0, 1.0)
         self._clipped = clipped(self._rgb)
         self._waiting = list(names)
 
-    def _make(self, editor: Editor, name: str) -> None:
-        plate = self._plates.get(name) or self._plates.setdefault(name, Plate(editor.preview.renderer.device))
-        pixels = self._image(name, self._rgb, editor.viewer.scopes_logarithmic, graticules.is_dark(editor.palette))
+    def _make(self, name: str) -> None:
+        plate = self._plates.get(name) or self._plates.setdefault(name, Plate(self._context.preview.renderer.device))
+        pixels = self._image(
+            name, self._rgb, self._context.viewer.scopes_logarithmic, graticules.is_dark(self._context.palette)
+        )
         self._textures[name] = plate.show(pixels).native_handle
 
-    def _measured(self, editor: Editor, shown: Shown) -> np.ndarray:
+    def _measured(self, shown: Shown) -> np.ndarray:
         """The picture, or its region, as [h, w, 3]."""
-        viewer = editor.viewer
-        whole = self._reader.small(editor.probe, shown)
+        viewer = self._context.viewer
+        whole = self._reader.small(self._context.probe, shown)
         part = whole
         if viewer.region is not None:
             x, y, width, height = texels(viewer.region, (whole.shape[1], whole.shape[0]))
@@ -142,11 +151,14 @@ class Scopes:
         if viewer.scopes_of_scene:
             return rgb_of(part)
         meaning = meaning_of(viewer, shown.kind, lambda: whole)
-        port = editor.session.viewed("A")
-        view = asked_view(editor.session.graph, port) if port else ""
+        port = self._context.session.viewed("A")
+        view = asked_view(self._context.session.graph, port) if port else ""
         sight = Sight((0.0, 0.0), (1, 1), shown.full_size)
         span = range_of(viewer, meaning, lambda: whole)
-        return displayed(part, look_of(viewer, sight, meaning, span, view, editor.palette.surround, coloring(editor)))
+        return displayed(
+            part,
+            look_of(viewer, sight, meaning, span, view, self._context.palette.surround, settings_in_use(self._context)),
+        )
 
     def _image(self, name: str, rgb: np.ndarray, logarithmic: bool, dark: bool) -> np.ndarray:
         low, high = self._range
@@ -158,13 +170,13 @@ class Scopes:
             return scope_images.parade_image(rgb, low, high, dark)
         return scope_images.vectorscope_image(rgb, dark)
 
-    def _draw_scope(self, editor: Editor, name: str, box: Box) -> None:
-        palette, lines = editor.palette, imgui.get_window_draw_list()
+    def _draw_scope(self, name: str, box: Box) -> None:
+        palette, lines = self._context.palette, imgui.get_window_draw_list()
         back = graticules.back(palette)
         lines.add_rect_filled(box[:2], box[2:], u32(back), 3.0 * ui_scale())
         if name == "vectorscope":
             box = _square(box)
-        editor.places[f"scope {name}"] = box
+        self._context.places[f"scope {name}"] = box
         if name not in self._textures:
             return
         lines.add_image(imgui.ImTextureRef(self._textures[name]), box[:2], box[2:])

@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
-from ...authoring.services.coloring import Coloring
 from .pacing import Pace
 from .reading import Reader
-
-if TYPE_CHECKING:
-    from ...authoring.services.flipbook import Flipbook
 
 Channels = Literal["color", "red", "green", "blue", "alpha", "luminance", "false color"]
 Compare = Literal["off", "wipe", "beside", "difference", "toggle"]
@@ -43,7 +39,6 @@ class ViewerState:
     """OpenColorIO display and view; empty takes what the shown output asks for, else the default."""
     look: str = ""
     """A look in place of those of the view; "none" for none at all."""
-    coloring: Coloring = field(default_factory=Coloring)
     compare: Compare = "off"
     wipe: tuple[float, float] = (0.5, 0.5)
     """A point on the wipe line, as a fraction of the picture."""
@@ -94,8 +89,6 @@ class ViewerState:
     """The node whose camera that is; "" where there is none."""
     reader: Reader = field(default_factory=Reader)
     """The numbers that handles know."""
-    flipbook: Flipbook | None = None
-    """What is played in place of the document."""
     compare_after: Compare = "off"
     """How to compare when the flipbook is closed."""
     scopes: set[str] = field(default_factory=lambda: {"histogram", "waveform"})
@@ -124,3 +117,17 @@ class ViewerState:
     def fit(self) -> None:
         """Let the picture fill the panel, whatever size either has."""
         self.zoom, self.pan = 0.0, (0.0, 0.0)
+
+    def begin_flipbook(self, count: int, *, again: bool) -> None:
+        """Show one sequence, or compare two; `again` if another flipbook is on the screen."""
+        if not again:
+            self.compare_after = self.compare
+        if count == 1:
+            self.compare = "off"
+        elif not self.compares:
+            self.compare = "beside"
+        self.fit()
+
+    def end_flipbook(self) -> None:
+        """Compare as before the flipbook."""
+        self.compare = self.compare_after

@@ -17,7 +17,7 @@ from .wanted import layer
 
 if TYPE_CHECKING:
     from ...authoring.preview import Shown
-    from ..window.editor import Editor
+    from .context import ViewerContext
 
 _FLAGS = (
     int(imgui.TableFlags_.row_bg)
@@ -29,11 +29,11 @@ _FLAGS = (
 _HEADINGS = ("", "x, y", *(f"{pair:>9}" for pair in ("R / X", "G / Y", "B / Z", "A / W")))
 
 
-def rows_of(editor: Editor, reader: Reader) -> list[tuple[str, str, tuple[float, ...]]]:
+def rows_of(context: ViewerContext, reader: Reader) -> list[tuple[str, str, tuple[float, ...]]]:
     """Every row of the table: name, place, numbers."""
-    viewer = editor.viewer
+    viewer = context.viewer
     rows: list[tuple[str, str, tuple[float, ...]]] = []
-    shown = _layers(editor)
+    shown = _layers(context)
     points: list[tuple[str, Pixels]] = []
     if viewer.pixel is not None:
         points.append(("", viewer.pixel))
@@ -44,16 +44,16 @@ def rows_of(editor: Editor, reader: Reader) -> list[tuple[str, str, tuple[float,
             if mark and name not in ("A", "B"):
                 continue
             at = _same_place(pixel, viewer.picture, one.full_size)
-            newer = (editor.preview.seen(name) if name in ("A", "B") else None) or one
-            values = reader.pixel(editor.probe, f"table {mark} {name}", newer, at)
-            values = values or reader.pixel(editor.probe, f"table {mark} {name}", one, at)
+            newer = (context.preview.seen(name) if name in ("A", "B") else None) or one
+            values = reader.pixel(context.probe, f"table {mark} {name}", newer, at)
+            values = values or reader.pixel(context.probe, f"table {mark} {name}", one, at)
             rows.append((f"{name} {mark}".strip(), f"{at[0]}, {at[1]}", values))
     box = viewer.measured or viewer.region
     if box is not None:
         for name, one in shown:
             if name not in ("A", "B"):
                 continue
-            found = reader.measured(editor.probe, name, one, box)
+            found = reader.measured(context.probe, name, one, box)
             rows += [
                 (f"{name} least", "", found.low),
                 (f"{name} mean", f"{found.count} px", found.mean),
@@ -62,14 +62,14 @@ def rows_of(editor: Editor, reader: Reader) -> list[tuple[str, str, tuple[float,
     return rows
 
 
-def draw_table(editor: Editor, reader: Reader, height: float) -> None:
+def draw_table(context: ViewerContext, reader: Reader, height: float) -> None:
     """Draw it, `height` high."""
     try:
-        rows = rows_of(editor, reader)
+        rows = rows_of(context, reader)
     except HalationError as error:
         imgui.text_wrapped(str(error))
         return
-    with font(editor, "mono"):
+    with font(context, "mono"):
         imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + 2 * ui_scale())
         if imgui.begin_table("pixel values", len(_HEADINGS), _FLAGS, (0, height)):
             imgui.table_setup_scroll_freeze(0, 1)
@@ -78,29 +78,29 @@ def draw_table(editor: Editor, reader: Reader, height: float) -> None:
                 imgui.table_setup_column(heading, int(imgui.TableColumnFlags_.width_fixed), width)
             imgui.table_headers_row()
             for name, place, values in rows:
-                _row(editor, name, place, values)
+                _row(context, name, place, values)
             imgui.end_table()
 
 
-def _row(editor: Editor, name: str, place: str, values: tuple[float, ...]) -> None:
+def _row(context: ViewerContext, name: str, place: str, values: tuple[float, ...]) -> None:
     imgui.table_next_row()
     imgui.table_next_column()
     imgui.text(name)
     imgui.table_next_column()
-    dim(editor, place)
+    dim(context, place)
     for value in values:
         imgui.table_next_column()
-        color = editor.palette.text if np.isfinite(value) else editor.palette.error
+        color = context.palette.text if np.isfinite(value) else context.palette.error
         imgui.text_colored(vec4(color), f"{written(value):>9}")
 
 
-def _layers(editor: Editor) -> list[tuple[str, Shown]]:
+def _layers(context: ViewerContext) -> list[tuple[str, Shown]]:
     """A, B and the inputs of the graph, as far as they are there."""
     names = [("A", "A")]
-    if editor.viewer.compares:
+    if context.viewer.compares:
         names.append(("B", "B"))
-    names += ((name, layer(name)) for name in editor.session.graph.inputs)
-    return [(name, shown) for name, key in names if (shown := editor.preview.shown(key)) is not None]
+    names += ((name, layer(name)) for name in context.session.graph.inputs)
+    return [(name, shown) for name, key in names if (shown := context.preview.shown(key)) is not None]
 
 
 def _same_place(pixel: Pixels, of: Pixels, size: Pixels) -> Pixels:

@@ -11,7 +11,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...color.transforms import NO_LOOK, displays, looks, views
-from ..shared.coloring import coloring
+from ..shared.coloring import settings_in_use
 from ..theme.style import ui_scale
 from ..toolkit.buttons import dropdown, entries, entry, room_for, tool
 from ..toolkit.fields import number
@@ -21,7 +21,7 @@ from .state import MEANINGS
 from .wanted import A, B
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import ViewerContext
 
 _SHORT: Mapping[str, str] = MappingProxyType(
     {
@@ -51,10 +51,10 @@ class _Tool:
     """True begins a group."""
 
 
-def draw_toolbar(editor: Editor, asked_view: str, is_data: bool) -> None:
+def draw_toolbar(context: ViewerContext, asked_view: str, is_data: bool) -> None:
     """Draw the tools in one row."""
     room = imgui.internal.get_current_window().inner_rect.max.x - imgui.get_cursor_screen_pos().x
-    tools = _tools(editor, asked_view, is_data)
+    tools = _tools(context, asked_view, is_data)
     count = _fitting(tools, room)
     for index, one in enumerate(tools[:count]):
         if index:
@@ -68,7 +68,7 @@ def draw_toolbar(editor: Editor, asked_view: str, is_data: bool) -> None:
             for one in tools[count:]:
                 one.listed()
 
-        dropdown(editor, icons.ICON_FA_ELLIPSIS, "button more tools", "More tools", rest)
+        dropdown(context, icons.ICON_FA_ELLIPSIS, "button more tools", "More tools", rest)
 
 
 def _space(one: _Tool) -> float:
@@ -87,40 +87,42 @@ def _fitting(tools: list[_Tool], room: float) -> int:
     return count
 
 
-def _tools(editor: Editor, asked_view: str, is_data: bool) -> list[_Tool]:
-    viewer = editor.viewer
-    found = [_port(editor, A), _menu(editor, icons.ICON_FA_CLONE, "compare", "Compare A with B", lit=viewer.compares)]
+def _tools(context: ViewerContext, asked_view: str, is_data: bool) -> list[_Tool]:
+    viewer = context.viewer
+    found = [_port(context, A), _menu(context, icons.ICON_FA_CLONE, "compare", "Compare A with B", lit=viewer.compares)]
     if viewer.compares:
-        found.append(_port(editor, B))
+        found.append(_port(context, B))
     if is_data:
-        found += _range(editor)
+        found += _range(context)
     if viewer.scene:
-        found.append(_action(editor, icons.ICON_FA_CAMERA_ROTATE, "viewer.orbit"))
-    if focused(editor.session):
-        found.append(_action(editor, icons.ICON_FA_CROSSHAIRS, "viewer.pick_focus"))
+        found.append(_action(context, icons.ICON_FA_CAMERA_ROTATE, "viewer.orbit"))
+    if focused(context.session):
+        found.append(_action(context, icons.ICON_FA_CROSSHAIRS, "viewer.pick_focus"))
     lit, widest = viewer.channels != "color", max(map(room_for, _SHORT.values()))
-    found.append(_menu(editor, _SHORT[viewer.channels], "channels", "Channels", lit=lit, apart=True, width=widest))
+    found.append(_menu(context, _SHORT[viewer.channels], "channels", "Channels", lit=lit, apart=True, width=widest))
     if not is_data or viewer.meaning == "image":  # other data is shown as it is
-        found += _brightness(editor)
+        found += _brightness(context)
     found += [
         _menu(
-            editor,
+            context,
             f"1/{1 / viewer.proxy:.0f}",
             "proxy",
             "Proxy: compute fewer pixels",
             lit=viewer.proxy != 1.0,
             apart=True,
-            more=lambda: _proxy_while_dragging(editor),
+            more=lambda: _proxy_while_dragging(context),
         ),
-        _action(editor, icons.ICON_FA_PLAY if viewer.paused else icons.ICON_FA_PAUSE, "viewer.pause"),
-        _action(editor, icons.ICON_FA_EXPAND, "viewer.fit", apart=True),
-        _action(editor, "1:1", "viewer.actual"),
-        _menu(editor, icons.ICON_FA_TRIANGLE_EXCLAMATION, "warnings", "Warnings", lit=viewer.warn_clipping, apart=True),
-        _action(editor, icons.ICON_FA_CROP_SIMPLE, "viewer.region"),
-        _action(editor, icons.ICON_FA_TABLE_LIST, "viewer.table"),
-        _action(editor, icons.ICON_FA_FLOPPY_DISK, "viewer.save"),
+        _action(context, icons.ICON_FA_PLAY if viewer.paused else icons.ICON_FA_PAUSE, "viewer.pause"),
+        _action(context, icons.ICON_FA_EXPAND, "viewer.fit", apart=True),
+        _action(context, "1:1", "viewer.actual"),
         _menu(
-            editor,
+            context, icons.ICON_FA_TRIANGLE_EXCLAMATION, "warnings", "Warnings", lit=viewer.warn_clipping, apart=True
+        ),
+        _action(context, icons.ICON_FA_CROP_SIMPLE, "viewer.region"),
+        _action(context, icons.ICON_FA_TABLE_LIST, "viewer.table"),
+        _action(context, icons.ICON_FA_FLOPPY_DISK, "viewer.save"),
+        _menu(
+            context,
             icons.ICON_FA_CHESS_BOARD,
             "background",
             "Behind what is transparent",
@@ -128,19 +130,19 @@ def _tools(editor: Editor, asked_view: str, is_data: bool) -> list[_Tool]:
         ),
     ]
     if not is_data or viewer.meaning == "image":
-        found.append(_view(editor, asked_view))
+        found.append(_view(context, asked_view))
     return found
 
 
-def _action(editor: Editor, icon: str, id: str, apart: bool = False) -> _Tool:
+def _action(context: ViewerContext, icon: str, id: str, apart: bool = False) -> _Tool:
     glyph = icon if len(icon) == 1 else ""
     return _Tool(
-        room_for(icon), lambda: tool(editor, icon, id), lambda: entry(editor, editor.actions[id], glyph), apart
+        room_for(icon), lambda: tool(context, icon, id), lambda: entry(context, context.actions[id], glyph), apart
     )
 
 
 def _dropdown(
-    editor: Editor,
+    context: ViewerContext,
     label: str,
     name: str,
     doc: str,
@@ -155,13 +157,13 @@ def _dropdown(
             imgui.end_menu()
 
     def draw() -> None:
-        dropdown(editor, label, f"button {name}", doc, fill, lit=lit, width=width)
+        dropdown(context, label, f"button {name}", doc, fill, lit=lit, width=width)
 
     return _Tool(width or room_for(label), draw, listed, apart)
 
 
 def _menu(
-    editor: Editor,
+    context: ViewerContext,
     label: str,
     name: str,
     doc: str,
@@ -174,38 +176,38 @@ def _menu(
     """A menu of the menu bar."""
 
     def fill() -> None:
-        entries(editor, f"Viewer/{name.title()}")
+        entries(context, f"Viewer/{name.title()}")
         if more:
             imgui.separator()
             more()
 
-    return _dropdown(editor, label, name, doc, fill, lit, apart, width)
+    return _dropdown(context, label, name, doc, fill, lit, apart, width)
 
 
-def _port(editor: Editor, side: str) -> _Tool:
-    port = editor.session.viewed("A" if side == A else "B")
+def _port(context: ViewerContext, side: str) -> _Tool:
+    port = context.session.viewed("A" if side == A else "B")
     name = str(port) if port else "nothing"
     label = f"{side}  {name if len(name) <= 22 else f'{name[:21]}…'}"
 
     def listed() -> None:
         if imgui.begin_menu(f"{side} shows##{side}"):
-            list_ports(editor, side)
+            list_ports(context, side)
             imgui.end_menu()
 
-    return _Tool(room_for(label), lambda: pick_port(editor, side, label), listed)
+    return _Tool(room_for(label), lambda: pick_port(context, side, label), listed)
 
 
 def _number(width: float, draw: Callable[[float], object], apart: bool = False) -> _Tool:
     return _Tool(width, lambda: draw(width), lambda: draw(imgui.get_font_size() * 9), apart)
 
 
-def _brightness(editor: Editor) -> list[_Tool]:
-    viewer, font = editor.viewer, imgui.get_font_size()
+def _brightness(context: ViewerContext) -> list[_Tool]:
+    viewer, font = context.viewer, imgui.get_font_size()
     doc = "Gain of the difference" if viewer.compare == "difference" else "Exposure"
 
     def exposure(width: float) -> None:
         viewer.exposure = number(
-            editor,
+            context,
             "viewer exposure",
             viewer.exposure,
             "%+.2f EV",
@@ -219,7 +221,7 @@ def _brightness(editor: Editor) -> list[_Tool]:
 
     def gamma(width: float) -> None:
         viewer.gamma = number(
-            editor,
+            context,
             "viewer gamma",
             viewer.gamma,
             "\u03b3 %.2f",
@@ -230,13 +232,13 @@ def _brightness(editor: Editor) -> list[_Tool]:
             high=5.0,
         )
 
-    reset = _action(editor, icons.ICON_FA_ROTATE_LEFT, "viewer.neutral")
+    reset = _action(context, icons.ICON_FA_ROTATE_LEFT, "viewer.neutral")
     return [_number(font * 4.6, exposure), _number(font * 3.6, gamma), reset]
 
 
-def _range(editor: Editor) -> list[_Tool]:
+def _range(context: ViewerContext) -> list[_Tool]:
     """How data is made visible."""
-    viewer, font = editor.viewer, imgui.get_font_size()
+    viewer, font = context.viewer, imgui.get_font_size()
     measured, (low, high) = viewer.low == viewer.high, viewer.span
     speed = max(abs(high - low), 1e-6) / 200
 
@@ -250,24 +252,24 @@ def _range(editor: Editor) -> list[_Tool]:
             viewer.low = viewer.high = 0.0
 
     def black(width: float) -> None:
-        now = number(editor, "data low", low, "%.3g", width, "Shown as black", speed=speed)
+        now = number(context, "data low", low, "%.3g", width, "Shown as black", speed=speed)
         if now != low:
             viewer.low, viewer.high = now, high
 
     def white(width: float) -> None:
-        now = number(editor, "data high", high, "%.3g", width, "Shown as white", speed=speed)
+        now = number(context, "data high", high, "%.3g", width, "Shown as white", speed=speed)
         if now != high:
             viewer.low, viewer.high = low, now
 
-    how = _dropdown(editor, icons.ICON_FA_RULER_HORIZONTAL, "range", "How data is shown", menu, not measured)
+    how = _dropdown(context, icons.ICON_FA_RULER_HORIZONTAL, "range", "How data is shown", menu, not measured)
     return [_number(font * 4.4, black, apart=True), _number(font * 4.4, white), how]
 
 
-def _view(editor: Editor, asked: str) -> _Tool:
-    viewer, color = editor.viewer, coloring(editor)
+def _view(context: ViewerContext, asked: str) -> _Tool:
+    viewer, color = context.viewer, settings_in_use(context)
 
     def menu() -> None:
-        if viewer.coloring.fault:
+        if context.coloring.fault:
             imgui.text_disabled("The color config cannot be read: these are the built-in views")
         if imgui.menu_item(f"As the output asks ({asked or 'default'})", "", not viewer.view)[0]:
             viewer.view = viewer.display = ""
@@ -289,18 +291,18 @@ def _view(editor: Editor, asked: str) -> _Tool:
 
     now = viewer.view or asked or "Default"
     label = f"{icons.ICON_FA_DISPLAY}  {'No view' if now == 'none' else now}"
-    return _dropdown(editor, label, "view", "Display and view (OpenColorIO)", menu, bool(viewer.view), True)
+    return _dropdown(context, label, "view", "Display and view (OpenColorIO)", menu, bool(viewer.view), True)
 
 
-def _proxy_while_dragging(editor: Editor) -> None:
-    coarse = editor.store.now.proxy_while_dragging
+def _proxy_while_dragging(context: ViewerContext) -> None:
+    coarse = context.store.now.proxy_while_dragging
     if imgui.menu_item("Coarser while dragging", "", coarse)[0]:
-        editor.attempt(lambda: editor.store.change(proxy_while_dragging=not coarse))
+        context.log.attempt(lambda: context.store.change(proxy_while_dragging=not coarse))
 
 
-def context_menu(editor: Editor) -> None:
+def context_menu(context: ViewerContext) -> None:
     """What a right click on the picture offers."""
     if imgui.begin_popup("viewer menu"):
-        for action in editor.actions.context("viewer"):
-            entry(editor, action)
+        for action in context.actions.in_menu("viewer"):
+            entry(context, action)
         imgui.end_popup()

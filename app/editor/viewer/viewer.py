@@ -11,7 +11,7 @@ from imgui_bundle import imgui
 
 from ...graph import OUTPUTS, Port
 from ...renderer.viewing.look import Look
-from ..shared.coloring import coloring
+from ..shared.coloring import settings_in_use
 from ..theme.style import u32, ui_scale
 from . import infobar
 from .banner import draw_banner
@@ -36,7 +36,7 @@ from .wanted import A, B
 
 if TYPE_CHECKING:
     from ...authoring.preview import Shown
-    from ..window.editor import Editor
+    from .context import ViewerContext
 
 TABLE_LINES = 7
 """Always the same, whatever it holds: else the picture would move under the pointer."""
@@ -62,9 +62,9 @@ class _Now:
         """True unless only a part is there of what is shown."""
         return not any(shown is not None and shown.partial for shown in (self.a, self.b))
 
-    def beside(self, editor: Editor) -> bool:
+    def beside(self, context: ViewerContext) -> bool:
         """True if B is seen at the right of A."""
-        return editor.viewer.compare == "beside" and self.a is not None and self.b is not None
+        return context.viewer.compare == "beside" and self.a is not None and self.b is not None
 
 
 class Viewer:
@@ -72,11 +72,12 @@ class Viewer:
 
     title = "Viewer"
 
-    def __init__(self) -> None:
-        self._hand = Hand()
+    def __init__(self, context: ViewerContext) -> None:
+        self._context = context
+        self._hand = Hand(context)
         self._reader = Reader()
         self._scan = Scan()
-        self._finder = Finder()
+        self._finder = Finder(context)
         self._watch = Stopwatch()
         self._seconds = 0.0
         self._busy_since: float | None = None
@@ -84,30 +85,30 @@ class Viewer:
         self._right = False
         """True if the mouse is over B, beside A."""
 
-    def draw(self, editor: Editor) -> None:
+    def draw(self) -> None:
         """Everything, into the current window."""
-        viewer, preview = editor.viewer, editor.preview
-        port = editor.session.viewed("A")
+        viewer, preview = self._context.viewer, self._context.preview
+        port = self._context.session.viewed("A")
         b = preview.seen(B) if viewer.compares else None
-        now = _Now(preview.seen(A), b, asked_view(editor.session.graph, port) if port else "")
-        viewer.scene = orbited(editor.session)
-        self._time(editor, now)
+        now = _Now(preview.seen(A), b, asked_view(self._context.session.graph, port) if port else "")
+        viewer.scene = orbited(self._context.session)
+        self._time(now)
         inner, pad = imgui.internal.get_current_window().inner_rect, 4 * ui_scale()
         imgui.set_cursor_screen_pos((inner.min.x + pad, inner.min.y + pad))
-        draw_banner(editor)
-        draw_toolbar(editor, now.view, now.a is not None and now.a.kind in (Kind.FIELD, Kind.VECTOR))
+        draw_banner(self._context)
+        draw_toolbar(self._context, now.view, now.a is not None and now.a.kind in (Kind.FIELD, Kind.VECTOR))
         imgui.push_style_var(imgui.StyleVar_.item_spacing, (0.0, 0.0))
         try:
-            self._draw_panel(editor, now)
+            self._draw_panel(now)
         finally:
             imgui.pop_style_var()
-        context_menu(editor)
-        editor.attempt(lambda: self._finder.step(editor))
+        context_menu(self._context)
+        self._context.log.attempt(lambda: self._finder.step())
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _draw_panel(self, editor: Editor, now: _Now) -> None:
-        viewer, scale = editor.viewer, ui_scale()
+    def _draw_panel(self, now: _Now) -> None:
+        viewer, scale = self._context.viewer, ui_scale()
         inner = imgui.internal.get_current_window().inner_rect
         start = inner.min.x, imgui.get_cursor_screen_pos().y + 3 * scale
         imgui.set_cursor_screen_pos(start)
@@ -117,16 +118,16 @@ class Viewer:
         table = row * TABLE_LINES if viewer.table else 0.0
         width, room = inner.max.x - start[0], inner.max.y - start[1]
         table = min(table, room * 0.4)
-        sight = self._catch(editor, now, (max(width, 32.0), max(room - below - table, 32.0)))
-        look = self._draw_picture(editor, now, sight)
-        self._draw_messages(editor, now, sight)
-        self._read(editor, now, sight, look)
+        sight = self._catch(now, (max(width, 32.0), max(room - below - table, 32.0)))
+        look = self._draw_picture(now, sight)
+        self._draw_messages(now, sight)
+        self._read(now, sight, look)
         if viewer.table:
-            draw_table(editor, self._reader, table)
+            draw_table(self._context, self._reader, table)
 
-    def _catch(self, editor: Editor, now: _Now, size: tuple[float, float]) -> Sight:
+    def _catch(self, now: _Now, size: tuple[float, float]) -> Sight:
         """The area of the picture, of A where B is beside it, after mouse and wheel had their say."""
-        viewer, a, across = editor.viewer, now.a, 2 if now.beside(editor) else 1
+        viewer, a, across = self._context.viewer, now.a, 2 if now.beside(self._context) else 1
         start = imgui.get_cursor_screen_pos()
         density = imgui.get_io().display_framebuffer_scale.x or 1.0
         origin = round(start.x), round(start.y)
@@ -134,7 +135,7 @@ class Viewer:
         viewer.picture = a.full_size if a is not None else (1, 1)
         imgui.set_next_item_allow_overlap()
         imgui.invisible_button("##picture", size, _CATCH)
-        editor.places["viewer panel"] = (origin[0], origin[1], origin[0] + size[0], origin[1] + size[1])
+        self._context.places["viewer panel"] = (origin[0], origin[1], origin[0] + size[0], origin[1] + size[1])
 
         def sight() -> Sight:
             return Sight.of(origin, viewer.panel, viewer.picture, viewer.zoom, viewer.pan, density)
@@ -142,8 +143,8 @@ class Viewer:
         if not imgui.is_item_active():
             self._right = across == 2 and imgui.get_mouse_pos().x >= origin[0] + viewer.panel[0] / density
         if a is not None:
-            self._hand.follow(editor, self._aimed(sight()))
-            editor.places["viewer image"] = sight().rectangle((0.0, 0.0, 1.0, 1.0))
+            self._hand.follow(self._aimed(sight()))
+            self._context.places["viewer image"] = sight().rectangle((0.0, 0.0, 1.0, 1.0))
         else:
             viewer.hovered = imgui.is_item_hovered()
         return sight()
@@ -154,8 +155,8 @@ class Viewer:
             return sight
         return replace(sight, origin=(sight.origin[0] + sight.panel[0] / sight.density, sight.origin[1]))
 
-    def _draw_picture(self, editor: Editor, now: _Now, sight: Sight) -> Look:
-        viewer, palette = editor.viewer, editor.palette
+    def _draw_picture(self, now: _Now, sight: Sight) -> Look:
+        viewer, palette = self._context.viewer, self._context.palette
         if now.a is None:
             look = Look(surround=palette.surround)
         else:
@@ -163,80 +164,84 @@ class Viewer:
             name, shown = (B, now.b) if toggled and now.b is not None else (A, now.a)
 
             def samples():
-                return self._reader.small(editor.probe, editor.preview.shown(name) or shown)
+                return self._reader.small(self._context.probe, self._context.preview.shown(name) or shown)
 
             meaning = meaning_of(viewer, shown.kind, samples)
             viewer.span = range_of(viewer, meaning, samples) if shown.kind is not Kind.NUMBER else (0.0, 1.0)
-            look = look_of(viewer, sight, meaning, viewer.span, now.view, palette.surround, coloring(editor))
-        texture = editor.attempt(lambda: editor.display.draw("viewer", sight.panel, now.a, now.b, look))
+            look = look_of(
+                viewer, sight, meaning, viewer.span, now.view, palette.surround, settings_in_use(self._context)
+            )
+        texture = self._context.log.attempt(
+            lambda: self._context.display.draw("viewer", sight.panel, now.a, now.b, look)
+        )
         if texture is None:  # a view that there is not
             viewer.view = viewer.display = viewer.look = ""
             return look
         lines, (x, y) = imgui.get_window_draw_list(), sight.origin
         corner = x + sight.panel[0] / sight.density, y + sight.panel[1] / sight.density
         lines.add_image(imgui.ImTextureRef(texture.native_handle), (x, y), corner)
-        if now.beside(editor):
-            other = editor.display.draw("viewer beside", sight.panel, now.b, None, look)
+        if now.beside(self._context):
+            other = self._context.display.draw("viewer beside", sight.panel, now.b, None, look)
             lines.add_image(imgui.ImTextureRef(other.native_handle), (corner[0], y), (2 * corner[0] - x, corner[1]))
             lines.add_line((corner[0], y), corner, u32(palette.border), ui_scale())
             for name, left in ((A, x), (B, corner[0])):
                 label(lines, (left + 18 * ui_scale(), y + 18 * ui_scale()), name)
         else:
-            editor.display.drop("viewer beside")
+            self._context.display.drop("viewer beside")
         if now.a is not None:
             lines.push_clip_rect((x, y), corner, True)
-            draw_overlays(editor, sight)
+            draw_overlays(self._context, sight)
             lines.pop_clip_rect()
             if viewer.saving and now.is_whole:
-                editor.attempt(lambda: ask_to_save(editor, now.a, now.b, look))  # type: ignore[arg-type]
+                self._context.log.attempt(lambda: ask_to_save(self._context, now.a, now.b, look))  # type: ignore[arg-type]
         viewer.saving = viewer.saving and not now.is_whole
         return look
 
-    def _draw_messages(self, editor: Editor, now: _Now, sight: Sight) -> None:
-        preview, palette, viewer = editor.preview, editor.palette, editor.viewer
+    def _draw_messages(self, now: _Now, sight: Sight) -> None:
+        preview, palette, viewer = self._context.preview, self._context.palette, self._context.viewer
         fault = preview.fault(A) or (preview.fault(B) if viewer.compares else None)
-        if fault and (now.a is None or preview.faults.get(editor.code.told) != fault):
-            draw_message(editor, sight, fault, palette.error, dim=now.a is not None)
+        if fault and (now.a is None or preview.faults.get(self._context.code.told) != fault):
+            draw_message(self._context, sight, fault, palette.error, dim=now.a is not None)
         elif now.a is None and not preview.busy:
-            draw_message(editor, sight, self._hint(editor), palette.dim)
-        elif viewer.compares and editor.session.viewed("B") is None:
-            draw_badge(editor, sight, "B shows nothing: choose it above, or Shift+V on a node", palette.warning)
+            draw_message(self._context, sight, self._hint(), palette.dim)
+        elif viewer.compares and self._context.session.viewed("B") is None:
+            draw_badge(self._context, sight, "B shows nothing: choose it above, or Shift+V on a node", palette.warning)
         elif viewer.picking:
-            draw_badge(editor, sight, "Click to pick; right click ends", palette.accent)
+            draw_badge(self._context, sight, "Click to pick; right click ends", palette.accent)
         elif viewer.drawing_region:
-            draw_badge(editor, sight, "Drag a rectangle", palette.accent)
-        elif picks(editor):
-            draw_badge(editor, sight, "Click objects to pick them", palette.accent)
+            draw_badge(self._context, sight, "Drag a rectangle", palette.accent)
+        elif picks(self._context):
+            draw_badge(self._context, sight, "Click objects to pick them", palette.accent)
         elif viewer.finding:
             self._search += 1
-            draw_badge(editor, sight, f"Searching{'.' * (self._search // 8 % 4)}", palette.accent)
+            draw_badge(self._context, sight, f"Searching{'.' * (self._search // 8 % 4)}", palette.accent)
         elif self._scan.wrong and viewer.warn_nonfinite:
-            self._offer_search(editor, sight)
+            self._offer_search(sight)
         if now.a is not None and not fault and now.a.kind in (Kind.NUMBER, Kind.COLOR):
-            values = self._reader.pixel(editor.probe, "single", now.a, (0, 0))
-            draw_message(editor, sight, "  ".join(written(value) for value in values), palette.text)
+            values = self._reader.pixel(self._context.probe, "single", now.a, (0, 0))
+            draw_message(self._context, sight, "  ".join(written(value) for value in values), palette.text)
         waited = time.monotonic() - self._busy_since if self._busy_since is not None else 0.0
         if waited > 0.12 and not preview.paused:
             done, total = preview.progress
-            draw_progress(editor, sight, done / total if total else 0.0)
+            draw_progress(self._context, sight, done / total if total else 0.0)
 
-    def _offer_search(self, editor: Editor, sight: Sight) -> None:
+    def _offer_search(self, sight: Sight) -> None:
         count = self._scan.wrong
         text = f"{count} pixel{'s' if count != 1 else ''} NaN or infinite: find where from"
-        box = draw_badge(editor, sight, text, editor.palette.error)
+        box = draw_badge(self._context, sight, text, self._context.palette.error)
         back = imgui.get_cursor_screen_pos()
         imgui.set_cursor_screen_pos(box[:2])
         if imgui.invisible_button("##find", (box[2] - box[0], box[3] - box[1])):
-            editor.actions.run("viewer.find_nonfinite", editor)
+            self._context.actions.run("viewer.find_nonfinite")
         if imgui.is_item_hovered():
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
-        editor.places["viewer find"] = box
+        self._context.places["viewer find"] = box
         imgui.set_cursor_screen_pos(back)
         imgui.dummy((0, 0))
 
-    def _read(self, editor: Editor, now: _Now, sight: Sight, look: Look) -> None:
+    def _read(self, now: _Now, sight: Sight, look: Look) -> None:
         """What is under the pointer, written below the picture."""
-        viewer = editor.viewer
+        viewer = self._context.viewer
         mouse = imgui.get_mouse_pos()
         under = self._aimed(sight).under((mouse.x, mouse.y))
         viewer.pixel = under if viewer.hovered and now.a is not None else None
@@ -245,54 +250,58 @@ class Viewer:
                 continue
             values: tuple[float, ...] = ()
             if shown is not None and viewer.pixel is not None:
-                values = self._reader.pixel(editor.probe, name, shown, viewer.pixel)
-            words = infobar.about(editor, name, shown, sight, self._seconds)
+                values = self._reader.pixel(self._context.probe, name, shown, viewer.pixel)
+            words = infobar.about(self._context, name, shown, sight, self._seconds)
             if shown is not None:
-                words += infobar.of_pixel(editor, viewer.pixel, values, shown.kind, look)
-            infobar.draw_line(editor, f"viewer info {name}", words)
+                words += infobar.of_pixel(self._context, viewer.pixel, values, shown.kind, look)
+            infobar.draw_line(self._context, f"viewer info {name}", words)
             if name == A and values:
-                self._use(editor, values)
+                self._use(values)
         viewer.copying = False
-        if now.a is not None and not editor.preview.busy and viewer.warn_nonfinite and not editor.dragging:
-            self._scan.step(editor.probe, now.a)
+        if (
+            now.a is not None
+            and not self._context.preview.busy
+            and viewer.warn_nonfinite
+            and not self._context.interface.dragging
+        ):
+            self._scan.step(self._context.probe, now.a)
 
-    def _use(self, editor: Editor, values: tuple[float, ...]) -> None:
+    def _use(self, values: tuple[float, ...]) -> None:
         """Copy or pick the values of A under the pointer."""
-        viewer = editor.viewer
+        viewer = self._context.viewer
         assert viewer.pixel is not None
         if viewer.copying:
-            port = editor.session.viewed("A")
-            editor.clipboard.put(copied(str(port), viewer.pixel, values))
-            editor.say(f"copied {viewer.pixel[0]}, {viewer.pixel[1]}")
+            port = self._context.session.viewed("A")
+            self._context.clipboard.put(copied(str(port), viewer.pixel, values))
+            self._context.log.add(f"copied {viewer.pixel[0]}, {viewer.pixel[1]}")
         if self._hand.picked is not None and viewer.picking:
             port = Port.parse(viewer.picking)
-            picked = self._picked(editor, port, values)
+            picked = self._picked(port, values)
             if picked is not None:
-                editor.attempt(lambda: editor.session.set(port, picked, merge=f"pick {port}"))
+                self._context.log.attempt(lambda: self._context.session.set(port, picked, merge=f"pick {port}"))
             if not imgui.is_mouse_down(imgui.MouseButton_.left):
-                editor.session.seal()
+                self._context.session.seal()
                 viewer.picking = ""
 
-    @staticmethod
-    def _picked(editor: Editor, port: Port, values: tuple[float, ...]) -> Plain | None:
+    def _picked(self, port: Port, values: tuple[float, ...]) -> Plain | None:
         """What a value becomes by a click on the picture: a place, a depth or a color; None if nobody knows."""
-        viewer = editor.viewer
-        if takes_position(editor.session, port):
+        viewer = self._context.viewer
+        if takes_position(self._context.session, port):
             return pixel_place(viewer)
         if not is_distance(port):
             return picked_color(values)
-        depth = depth_at(editor, pixel_place(viewer))
+        depth = depth_at(self._context, pixel_place(viewer))
         return None if depth is None else float(f"{depth:.7g}")
 
-    def _hint(self, editor: Editor) -> str:
-        port = editor.session.viewed("A")
+    def _hint(self) -> str:
+        port = self._context.session.viewed("A")
         if port is not None and port.node == OUTPUTS:
             return f"Nothing is linked to the output '{port.socket}' yet."
         return _EMPTY
 
-    def _time(self, editor: Editor, now: _Now) -> None:
+    def _time(self, now: _Now) -> None:
         """How long pictures take, for the line below and for the proxy of drags."""
-        preview, moment = editor.preview, time.monotonic()
+        preview, moment = self._context.preview, time.monotonic()
         busy = preview.busy and not preview.completing
         if busy:
             self._busy_since = moment if self._busy_since is None else self._busy_since
@@ -302,4 +311,4 @@ class Viewer:
         seconds = self._watch.lap(busy and not preview.paused, key, moment)
         if seconds is not None and now.a is not None:
             self._seconds = seconds
-            editor.viewer.pace.took(now.a.scale, seconds, now.a.share)
+            self._context.viewer.pace.took(now.a.scale, seconds, now.a.share)

@@ -11,7 +11,7 @@ from .ground import depths
 from .looking import measures
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from .context import ViewerContext
 
 A, B = "A", "B"
 
@@ -21,36 +21,36 @@ def layer(name: str) -> str:
     return f"{INPUTS}.{name}"
 
 
-def effective_scale(editor: Editor) -> float:
+def effective_scale(context: ViewerContext) -> float:
     """The chosen proxy, or a coarser one while a value is being dragged and pictures come too slowly."""
-    viewer, seen = editor.viewer, glimpse(editor)
+    viewer, seen = context.viewer, glimpse(context)
     share = seen.share(viewer.proxy) if seen else 1.0
-    return viewer.pace.at(viewer.proxy, editor.dragging and editor.store.now.proxy_while_dragging, share)
+    return viewer.pace.at(viewer.proxy, context.interface.dragging and context.store.now.proxy_while_dragging, share)
 
 
-def wanted(editor: Editor) -> tuple[dict[str, Port], float]:
+def wanted(context: ViewerContext) -> tuple[dict[str, Port], float]:
     """What panels show by name, as ports of the graph that one is in, and the scale to compute it at.
 
     That is A, B where it is compared with, every input of the graph while their values are shown, and what says how far
     away things are where a handle asks for that.
     """
-    session, viewer = editor.session, editor.viewer
-    found = _sides(editor)
+    session, viewer = context.session, context.viewer
+    found = _sides(context)
     if viewer.table:
         found |= {layer(name): Port(INPUTS, name) for name in session.graph.inputs}
-    return found | depths(editor), effective_scale(editor)
+    return found | depths(context), effective_scale(context)
 
 
-def glimpse(editor: Editor) -> Glimpse | None:
+def glimpse(context: ViewerContext) -> Glimpse | None:
     """What can be seen of A, and of B where it is compared with; None where all is needed to show it.
 
     So it is while frames are played, which are kept for the next time, and where numbers of the whole picture say how
     it is shown.
     """
-    viewer = editor.viewer
-    if viewer.zoom <= 0.0 or editor.timeline.playback.playing or editor.timeline.scrubbing:
+    viewer = context.viewer
+    if viewer.zoom <= 0.0 or context.timeline.playing or context.timeline.scrubbing:
         return None
-    sides = {side: editor.preview.seen(side) for side in _sides(editor)}
+    sides = {side: context.preview.seen(side) for side in _sides(context)}
     for shown in sides.values():
         if shown is None or shown.full_size != viewer.picture or measures(viewer, shown.kind):
             return None
@@ -62,6 +62,6 @@ def glimpse(editor: Editor) -> Glimpse | None:
     return Glimpse((left, top, right, bottom), viewer.picture, frozenset(sides))
 
 
-def _sides(editor: Editor) -> dict[str, Port]:
-    sides = (A, B) if editor.viewer.compares else (A,)
-    return {side: port for side in sides if (port := editor.session.viewed(side)) is not None}
+def _sides(context: ViewerContext) -> dict[str, Port]:
+    sides = (A, B) if context.viewer.compares else (A,)
+    return {side: port for side in sides if (port := context.session.viewed(side)) is not None}

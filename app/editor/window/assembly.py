@@ -7,8 +7,8 @@ from pathlib import Path
 
 from imgui_bundle import imgui
 
+from ...authoring.log import Log
 from ...authoring.preview import Preview
-from ...authoring.services.exporting import Exports
 from ...authoring.services.preferences import Store, state_folder
 from ...authoring.services.recovery import Recovery
 from ...authoring.services.renders import Renders
@@ -18,9 +18,10 @@ from ...inputs.provider import MediaProvider
 from ...renderer import Device, Renderer
 from ...renderer.viewing.display import Display
 from ...renderer.viewing.probe import Probe
-from ...watch.watching import Watcher
 from ..actions import table
 from ..shared.action import Actions
+from ..shared.stage import Stage
+from ..toolkit.context import Interface
 from .editor import Editor
 
 
@@ -35,25 +36,25 @@ class SystemClipboard:
 
 
 def assemble(device: Device, state: Path | None = None) -> Editor:
-    """An editor on a window's device, with an empty graph. `state` is the folder of everything it remembers."""
+    """Build an editor on a window's device, with an empty graph. `state` is the folder of everything it remembers."""
     folder = state or state_folder()
-    store = Store(folder)
+    store, log = Store(folder), Log()
     renderer = Renderer(device, budget=store.now.memory_budget * 2**20)
     renders, session = Renders(), Session()
     session.measure = _measure
     renderer.pictures.look = renders.render
     display = Display(device)
     return Editor(
-        session,
+        Stage(session),
         Preview(renderer, display),
         store,
-        Actions(table(), lambda: store.now.shortcuts),
-        Exports(),
+        Actions(table(), lambda: store.now.shortcuts, log),
         Recovery(folder, store.now.autosave),
-        Watcher(),
         SystemClipboard(),
         display,
         Probe(device),
+        Interface(store),
+        log,
         renders=renders,
     )
 
@@ -80,7 +81,7 @@ def take_apart(editor: Editor) -> None:
     editor.watcher.close()
     editor.renders.close()
     editor.shaders.close()
-    editor.recovery.close(keep=not editor.closing and editor.session.dirty)
+    editor.recovery.close(keep=not editor.commands.closing and editor.session.dirty)
     editor.store.flush()
     editor.probe.close()
     editor.display.close()

@@ -1,115 +1,83 @@
-"""Everything that one editor window has. Panels draw it, actions change it; nothing here knows how it looks."""
+"""Everything that one editor window has. Only the window knows it whole; panels get the parts that they use."""
 
 from __future__ import annotations
 
-import traceback
-from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Protocol, TypeVar
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from ...authoring.log import Log
+from ...authoring.services.coloring import Coloring
+from ...authoring.services.exporting import Exports
 from ...authoring.services.renders import Renders
 from ...authoring.services.shader_files import ShaderFiles
-from ...errors import HalationError
+from ...watch.watching import Watcher
 from ..canvas.view import CanvasView
 from ..code.state import CodeState
 from ..curves.state import CurvesState
 from ..shared.dialogs import Dialogs
-from ..theme.palette import PALETTES, Palette
+from ..shared.stage import Stage
+from ..shared.window_commands import WindowCommands
+from ..theme.palette import Palette
 from ..timeline.state import TimelineState
+from ..toolkit.context import Interface
+from ..toolkit.places import Rect
 from ..viewer.state import ViewerState
 
 if TYPE_CHECKING:
     from ...authoring.preview import Preview
-    from ...authoring.services.exporting import Exports
     from ...authoring.services.preferences import Store
     from ...authoring.services.recovery import Recovery
     from ...authoring.session import Session
     from ...renderer.viewing.display import Display
     from ...renderer.viewing.probe import Probe
-    from ...watch.watching import Watcher
     from ..shared.action import Actions, Scope
-    from ..theme.fonts import Fonts
-
-T = TypeVar("T")
-
-Rectangle = tuple[float, float, float, float]
-"""Left, top, right, bottom in pixels of the screen."""
-
-
-class Clipboard(Protocol):
-    """The clipboard of the system."""
-
-    def get(self) -> str: ...
-
-    def put(self, text: str) -> None: ...
+    from ..shared.protocols import Clipboard
 
 
 @dataclass
 class Editor:
-    """One window: the document, its pictures, what the person likes, and what is going on."""
+    """One window: the document, its pictures, the user's preferences, the state of each panel, and what goes on."""
 
-    session: Session
+    stage: Stage
     preview: Preview
     store: Store
     actions: Actions
-    exports: Exports
     recovery: Recovery
-    watcher: Watcher
     clipboard: Clipboard
     display: Display
     probe: Probe
-    fonts: Fonts | None = None
+    interface: Interface
+    log: Log = field(default_factory=Log)
+    exports: Exports = field(default_factory=Exports)
+    watcher: Watcher = field(default_factory=Watcher)
     renders: Renders = field(default_factory=Renders)
     shaders: ShaderFiles = field(default_factory=ShaderFiles)
+    coloring: Coloring = field(default_factory=Coloring)
     canvas: CanvasView = field(default_factory=CanvasView)
     viewer: ViewerState = field(default_factory=ViewerState)
     code: CodeState = field(default_factory=CodeState)
     curves: CurvesState = field(default_factory=CurvesState)
     timeline: TimelineState = field(default_factory=TimelineState)
     dialogs: Dialogs = field(default_factory=Dialogs)
-    log: Log = field(default_factory=Log)
+    commands: WindowCommands = field(default_factory=WindowCommands)
     faults: dict[str, str] = field(default_factory=dict[str, str])
     """Panels that failed, with the traceback: shown in Problems."""
-    dragging: bool = False
-    """True while a value is being dragged: pictures may be coarse until it is let go."""
-    places: dict[str, Rectangle] = field(default_factory=dict[str, Rectangle])
-    """Where things were drawn last, by name: for tests and hints."""
     lights: dict[str, int] = field(default_factory=dict[str, int])
-    """The light that is selected of every value that lists some: the inspector shows it, the viewer marks it."""
-    requests: set[str] = field(default_factory=set[str])
-    """What the window shall do next: "reset layout", "screenshot", "show Renders" or another panel."""
+    """The light that is selected, by the value that lists it: the inspector shows it, the viewer marks it."""
     scope: Scope = "graph"
     """The panel that keys go to: the one that the mouse was over last."""
-    closing: bool = False
-    """True lets the window close."""
-
-    def attempt(self, act: Callable[[], T], default: T | None = None) -> T | None:
-        """Do something for a person: a mistake becomes a sentence in the log, a bug is reported, nothing is lost."""
-        try:
-            return act()
-        except HalationError as error:
-            self.log.add(str(error), "error")
-        except Exception as error:
-            self.log.add(
-                f"this did not work because of a fault in Halation ({type(error).__name__}: {error}); "
-                "the document is as it was before",
-                "error",
-                traceback.format_exc(),
-            )
-        return default
-
-    def say(self, sentence: str) -> None:
-        """Tell the person something."""
-        self.log.add(sentence)
 
     @property
-    def stage(self) -> Editor:
-        """The same editor for what shows pictures and time: with the flipbook as its document while one is open."""
-        book = self.viewer.flipbook
-        return self if book is None else replace(self, session=book.session)
+    def session(self) -> Session:
+        """The document."""
+        return self.stage.document
+
+    @property
+    def places(self) -> dict[str, Rect]:
+        """Where widgets were drawn last, by name."""
+        return self.interface.places
 
     @property
     def palette(self) -> Palette:
-        """The colors of the present theme."""
-        return PALETTES[self.store.now.theme]
+        """The colors of the theme."""
+        return self.interface.palette

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..toolkit.keys import shown
+from ..viewer.context import ViewerContext
 from ..viewer.lights import can_add
 from ..viewer.mattes import picks
 from .editor import Editor
@@ -11,7 +12,7 @@ Hint = tuple[str, str]
 """Keys or a button, and what they do."""
 
 
-def hints(editor: Editor, panel: str) -> tuple[Hint, ...]:
+def list_hints(editor: Editor, context: ViewerContext, panel: str) -> tuple[Hint, ...]:
     """For the panel of that title; what is most needed first."""
     viewer, canvas = editor.viewer, editor.canvas
     if panel == "Viewer":
@@ -27,9 +28,9 @@ def hints(editor: Editor, panel: str) -> tuple[Hint, ...]:
                 ("Space+drag", "move the picture"),
                 (_key(editor, "viewer.frame_scene"), "show all of it"),
             )
-        if picks(editor):
+        if picks(context):
             return ("Click", "pick an object, or no longer"), ("Drag", "move the picture"), ("Wheel", "zoom")
-        if can_add(editor):
+        if can_add(context):
             return (
                 ("Drag", "move a light"),
                 ("Alt+drag or wheel", "nearer or farther"),
@@ -37,7 +38,7 @@ def hints(editor: Editor, panel: str) -> tuple[Hint, ...]:
                 ("Double click", "add one"),
                 (_key(editor, "viewer.remove_light"), "remove it"),
             )
-    if panel == "Graph" and getattr(canvas, "tool", ""):
+    if panel == "Graph" and canvas.tool:
         return ("Drag", "across links"), ("Escape", "leave it")
     return tuple((_key(editor, keys), does) for keys, does in _HINTS.get(panel, _ANYWHERE) if _key(editor, keys))
 

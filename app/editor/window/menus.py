@@ -8,8 +8,7 @@ from imgui_bundle import imgui
 
 from ..actions import MENUS
 from ..shared.action import Action
-from ..toolkit.buttons import entry
-from .editor import Editor
+from ..toolkit.buttons import ActionSurface, entry
 
 
 @dataclass
@@ -19,11 +18,11 @@ class _Menu:
     entries: dict[str, Action | _Menu] = field(default_factory=dict)
 
 
-def draw_menus(editor: Editor, panels: dict[str, bool]) -> None:
+def draw_menus(context: ActionSurface, panels: dict[str, bool]) -> None:
     """Draw all menus; `panels` says by title which are visible, and is changed by the View menu."""
-    for name, menu in _menus(editor.actions.all).items():
+    for name, menu in _menus(context.actions.all).items():
         if imgui.begin_menu(name):
-            _draw(editor, menu)
+            _draw(context, menu)
             if name == "View":
                 imgui.separator()
                 for title, visible in panels.items():
@@ -48,16 +47,16 @@ def _menus(actions: tuple[Action, ...]) -> dict[str, _Menu]:
     return found
 
 
-def _draw(editor: Editor, menu: _Menu) -> None:
+def _draw(context: ActionSurface, menu: _Menu) -> None:
     for name, one in menu.entries.items():
         if isinstance(one, _Menu):
             first = next(iter(one.entries.values()), None)
             if isinstance(first, Action) and first.separated:
                 imgui.separator()
             if imgui.begin_menu(name):
-                _draw(editor, one)
+                _draw(context, one)
                 imgui.end_menu()
             continue
         if one.separated and name != next(iter(menu.entries)):
             imgui.separator()
-        entry(editor, one)
+        entry(context, one)

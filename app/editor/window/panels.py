@@ -21,51 +21,49 @@ from ..log.toasts import Toasts
 from ..preferences.dialog import PreferencesDialog
 from ..problems.panel import Problems
 from ..renders.panel import Renders
+from ..shared.window_commands import PanelTitle
 from ..start.screen import StartScreen
 from ..viewer.scopes_panel import Scopes
 from ..viewer.viewer import Viewer
-from .editor import Editor
+from .contexts import Contexts
 
 
 class Panel(Protocol):
     """Something that draws itself into the window it is given."""
 
-    def draw(self, editor: Editor) -> None: ...
+    def draw(self) -> None: ...
 
 
 @dataclass(frozen=True)
 class Docked:
     """A panel with its title and the dock it starts in. `bare` panels draw up to their borders."""
 
-    title: str
+    title: PanelTitle
     dock: str
-    make: Callable[[], Panel]
+    make: Callable[[Contexts], Panel]
     bare: bool = False
 
 
 DOCKED = (
-    Docked("Viewer", "MainDockSpace", Viewer, bare=True),
-    Docked("Graph", "Lower", Canvas, bare=True),
-    Docked("Animation", "Lower", Animation, bare=True),
-    Docked("Code", "Lower", CodePanel),
-    Docked("Problems", "Lower", Problems),
-    Docked("Renders", "Lower", Renders),
-    Docked("Log", "Lower", LogPanel),
-    Docked("Inspector", "Right", Inspector),
-    Docked("Scopes", "RightLower", Scopes),
-    Docked("History", "RightLower", HistoryPanel),
+    Docked("Viewer", "MainDockSpace", lambda contexts: Viewer(contexts.viewer), bare=True),
+    Docked("Graph", "Lower", lambda contexts: Canvas(contexts.canvas), bare=True),
+    Docked("Animation", "Lower", lambda contexts: Animation(contexts.curves), bare=True),
+    Docked("Code", "Lower", lambda contexts: CodePanel(contexts.code)),
+    Docked("Problems", "Lower", lambda contexts: Problems(contexts.problems)),
+    Docked("Renders", "Lower", lambda contexts: Renders(contexts.renders)),
+    Docked("Log", "Lower", lambda contexts: LogPanel(contexts.log)),
+    Docked("Inspector", "Right", lambda contexts: Inspector(contexts.inspector)),
+    Docked("Scopes", "RightLower", lambda contexts: Scopes(contexts.viewer)),
+    Docked("History", "RightLower", lambda contexts: HistoryPanel(contexts.history)),
 )
 
-STAGED = frozenset({"Viewer", "Timeline", "Scopes"})
-"""What shows a flipbook in place of the document while one is open."""
-
-OVERLAYS: tuple[tuple[str, Callable[[], Panel]], ...] = (
-    ("Start", StartScreen),
-    ("Shortcuts", CheatSheet),
-    ("Preferences", PreferencesDialog),
-    ("Command palette", CommandPalette),
-    ("Files", FileBrowser),
-    ("About", About),
-    ("Question", QuestionDialog),
-    ("Messages", Toasts),
+OVERLAYS: tuple[tuple[str, Callable[[Contexts], Panel]], ...] = (
+    ("Start", lambda contexts: StartScreen(contexts.start)),
+    ("Shortcuts", lambda contexts: CheatSheet(contexts.dialogs)),
+    ("Preferences", lambda contexts: PreferencesDialog(contexts.preferences)),
+    ("Command palette", lambda contexts: CommandPalette(contexts.command_palette)),
+    ("Files", lambda contexts: FileBrowser(contexts.browser)),
+    ("About", lambda contexts: About(contexts.dialogs)),
+    ("Question", lambda contexts: QuestionDialog(contexts.dialogs)),
+    ("Messages", lambda contexts: Toasts(contexts.log)),
 )

@@ -27,7 +27,7 @@ def run_shortcuts(editor: Editor) -> None:
     for action in editor.actions.all:
         text = editor.actions.shortcut(action.id)
         if not done and text and action.scope in ("", editor.scope) and _pressed(editor, text, action.repeats):
-            editor.actions.run(action.id, editor)
+            editor.actions.run(action.id)
             done = True
     for key in _TAKEN:
         imgui.internal.set_key_owner(key, _OURS)

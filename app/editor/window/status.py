@@ -11,15 +11,16 @@ from ..theme.style import EM, vec4
 from ..toolkit.places import record
 from ..toolkit.words import dim, fitted, font, level_color
 from ..viewer.wanted import A
+from .contexts import Contexts
 from .editor import Editor
-from .hints import hints
+from .hints import list_hints
 from .panels import DOCKED
 
 SECONDS = 8.0
 """How long a sentence stays."""
 
 
-def draw_status(editor: Editor) -> None:
+def draw_status(editor: Editor, contexts: Contexts) -> None:
     """Words on the left, figures on the right."""
     figures = _figures(editor)
     end = imgui.get_window_width() - imgui.get_style().window_padding.x
@@ -30,24 +31,24 @@ def draw_status(editor: Editor) -> None:
         text = fitted(newest.sentence.splitlines()[0], left - 2 * EM)
         imgui.text_colored(vec4(level_color(editor.palette, newest.level)), text)
     else:
-        _draw_hints(editor, left)
+        _draw_hints(editor, contexts, left)
     imgui.same_line(left)
     dim(editor, figures)
     record(editor, "status figures")
 
 
-def _draw_hints(editor: Editor, end: float) -> None:
+def _draw_hints(editor: Editor, contexts: Contexts, end: float) -> None:
     """As many as fit."""
     gap = imgui.get_font_size()
-    for index, (keys, does) in enumerate(hints(editor, _panel_below(editor))):
-        with font(editor, "bold"):
+    for index, (keys, does) in enumerate(list_hints(editor, contexts.viewer, _panel_below(editor))):
+        with font(contexts.dialogs, "bold"):
             width = imgui.calc_text_size(keys).x
         if index:
             imgui.same_line(0.0, gap * 1.4)
         if imgui.get_cursor_pos_x() + width + imgui.calc_text_size(does).x + gap > end:
             imgui.text_unformatted("")
             break
-        with font(editor, "bold"):
+        with font(contexts.dialogs, "bold"):
             dim(editor, keys)
         imgui.same_line(0.0, gap * 0.4)
         dim(editor, does)

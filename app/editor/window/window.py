@@ -17,14 +17,14 @@ from ..shared.dialogs import Browse
 from ..theme import fonts, style
 from ..theme.palette import Palette
 from ..timeline.timeline import HEIGHT, Timeline
-from ..workflows.documents import ask_to_close
-from .arriving import arrived
 from .assembly import assemble, open_first, take_apart
+from .contexts import Contexts, compose_contexts
+from .dropped_files import take_files
 from .editor import Editor
+from .frame_updater import FrameUpdater
 from .guard import failed, forgive, guarded
-from .heartbeat import Heartbeat
 from .menus import draw_menus
-from .panels import DOCKED, OVERLAYS, STAGED, Docked, Panel
+from .panels import DOCKED, OVERLAYS, Docked, Panel
 from .screenshot import save_screenshot
 from .shortcuts import note_scope, run_shortcuts
 from .status import draw_status
@@ -51,10 +51,10 @@ class Window:
         self._path, self._bindings, self._state = path, dict(bindings), state
         self._form: Form | None = form
         self.editor: Editor
+        self._contexts: Contexts
         self._panels: dict[str, Panel] = {}
         self._overlays: dict[str, Panel] = {}
-        self._timeline = Timeline()
-        self._heartbeat = Heartbeat()
+        self._updater: FrameUpdater
         self._dropped: list[str] = []
         self._title = ""
         self._fronted: set[str] = set()
@@ -124,8 +124,11 @@ class Window:
         self.device = adopt_window(self._form)
         self.editor = assemble(self.device, self._state)
         open_first(self.editor, self._path, self._bindings)
-        self._panels = {docked.title: docked.make() for docked in DOCKED}
-        self._overlays = {name: make() for name, make in OVERLAYS}
+        self._contexts = compose_contexts(self.editor)
+        self._updater = FrameUpdater(self.editor, self._contexts)
+        self._panels = {docked.title: docked.make(self._contexts) for docked in DOCKED}
+        self._panels["Timeline"] = Timeline(self._contexts.timeline)
+        self._overlays = {name: make(self._contexts) for name, make in OVERLAYS}
         imgui.get_io().config_flags |= int(imgui.ConfigFlags_.nav_enable_keyboard)
         imgui.get_io().config_drag_click_to_input_text = True
         glfw.set_drop_callback(_host(), lambda _, paths: self._dropped.extend(paths))  # pyright: ignore
@@ -133,7 +136,7 @@ class Window:
     def _load_fonts(self) -> None:
         """Comes after `_begin`."""
         if self.fault is None:
-            self.editor.fonts = fonts.load()
+            self.editor.interface.fonts = fonts.load()
 
     def close(self) -> None:
         """Give everything back, once; unsaved work that nobody agreed to lose is kept."""
@@ -146,7 +149,7 @@ class Window:
             take_apart(self.editor)
 
     def _confirm_exit(self) -> bool:
-        return self.fault is not None or ask_to_close(self.editor)
+        return self.fault is not None or self._contexts.documents.ask_to_close()
 
     # --- every frame -------------------------------------------------------------------------------------------------
 
@@ -158,19 +161,19 @@ class Window:
         self._restyle()
         editor.places.clear()
         if not any(map(imgui.is_mouse_down, (imgui.MouseButton_.left, imgui.MouseButton_.middle))):
-            editor.dragging = False
+            editor.interface.dragging = False
         note_scope(editor)
         editor.canvas.hovered = editor.viewer.hovered = editor.curves.hovered = False
         try:
-            guarded(editor, "Rendering", lambda: self._heartbeat.beat(editor))
+            guarded(editor, "Rendering", self._updater.update)
         finally:
             self.device.target_window()
         if self._dropped:
             paths, self._dropped = [Path(path) for path in self._dropped], []
-            editor.attempt(lambda: arrived(editor, paths))
-        if editor.closing:
+            editor.log.attempt(lambda: take_files(editor, self._contexts.documents, paths))
+        if editor.commands.closing:
             self.params.app_shall_exit = True
-        self._serve_requests()
+        self._serve_commands()
         resting = self.params.fps_idling
         computes = editor.preview.busy and not editor.preview.paused
         resting.enable_idling = not (computes or editor.timeline.playback.playing)
@@ -179,12 +182,12 @@ class Window:
     def _draw_menus(self) -> None:
         windows = {docked.title: self.params.docking_params.dockable_window_of_name(docked.title) for docked in DOCKED}
         visible = {title: window.is_visible for title, window in windows.items()}
-        guarded(self.editor, "Menus", lambda: draw_menus(self.editor, visible))
+        guarded(self.editor, "Menus", lambda: draw_menus(self._contexts.dialogs, visible))
         for title, shown in visible.items():
             windows[title].is_visible = shown
 
     def _draw_status(self) -> None:
-        guarded(self.editor, "Status", lambda: draw_status(self.editor))
+        guarded(self.editor, "Status", lambda: draw_status(self.editor, self._contexts))
 
     def _draw_timeline(self) -> None:
         self._draw_inside("Timeline")
@@ -210,13 +213,12 @@ class Window:
         if title in self.editor.faults:
             failed(self.editor, title)
         else:
-            panel = self._timeline if title == "Timeline" else self._panels[title]
-            guarded(self.editor, title, lambda: panel.draw(self.editor.stage if title in STAGED else self.editor))
+            guarded(self.editor, title, self._panels[title].draw)
 
     def _draw_overlays(self) -> None:
         for name, overlay in self._overlays.items():
             failed_before = name in self.editor.faults
-            if not guarded(self.editor, name, lambda overlay=overlay: overlay.draw(self.editor)) and not failed_before:
+            if not guarded(self.editor, name, overlay.draw) and not failed_before:
                 self.editor.dialogs.close()  # one that nobody can see would keep all keys for itself
         run_shortcuts(self.editor)
 
@@ -238,18 +240,21 @@ class Window:
             self._title = title
             glfw.set_window_title(_host(), title)
 
-    def _serve_requests(self) -> None:
-        requests, self.editor.requests = self.editor.requests, set()
-        if "reset layout" in requests:
-            self.params.docking_params.layout_reset = True
+    def _serve_commands(self) -> None:
+        """Do what panels and actions asked the window to do."""
+        commands, docking = self.editor.commands, self.params.docking_params
+        if commands.resets_layout:
+            commands.resets_layout = False
+            docking.layout_reset = True
             for docked in DOCKED:
-                self.params.docking_params.dockable_window_of_name(docked.title).is_visible = True
-        if "screenshot" in requests:
+                docking.dockable_window_of_name(docked.title).is_visible = True
+        if commands.saves_screenshot:
+            commands.saves_screenshot = False
             self._screenshot()
-        for docked in DOCKED:
-            if f"show {docked.title}" in requests:
-                self.params.docking_params.dockable_window_of_name(docked.title).is_visible = True
-                self._fronted.add(docked.title)
+        for title in commands.panels:
+            docking.dockable_window_of_name(title).is_visible = True
+            self._fronted.add(title)
+        commands.panels.clear()
 
     def _screenshot(self) -> None:
         """Save the window as it was shown last."""
@@ -257,7 +262,7 @@ class Window:
         self.editor.dialogs.browse = Browse(
             "Save a screenshot",
             "export",
-            lambda path: self.editor.attempt(lambda: save_screenshot(path, pixels)),
+            lambda path: self.editor.log.attempt(lambda: save_screenshot(path, pixels)),
             saving=True,
             name="halation.png",
         )

@@ -1,128 +1,148 @@
-"""Actions on the code of nodes."""
+"""Files with the code of nodes: written, moved into a file, read again after another program changed them."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
-from ...custom_nodes import Code
 from ..shared.action import Action
 from ..shared.dialogs import Browse, Question
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
-
-PANEL = "Code"
-"""The title of the panel that code is written in."""
-
-
-def _code(editor: Editor) -> Code | None:
-    return editor.session.code(editor.session.active)
+    from ...authoring.log import Log
+    from ...authoring.session import Session
+    from ...custom_nodes import Code
+    from ...watch.watching import Watcher
+    from ..shared.dialogs import Dialogs
+    from ..shared.window_commands import WindowCommands
 
 
-def _in_file(editor: Editor) -> bool:
-    code = _code(editor)
-    return code is not None and bool(code.file)
+class CodeEditor(Protocol):
+    """The Code panel, as far as files of code need it."""
+
+    focus: bool
+    """True asks it to take the keyboard."""
+
+    def flush(self) -> object:
+        """Take over what the user typed last."""
+        ...
 
 
-def show_code(editor: Editor) -> None:
-    """Open the panel for the active node, ready to be typed into."""
-    editor.requests.add(f"show {PANEL}")
-    editor.code.focus = True
+@dataclass(frozen=True)
+class CodeFiles:
+    """Reads and writes files with the code of nodes, and asks where both sides have changed."""
 
+    session: Session
+    watcher: Watcher
+    dialogs: Dialogs
+    log: Log
+    editor: CodeEditor
+    commands: WindowCommands
 
-def save_code(editor: Editor, id: str) -> None:
-    """Write the code of a node to its file. Raises OutputError."""
-    path = editor.session.save_code(id)
-    editor.watcher.expect(path)
-    editor.say(f"saved {path.name}")
+    @property
+    def active_code(self) -> Code | None:
+        """The code of the active node."""
+        return self.session.code(self.session.active)
 
+    @property
+    def active_has_file(self) -> bool:
+        """True if the code of the active node lies in a file."""
+        code = self.active_code
+        return code is not None and bool(code.file)
 
-def save_drafts(editor: Editor) -> None:
-    """Write all code that differs from its file, as when the graph that it belongs to is saved. Raises OutputError."""
-    editor.code.flush()
-    for path in editor.session.save_drafts():
-        editor.watcher.expect(path)
-        editor.say(f"saved {path.name}")
+    def show(self) -> None:
+        """Open the Code panel for the active node, ready for typing."""
+        self.commands.show_panel("Code")
+        self.editor.focus = True
 
+    def save(self, id: str) -> None:
+        """Write the code of a node to its file. Raises OutputError."""
+        path = self.session.save_code(id)
+        self.watcher.expect(path)
+        self.log.add(f"saved {path.name}")
 
-def export_code(editor: Editor, id: str) -> None:
-    """Ask for a file, and let the code of a node come from it."""
-    code = editor.session.code(id)
-    ending = ".fs" if code and code.language == "isf" else ".glsl"
+    def save_drafts(self) -> None:
+        """Write all code that differs from its file, as when its graph is saved. Raises OutputError."""
+        self.editor.flush()
+        for path in self.session.save_drafts():
+            self.watcher.expect(path)
+            self.log.add(f"saved {path.name}")
 
-    def saved(path: Path) -> None:
-        named = path if path.suffix else path.with_suffix(ending)
+    def export(self, id: str) -> None:
+        """Ask for a file, write the code of a node to it, and let the node read it from there."""
+        code = self.session.code(id)
+        ending = ".fs" if code and code.language == "isf" else ".glsl"
 
-        def act() -> None:
-            editor.session.export_code(id, named)
-            editor.watcher.expect(named)
+        def save(path: Path) -> None:
+            target = path if path.suffix else path.with_suffix(ending)
 
-        editor.attempt(act)
+            def export() -> None:
+                self.session.export_code(id, target)
+                self.watcher.expect(target)
 
-    editor.dialogs.browse = Browse("Move the code to a file", "code", saved, saving=True, name=f"{id}{ending}")
+            self.log.attempt(export)
 
+        self.dialogs.browse = Browse("Move the code to a file", "code", save, saving=True, name=f"{id}{ending}")
 
-def code_changed(editor: Editor, path: Path) -> None:
-    """Another program wrote a file of code."""
-    session = editor.session
+    def reread(self, path: Path) -> None:
+        """Read a file of code again after another program wrote it; ask first if its draft differs."""
 
-    def load() -> None:
-        session.reread_code(path)
-        editor.say(f"{path.name} changed on disk and was loaded again")
+        def load() -> None:
+            self.session.reread_code(path)
+            self.log.add(f"{path.name} changed on disk and was loaded again")
 
-    editor.code.flush()
-    if not session.differs_from_disk(path):
-        load()
-        return
+        def keep() -> None:
+            self.session.keep_draft(path)
+            self.log.add("kept; saving will replace the other version")
 
-    def keep() -> None:
-        session.keep_draft(path)
-        editor.say("kept; saving will replace the other version")
-
-    editor.dialogs.question = Question(
-        "Changed on disk",
-        f"{path.name} was changed by another program, and here are changes that are not saved.",
-        (("Load theirs", lambda: editor.attempt(load)), ("Keep mine", keep)),
-    )
+        self.editor.flush()
+        if not self.session.differs_from_disk(path):
+            load()
+            return
+        self.dialogs.question = Question(
+            "Changed on disk",
+            f"{path.name} was changed by another program, and here are changes that are not saved.",
+            (("Load theirs", lambda: self.log.attempt(load)), ("Keep mine", keep)),
+        )
 
 
 CODE: tuple[Action, ...] = (
     Action(
         "code.edit",
         "Edit Code",
-        show_code,
+        CodeFiles.show,
         "Graph/Code",
         "Enter",
         "graph",
-        lambda e: _code(e) is not None,
+        lambda files: files.active_code is not None,
         contexts=frozenset({"code"}),
-        doc="Show what the node is made of, and write it.",
+        doc="Show the code of the node, and change it.",
         separated=True,
     ),
     Action(
         "code.save",
         "Save Code to Its File",
-        lambda e: save_code(e, e.session.active),
+        lambda files: files.save(files.session.active),
         "Graph/Code",
-        enabled=_in_file,
+        enabled=lambda files: files.active_has_file,
         contexts=frozenset({"code"}),
     ),
     Action(
         "code.export",
         "Move Code to a File...",
-        lambda e: export_code(e, e.session.active),
+        lambda files: files.export(files.session.active),
         "Graph/Code",
-        enabled=lambda e: _code(e) is not None,
+        enabled=lambda files: files.active_code is not None,
         contexts=frozenset({"code"}),
-        doc="Write the code to a file of its own, for use in other graphs; from now on it comes from there.",
+        doc="Write the code to a file of its own, for use in other graphs. From now on the node reads it from there.",
     ),
     Action(
         "code.inline",
         "Move Code into the Graph",
-        lambda e: e.session.inline_code(e.session.active),
+        lambda files: files.session.inline_code(files.session.active),
         "Graph/Code",
-        enabled=_in_file,
+        enabled=lambda files: files.active_has_file,
         contexts=frozenset({"code"}),
         doc="Keep the code in this graph; the file stays as it is.",
     ),

@@ -1,188 +1,233 @@
-"""Actions on the document as a whole."""
+"""Opening, saving and closing documents, with the questions that protect unsaved work."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..shared.action import Action
 from ..shared.dialogs import Browse, Question
-from .code_files import save_drafts
 
 if TYPE_CHECKING:
-    from ...authoring.services.recovery import Recovered
-    from ..window.editor import Editor
+    from ...authoring.log import Log
+    from ...authoring.services.exporting import Exports
+    from ...authoring.services.preferences import Store
+    from ...authoring.services.recovery import Recovered, Recovery
+    from ...authoring.session import Session
+    from ...watch.watching import Watcher
+    from ..shared.dialogs import Dialogs
+    from ..shared.protocols import ElementView
+    from ..shared.window_commands import WindowCommands
+    from .code_files import CodeFiles
 
 
-def _unless_unsaved(editor: Editor, then: Callable[[], object], verb: str) -> None:
-    """Ask before unsaved work is left behind."""
-    if not editor.session.dirty:
-        then()
-        return
-
-    def saved() -> None:
-        _save(editor, then)
-
-    editor.dialogs.question = Question(
-        "Unsaved changes",
-        f"'{editor.session.name}' has changes that are not saved.",
-        ((f"Save and {verb}", saved), (f"{verb.capitalize()} without saving", then), ("Cancel", _nothing)),
-    )
-
-
-def _nothing() -> None:
+def _do_nothing() -> None:
     """An answer that changes nothing."""
 
 
-def _new(editor: Editor) -> None:
-    _unless_unsaved(editor, lambda: start_new(editor), "start anew")
+@dataclass(frozen=True)
+class DocumentWorkflow:
+    """What the File menu does. Each step that would lose work asks first."""
 
+    session: Session
+    store: Store
+    watcher: Watcher
+    recovery: Recovery
+    exports: Exports
+    canvas: ElementView
+    dialogs: Dialogs
+    log: Log
+    commands: WindowCommands
+    code_files: CodeFiles
 
-def start_new(editor: Editor) -> None:
-    """An empty graph."""
-    editor.session.new()
-    editor.canvas.fit()
-    editor.dialogs.open.discard("start")
+    # --- opening -----------------------------------------------------------------------------------------------------
 
+    def ask_for_new(self) -> None:
+        """Start an empty graph, after asking about unsaved work."""
+        self._unless_unsaved(self.start_new, "start anew")
 
-def _open(editor: Editor) -> None:
-    browse = Browse("Open a graph", "graph", lambda path: open_graph(editor, path))
-    editor.dialogs.browse = browse
+    def start_new(self) -> None:
+        """Start an empty graph."""
+        self.session.new()
+        self._show_document()
 
+    def ask_for_graph(self) -> None:
+        """Ask for a file, and open it."""
+        self.dialogs.browse = Browse("Open a graph", "graph", self.open_graph)
 
-def open_graph(editor: Editor, path: Path) -> None:
-    """Open a file, after asking about unsaved work."""
+    def open_graph(self, path: Path) -> None:
+        """Open a file, after asking about unsaved work."""
 
-    def opened() -> None:
-        editor.session.open(path)
-        editor.store.opened(path)
-        editor.canvas.fit()
-        editor.dialogs.open.discard("start")
+        def open_file() -> None:
+            self.session.open(path)
+            self.store.opened(path)
+            self._show_document()
 
-    _unless_unsaved(editor, lambda: editor.attempt(opened), "open")
+        self._unless_unsaved(lambda: self.log.attempt(open_file), "open")
 
+    def open_preset(self, path: Path) -> None:
+        """Open a preset as a new document, after asking about unsaved work."""
 
-def open_preset(editor: Editor, path: Path) -> None:
-    """Open a preset as a new document, after asking about unsaved work."""
+        def open_copy() -> None:
+            self.session.open_copy(path)
+            self._show_document()
 
-    def opened() -> None:
-        editor.session.open_copy(path)
-        editor.canvas.fit()
-        editor.dialogs.open.discard("start")
+        self._unless_unsaved(lambda: self.log.attempt(open_copy), "open the preset")
 
-    _unless_unsaved(editor, lambda: editor.attempt(opened), "open the preset")
+    def open_graph_of_picture(self, path: Path) -> None:
+        """Open the graph that rendered a picture as a new document, after asking about unsaved work."""
 
+        def open_recipe() -> None:
+            self.session.open_made(path)
+            self._show_document()
+            self.log.add(f"the graph of {path.name}, as a new document")
 
-def open_made(editor: Editor, path: Path) -> None:
-    """Open the graph that made a picture as a new document, after asking about unsaved work."""
+        self._unless_unsaved(lambda: self.log.attempt(open_recipe), "open the graph")
 
-    def opened() -> None:
-        editor.session.open_made(path)
-        editor.canvas.fit()
-        editor.dialogs.open.discard("start")
-        editor.say(f"the graph of {path.name}, as a new document")
+    def recover(self, recovered: Recovered) -> None:
+        """Open work that was not saved, after asking about other unsaved work."""
 
-    _unless_unsaved(editor, lambda: editor.attempt(opened), "open the graph")
+        def restore() -> None:
+            self.session.restore(recovered)
+            self.recovery.adopt(recovered)
+            self._show_document()
 
+        self._unless_unsaved(lambda: self.log.attempt(restore), "recover")
 
-def recover(editor: Editor, recovered: Recovered) -> None:
-    """Open work that was not saved, after asking about other unsaved work."""
+    # --- saving ------------------------------------------------------------------------------------------------------
 
-    def opened() -> None:
-        editor.session.restore(recovered)
-        editor.recovery.adopt(recovered)
-        editor.canvas.fit()
-        editor.dialogs.open.discard("start")
+    def save(self, then: Callable[[], object] = _do_nothing) -> None:
+        """Save to the document's file, or ask for one. Ask first if another program changed the file."""
+        path = self.session.path
+        if path is None:
+            self.save_as(then)
+            return
 
-    _unless_unsaved(editor, lambda: editor.attempt(opened), "recover")
-
-
-def _save(editor: Editor, then: Callable[[], object] = _nothing) -> None:
-    path = editor.session.path
-    if path is None:
-        _save_as(editor, then)
-        return
-
-    def act() -> None:
-        save_drafts(editor)
-        editor.session.save()
-        editor.watcher.expect(path)
-        editor.say(f"saved {path.name}")
-        then()
-
-    if not editor.watcher.differs(path):
-        act()
-        return
-    editor.dialogs.question = Question(
-        "Changed on disk",
-        f"{path.name} was changed by another program since it was read here.",
-        (("Replace it", lambda: editor.attempt(act)), ("Cancel", _nothing)),
-    )
-
-
-def _save_as(editor: Editor, then: Callable[[], object] = _nothing) -> None:
-    def saved(path: Path) -> None:
-        named = path if path.suffix else path.with_suffix(".json")
-
-        def act() -> None:
-            save_drafts(editor)
-            editor.session.save_as(named)
-            editor.watcher.expect(named)
-            editor.store.opened(named)
-            editor.say(f"saved {named.name}")
+        def write() -> None:
+            self.code_files.save_drafts()
+            self.session.save()
+            self.watcher.expect(path)
+            self.log.add(f"saved {path.name}")
             then()
 
-        editor.attempt(act)
+        if not self.watcher.differs(path):
+            write()
+            return
+        self.dialogs.question = Question(
+            "Changed on disk",
+            f"{path.name} was changed by another program since it was read here.",
+            (("Replace it", lambda: self.log.attempt(write)), ("Cancel", _do_nothing)),
+        )
 
-    editor.dialogs.browse = Browse("Save the graph as", "graph", saved, saving=True, name=f"{editor.session.name}.json")
+    def save_as(self, then: Callable[[], object] = _do_nothing) -> None:
+        """Ask for a file, and save to it."""
 
+        def save(path: Path) -> None:
+            target = path if path.suffix else path.with_suffix(".json")
 
-def _revert(editor: Editor) -> None:
-    editor.dialogs.question = Question(
-        "Revert",
-        "Go back to what was saved last? This can be undone.",
-        (("Revert", lambda: editor.attempt(editor.session.revert)), ("Cancel", _nothing)),
-    )
+            def write() -> None:
+                self.code_files.save_drafts()
+                self.session.save_as(target)
+                self.watcher.expect(target)
+                self.store.opened(target)
+                self.log.add(f"saved {target.name}")
+                then()
 
+            self.log.attempt(write)
 
-def _quit(editor: Editor) -> None:
-    def close() -> None:
-        editor.closing = True
+        name = f"{self.session.name}.json"
+        self.dialogs.browse = Browse("Save the graph as", "graph", save, saving=True, name=name)
 
-    _unless_rendering(editor, lambda: _unless_unsaved(editor, close, "quit"))
+    def revert(self) -> None:
+        """Go back to the saved file, after asking."""
+        self.dialogs.question = Question(
+            "Revert",
+            "Go back to what was saved last? This can be undone.",
+            (("Revert", lambda: self.log.attempt(self.session.revert)), ("Cancel", _do_nothing)),
+        )
 
+    def load_changed_file(self, path: Path) -> None:
+        """Load the document's file again after another program wrote it; ask first if there is unsaved work."""
+        if not self.session.dirty:
+            self.session.reload()
+            self.log.add(f"{path.name} changed on disk and was loaded again")
+            return
+        self.dialogs.question = Question(
+            "Changed on disk",
+            f"{path.name} was changed by another program, and here are changes that are not saved.",
+            (
+                ("Load theirs", lambda: self.log.attempt(self.session.reload)),
+                ("Keep mine", lambda: self.log.add("kept; saving will replace the other version")),
+            ),
+        )
 
-def _unless_rendering(editor: Editor, then: Callable[[], object]) -> None:
-    """Ask before renders to files are stopped."""
-    count = len(editor.exports.unfinished)
-    if not count:
-        then()
-        return
-    what = "A render is" if count == 1 else f"{count} renders are"
-    editor.dialogs.question = Question(
-        "Renders are not finished",
-        f"{what} not finished. Frames that are done stay, and Resume can go on from there.",
-        (("Stop rendering and quit", then), ("Cancel", _nothing)),
-    )
+    # --- closing -----------------------------------------------------------------------------------------------------
 
+    def quit(self) -> None:
+        """Close the window, after asking about renders that run and about unsaved work."""
+        self._unless_rendering(lambda: self._unless_unsaved(self.commands.close, "quit"))
 
-def ask_to_close(editor: Editor) -> bool:
-    """True if the window may close now; else a question is open."""
-    if not editor.closing:
-        _quit(editor)
-    return editor.closing
+    def ask_to_close(self) -> bool:
+        """True if the window may close now; else a question is open."""
+        if not self.commands.closing:
+            self.quit()
+        return self.commands.closing
+
+    def _unless_unsaved(self, then: Callable[[], object], verb: str) -> None:
+        """Ask before unsaved work is left behind."""
+        if not self.session.dirty:
+            then()
+            return
+        self.dialogs.question = Question(
+            "Unsaved changes",
+            f"'{self.session.name}' has changes that are not saved.",
+            (
+                (f"Save and {verb}", lambda: self.save(then)),
+                (f"{verb.capitalize()} without saving", then),
+                ("Cancel", _do_nothing),
+            ),
+        )
+
+    def _unless_rendering(self, then: Callable[[], object]) -> None:
+        """Ask before renders to files are stopped."""
+        count = len(self.exports.unfinished)
+        if not count:
+            then()
+            return
+        renders = "A render is" if count == 1 else f"{count} renders are"
+        self.dialogs.question = Question(
+            "Renders are not finished",
+            f"{renders} not finished. Frames that are done stay, and Resume can go on from there.",
+            (("Stop rendering and quit", then), ("Cancel", _do_nothing)),
+        )
+
+    def _show_document(self) -> None:
+        self.canvas.fit()
+        self.dialogs.open.discard("start")
 
 
 DOCUMENTS: tuple[Action, ...] = (
-    Action("file.new", "New", _new, "File", "Ctrl+N"),
-    Action("file.open", "Open...", _open, "File", "Ctrl+O"),
-    Action("file.start", "Presets and Recent Files...", lambda e: e.dialogs.open.add("start"), "File"),
-    Action("file.save", "Save", _save, "File", "Ctrl+S", separated=True),
-    Action("file.save_as", "Save As...", _save_as, "File", "Ctrl+Shift+S"),
-    Action("file.revert", "Revert", _revert, "File", enabled=lambda e: e.session.path is not None and e.session.dirty),
+    Action("file.new", "New", DocumentWorkflow.ask_for_new, "File", "Ctrl+N"),
+    Action("file.open", "Open...", DocumentWorkflow.ask_for_graph, "File", "Ctrl+O"),
+    Action("file.start", "Presets and Recent Files...", lambda files: files.dialogs.open.add("start"), "File"),
+    Action("file.save", "Save", DocumentWorkflow.save, "File", "Ctrl+S", separated=True),
+    Action("file.save_as", "Save As...", DocumentWorkflow.save_as, "File", "Ctrl+Shift+S"),
     Action(
-        "file.render", "Render to Files...", lambda e: e.requests.add("show Renders"), "File", "F12", separated=True
+        "file.revert",
+        "Revert",
+        DocumentWorkflow.revert,
+        "File",
+        enabled=lambda files: files.session.path is not None and files.session.dirty,
     ),
-    Action("file.quit", "Quit", _quit, "File", "Ctrl+Q", separated=True),
+    Action(
+        "file.render",
+        "Render to Files...",
+        lambda files: files.commands.show_panel("Renders"),
+        "File",
+        "F12",
+        separated=True,
+    ),
+    Action("file.quit", "Quit", DocumentWorkflow.quit, "File", "Ctrl+Q", separated=True),
 )

@@ -2,69 +2,101 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from ...authoring.services.flipbook import Flipbook, Strip
 from ..shared.action import Action
 from ..shared.dialogs import Browse
 
 if TYPE_CHECKING:
-    from ..window.editor import Editor
+    from ...authoring.preview import Preview
+    from ..shared.dialogs import Dialogs
+    from ..shared.protocols import Player
+    from ..shared.stage import Stage
+    from ..shared.window_commands import WindowCommands
 
 
-def open_flipbook(editor: Editor, *strips: Strip) -> None:
-    """Play these in the viewer; two are side by side unless they are compared otherwise already."""
-    viewer, session, before = editor.viewer, editor.session, editor.viewer.flipbook
-    watched = before.watched if before else session.viewed_in_root("A")
-    frame = before.session.frame if before else session.frame
-    made = Flipbook(strips, session.settings.rate, frame, watched)
-    editor.timeline.stop()
-    viewer.compare_after = viewer.compare_after if before else viewer.compare
-    viewer.flipbook = made
-    if len(strips) == 1:
-        viewer.compare = "off"
-    elif not viewer.compares:
-        viewer.compare = "beside"
-    viewer.fit()
-    editor.requests.add("show Viewer")
+class FlipbookScreen(Protocol):
+    """The viewer, as far as flipbooks need it."""
+
+    def begin_flipbook(self, count: int, *, again: bool) -> None:
+        """Show one sequence or compare two; `again` if another flipbook is on the screen."""
+        ...
+
+    def end_flipbook(self) -> None:
+        """Compare as before the flipbook."""
+        ...
 
 
-def close_flipbook(editor: Editor) -> None:
-    """Show the document again."""
-    viewer = editor.viewer
-    if viewer.flipbook is not None:
-        editor.timeline.stop()
-        viewer.compare, viewer.flipbook = viewer.compare_after, None
+@dataclass(frozen=True)
+class FlipbookPlayer:
+    """Puts flipbooks on the stage, and the document back."""
+
+    stage: Stage
+    viewer: FlipbookScreen
+    timeline: Player
+    preview: Preview
+    dialogs: Dialogs
+    commands: WindowCommands
+
+    def open(self, *strips: Strip) -> None:
+        """Play sequences in the viewer; two are side by side unless they are compared otherwise already."""
+        document, before = self.stage.document, self.stage.flipbook
+        watched = before.watched if before else document.viewed_in_root("A")
+        frame = before.session.frame if before else document.frame
+        flipbook = Flipbook(strips, document.settings.rate, frame, watched)
+        self.timeline.stop()
+        self.viewer.begin_flipbook(len(strips), again=before is not None)
+        self.stage.flipbook = flipbook
+        self.commands.show_panel("Viewer")
+
+    def close(self) -> None:
+        """Show the document again."""
+        if self.stage.flipbook is not None:
+            self.timeline.stop()
+            self.viewer.end_flipbook()
+            self.stage.flipbook = None
+
+    def choose(self, first: Strip | None = None) -> None:
+        """Ask for pictures to play, alone or beside others."""
+
+        def play(path: Path) -> None:
+            strip = Strip.chosen(path)
+            self.open(*(first, strip) if first else (strip,))
+
+        title = f"Compare {first.name} with" if first else "Play pictures"
+        self.dialogs.browse = Browse(title, "image", play)
+
+    def choose_other(self) -> None:
+        """Ask for pictures to compare with those that are played."""
+        if self.stage.flipbook is not None:
+            self.choose(self.stage.flipbook.strips[0])
+
+    def follow(self) -> None:
+        """Show what a render has written since the last frame of the window.
+
+        The document comes back as soon as the user looks at another of its pictures.
+        """
+        flipbook = self.stage.flipbook
+        if flipbook is None:
+            return
+        if self.stage.document.viewed_in_root("A") != flipbook.watched:
+            self.close()
+        elif flipbook.follow(self.preview.frames):
+            self.preview.refresh()
 
 
-def choose_flipbook(editor: Editor, first: Strip | None = None) -> None:
-    """Ask for pictures to play, alone or beside others."""
-
-    def chosen(path: Path) -> None:
-        strip = Strip.chosen(path)
-        open_flipbook(editor, *(first, strip) if first else (strip,))
-
-    title = f"Compare {first.name} with" if first else "Play pictures"
-    editor.dialogs.browse = Browse(title, "image", chosen)
-
-
-def follow_flipbook(editor: Editor) -> None:
-    """Every frame: show what has been written meanwhile, and the document again as soon as someone looks at it."""
-    book = editor.viewer.flipbook
-    if book is None:
-        return
-    if editor.session.viewed_in_root("A") != book.watched:
-        close_flipbook(editor)
-    elif book.follow(editor.preview.frames):
-        editor.preview.refresh()
+def _is_open(player: FlipbookPlayer) -> bool:
+    return player.stage.flipbook is not None
 
 
 FLIPBOOK: tuple[Action, ...] = (
     Action(
         "flipbook.open",
         "Play Pictures...",
-        choose_flipbook,
+        FlipbookPlayer.choose,
         "Viewer",
         separated=True,
         doc="A sequence on the disk, in place of the document.",
@@ -72,17 +104,17 @@ FLIPBOOK: tuple[Action, ...] = (
     Action(
         "flipbook.compare",
         "Compare Pictures with...",
-        lambda e: choose_flipbook(e, e.viewer.flipbook.strips[0]),
+        FlipbookPlayer.choose_other,
         "Viewer",
-        enabled=lambda e: e.viewer.flipbook is not None,
+        enabled=_is_open,
         doc="Play another sequence beside this one.",
     ),
     Action(
         "flipbook.close",
         "Back to the Graph",
-        close_flipbook,
+        FlipbookPlayer.close,
         "Viewer",
-        enabled=lambda e: e.viewer.flipbook is not None,
+        enabled=_is_open,
         doc="End the flipbook.",
     ),
 )

@@ -11,22 +11,22 @@ from ...media.sequences import find_sequence
 from ...renderer.provenance.recipe import has_recipe
 from ...watch.sequence_files import patterns
 from ..shared.dialogs import Question
-from ..workflows.documents import open_graph, open_made
+from ..workflows.documents import DocumentWorkflow
 from .editor import Editor
 
 
-def arrived(editor: Editor, paths: Sequence[Path]) -> None:
+def take_files(editor: Editor, documents: DocumentWorkflow, paths: Sequence[Path]) -> None:
     """Pictures and code become nodes; a graph is opened, or becomes a group if it falls on the canvas.
 
-    Several frames of a sequence are one node; for a single one the person says whether it stands for all. A picture
+    Several frames of a sequence are one node; for a single one the user says whether it stands for all. A picture
     that was rendered here may be opened as the graph that made it.
     """
     graphs = [path for path in paths if path.suffix.casefold() == ".json"]
     if len(paths) == len(graphs) == 1 and editor.scope != "graph":
-        open_graph(editor, graphs[0])
+        documents.open_graph(graphs[0])
         return
     if len(paths) == 1 and _has_graph(paths[0]):
-        _ask(editor, paths[0])
+        _ask(editor, documents, paths[0])
         return
     _read(editor, paths)
 
@@ -39,13 +39,13 @@ def _has_graph(path: Path) -> bool:
         return False
 
 
-def _ask(editor: Editor, path: Path) -> None:
+def _ask(editor: Editor, documents: DocumentWorkflow, path: Path) -> None:
     editor.dialogs.question = Question(
         "Rendered by Halation",
         f"{path.name} holds the graph that made it.",
         (
-            ("Open its graph", lambda: open_made(editor, path)),
-            ("Read it as a picture", lambda: editor.attempt(lambda: _read(editor, [path]))),
+            ("Open its graph", lambda: documents.open_graph_of_picture(path)),
+            ("Read it as a picture", lambda: editor.log.attempt(lambda: _read(editor, [path]))),
         ),
     )
 
@@ -72,7 +72,7 @@ def _read(editor: Editor, paths: Sequence[Path]) -> None:
         "One of a sequence",
         f"{first.name} is one of {count} frames of {pattern.name}.",
         (
-            ("Read the sequence", lambda: editor.attempt(lambda: drop([frames.get(path, path) for path in files]))),
-            ("Only this frame", lambda: editor.attempt(lambda: drop(files))),
+            ("Read the sequence", lambda: editor.log.attempt(lambda: drop([frames.get(path, path) for path in files]))),
+            ("Only this frame", lambda: editor.log.attempt(lambda: drop(files))),
         ),
     )

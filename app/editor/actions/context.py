@@ -1,0 +1,32 @@
+"""What the actions of the Edit, View and Help menus use."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ...authoring.services.preferences import Store
+    from ...authoring.session import Session
+    from ..shared.dialogs import Dialogs
+    from ..shared.protocols import Clipboard, ElementView
+    from ..shared.window_commands import WindowCommands
+
+
+@dataclass(frozen=True)
+class EditContext:
+    """The collaborators of the Edit menu."""
+
+    session: Session
+    canvas: ElementView
+    clipboard: Clipboard
+    dialogs: Dialogs
+
+
+@dataclass(frozen=True)
+class ViewSettingsContext:
+    """The collaborators of the View and Help menus."""
+
+    store: Store
+    dialogs: Dialogs
+    commands: WindowCommands

@@ -1,0 +1,22 @@
+"""What the file browser uses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..toolkit.context import PanelContext
+
+if TYPE_CHECKING:
+    from ...authoring.services.preferences import Store
+    from ...authoring.session import Session
+    from ..shared.dialogs import Dialogs
+
+
+@dataclass(frozen=True)
+class BrowserContext(PanelContext):
+    """The collaborators of the file browser."""
+
+    session: Session
+    store: Store
+    dialogs: Dialogs

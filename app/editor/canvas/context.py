@@ -1,0 +1,36 @@
+"""What the canvas uses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..toolkit.context import PanelContext
+
+if TYPE_CHECKING:
+    from ...authoring.preview import Preview
+    from ...authoring.services.preferences import Store
+    from ...authoring.services.shader_files import ShaderFiles
+    from ...authoring.session import Session
+    from ..shared.action import Actions
+    from ..shared.dialogs import Dialogs
+    from ..shared.protocols import PixelPicker
+    from ..workflows.code_files import CodeFiles
+    from ..workflows.documents import DocumentWorkflow
+    from .view import CanvasView
+
+
+@dataclass(frozen=True)
+class CanvasContext(PanelContext):
+    """The collaborators of the canvas."""
+
+    session: Session
+    canvas: CanvasView
+    preview: Preview
+    store: Store
+    actions: Actions
+    dialogs: Dialogs
+    shaders: ShaderFiles
+    viewer: PixelPicker
+    documents: DocumentWorkflow
+    code_files: CodeFiles

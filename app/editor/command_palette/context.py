@@ -1,0 +1,26 @@
+"""What the command palette uses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..toolkit.context import PanelContext
+
+if TYPE_CHECKING:
+    from ...authoring.session import Session
+    from ..shared.action import Actions
+    from ..shared.dialogs import Dialogs
+    from ..shared.protocols import ElementView
+    from ..workflows.documents import DocumentWorkflow
+
+
+@dataclass(frozen=True)
+class PaletteContext(PanelContext):
+    """The collaborators of the command palette."""
+
+    session: Session
+    actions: Actions
+    canvas: ElementView
+    dialogs: Dialogs
+    documents: DocumentWorkflow

@@ -1,0 +1,24 @@
+"""What the Animation panel uses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..toolkit.context import PanelContext
+
+if TYPE_CHECKING:
+    from ...authoring.session import Session
+    from ..shared.action import Actions
+    from ..shared.protocols import Clipboard
+    from .state import CurvesState
+
+
+@dataclass(frozen=True)
+class CurvesContext(PanelContext):
+    """The collaborators of the Animation panel."""
+
+    session: Session
+    curves: CurvesState
+    actions: Actions
+    clipboard: Clipboard

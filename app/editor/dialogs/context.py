@@ -1,0 +1,22 @@
+"""What the small dialogs uses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..toolkit.context import PanelContext
+
+if TYPE_CHECKING:
+    from ..shared.action import Actions
+    from ..shared.dialogs import Dialogs
+    from ..shared.protocols import Clipboard
+
+
+@dataclass(frozen=True)
+class DialogContext(PanelContext):
+    """The collaborators of the small dialogs."""
+
+    dialogs: Dialogs
+    actions: Actions
+    clipboard: Clipboard

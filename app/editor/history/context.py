@@ -1,0 +1,18 @@
+"""What the History panel uses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..toolkit.context import PanelContext
+
+if TYPE_CHECKING:
+    from ...authoring.session import Session
+
+
+@dataclass(frozen=True)
+class HistoryContext(PanelContext):
+    """The collaborators of the History panel."""
+
+    session: Session

@@ -1,0 +1,35 @@
+"""What the inspector uses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..toolkit.context import PanelContext
+
+if TYPE_CHECKING:
+    from ...authoring.preview import Preview
+    from ...authoring.services.coloring import Coloring
+    from ...authoring.services.renders import Renders
+    from ...authoring.session import Session
+    from ..shared.action import Actions
+    from ..shared.dialogs import Dialogs
+    from ..shared.protocols import Clipboard, ElementView, PixelPicker, Player
+
+
+@dataclass(frozen=True)
+class InspectorContext(PanelContext):
+    """The collaborators of the inspector."""
+
+    session: Session
+    preview: Preview
+    actions: Actions
+    dialogs: Dialogs
+    clipboard: Clipboard
+    canvas: ElementView
+    viewer: PixelPicker
+    timeline: Player
+    renders: Renders
+    coloring: Coloring
+    lights: dict[str, int]
+    """The light that is selected, by the value that lists it."""

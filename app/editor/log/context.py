@@ -1,0 +1,18 @@
+"""What the Log panel and the messages uses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..toolkit.context import PanelContext
+
+if TYPE_CHECKING:
+    from ..shared.protocols import Clipboard
+
+
+@dataclass(frozen=True)
+class LogContext(PanelContext):
+    """The collaborators of the Log panel and the messages."""
+
+    clipboard: Clipboard

@@ -1,0 +1,31 @@
+"""What the Problems panel uses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..toolkit.context import PanelContext
+
+if TYPE_CHECKING:
+    from ...authoring.preview import Preview
+    from ...authoring.services.preferences import Store
+    from ...authoring.services.recovery import Recovery
+    from ...authoring.session import Session
+    from ...watch.watching import Watcher
+    from ..shared.protocols import Clipboard, ElementView
+
+
+@dataclass(frozen=True)
+class ProblemsContext(PanelContext):
+    """The collaborators of the Problems panel."""
+
+    session: Session
+    preview: Preview
+    canvas: ElementView
+    clipboard: Clipboard
+    recovery: Recovery
+    watcher: Watcher
+    store: Store
+    faults: dict[str, str]
+    """Panels that failed, with the traceback."""

@@ -1,0 +1,80 @@
+"""What one panel needs of another: the few attributes that it uses, so that neither imports the other."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from ...authoring.session import Session
+
+
+class Clipboard(Protocol):
+    """The clipboard of the system."""
+
+    def get(self) -> str:
+        """The text on the clipboard."""
+        ...
+
+    def put(self, text: str) -> None:
+        """Replace the text on the clipboard."""
+        ...
+
+
+class ElementView(Protocol):
+    """The canvas, for panels that lead the user to an element or add one."""
+
+    @property
+    def pointer(self) -> tuple[float, float]:
+        """The canvas position where new elements go."""
+        ...
+
+    def fit(self, keys: Collection[str] = ()) -> None:
+        """Bring elements into view; none means all."""
+        ...
+
+
+class PixelPicker(Protocol):
+    """The viewer, for fields whose value the user takes from the picture."""
+
+    picking: str
+    """`node.value` that the next click on the picture sets; "" for none."""
+
+
+class Player(Protocol):
+    """The timeline, for panels that must stop it."""
+
+    def stop(self) -> None:
+        """Stop playing at the current frame."""
+        ...
+
+
+class PlayedSpan(Protocol):
+    """The timeline, for panels that ask which frames are played."""
+
+    def span(self, session: Session) -> tuple[int, int]:
+        """The first and the last frame that are played."""
+        ...
+
+
+class PlayState(Protocol):
+    """The timeline, for panels that show frames while they are played."""
+
+    @property
+    def playing(self) -> bool:
+        """True while frames are played."""
+        ...
+
+    @property
+    def scrubbing(self) -> bool:
+        """True while the user drags the current frame."""
+        ...
+
+
+class CodeFault(Protocol):
+    """The Code panel, for panels that would repeat its message."""
+
+    @property
+    def told(self) -> str:
+        """The path of the node whose fault the Code panel shows."""
+        ...

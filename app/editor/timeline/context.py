@@ -1,0 +1,32 @@
+"""What the timeline uses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from ..toolkit.context import PanelContext
+
+if TYPE_CHECKING:
+    from ...authoring.preview import Preview
+    from ...authoring.session import Session
+    from ..shared.action import Actions
+    from ..shared.stage import Stage
+    from .state import TimelineState
+
+
+@dataclass(frozen=True)
+class TimelineContext(PanelContext):
+    """The collaborators of the timeline."""
+
+    stage: Stage
+    timeline: TimelineState
+    preview: Preview
+    actions: Actions
+    lights: dict[str, int]
+    """The light that is selected, by the value that lists it."""
+
+    @property
+    def session(self) -> Session:
+        """The document, or the flipbook that is shown in its place."""
+        return self.stage.session

@@ -1,0 +1,51 @@
+"""What every panel has, whatever else it uses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from ...authoring.log import Log
+from ...authoring.services.preferences import Store
+from ..theme.fonts import Fonts
+from ..theme.palette import PALETTES, Palette
+from .places import Rect
+
+
+@dataclass
+class Interface:
+    """How the window looks, where its widgets are, and whether the user drags a value in it."""
+
+    store: Store
+    fonts: Fonts | None = None
+    places: dict[str, Rect] = field(default_factory=dict[str, Rect])
+    """Where widgets were drawn last, by name: for tests and hints."""
+    dragging: bool = False
+    """True while the user drags a value: pictures may be coarse until the mouse button is released."""
+
+    @property
+    def palette(self) -> Palette:
+        """The colors of the theme that the user chose."""
+        return PALETTES[self.store.now.theme]
+
+
+@dataclass(frozen=True)
+class PanelContext:
+    """The base of what panels receive: each panel adds the collaborators that it uses, and no others."""
+
+    interface: Interface
+    log: Log
+
+    @property
+    def palette(self) -> Palette:
+        """The colors of the theme."""
+        return self.interface.palette
+
+    @property
+    def places(self) -> dict[str, Rect]:
+        """Where widgets were drawn last, by name."""
+        return self.interface.places
+
+    @property
+    def fonts(self) -> Fonts | None:
+        """The fonts; None until the window has loaded them."""
+        return self.interface.fonts

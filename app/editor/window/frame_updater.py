@@ -1,0 +1,132 @@
+"""What happens in every frame of the window before anything is drawn."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+from ...compiler import installed
+from ...graph import Port
+from ...watch.code_files import code_files
+from ...watch.reloading import NodeFiles, migrated, shader_folder
+from ...watch.sequence_files import all_files
+from ...watch.watching import Change, groups_of, pictures_of
+from ..viewer.wanted import glimpse, wanted
+
+if TYPE_CHECKING:
+    from ...authoring.session import Session
+    from .contexts import Contexts
+    from .editor import Editor
+
+FRAME_BUDGET = 0.012
+"""Seconds of rendering per frame: the rest of a sixtieth is for drawing panels."""
+
+PLAY_BUDGET = 0.030
+"""The same while frames are played, which is what is looked at then."""
+
+
+class FrameUpdater:
+    """Lets files be watched, unsaved work be kept, and pictures be computed within the budget of one frame."""
+
+    def __init__(self, editor: Editor, contexts: Contexts) -> None:
+        self._editor, self._contexts = editor, contexts
+        self._nodes = NodeFiles()
+        self._watched: tuple[object, ...] = ()
+        self._flushed = 0.0
+        self._reported: set[str] = set()
+
+    def update(self) -> None:
+        """Do the work of one frame."""
+        editor = self._editor
+        editor.code.turn()
+        self._watch()
+        for change in editor.watcher.poll():
+            editor.log.attempt(lambda change=change: self._take_change(change))
+        editor.recovery.note(editor.session.recoverable, editor.session.path, editor.session.dirty)
+        if time.monotonic() - self._flushed > 1.0:
+            self._flushed = time.monotonic()
+            editor.store.flush()
+            self._report_faults()
+        self._contexts.flipbooks.follow()
+        self._compute()
+
+    def _report_faults(self) -> None:
+        """Log once what services cannot do; Problems shows it for as long as it lasts."""
+        editor = self._editor
+        faults = {editor.recovery.fault, editor.watcher.fault, *editor.store.faults} - {""}
+        for sentence in sorted(faults - self._reported):
+            editor.log.add(sentence, "warning")
+        self._reported = faults
+
+    def _compute(self) -> None:
+        """Compute what the viewer and the canvas show, for as long as the budget lasts."""
+        editor, context = self._editor, self._contexts.viewer
+        preview, preferences, session = editor.preview, editor.store.now, context.session
+        preview.thumbnailing, preview.timed = preferences.thumbnails, preferences.timings
+        preview.paused = editor.viewer.paused
+        self._play(session)
+        ports, scale = wanted(context)
+        preview.glimpse = glimpse(context)
+        place = session.place
+        flat = {name: Port("/".join((*place, port.node)), port.socket) for name, port in ports.items()}
+        preview.want(session.root, flat, bindings=session.bindings, scale=scale, frame=session.frame)
+        preview.work(PLAY_BUDGET if editor.timeline.playing else FRAME_BUDGET)
+
+    def _play(self, session: Session) -> None:
+        """Go on to the frame that is due."""
+        timeline, preview = self._editor.timeline, self._editor.preview
+        playback, now = timeline.playback, time.monotonic()
+        if playback.playing:
+            playback.keep(timeline.course(session, preview.remembers), session.frame, now)
+            if not preview.busy:
+                playback.note(now)
+            words = playback.words
+            frame = playback.tick(now, preview.busy and not preview.paused, preview.under_way)
+            timeline.report = words
+            if frame is not None:
+                session.seek(frame)
+        preview.skims = playback.playing or timeline.scrubbing
+        preview.ahead = playback.ahead(preview.seconds)
+
+    def _watch(self) -> None:
+        """Watch the files that the graph reads."""
+        editor = self._editor
+        session = editor.session
+        reads = (id(session.root), session.path, tuple(session.bindings.items()))
+        if reads == self._watched:
+            return
+        self._watched = reads
+        editor.watcher.watch(
+            session.path,
+            groups_of(session.root),
+            all_files(pictures_of(session.root, session.bindings)),
+            [shader_folder()],
+            [self._nodes.folder],
+            code_files(session.root),
+        )
+        session.note_code_files()
+
+    def _take_change(self, change: Change) -> None:
+        """Read a file again after another program wrote it."""
+        editor = self._editor
+        match change.kind:
+            case "graph":
+                self._contexts.documents.load_changed_file(change.path)
+            case "group":
+                editor.session.reload_groups()
+            case "picture":
+                editor.preview.refresh()
+                editor.session.look_again()
+                editor.log.add(f"{change.path.name} changed on disk and was read again")
+            case "code":
+                self._contexts.code_files.reread(change.path)
+            case "shader":
+                installed.cache_clear()
+                editor.preview.reload(installed())
+                editor.log.add(f"shader {change.path.name} was loaded again")
+            case "node":
+                if fault := self._nodes.reload():
+                    editor.log.add(fault, "error")
+                else:
+                    editor.session.migrate(migrated)
+                    editor.log.add(f"node {change.path.name} was loaded again")
