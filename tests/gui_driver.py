@@ -211,7 +211,7 @@ def drive(
         assert faulty or not found, "\n".join(f"{entry.sentence}\n{entry.detail}" for entry in found)
 
     def leave() -> None:
-        window.editor.closing = True  # as if a person had said so
+        window.editor.commands.closing = True  # as if a person had said so
         end()
 
     end, before_panels = window.params.callbacks.before_exit, window.params.callbacks.post_new_frame

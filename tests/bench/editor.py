@@ -91,7 +91,7 @@ def frame(folder: Path) -> dict[str, float]:
         ui.editor.canvas.fit()
         ui.settled()
         panels = ui.window._panels
-        for title in list(panels):
+        for title in (docked.title for docked in DOCKED):
             _time(panels, title, found)
         ui.wait(120)
 
@@ -103,9 +103,9 @@ def frame(folder: Path) -> dict[str, float]:
 def _time(panels: dict[str, Any], title: str, found: dict[str, list[float]]) -> None:
     inner, times = panels[title].draw, found.setdefault(title, [])
 
-    def draw(editor: Any) -> None:
+    def draw() -> None:
         started = time.perf_counter()
-        inner(editor)
+        inner()
         times.append(time.perf_counter() - started)
 
     panels[title].draw = draw
@@ -198,7 +198,7 @@ def idle(folder: Path) -> float:
             used = os.times()
             marks.append((now, used.user + used.system))
         if marks and now - marks[0][0] > 6.0:
-            window.editor.closing = True
+            window.editor.commands.closing = True
 
     window.params.callbacks.before_imgui_render = after_frame
     immapp.run(window.params, immapp.AddOnsParams())

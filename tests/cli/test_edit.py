@@ -202,7 +202,7 @@ def edited(self, editor):
         heard.append(monotonic())
     if heard and monotonic() - heard[0] > 2.5:
         print(*said, sep=chr(10), file=sys.stderr)
-        editor.closing = True
+        editor.commands.closing = True
 
 heartbeat.Heartbeat.beat = edited
 from halation.cli.program import run

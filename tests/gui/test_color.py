@@ -55,7 +55,7 @@ def test_config_and_working_space(gui, file, tmp_path) -> None:
         color = ColorSettings(str(tmp_path / "house.ocio"), "scene_linear")
         expected = read_layer(tmp_path / "plates_a.exr", "", Kind.IMAGE, color=color).array[18, 32, :3]
         assert np.allclose(middle(ui), expected, rtol=2e-3) and not np.allclose(before, expected, rtol=0.1)
-        assert ui.editor.viewer.coloring.settings == color and not ui.editor.viewer.coloring.fault
+        assert ui.editor.coloring.settings == color and not ui.editor.coloring.fault
         ui.editor.viewer.view, ui.editor.viewer.display = "Warm", "Screen"
         ui.wait(4)
         ui.click("button view")
@@ -93,13 +93,13 @@ def test_a_broken_config_is_said_and_nothing_stops(gui, file, tmp_path) -> None:
         ui.session.select(())
         ui.session.set_color(config="gone.ocio")
         ui.wait(10)
-        assert "there is no such color config" in ui.editor.viewer.coloring.fault
+        assert "there is no such color config" in ui.editor.coloring.fault
         ui.shot("color_broken")
         ui.click("button view")
         ui.keys("Escape")
         write_house(tmp_path, "gone.ocio", HOUSE)
         ui.wait(10)
-        assert not ui.editor.viewer.coloring.fault
+        assert not ui.editor.coloring.fault
         ui.session.set_color(config="")
         ui.settled()
 
@@ -111,7 +111,7 @@ def test_a_broken_environment_is_survived(gui, file, monkeypatch) -> None:
 
     def body(ui) -> None:
         ui.wait(20)
-        assert "$OCIO" in ui.editor.viewer.coloring.fault
+        assert "$OCIO" in ui.editor.coloring.fault
         assert "$OCIO" in (ui.editor.preview.fault("A") or "")
         ui.click("button view")
         ui.keys("Escape")

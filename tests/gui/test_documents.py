@@ -58,10 +58,10 @@ def test_closing_with_unsaved_work_asks_first(gui, look: Path) -> None:
     def body(ui) -> None:
         ui.session.set(Port("tone", "exposure"), 1.0)
         ui.keys("Ctrl+Q")
-        assert ui.editor.dialogs.question is not None and not ui.editor.closing
+        assert ui.editor.dialogs.question is not None and not ui.editor.commands.closing
         assert "look" in ui.editor.dialogs.question.sentence
         ui.keys("Escape")
-        assert ui.editor.dialogs.question is None and not ui.editor.closing
+        assert ui.editor.dialogs.question is None and not ui.editor.commands.closing
 
     gui(body, look)
 

@@ -55,7 +55,7 @@ def test_a_drag_is_one_step(gui, file) -> None:
         left, _, right, _ = ui.editor.places["field tone_map.exposure"]
         start, end = ui.at("field tone_map.exposure"), ui.at("field tone_map.exposure", (0.75, 0.5))
         ui.drag(start, end, release=False)
-        assert ui.editor.dragging
+        assert ui.editor.interface.dragging
         ui.ctx.mouse_up(0)
         ui.wait(3)
         assert value(ui, "tone_map.exposure") == pytest.approx(12.0 * (end[0] - start[0]) / (right - left), abs=0.5)

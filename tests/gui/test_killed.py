@@ -25,25 +25,26 @@ STOPS, AUTOSAVE = Port("tone", "exposure"), 0.5
 
 EDITING = """
 import sys, time
-from halation.editor.window import heartbeat
+from halation.editor.window.frame_updater import FrameUpdater
 from halation.graph import Port
 
-beat, count = heartbeat.Heartbeat.beat, 0
+update, count = FrameUpdater.update, 0
 
-def edited(self, editor):
+def edited(self):
     global count
+    editor = self._editor
     count += 1
     editor.recovery.interval = 0.5
     editor.session.set(Port("tone", "exposure"), count / 1024)
     print("edited", count, time.time(), flush=True)
     if count % 7 == 0:
-        editor.actions.run("file.save", editor)
+        editor.actions.run("file.save")
         assert not editor.session.dirty, [entry.sentence for entry in editor.log.entries]
         print("saved", count, time.time(), flush=True)
         editor.session.set(Port("tone", "exposure"), (count + 0.5) / 1024)
-    beat(self, editor)
+    update(self)
 
-heartbeat.Heartbeat.beat = edited
+FrameUpdater.update = edited
 from halation.cli.program import run
 sys.exit(run(["edit", sys.argv[1]]))
 """

@@ -103,7 +103,7 @@ class Player:
                 ctx.mouse_wheel_y(self.random.choice((-2, -1, 1, 2)))
             else:
                 self.drag()
-        self.ui.editor.closing = False
+        self.ui.editor.commands.closing = False
         ctx.yield_(1)
 
     def drag(self) -> None:

@@ -98,7 +98,7 @@ def test_a_range_is_rendered_and_played(gui, shot: Path) -> None:
         ui.shot("queue_ended.png")
         ui.click("play 0")
         ui.settled()
-        book = ui.editor.viewer.flipbook
+        book = ui.editor.stage.flipbook
         assert book is not None and book.session.frames == (1, 8)
         ui.keys("Shift+RightArrow")
         assert book.session.frame == 8 and ui.session.frame == 1
@@ -109,12 +109,12 @@ def test_a_range_is_rendered_and_played(gui, shot: Path) -> None:
         ui.shot("queue_compare.png")
         ui.click("compare with 0")
         ui.settled()
-        book = ui.editor.viewer.flipbook
+        book = ui.editor.stage.flipbook
         assert book is not None and len(book.strips) == 2 and ui.editor.preview.shown("B") is not None
         ui.shot("flipbook_of_two_renders.png")
         ui.click("close flipbook")
         ui.settled()
-        assert ui.editor.viewer.flipbook is None and ui.editor.preview.shown("A").frame == 1
+        assert ui.editor.stage.flipbook is None and ui.editor.preview.shown("A").frame == 1
         assert ui.editor.viewer.compare == "off"
 
     gui(body, shot)
@@ -174,10 +174,10 @@ def test_quitting_asks_while_something_renders(gui, tmp_path: Path) -> None:
         to_renders(ui)
         ui.click("render")
         ui.keys("Ctrl+Q")
-        assert ui.editor.dialogs.question is not None and not ui.editor.closing
+        assert ui.editor.dialogs.question is not None and not ui.editor.commands.closing
         ui.shot("queue_quit.png")
         ui.click("answer 1")
-        assert not ui.editor.closing and ui.editor.exports.unfinished
+        assert not ui.editor.commands.closing and ui.editor.exports.unfinished
 
     window = gui(body, made(tmp_path, 2000))
     assert not window.editor.exports.unfinished
@@ -188,7 +188,7 @@ def test_two_sequences_are_compared(gui, shot: Path, tmp_path: Path, theme: str)
     one, other = sequence(tmp_path / "v1", "shot_v1", 6, 0.5), sequence(tmp_path / "v2", "shot_v2", 4, 1.0)
 
     def body(ui) -> None:
-        ui.editor.actions.run("flipbook.open", ui.editor)
+        ui.editor.actions.run("flipbook.open")
         ui.wait(3)
         ui.editor.dialogs.browse.then(Path(str(one).replace("####", "0002")))
         ui.editor.dialogs.browse = None
@@ -197,7 +197,7 @@ def test_two_sequences_are_compared(gui, shot: Path, tmp_path: Path, theme: str)
         ui.editor.dialogs.browse.then(Path(str(other).replace("####", "0001")))
         ui.editor.dialogs.browse = None
         ui.settled()
-        book, viewer = ui.editor.viewer.flipbook, ui.editor.viewer
+        book, viewer = ui.editor.stage.flipbook, ui.editor.viewer
         assert [strip.path for strip in book.strips] == [one, other] and book.session.frames == (1, 6)
         assert viewer.compare == "beside"
         ui.keys("RightArrow")
@@ -230,7 +230,7 @@ def test_two_sequences_are_compared(gui, shot: Path, tmp_path: Path, theme: str)
         ui.session.view(Port(OUTPUTS, "image"), "B")
         ui.session.view(Port("bloom", "out"))
         ui.settled()
-        assert viewer.flipbook is None and viewer.compare == "off"
+        assert ui.editor.stage.flipbook is None and viewer.compare == "off"
         assert ui.editor.preview.shown("A").port == Port("bloom", "out")
 
     gui(body, shot, likes={"theme": theme})
@@ -242,7 +242,7 @@ def test_a_flipbook_follows_what_is_being_written(gui, shot: Path) -> None:
         ui.click("render")
         ui.until(lambda: "play 0" in ui.editor.places, 60)
         ui.click("play 0")
-        book = ui.editor.viewer.flipbook
+        book = ui.editor.stage.flipbook
         assert book is not None
         book.session.seek(8)
         ended(ui)
@@ -260,7 +260,7 @@ def test_pictures_that_are_gone_take_nothing_down(gui, shot: Path, tmp_path: Pat
     path = sequence(tmp_path / "v1", "gone", 2, 0.5)
 
     def body(ui) -> None:
-        ui.editor.actions.run("flipbook.open", ui.editor)
+        ui.editor.actions.run("flipbook.open")
         ui.editor.dialogs.browse.then(Path(str(path).replace("####", "0001")))
         ui.editor.dialogs.browse = None
         ui.settled()

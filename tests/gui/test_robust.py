@@ -57,7 +57,7 @@ class Failing:
     def __init__(self) -> None:
         self.begin: Callable[[], object] | None = None
 
-    def draw(self, editor: object) -> None:
+    def draw(self) -> None:
         imgui.text("here")
         if self.begin is not None:
             self.begin()
@@ -75,7 +75,7 @@ def test_a_panel_may_fail_anywhere(gui, tmp_path: Path, place: str) -> None:
             panel.begin = begin
             ui.wait(4)
             assert place in ui.editor.faults, name
-            (found,) = [one for one in findings(ui.editor) if place in one.sentence]
+            (found,) = [one for one in findings(ui.window._contexts.problems) if place in one.sentence]
             assert "ValueError: a bug" in found.detail, name
             panel.begin = None
             ui.editor.faults.clear()
@@ -125,7 +125,7 @@ def test_a_fault_in_an_action_or_while_rendering_is_told_and_nothing_else_happen
 
     def body(ui) -> None:
         before = ui.session.root
-        ui.editor.attempt(broken)
+        ui.editor.log.attempt(broken)
         assert "ZeroDivisionError" in ui.editor.log.entries[-1].sentence and ui.editor.log.entries[-1].detail
         with monkeypatch.context() as patch:
             patch.setattr(ui.editor.preview, "work", broken)

@@ -275,7 +275,7 @@ def test_missing_frames_are_marked(gui, tmp_path) -> None:
 
     def body(ui) -> None:
         start(ui, graph_of(path, "exposure"))
-        ui.until(lambda: ui.window._timeline._ruler.missing.found == ((5, 6),))
+        ui.until(lambda: ui.window._panels["Timeline"]._ruler.missing.found == ((5, 6),))
         session = ui.session
         session.seek(5)
         ui.settled()

@@ -24,7 +24,7 @@ def visit(folder: Path, act: Callable[[Window], object]) -> None:
         if window.frames == 10:
             act(window)
         if window.frames == 20:
-            window.editor.closing = True
+            window.editor.commands.closing = True
 
     window.params.callbacks.post_new_frame = frame
     run(window)
@@ -37,7 +37,7 @@ def test_which_panels_are_open_is_remembered(tmp_path) -> None:
         return window.params.docking_params.dockable_window_of_name("History")
 
     visit(tmp_path, lambda window: seen.append(panel(window).is_visible) or setattr(panel(window), "is_visible", False))
-    visit(tmp_path, lambda window: seen.append(panel(window).is_visible) or window.editor.requests.add("reset layout"))
+    visit(tmp_path, lambda window: seen.append(panel(window).is_visible) or window.editor.commands.reset_layout())
     visit(tmp_path, lambda window: seen.append(panel(window).is_visible))
     assert seen == [True, False, True]
     assert (tmp_path / "state" / "layout.ini").exists()
@@ -47,7 +47,7 @@ def test_a_screenshot_is_what_is_seen(gui, tmp_path) -> None:
     def body(ui) -> None:
         ui.settled()
         seen = ui.pixels()
-        ui.editor.actions.run("view.screenshot", ui.editor)
+        ui.editor.actions.run("view.screenshot")
         ui.until(lambda: ui.editor.dialogs.browse is not None)
         ui.editor.dialogs.browse.then(tmp_path / "window.png")
         saved = oiio.ImageBuf(str(tmp_path / "window.png")).get_pixels(oiio.UINT8)[..., :3]

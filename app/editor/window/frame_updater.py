@@ -5,6 +5,8 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING
 
+from halation.nodes import plugins
+
 from ...compiler import installed
 from ...graph import Port
 from ...watch.code_files import code_files
@@ -53,7 +55,8 @@ class FrameUpdater:
     def _report_faults(self) -> None:
         """Log once what services cannot do; Problems shows it for as long as it lasts."""
         editor = self._editor
-        faults = {editor.recovery.fault, editor.watcher.fault, *editor.store.faults} - {""}
+        refused = {f"The plug-in {plugin} cannot be loaded: {plugin.fault}" for plugin in plugins() if plugin.fault}
+        faults = {editor.recovery.fault, editor.watcher.fault, *editor.store.faults, *refused} - {""}
         for sentence in sorted(faults - self._reported):
             editor.log.add(sentence, "warning")
         self._reported = faults

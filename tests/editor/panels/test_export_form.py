@@ -40,77 +40,77 @@ def desk(tmp_path: Path) -> Desk:
 
 
 def test_all_frames_are_offered_where_there_are_several(desk: Desk, tmp_path: Path) -> None:
-    form = Form()
-    assert list(form.extents(desk)) == ["this frame", "all frames", "some frames"]
-    assert (form.extent_of(desk), form.frames(desk)) == ("all frames", tuple(range(1, 25)))
-    assert form.file(desk, "image") == tmp_path / "out" / "soft_bloom.####.exr"
-    aim = form.aim(desk)
+    form = Form(desk)
+    assert list(form.extents()) == ["this frame", "all frames", "some frames"]
+    assert (form.extent_of(), form.frames()) == ("all frames", tuple(range(1, 25)))
+    assert form.file("image") == tmp_path / "out" / "soft_bloom.####.exr"
+    aim = form.aim()
     assert (aim.files, aim.exist, aim.fault) == (24, 0, "")
     assert aim_text(aim) == "Writes 24 files: soft_bloom.0001.exr \u2026 soft_bloom.0024.exr"
     desk.session.seek(7)
-    form.extend(desk, "this frame")
-    assert form.frames(desk) == (7,)
-    assert aim_text(form.aim(desk)) == "Writes soft_bloom.exr"
+    form.extend("this frame")
+    assert form.frames() == (7,)
+    assert aim_text(form.aim()) == "Writes soft_bloom.exr"
     desk.session.set_frames(None)
-    assert list(Form().extents(desk)) == ["this frame", "some frames"]
-    assert Form().extent_of(desk) == "this frame"
+    assert list(Form(desk).extents(desk)) == ["this frame", "some frames"]
+    assert Form(desk).extent_of(desk) == "this frame"
 
 
 def test_the_part_that_is_played_is_one_more_choice(desk: Desk) -> None:
-    form = Form()
+    form = Form(desk)
     desk.timeline.set_part(desk.session, 5, 9)
-    form.extend(desk, "what is played")
-    assert form.frames(desk) == (5, 6, 7, 8, 9)
+    form.extend("what is played")
+    assert form.frames() == (5, 6, 7, 8, 9)
     desk.timeline.part = None
-    assert form.extent_of(desk) == "all frames"
+    assert form.extent_of() == "all frames"
 
 
 def test_typed_frames_are_checked(desk: Desk) -> None:
-    form = Form()
-    form.extend(desk, "some frames")
+    form = Form(desk)
+    form.extend("some frames")
     assert (form.listed, form.list_fault) == ("1-24", "")
     form.listed = "1-24x2,40"
-    assert form.frames(desk) == (*range(1, 25, 2), 40)
-    assert form.aim(desk).last.endswith("soft_bloom.0040.exr")
+    assert form.frames() == (*range(1, 25, 2), 40)
+    assert form.aim().last.endswith("soft_bloom.0040.exr")
     form.listed = "1-x"
-    assert form.frames(desk) == ()
-    assert "neither a frame nor a range" in form.aim(desk).fault
+    assert form.frames() == ()
+    assert "neither a frame nor a range" in form.aim().fault
     with pytest.raises(UsageError, match="neither a frame nor a range"):
-        form.start(desk)
+        form.start()
     assert desk.exports.all == ()
 
 
 def test_names_get_a_place_for_the_number(desk: Desk, tmp_path: Path) -> None:
-    form = Form(files={"image": str(tmp_path / "out" / "mine.png")}, extent="this frame")
-    form.extend(desk, "all frames")
-    assert form.file(desk, "image").name == "mine.####.png"
+    form = Form(desk, files={"image": str(tmp_path / "out" / "mine.png")}, extent="this frame")
+    form.extend("all frames")
+    assert form.file("image").name == "mine.####.png"
     form.files["image"] = str(tmp_path / "out" / "mine.png")
-    assert "cannot go into one file" in form.aim(desk).fault
-    form.number(desk)
-    assert form.aim(desk).fault == ""
+    assert "cannot go into one file" in form.aim().fault
+    form.number()
+    assert form.aim().fault == ""
     form.files["image"] = str(tmp_path / "out" / "mine.%03d.png")
-    form.extend(desk, "some frames")
-    assert form.aim(desk).first.endswith("mine.001.png")
+    form.extend("some frames")
+    assert form.aim().first.endswith("mine.001.png")
 
 
 def test_files_that_are_there_are_counted(desk: Desk, tmp_path: Path) -> None:
-    form = Form()
+    form = Form(desk)
     for frame in (1, 2, 3, 40):
         (tmp_path / "out" / f"soft_bloom.{frame:04d}.exr").touch()
-    aim = form.aim(desk)
+    aim = form.aim()
     assert aim.exist == 3
     assert exist_text(aim, False) == "3 of them are there, and will be replaced."
     assert exist_text(aim, True).startswith("3 of them are there. They are kept")
     form.chosen["image"] = False
-    assert "Choose an output" in form.aim(desk).fault
+    assert "Choose an output" in form.aim().fault
 
 
 def test_options_hold_frames_processes_and_resume(desk: Desk) -> None:
-    form = Form(jobs=4, resume=True, extent="some frames", listed="3,5-6")
-    options = form.options(desk)
+    form = Form(desk, jobs=4, resume=True, extent="some frames", listed="3,5-6")
+    options = form.options()
     assert (options.frames, options.processes, options.resume) == ((3, 5, 6), 4, True)
     form.listed = "3"
-    assert form.options(desk).processes == 1
+    assert form.options().processes == 1
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
+from halation.authoring.log import Log
 from halation.authoring.services.preferences import Store
 from halation.authoring.session import Session
 from halation.editor.actions import table
@@ -15,7 +16,10 @@ from halation.editor.preferences.shortcut_changes import assigned, reset, taken_
 from halation.editor.problems.findings import findings, show
 from halation.editor.shared.action import Action, Actions
 from halation.editor.shared.shortcut_groups import columns, condensed, groups
+from halation.editor.shared.stage import Stage
+from halation.editor.toolkit.context import Interface
 from halation.editor.toolkit.keys import chord, text
+from halation.editor.window.contexts import Contexts, compose_contexts
 from halation.editor.window.editor import Editor
 from halation.graph import Port
 from halation.presets import paths
@@ -27,14 +31,23 @@ PRESET = next(path for path in paths() if path.stem == "soft_bloom")
 def desk(tmp_path: Path) -> Editor:
     """An editor whose pictures and files are left out."""
     store = Store(tmp_path)
-    silent, none = SimpleNamespace(fault="", faults={}), cast(Any, None)
-    preview, recovery, watcher = (cast(Any, SimpleNamespace(**vars(silent))) for _ in range(3))
-    actions = Actions(table(), lambda: store.now.shortcuts)
-    return Editor(Session(), preview, store, actions, none, recovery, watcher, none, none, none)
+    none = cast(Any, None)
+    preview, recovery, watcher = (cast(Any, SimpleNamespace(fault="", faults={})) for _ in range(3))
+    log = Log()
+    actions = Actions(table(), lambda: store.now.shortcuts, log)
+    return Editor(
+        Stage(Session()), preview, store, actions, recovery, none, none, none, Interface(store), log, watcher=watcher
+    )
 
 
-def first(desk: Editor, query: str) -> str:
-    return ranked(query, commands(desk), ())[0][0].label
+@pytest.fixture
+def contexts(desk: Editor) -> Contexts:
+    """What its panels receive."""
+    return compose_contexts(desk)
+
+
+def first(contexts: Contexts, query: str) -> str:
+    return ranked(query, commands(contexts.command_palette), ())[0][0].label
 
 
 def test_every_shortcut_can_be_pressed_and_is_written_in_one_way() -> None:
@@ -45,16 +58,16 @@ def test_no_two_actions_share_a_shortcut(desk: Editor) -> None:
     assert not {one.id: clash for one in table() if (clash := desk.actions.conflicts(one.id, one.shortcut))}
 
 
-def test_a_few_letters_find_actions_nodes_presets_and_places(desk: Editor) -> None:
+def test_a_few_letters_find_actions_nodes_presets_and_places(desk: Editor, contexts: Contexts) -> None:
     desk.session.open(PRESET)
-    assert first(desk, "save as") == "Save As"
-    assert first(desk, "gb") == "Add Gaussian Blur"
-    assert first(desk, "open preset night") == "Open Preset Night Street"
-    assert first(desk, "go bloom") == "Go to bloom"
+    assert first(contexts, "save as") == "Save As"
+    assert first(contexts, "gb") == "Add Gaussian Blur"
+    assert first(contexts, "open preset night") == "Open Preset Night Street"
+    assert first(contexts, "go bloom") == "Go to bloom"
 
 
-def test_what_cannot_be_done_says_why_and_comes_last(desk: Editor) -> None:
-    offered = {command.id: command for command in commands(desk)}
+def test_what_cannot_be_done_says_why_and_comes_last(contexts: Contexts) -> None:
+    offered = {command.id: command for command in commands(contexts.command_palette)}
     assert offered["edit.undo"].reason == "nothing was done yet"
     assert offered["edit.copy"].reason == "select something first"
     assert not offered["file.open"].reason
@@ -63,30 +76,30 @@ def test_what_cannot_be_done_says_why_and_comes_last(desk: Editor) -> None:
     assert any(found)
 
 
-def test_what_was_used_last_comes_first(desk: Editor) -> None:
-    offered = commands(desk)
+def test_what_was_used_last_comes_first(contexts: Contexts) -> None:
+    offered = commands(contexts.command_palette)
     found = [one.id for one, _ in ranked("", offered, ("file.open", "file.save_as"))]
     assert found[:2] == ["file.save_as", "file.open"]
 
 
-def test_a_command_adds_a_node_where_the_pointer_is(desk: Editor) -> None:
+def test_a_command_adds_a_node_where_the_pointer_is(desk: Editor, contexts: Contexts) -> None:
     desk.canvas.pointer = (300.0, 200.0)
-    next(one for one in commands(desk) if one.id == "add bloom").run()
+    next(one for one in commands(contexts.command_palette) if one.id == "add bloom").run()
     (key,) = desk.session.selection
     assert desk.session.position(key) == (300.0, 200.0)
 
 
-def test_taking_a_shortcut_over_and_giving_it_back(desk: Editor) -> None:
+def test_taking_a_shortcut_over_and_giving_it_back(desk: Editor, contexts: Contexts) -> None:
     assert [one.id for one in desk.actions.conflicts("file.new", "Ctrl+O")] == ["file.open"]
-    taken_over(desk, "file.new", "Ctrl+O")
+    taken_over(contexts.preferences, "file.new", "Ctrl+O")
     assert desk.actions.shortcut("file.new") == "Ctrl+O"
     assert desk.actions.shortcut("file.open") == ""
-    reset(desk, "file.open")
+    reset(contexts.preferences, "file.open")
     assert desk.actions.shortcut("file.open") == "Ctrl+O"
     assert desk.actions.shortcut("file.new") == ""
-    reset(desk, "file.new")
+    reset(contexts.preferences, "file.new")
     assert desk.store.now.shortcuts == {}
-    assigned(desk, "file.new", "F5")
+    assigned(contexts.preferences, "file.new", "F5")
     assert desk.store.now.shortcuts == {"file.new": "F5"}
 
 
@@ -96,15 +109,15 @@ def test_the_same_keys_may_serve_two_panels() -> None:
         Action("b", "B", print, shortcut="A", scope="viewer"),
         Action("c", "C", print, shortcut="A"),
     )
-    actions = Actions(acts, dict)
+    actions = Actions(acts, dict, Log())
     assert [one.id for one in actions.conflicts("a", "A")] == ["c"]
     assert [one.id for one in actions.conflicts("c", "A")] == ["a", "b"]
 
 
 def test_the_sheet_has_every_shortcut_once(desk: Editor) -> None:
-    listed = [action.id for _, actions in groups(desk) for action in actions]
+    listed = [action.id for _, actions in groups(desk.actions) for action in actions]
     assert sorted(listed) == sorted(one.id for one in table() if one.shortcut)
-    assert len([1 for _, actions in groups(desk, every=True) for _ in actions]) == len(table())
+    assert len([1 for _, actions in groups(desk.actions, every=True) for _ in actions]) == len(table())
 
 
 def test_rows_that_count_up_are_one_line() -> None:
@@ -118,14 +131,14 @@ def test_columns_are_as_equal_as_order_allows() -> None:
     assert columns((), 3) == ()
 
 
-def test_everything_that_is_wrong_is_listed_once(desk: Editor) -> None:
+def test_everything_that_is_wrong_is_listed_once(desk: Editor, contexts: Contexts) -> None:
     desk.session.open(PRESET)
-    assert findings(desk) == ()
+    assert findings(contexts.problems) == ()
     desk.session.disconnect(Port("outputs", "image"))
     desk.preview.faults = {"inputs.beauty": "there is no such file", "outputs.image": "the same in other words"}
     desk.watcher.fault = desk.recovery.fault = "the disk is full"
     desk.faults["Viewer"] = "Traceback"
-    found = [(one.level, one.where, one.sentence) for one in findings(desk)]
+    found = [(one.level, one.where, one.sentence) for one in findings(contexts.problems)]
     assert ("error", "inputs.beauty", "there is no such file") in found
     assert ("error", "", "the panel Viewer failed; the document is safe") in found
     assert found[-1] == ("warning", "", "the disk is full")
@@ -133,14 +146,14 @@ def test_everything_that_is_wrong_is_listed_once(desk: Editor) -> None:
     assert sum(map(len, desk.session.problems.values())) > 0
 
 
-def test_a_finding_leads_into_its_group(desk: Editor) -> None:
+def test_a_finding_leads_into_its_group(desk: Editor, contexts: Contexts) -> None:
     desk.session.open(PRESET)
     desk.session.select(["bloom"])
     group = desk.session.make_group()
-    show(desk, f"{group}/bloom")
+    show(contexts.problems, f"{group}/bloom")
     assert desk.session.place == (group,)
     assert desk.session.selection == {"bloom"}
     assert desk.canvas.wanted == ("bloom",)
-    show(desk, "inputs.beauty")
+    show(contexts.problems, "inputs.beauty")
     assert desk.session.place == ()
     assert desk.session.selection == {"inputs.beauty"}

@@ -43,19 +43,18 @@ def editor() -> Any:
     return SimpleNamespace(
         session=Session({**catalogue(), "lamps": Lit}),
         viewer=ViewerState(),
-        dragging=False,
+        interface=SimpleNamespace(dragging=False),
         lights={},
         preview=SimpleNamespace(camera={Port("lamps", "camera"): CAMERA}.get, shown=lambda name: None),
-        attempt=lambda act: act(),
-        say=lambda text: None,
+        log=SimpleNamespace(attempt=lambda act: act(), add=lambda text: None),
     )
 
 
 def drag(editor: Any, start: tuple[float, float], end: tuple[float, float], **keys: bool) -> str:
     """Press, move, let go; returns what was held."""
     hold = Hold.begin(editor, SIGHT, start, aim(editor, SIGHT, start, **keys))
-    hold.drag(editor, SIGHT, end, (end[0] - start[0], end[1] - start[1]))
-    hold.release(editor, SIGHT, end)
+    hold.drag(SIGHT, end, (end[0] - start[0], end[1] - start[1]))
+    hold.release(SIGHT, end)
     return hold.aim.what
 
 
@@ -75,7 +74,7 @@ def test_positions_of_the_active_node_can_be_dragged(editor: Any) -> None:
     assert [str(one.port) for one in handles(session)] == ["ramp.start", "ramp.end"]
     assert drag(editor, (2.0, 201.0), (202.0, 101.0)) == "handle"
     assert session.value(Port(ramp, "start")) == pytest.approx((0.25, 0.25))
-    assert editor.dragging
+    assert editor.interface.dragging
     assert session.history.position == 2  # the node, and one step for the whole drag
     session.select_none()
     assert handles(session) == ()
@@ -108,7 +107,7 @@ def test_lights_in_front_of_the_camera_can_be_dragged(editor: Any) -> None:
     steps = editor.session.history.position
     assert drag(editor, (561.0, 201.0), (401.0, 101.0)) == "light"
     light = lights_of(editor.session.value(port))[3]
-    assert light.place == pytest.approx((0.0, 0.0, 0.625), abs=1e-4) and editor.dragging
+    assert light.place == pytest.approx((0.0, 0.0, 0.625), abs=1e-4) and editor.interface.dragging
     assert editor.lights == {"lamps.lights": 3} and lamps(editor)[-1].chosen
     assert editor.session.history.position == steps + 1
     editor.session.undo()

@@ -60,12 +60,11 @@ def editor() -> Any:
     made = SimpleNamespace(
         session=Session({**catalogue(), "lamps": Lit}),
         viewer=ViewerState(),
-        dragging=False,
+        interface=SimpleNamespace(dragging=False),
         lights={},
         said=said,
         preview=SimpleNamespace(camera={Port("lamps", "camera"): CAMERA}.get, shown=lambda name: None),
-        attempt=lambda act: act(),
-        say=said.append,
+        log=SimpleNamespace(attempt=lambda act: act(), add=said.append),
     )
     graph = made.session.graph.add("lamps", Lit()).add("camera", catalogue()["camera"]())
     made.session.edit("Add", graph.connect(Port("camera", "camera"), Port("lamps", "camera")))
@@ -79,8 +78,8 @@ def of(editor: Any) -> tuple[Light, ...]:
 
 def drag(editor: Any, start: tuple[float, float], end: tuple[float, float], **keys: bool) -> str:
     hold = Hold.begin(editor, SIGHT, start, aim(editor, SIGHT, start, **keys))
-    hold.drag(editor, SIGHT, end, (1.0, 1.0))
-    hold.release(editor, SIGHT, end)
+    hold.drag(SIGHT, end, (1.0, 1.0))
+    hold.release(SIGHT, end)
     return hold.aim.what
 
 
@@ -110,7 +109,7 @@ def see(editor: Any, socket: str, *values: float) -> None:
 
 def test_alt_moves_along_the_line_of_sight(editor: Any) -> None:
     assert drag(editor, (400.0, 200.0), (430.0, 200.0 - 400.0 / 3.0), alt=True) == "light depth"
-    assert of(editor)[0].place == pytest.approx((0.0, 5.0, 0.0)) and editor.dragging
+    assert of(editor)[0].place == pytest.approx((0.0, 5.0, 0.0)) and editor.interface.dragging
     assert len(editor.session.history.steps) == 2
     chosen = lamps(editor)[-1]
     put(editor, chosen, chosen.at, 2.5)

@@ -96,7 +96,7 @@ def editor() -> Any:
     return SimpleNamespace(
         session=Session(),
         viewer=ViewerState(),
-        dragging=False,
+        interface=SimpleNamespace(dragging=False),
         store=SimpleNamespace(now=SimpleNamespace(proxy_while_dragging=True)),
     )
 
@@ -118,7 +118,7 @@ def test_only_what_is_seen_is_wanted(editor: Any) -> None:
 def test_slow_pictures_are_wanted_coarser_while_dragging(editor: Any) -> None:
     wanted(editor)
     editor.viewer.pace.took(1.0, 0.2)
-    editor.dragging = True
+    editor.interface.dragging = True
     assert wanted(editor)[1] == 0.5
     editor.store.now.proxy_while_dragging = False
     assert wanted(editor)[1] == 1.0

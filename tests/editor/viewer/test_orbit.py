@@ -31,10 +31,10 @@ def editor() -> Any:
     made = SimpleNamespace(
         session=Session(catalogue()),
         viewer=ViewerState(picture=(400, 200)),
-        dragging=False,
+        interface=SimpleNamespace(dragging=False),
         lights={},
         preview=SimpleNamespace(camera=lambda port: None, shown=lambda name: None),
-        attempt=lambda act: act(),
+        log=SimpleNamespace(attempt=lambda act: act()),
     )
     made.session.add_node("scene")
     made.viewer.scene = orbited(made.session)
@@ -49,8 +49,8 @@ def drag(editor: Any, start: tuple[float, float], end: tuple[float, float], what
     hold = Hold.begin(editor, SIGHT, start, Aim(what))
     for part in (0.5, 1.0):
         at = start[0] + part * (end[0] - start[0]), start[1] + part * (end[1] - start[1])
-        hold.drag(editor, SIGHT, at, (1.0, 1.0))
-    hold.release(editor, SIGHT, end)
+        hold.drag(SIGHT, at, (1.0, 1.0))
+    hold.release(SIGHT, end)
 
 
 def test_it_is_the_camera_that_the_node_draws_with() -> None:
@@ -69,7 +69,7 @@ def test_a_drag_across_the_panel_is_half_a_turn(editor: Any) -> None:
     drag(editor, (100.0, 100.0), (300.0, 140.0), "orbit")
     assert now(editor).azimuth == pytest.approx(before.azimuth - 45.0)
     assert now(editor).elevation == pytest.approx(before.elevation + 9.0)
-    assert editor.dragging and editor.session.history.steps == ("Add scene", "Orbit scene")
+    assert editor.interface.dragging and editor.session.history.steps == ("Add scene", "Orbit scene")
     drag(editor, (100.0, 100.0), (100.0, 900.0), "orbit")
     assert now(editor).elevation == 89.0
     drag(editor, (100.0, 900.0), (100.0, -900.0), "orbit")
