@@ -29,6 +29,7 @@ import numpy as np
 from gui_driver import Ui, drive, headless
 from halation import document
 from halation.authoring.preview import Glimpse, Preview
+from halation.editor.window.panels import DOCKED
 from halation.graph import Graph, Output, Port
 from halation.nodes import Kind, catalogue
 from halation.renderer import Display, Renderer

@@ -17,7 +17,7 @@ from halation.editor.viewer.orbit import Orbit, frame_scene, orbited, without_su
 from halation.editor.viewer.perspective import project, unproject
 from halation.editor.viewer.state import ViewerState
 from halation.graph import INPUTS, Input, Port
-from halation.media.meshes.load.load import load_mesh
+from halation.media.meshes.load import load_mesh
 from halation.nodes import BuiltInScene, Kind, catalogue, look_at
 
 SIGHT = Sight((0.0, 0.0), (800, 400), (400, 200), zoom=2.0)
