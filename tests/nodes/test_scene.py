@@ -7,7 +7,7 @@ import pytest
 import trimesh
 from halation.errors import InputError
 from halation.graph import Graph, Output, Port
-from halation.media.meshes.load.load import load_mesh
+from halation.media.meshes.load import load_mesh
 from halation.nodes import BuiltInScene, Kind
 from halation.nodes.input.scene import Scene
 from halation.renderer import RenderRequest

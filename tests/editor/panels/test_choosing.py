@@ -104,31 +104,31 @@ def test_sizes(size: int, said: str) -> None:
 def test_the_form_suggests_files_and_gives_options(desk: Desk, tmp_path: Path) -> None:
     desk.session.open(PRESET)
     desk.store.used("export", tmp_path / "x.exr")
-    form = Form()
-    assert form.wanted(desk) == ("image",)
-    assert form.file(desk, "image") == tmp_path / "soft_bloom.exr"
+    form = Form(desk)
+    assert form.wanted() == ("image",)
+    assert form.file("image") == tmp_path / "soft_bloom.exr"
     form.files["image"] = str(tmp_path / "mine.exr")
     form.reform(".png")
-    assert form.file(desk, "image") == tmp_path / "mine.png"
-    assert form.options(desk) == RenderJob(frames=(1,))
+    assert form.file("image") == tmp_path / "mine.png"
+    assert form.options() == RenderJob(frames=(1,))
     form.sizing, form.scale, form.precision, form.view = "scale", 0.25, "float", "none"
-    assert form.options(desk) == RenderJob(scale=0.25, frames=(1,), precision="float", view="none")
+    assert form.options() == RenderJob(scale=0.25, frames=(1,), precision="float", view="none")
     form.sizing, form.size = "size", (64, 32)
-    assert form.options(desk) == RenderJob(size=(64, 32), frames=(1,), precision="float", view="none")
+    assert form.options() == RenderJob(size=(64, 32), frames=(1,), precision="float", view="none")
 
 
 def test_nothing_chosen_is_refused_with_a_sentence(desk: Desk) -> None:
     desk.session.open(PRESET)
-    form = Form(chosen={"image": False})
+    form = Form(desk, chosen={"image": False})
     with pytest.raises(UsageError, match="where to write"):
-        form.start(desk)
+        form.start()
 
 
 def test_a_render_is_started_and_its_folder_remembered(desk: Desk, tmp_path: Path) -> None:
     desk.session.open(PRESET)
-    form = Form(sizing="scale", scale=0.1, format=".png")
+    form = Form(desk, sizing="scale", scale=0.1, format=".png")
     form.files["image"] = str(tmp_path / "small.png")
-    made = form.start(desk)
+    made = form.start()
     assert title(made) == "small.png"
     assert made.wait(60)
     assert (made.state, made.sentence) == ("done", "")

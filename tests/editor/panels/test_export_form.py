@@ -52,8 +52,8 @@ def test_all_frames_are_offered_where_there_are_several(desk: Desk, tmp_path: Pa
     assert form.frames() == (7,)
     assert aim_text(form.aim()) == "Writes soft_bloom.exr"
     desk.session.set_frames(None)
-    assert list(Form(desk).extents(desk)) == ["this frame", "some frames"]
-    assert Form(desk).extent_of(desk) == "this frame"
+    assert list(Form(desk).extents()) == ["this frame", "some frames"]
+    assert Form(desk).extent_of() == "this frame"
 
 
 def test_the_part_that_is_played_is_one_more_choice(desk: Desk) -> None:
