@@ -66,8 +66,8 @@ class _SameSize(LazyResourceProvider):
 
 
 def drawn(node: type[Node]) -> tuple[str, ...]:
-    """The outputs that can be rendered: all but cameras."""
-    return tuple(name for name, output in node.outputs.items() if output.socket.kind is not Kind.CAMERA)
+    """The outputs that can be rendered: all but those that are only planned, such as cameras."""
+    return tuple(name for name, output in node.outputs.items() if not output.socket.kind.is_planned)
 
 
 def planned(node: type[Node], size: Size, target: Target = NULL) -> Plan:

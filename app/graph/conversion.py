@@ -5,18 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from halation.nodes import Color, Field, Image, Kind, Number, Plain, Socket, Value, Vector, Viewpoint
-
-_FITS: Mapping[Kind, frozenset[Kind]] = MappingProxyType(
-    {
-        Kind.NUMBER: frozenset(Kind) - {Kind.CAMERA},
-        Kind.COLOR: frozenset({Kind.COLOR, Kind.IMAGE}),
-        Kind.FIELD: frozenset({Kind.FIELD, Kind.IMAGE, Kind.VECTOR}),
-        Kind.IMAGE: frozenset({Kind.IMAGE}),
-        Kind.VECTOR: frozenset({Kind.VECTOR}),
-        Kind.CAMERA: frozenset({Kind.CAMERA}),
-    }
-)
+from halation.nodes import Kind, Plain, Socket, Value, Vector
 
 _VALUE_TAKES: Mapping[str, frozenset[Kind]] = MappingProxyType(
     {
@@ -35,14 +24,7 @@ def make_socket(kind: Kind, width: int = 4, default: Plain | None = None, *, nam
     if kind is Kind.VECTOR:
         socket: Socket = Vector(start, width=width, doc=doc)
     else:
-        makers = {
-            Kind.IMAGE: Image,
-            Kind.FIELD: Field,
-            Kind.NUMBER: Number,
-            Kind.COLOR: Color,
-            Kind.CAMERA: Viewpoint,
-        }
-        socket = makers[kind](start, doc=doc)
+        socket = next(item for item in Socket.__subclasses__() if item.kind is kind)(start, doc=doc)
     socket.__set_name__(Socket, name)
     return socket
 
@@ -55,11 +37,12 @@ def conversion(source: Socket, target: Socket | Value) -> str | None:
     """
     if isinstance(target, Value):
         return _into_value(source, target)
-    if target.kind in _FITS[source.kind] and not _widths_differ(source, target.kind, target.channels):
+    fits = target.kind is source.kind or target.kind in source.kind.facts.fits
+    if fits and not _widths_differ(source, target.kind, target.channels):
         return None
     reason = f"{_word(source)} does not fit {_word(target)}"
-    if Kind.CAMERA in (source.kind, target.kind):
-        return f"{reason}: a camera goes where a Camera is wanted, and nothing else does"
+    if planned := next((kind for kind in (target.kind, source.kind) if kind.is_planned), None):
+        return f"{reason}: a {planned.facts.noun} goes where a {planned} is wanted, and nothing else does"
     if target.single:
         single = "a Number" if target.kind is Kind.NUMBER else "a Number or Color"
         return f"{reason}, one value for the whole picture: link {single}, such as 'luminance_statistics' measures"

@@ -191,8 +191,9 @@ class MediaProvider:
         return found
 
     def _bind(self, socket: Input, name: str, item: Binding) -> Picture:
-        if socket.kind is Kind.CAMERA:
-            raise UsageError(f"input '{name}' is a camera, which no file or number stands for: link one in the graph")
+        if socket.kind.is_planned:
+            noun = socket.kind.facts.noun
+            raise UsageError(f"input '{name}' is a {noun}, which no file or number stands for: link one in the graph")
         if not isinstance(item, str | Path):
             array = _array(item, socket.socket().single)
             if array.ndim not in (2, 3) or not array.size or array.dtype.kind not in "fiub":

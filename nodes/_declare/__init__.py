@@ -23,13 +23,14 @@ from __future__ import annotations
 from .camera import Camera, look_at, orbit_camera
 from .curves import MAX_POINTS, curve_at, curve_knots, ramp_at, ramp_knots
 from .draw import Affine, Argument, Draw, Drawn, Kernel, Overlap, Pixels, Reach, ShaderText, Stage
+from .kinds import KINDS, Kind, KindFacts
 from .lights import LIGHT_NUMBERS, MAX_LIGHTS, Light, LightKind, lights_of, numbers_of
 from .mattes import float_bits, listed, matte_of, murmur3, picked, picked_names, toggled
 from .node import Filter, Node, Pointwise, Reader, Source, Temporal
 from .recolor import WORKING_SPACE, ColorChange, ColorSettings, LookupFile, SpaceChange
 from .render import Matte, Meaning, Render
 from .scene import BuiltInScene, Motion, Scene, SceneFile, StageName
-from .sockets import Color, Edge, Field, Image, Kind, Number, Output, Size, Socket, Vector, Viewpoint, glsl_type
+from .sockets import CameraSocket, Color, Edge, Field, Image, Number, Output, Size, Socket, Vector, glsl_type
 from .traits import Trait
 from .values import (
     RGBA,
@@ -64,6 +65,7 @@ from .values import (
 )
 
 __all__ = [
+    "KINDS",
     "LIGHT_NUMBERS",
     "MAX_LIGHTS",
     "MAX_POINTS",
@@ -73,6 +75,7 @@ __all__ = [
     "Argument",
     "BuiltInScene",
     "Camera",
+    "CameraSocket",
     "Color",
     "ColorChange",
     "ColorSettings",
@@ -92,6 +95,7 @@ __all__ = [
     "Kernel",
     "Kernel3x3",
     "Kind",
+    "KindFacts",
     "Light",
     "LightKind",
     "LightList",
@@ -138,7 +142,6 @@ __all__ = [
     "Unit",
     "Value",
     "Vector",
-    "Viewpoint",
     "curve_at",
     "curve_knots",
     "float_bits",

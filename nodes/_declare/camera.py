@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from msgspec import Struct
+from msgspec.structs import force_setattr
 
 Vector3 = tuple[float, float, float]
 
@@ -18,6 +19,10 @@ class Camera(Struct, frozen=True):
     """
 
     rows: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        # Cameras that are equal must look the same: -0.0 == 0.0, but not to a shader. Adding 0 leaves one zero.
+        force_setattr(self, "rows", tuple(part + 0 for part in self.rows))
 
     @property
     def eye(self) -> Vector3:
@@ -80,6 +85,11 @@ class Camera(Struct, frozen=True):
     def _row(self, index: int) -> Vector3:
         x, y, z = self.rows[4 * index : 4 * index + 3]
         return x, y, z
+
+
+def read_camera(rows: tuple[float, ...]) -> Camera | None:
+    """The camera of twelve numbers in a graph file; None where all of them are 0."""
+    return Camera(rows) if len(rows) == 12 and any(rows) else None
 
 
 def look_at(eye: Vector3, target: Vector3, focal: tuple[float, float], up: Vector3 = (0.0, 0.0, 1.0)) -> Camera:

@@ -12,7 +12,7 @@ from .camera import Camera
 from .recolor import ColorChange
 from .render import Render
 from .scene import Motion, Scene
-from .sockets import Edge, Size, Socket, Viewpoint
+from .sockets import CameraSocket, Edge, Size, Socket
 from .values import Plain, Uniform
 
 
@@ -112,7 +112,7 @@ class Draw(Protocol):
         """True if something is linked to this input of the node."""
         ...
 
-    def camera(self, socket: Viewpoint, frame: int | None = None) -> Camera | None:
+    def camera(self, socket: CameraSocket, frame: int | None = None) -> Camera | None:
         """The camera that is linked to this input of the node, if any is; at another of the node's `times`."""
         ...
 

@@ -4,25 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from enum import StrEnum
 from typing import ClassVar, Literal
+
+from .kinds import Kind
 
 Size = tuple[int, int]
 """Width and height in pixels."""
 
 Edge = Literal["clamp", "mirror", "reflect", "wrap", "black"]
 """What lies outside a picture: scipy's nearest, mirror, reflect and wrap; black is transparent."""
-
-
-class Kind(StrEnum):
-    """What travels on a link."""
-
-    IMAGE = "Image"
-    FIELD = "Field"
-    VECTOR = "Vector"
-    NUMBER = "Number"
-    COLOR = "Color"
-    CAMERA = "Camera"
 
 
 @dataclass(frozen=True)
@@ -42,7 +32,7 @@ class Socket:
     @property
     def channels(self) -> int:
         """Floats per pixel."""
-        return {Kind.FIELD: 1, Kind.NUMBER: 1, Kind.CAMERA: 12}.get(self.kind, 4)
+        return self.kind.facts.channels
 
     @property
     def optional(self) -> bool:
@@ -52,7 +42,7 @@ class Socket:
     @property
     def single(self) -> bool:
         """True if it carries one value for the whole picture instead of one per pixel."""
-        return self.kind in (Kind.NUMBER, Kind.COLOR, Kind.CAMERA)
+        return self.kind.facts.carried != "pixels"
 
     @property
     def glsl(self) -> str:
@@ -96,7 +86,7 @@ class Color(Socket):
     kind = Kind.COLOR
 
 
-class Viewpoint(Socket):
+class CameraSocket(Socket):
     """The camera that a picture was taken with, known before anything is drawn: see `Camera`. Filters take it."""
 
     kind = Kind.CAMERA

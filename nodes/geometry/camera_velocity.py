@@ -1,6 +1,6 @@
 from collections.abc import Mapping
 
-from .._declare import Camera, Draw, Drawn, Field, Filter, Output, Vector, Viewpoint
+from .._declare import Camera, CameraSocket, Draw, Drawn, Field, Filter, Output, Vector
 
 
 class CameraVelocity(Filter):
@@ -12,9 +12,9 @@ class CameraVelocity(Filter):
     """
 
     depth = Field(doc="Planar distance along the way the camera looks.")
-    camera = Viewpoint(doc="The camera now.")
-    before = Viewpoint(0.0, doc="The camera of the frame before; without a link, `camera` as it was then.")
-    after = Viewpoint(0.0, doc="The camera of the frame after; if only this lacks a link, it goes on evenly.")
+    camera = CameraSocket(doc="The camera now.")
+    before = CameraSocket(0.0, doc="The camera of the frame before; without a link, `camera` as it was then.")
+    after = CameraSocket(0.0, doc="The camera of the frame after; if only this lacks a link, it goes on evenly.")
 
     velocity = Output(Vector(width=4))
 

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import Draw, Drawn, Field, Filter, Output, Slider, Vector, Viewpoint
+from .._declare import CameraSocket, Draw, Drawn, Field, Filter, Output, Slider, Vector
 
 
 class Curvature(Filter):
@@ -15,7 +15,7 @@ class Curvature(Filter):
     normal = Vector(width=3, doc="Directions of surfaces.")
     position = Vector(0.0, width=3, doc="Places in the world.")
     depth = Field(0.0, doc="Distance from the camera, in place of positions.")
-    camera = Viewpoint(0.0, doc="Without one, normals alone are the camera's own: x right, y up, z towards it.")
+    camera = CameraSocket(0.0, doc="Without one, normals alone are the camera's own: x right, y up, z towards it.")
     radius: Annotated[
         float, Slider(0.01, 10.0, unit="scene", minimum=0.0, doc="A ball of this radius reads 1; larger ones less.")
     ] = 0.25

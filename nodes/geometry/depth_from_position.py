@@ -1,4 +1,4 @@
-from .._declare import Draw, Drawn, Field, Filter, Output, Vector, Viewpoint
+from .._declare import CameraSocket, Draw, Drawn, Field, Filter, Output, Vector
 
 
 class DepthFromPosition(Filter):
@@ -9,7 +9,7 @@ class DepthFromPosition(Filter):
     """
 
     position = Vector(width=3, doc="Places in the world.")
-    camera = Viewpoint(doc="The camera that the positions were rendered with.")
+    camera = CameraSocket(doc="The camera that the positions were rendered with.")
 
     depth = Output(Field())
 

@@ -1,4 +1,4 @@
-from .._declare import Draw, Drawn, Field, Filter, Output, Vector, Viewpoint
+from .._declare import CameraSocket, Draw, Drawn, Field, Filter, Output, Vector
 
 
 class Facing(Filter):
@@ -9,7 +9,7 @@ class Facing(Filter):
     """
 
     normal = Vector(width=3, doc="Directions of surfaces.")
-    camera = Viewpoint(0.0, doc="Without one, normals are the camera's own: x right, y up, z towards it.")
+    camera = CameraSocket(0.0, doc="Without one, normals are the camera's own: x right, y up, z towards it.")
 
     facing = Output(Field(doc="0..1."))
 

@@ -2,7 +2,21 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Trait, Vector, Viewpoint
+from .._declare import (
+    RGBA,
+    CameraSocket,
+    Doc,
+    Draw,
+    Drawn,
+    Field,
+    Filter,
+    Fraction,
+    Image,
+    Output,
+    Slider,
+    Trait,
+    Vector,
+)
 
 
 class Fog(Filter):
@@ -19,7 +33,7 @@ class Fog(Filter):
     image = Image()
     depth = Field(doc="Distance from the camera; what has none is sky.")
     position = Vector(0.0, width=3, doc="Places in the world, for the height without a camera.")
-    camera = Viewpoint(0.0, doc="For the height, the sun, and true distances.")
+    camera = CameraSocket(0.0, doc="For the height, the sun, and true distances.")
     mode: Annotated[
         Literal["linear", "exponential", "exponential squared", "height"],
         Doc(

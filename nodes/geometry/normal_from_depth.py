@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import Draw, Drawn, Field, Filter, Output, Slider, Vector, Viewpoint
+from .._declare import CameraSocket, Draw, Drawn, Field, Filter, Output, Slider, Vector
 
 
 class NormalFromDepth(Filter):
@@ -14,7 +14,7 @@ class NormalFromDepth(Filter):
     """
 
     depth = Field(doc="Planar distance along the way the camera looks.")
-    camera = Viewpoint(doc="The camera that the depth was rendered with.")
+    camera = CameraSocket(doc="The camera that the depth was rendered with.")
     reach: Annotated[
         float,
         Slider(

@@ -1,4 +1,4 @@
-from .._declare import Draw, Drawn, Field, Filter, Output, Vector, Viewpoint
+from .._declare import CameraSocket, Draw, Drawn, Field, Filter, Output, Vector
 
 
 class PositionFromDepth(Filter):
@@ -9,7 +9,7 @@ class PositionFromDepth(Filter):
     """
 
     depth = Field(doc="Planar distance along the way the camera looks.")
-    camera = Viewpoint(doc="The camera that the depth was rendered with.")
+    camera = CameraSocket(doc="The camera that the depth was rendered with.")
 
     position = Output(Vector(width=3))
 

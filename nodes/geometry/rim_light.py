@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Vector, Viewpoint
+from .._declare import RGBA, CameraSocket, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Vector
 
 
 class RimLight(Filter):
@@ -14,7 +14,7 @@ class RimLight(Filter):
 
     image = Image()
     normal = Vector(width=3, doc="Directions of surfaces.")
-    camera = Viewpoint(0.0, doc="Without one, normals are the camera's own: x right, y up, z towards it.")
+    camera = CameraSocket(0.0, doc="Without one, normals are the camera's own: x right, y up, z towards it.")
     mask = Field(1.0, doc="Where the light falls: flat ground seen aslant is all rim.")
     color: Annotated[RGBA, Doc("Color of the light; its alpha scales it.")] = (1.0, 0.85, 0.7, 1.0)
     intensity: Annotated[float, Slider(0.0, 10.0, unit="ratio", doc="How strong it is.")] = 2.0

@@ -3,6 +3,7 @@ from typing import Annotated, Literal
 
 from .._declare import (
     Camera,
+    CameraSocket,
     Doc,
     Draw,
     Drawn,
@@ -16,7 +17,6 @@ from .._declare import (
     Render,
     RenderPath,
     Vector,
-    Viewpoint,
 )
 
 _KINDS = ("planar", "radial", "inverse", "negative", "normalized")
@@ -89,7 +89,7 @@ class ReadRender(Reader):
     object_id = Output(Field())
     material_id = Output(Field())
     uv = Output(Vector(width=2))
-    camera = Output(Viewpoint())
+    camera = Output(CameraSocket())
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn | Camera]:
         render = draw.render(self.path, self._named())

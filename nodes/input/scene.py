@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from .._declare import (
     BuiltInScene,
     Camera,
+    CameraSocket,
     Doc,
     Draw,
     Drawn,
@@ -18,7 +19,6 @@ from .._declare import (
     Slider,
     Source,
     Vector,
-    Viewpoint,
     orbit_camera,
 )
 
@@ -88,8 +88,8 @@ class Scene(Source):
     uv = Output(Vector(width=2))
     object_id = Output(Field(doc="A whole number for every object, from 1."))
     material_id = Output(Field(doc="A whole number for every material, from 1."))
-    camera = Output(Viewpoint())
-    camera_before = Output(Viewpoint(doc="Where the camera was in the frame before."))
+    camera = Output(CameraSocket())
+    camera_before = Output(CameraSocket(doc="Where the camera was in the frame before."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn | Camera]:
         scene = SceneFile(self.file, self.up) if self.scene == "file" else BuiltInScene(self.scene)

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from .._declare import Camera, Doc, Draw, Output, Reader, RenderPath, Viewpoint
+from .._declare import Camera, CameraSocket, Doc, Draw, Output, Reader, RenderPath
 
 
 class SolveCamera(Reader):
@@ -13,7 +13,7 @@ class SolveCamera(Reader):
 
     path: Annotated[RenderPath, Doc("A render with a position layer, or with a camera in its header.")] = ""
 
-    camera = Output(Viewpoint())
+    camera = Output(CameraSocket())
 
     def passes(self, draw: Draw) -> Mapping[str, Camera]:
         camera = draw.render(self.path).camera

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Vector, Viewpoint
+from .._declare import CameraSocket, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Vector
 from ._occlusion import DATA, FACTORS, SAMPLES, measured, settled
 
 
@@ -18,7 +18,7 @@ class AmbientOcclusion(Filter):
 
     depth = Field(doc="Planar distance along the way the camera looks.")
     normal = Vector(0.0, width=3, doc="In the world. Without a link, from depth.")
-    camera = Viewpoint(doc="The camera that the depth was rendered with.")
+    camera = CameraSocket(doc="The camera that the depth was rendered with.")
     albedo = Image((0.5, 0.5, 0.5, 1.0), doc="Color of the surfaces, for the tint. Without a link, a mid gray.")
     mode: Annotated[
         Literal["gtao", "hbao", "bitmask", "hemisphere", "crytek", "alchemy"],

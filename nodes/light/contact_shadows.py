@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Image, Output, Slider, Vector, Viewpoint
+from .._declare import RGBA, CameraSocket, Doc, Draw, Drawn, Field, Filter, Image, Output, Slider, Vector
 from ._march import surfaces
 
 _RAYS = {"preview": 1, "quality": 4, "reference": 32}
@@ -21,7 +21,7 @@ class ContactShadows(Filter):
     image = Image((1.0, 1.0, 1.0, 1.0), doc="The picture that is shaded. Without a link, white.")
     depth = Field(doc="Planar distance along the way the camera looks.")
     normal = Vector(0.0, width=3, doc="In the world. Without a link, from depth.")
-    camera = Viewpoint(doc="The camera that the depth was rendered with.")
+    camera = CameraSocket(doc="The camera that the depth was rendered with.")
     light: Annotated[Literal["sun", "lamp"], Doc("A sun has a direction, a lamp a position.")] = "sun"
     direction: Annotated[
         tuple[float, float, float], Slider(-1.0, 1.0, unit="ratio"), Doc("Towards the sun, in the world's axes.")

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from .._declare import (
     MAX_LIGHTS,
     RGBA,
+    CameraSocket,
     Doc,
     Draw,
     Drawn,
@@ -20,7 +21,6 @@ from .._declare import (
     Stops,
     Trait,
     Vector,
-    Viewpoint,
     lights_of,
     numbers_of,
     ramp_at,
@@ -95,7 +95,7 @@ class DeferredLighting(Filter):
     normal = Vector(0.0, width=3, doc="In the world. Without a link, from depth and camera.")
     depth = Field(0.0, doc="Planar distance along the way the camera looks, if there is no position.")
     position = Vector(0.0, width=3, doc="In the world. Without a link, from depth and camera.")
-    camera = Viewpoint(0.0, doc="Without one, highlights look as if every surface were seen straight on.")
+    camera = CameraSocket(0.0, doc="Without one, highlights look as if every surface were seen straight on.")
     material = Vector((0.0, 0.0), width=2, doc="Metal and roughness, 0..1, in place of the two values.")
     emission = Image((0.0, 0.0, 0.0, 0.0), doc="Added as it is.")
     occlusion = Field(1.0, doc="How open surfaces are, 0..1: the ambient light is multiplied with it, no other.")

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Vector, Viewpoint
+from .._declare import CameraSocket, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Vector
 from ._environment import SKY, irradiance, shrunk
 from ._occlusion import DATA, FACTORS, SAMPLES, measured, settled
 
@@ -22,7 +22,7 @@ class DirectionalOcclusion(Filter):
     image = Image(doc="The lit scene, whose light bounces on to neighbors.")
     depth = Field(doc="Planar distance along the way the camera looks.")
     normal = Vector(0.0, width=3, doc="In the world. Without a link, from depth.")
-    camera = Viewpoint(doc="The camera that the depth was rendered with.")
+    camera = CameraSocket(doc="The camera that the depth was rendered with.")
     albedo = Image((1.0, 1.0, 1.0, 1.0), doc="Color of the surfaces. Without a link white: the light alone.")
     environment = Image(
         0.0,

@@ -3,6 +3,7 @@ from types import MappingProxyType
 from typing import Annotated, Literal
 
 from .._declare import (
+    CameraSocket,
     Doc,
     Draw,
     Drawn,
@@ -15,7 +16,6 @@ from .._declare import (
     Slider,
     Trait,
     Vector,
-    Viewpoint,
 )
 from ._environment import DATA, SKY, irradiance, shrunk
 
@@ -46,7 +46,7 @@ class ImageBasedLight(Filter):
     traits = (Trait.NEEDS_SCENE_LIGHT,)
 
     normal = Vector(width=3, doc="In the world.")
-    camera = Viewpoint(doc="The camera that the normals were rendered with.")
+    camera = CameraSocket(doc="The camera that the normals were rendered with.")
     environment = Image(
         (1.0, 1.0, 1.0, 1.0),
         own_size=True,

@@ -2,7 +2,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import RGBA, Doc, Draw, Drawn, Field, Filter, Image, Output, Position, Slider, Trait, Viewpoint
+from .._declare import RGBA, CameraSocket, Doc, Draw, Drawn, Field, Filter, Image, Output, Position, Slider, Trait
 from ._march import surfaces
 
 _SAMPLES = {"preview": 4, "quality": 12, "reference": 64}
@@ -22,7 +22,7 @@ class LightShafts(Filter):
 
     image = Image()
     depth = Field(doc="Planar distance along the way the camera looks.")
-    camera = Viewpoint(doc="The camera that the depth was rendered with.")
+    camera = CameraSocket(doc="The camera that the depth was rendered with.")
     light: Annotated[
         Literal["picture", "sun", "lamp"],
         Doc("A sun at a place in the picture, a sun in a direction of the world, or a lamp somewhere in it."),

@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Trait, Vector, Viewpoint
+from .._declare import CameraSocket, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Trait, Vector
 from ._march import surfaces
 
 _RAYS = {"preview": 4, "quality": 16, "reference": 64}
@@ -24,7 +24,7 @@ class ScreenReflections(Filter):
     image = Image()
     depth = Field(doc="Planar distance along the way the camera looks.")
     normal = Vector(0.0, width=3, doc="In the world. Without a link, from depth.")
-    camera = Viewpoint(doc="The camera that the depth was rendered with.")
+    camera = CameraSocket(doc="The camera that the depth was rendered with.")
     material = Vector(0.0, width=2, doc="Metal and roughness, 0..1. Without a link, no metal, and the roughness below.")
     albedo = Image((1.0, 1.0, 1.0, 1.0), doc="Color of the surfaces: metals tint what they mirror.")
     mask = Field(1.0, doc="What mirrors, and how much: the floor, puddles.")

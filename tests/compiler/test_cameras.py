@@ -8,7 +8,7 @@ from halation.compiler.library import Library, parse
 from halation.compiler.lowering.lower import lower
 from halation.errors import GraphError
 from halation.graph import Graph, Group, Input, Output, Port
-from halation.nodes import Camera, Draw, Drawn, Field, Filter, Image, Kind, Viewpoint, look_at
+from halation.nodes import Camera, CameraSocket, Draw, Drawn, Field, Filter, Image, Kind, look_at
 from halation.nodes.input.camera import Camera as CameraNode
 from halation.resources.picture import Picture
 from headers import Headers
@@ -20,7 +20,7 @@ class Watcher(Filter):
     """Notes the camera that it is given."""
 
     image = Image()
-    camera = Viewpoint(0.0)
+    camera = CameraSocket(0.0)
 
     def passes(self, draw: Draw) -> Drawn:
         SEEN.append(draw.camera(self.camera))

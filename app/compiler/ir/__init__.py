@@ -44,7 +44,7 @@ from .operations import (
     StoredResult,
 )
 from .program import Builder, LoweredProgram
-from .values import Accessor, Choice, Memory, Operand, Parameter, PictureShape, Ref, UniformConstant
+from .values import Accessor, Choice, Memory, Operand, Parameter, PictureShape, PlannedObject, Ref, UniformConstant
 
 __all__ = [
     "BLOCK",
@@ -68,6 +68,7 @@ __all__ = [
     "Parameter",
     "PictureShape",
     "Placement",
+    "PlannedObject",
     "Raster",
     "Read",
     "Reduce",

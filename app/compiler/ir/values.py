@@ -57,6 +57,16 @@ class UniformConstant(Struct, frozen=True):
         return UniformConstant((0.0,) * self.channels)
 
 
+class PlannedObject(UniformConstant, frozen=True, kw_only=True):
+    """An object of a planned kind, such as a camera, for the `passes` of nodes; None if there is none.
+
+    It reaches no shader as it is: the number is never read.
+    """
+
+    content: object | None = None
+    value: float | int | bool | tuple[float, ...] = 0.0
+
+
 class Choice(Struct, frozen=True):
     """An index that is part of the shader's text: another choice is another program."""
 

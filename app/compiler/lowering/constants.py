@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 
-from halation.nodes import Node, Socket, Value
+from halation.nodes import Kind, Node, Socket, Value
 
 from ...errors import GraphError
 from ...graph import Input, Port
 from ...graph.values import value_fault
-from ..ir import UniformConstant
+from ..ir import PlannedObject, UniformConstant
+from .expand import nothing
 
 
 def check_values(path: str, node: Node) -> None:
@@ -26,6 +27,8 @@ def of_input(port: Port, end: Input) -> UniformConstant:
     found = tuple(part for part in given if isinstance(part, float | int) and math.isfinite(part))
     if len(found) != len(given) or len(found) not in (1, end.width):
         raise GraphError(f"input '{port.socket}': the default {end.default!r} does not fit {end.kind}")
+    if end.kind.is_planned:
+        return _read_object(end.kind, found)
     return UniformConstant(found if len(found) > 1 else float(*found))
 
 
@@ -36,9 +39,22 @@ def limited(wire: UniformConstant, value: Value, factor: float) -> UniformConsta
     return UniformConstant(parts if isinstance(wire.value, tuple) else parts[0])
 
 
-def of_socket(socket: Socket) -> float | tuple[float, ...]:
-    """A socket's default with one number per channel."""
+def of_socket(socket: Socket) -> UniformConstant:
+    """The constant that an input has without a link: its default with one number per channel."""
     default = socket.default if socket.default is not None else 0.0
+    if socket.kind.is_planned:
+        return _read_object(socket.kind, default if isinstance(default, tuple) else (default,))
     if socket.channels == 1 or isinstance(default, tuple):
-        return default
-    return (default,) * socket.channels
+        return UniformConstant(default)
+    return UniformConstant((default,) * socket.channels)
+
+
+def of_nothing(socket: Socket) -> UniformConstant:
+    """The constant that an output shows which has nothing to show."""
+    return PlannedObject() if socket.kind.is_planned else UniformConstant(nothing(socket))
+
+
+def _read_object(kind: Kind, numbers: tuple[float, ...]) -> PlannedObject:
+    """The object of a planned kind that numbers of a graph file stand for."""
+    read = kind.facts.read
+    return PlannedObject(content=read(numbers) if read else None)

@@ -12,6 +12,7 @@ from halation.nodes import (
     Affine,
     Argument,
     Camera,
+    CameraSocket,
     ColorChange,
     Drawn,
     Edge,
@@ -31,7 +32,6 @@ from halation.nodes import (
     Size,
     Socket,
     Uniform,
-    Viewpoint,
     glsl_type,
 )
 
@@ -55,6 +55,7 @@ from ..ir import (
     Operand,
     Parameter,
     PictureShape,
+    PlannedObject,
     Raster,
     Read,
     Reduce,
@@ -105,11 +106,10 @@ class Recorder:
     def linked(self, socket: Socket) -> bool:
         return socket.name in self._fed.linked
 
-    def camera(self, socket: Viewpoint, frame: int | None = None) -> Camera | None:
+    def camera(self, socket: CameraSocket, frame: int | None = None) -> Camera | None:
         operand = self._operand(socket) if frame is None else self._at(socket, frame)
-        assert isinstance(operand, UniformConstant)
-        rows = operand.value
-        return Camera(rows) if isinstance(rows, tuple) and any(rows) else None
+        content = operand.content if isinstance(operand, PlannedObject) else None
+        return content if isinstance(content, Camera) else None
 
     def at(self, socket: Socket, frame: int) -> Drawn:
         operand = self._at(socket, frame)

@@ -10,7 +10,7 @@ from collections import Counter
 from itertools import chain
 from types import MappingProxyType
 
-from halation.nodes import Camera, Image, Kind, Socket
+from halation.nodes import Camera, Image, Socket
 
 from ...errors import GraphError, HalationError
 from ...graph import INPUTS, OUTPUTS, Graph, Port, did_you_mean
@@ -181,8 +181,9 @@ class Lowering:
                 node=f"{source}",
             )
         socket = socket or Image()
-        if socket.kind is Kind.CAMERA:
-            raise GraphError(f"output '{name}' is a camera, which is no picture: choose another one", node=f"{source}")
+        if socket.kind.is_planned:
+            fault = f"output '{name}' is a {socket.kind.facts.noun}, which is no picture: choose another one"
+            raise GraphError(fault, node=f"{source}")
         if isinstance(operand, UniformConstant):
             size = (1, 1) if socket.single else self.pictures.canvas
             return self.pictures.converted(operand, socket, size, name)

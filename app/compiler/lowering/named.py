@@ -36,8 +36,8 @@ class Named:
                     yield Picture(self.located(getattr(node, value.name), path), "", Kind.IMAGE, 4), path
 
     def bound(self, port: Port, socket: Input) -> Picture | None:
-        """The picture bound to a graph input, else its default file. A camera is none."""
-        if socket.kind is Kind.CAMERA:
+        """The picture bound to a graph input, else its default file. What is planned is none."""
+        if socket.kind.is_planned:
             return None
         kind, width = socket.kind, socket.socket().channels
         bound = self._bindings.get(port.socket) if port.node == INPUTS else None

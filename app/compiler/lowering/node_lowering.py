@@ -25,12 +25,12 @@ from msgspec.structs import replace
 
 from ...errors import GraphError, ShaderError
 from ...graph import Graph, Port
-from ..ir import Builder, Call, Choice, Memory, Operand, Parameter, PictureShape, Ref, UniformConstant
+from ..ir import Builder, Call, Choice, Memory, Operand, Parameter, PictureShape, PlannedObject, Ref, UniformConstant
 from ..library import Library
 from ..request import Request
 from . import constants
 from .draws import Recorder, choices
-from .expand import Flat, nothing, stand_in
+from .expand import Flat, stand_in
 from .moments import Moments
 from .node_inputs import DrawnPicture, NodeInputs
 from .pictures import PictureBuilder
@@ -103,15 +103,15 @@ class NodeLowering:
                 inputs.at_frames.update({(name, at): operand for at, operand in by_frame.items()})
                 inputs.linked.add(name)
             elif socket.optional:
-                inputs.inputs[name] = UniformConstant(constants.of_socket(socket))
+                inputs.inputs[name] = constants.of_socket(socket)
             elif source is not None:
                 raise GraphError(
                     f"node '{path}': input '{name}' comes from the graph input '{source.socket}', which is not bound "
                     "to a picture: give it a file, or bind it by name"
                 )
             else:
-                expected = "camera" if socket.kind is Kind.CAMERA else "picture"
-                raise GraphError(f"node '{path}': input '{name}' is not linked: link a {expected} to it")
+                noun = socket.kind.facts.noun
+                raise GraphError(f"node '{path}': input '{name}' is not linked: link a {noun} to it")
         for name in node.values:
             source, _ = feeds.get(name, (None, ()))
             operand = operand_at(source, frame) if source is not None else None
@@ -145,7 +145,7 @@ class NodeLowering:
         if inputs.path in self._context.flat.muted:
             shown = {name: stand_in(output.socket, node.inputs) for name, output in node.outputs.items()}
             return {
-                name: inputs.inputs[source] if source else UniformConstant(nothing(node.outputs[name].socket))
+                name: inputs.inputs[source] if source else constants.of_nothing(node.outputs[name].socket)
                 for name, source in shown.items()
             }
         neutral = None if inputs.wires or len(node.outputs) != 1 else node.identity()
@@ -245,8 +245,7 @@ class NodeLowering:
         step.reads_frame = recorder.reads_frame
         results = drawn if isinstance(drawn, Mapping) else {next(iter(node.outputs)): drawn}
         for name, item in results.items():
-            assert isinstance(item, DrawnPicture | Camera)
-            operand = UniformConstant(item.rows) if isinstance(item, Camera) else item.ref
+            operand = item.ref if isinstance(item, DrawnPicture) else PlannedObject(content=item)
             step.results[Port(path, name), inputs.frame - context.frame] = operand
 
     def _find_memories(self, path: str, step: LoweringStep) -> dict[str, Memory]:
@@ -257,7 +256,7 @@ class NodeLowering:
 
     def _as_pixels(self, path: str, socket: Socket, operand: Operand, size: Size) -> Operand:
         """A filter looks around in its input: give it real pixels with the channels that it declares."""
-        if socket.single or socket.kind is Kind.CAMERA:
+        if socket.single:
             return operand
         if isinstance(operand, UniformConstant):
             return self._pictures.converted(operand, socket, size, path)
@@ -277,9 +276,9 @@ class NodeLowering:
 
 def _find_cameras(inputs: NodeInputs) -> dict[Port, Camera]:
     """The cameras that are linked to the inputs of a node."""
-    cameras = {name: inputs.inputs[name] for name in inputs.linked if inputs.node.inputs[name].kind is Kind.CAMERA}
+    operands = {name: inputs.inputs[name] for name in inputs.linked}
     return {
-        Port(inputs.path, name): Camera(rows)
-        for name, operand in cameras.items()
-        if isinstance(operand, UniformConstant) and isinstance(rows := operand.value, tuple) and any(rows)
+        Port(inputs.path, name): camera
+        for name, operand in operands.items()
+        if isinstance(operand, PlannedObject) and isinstance(camera := operand.content, Camera)
     }

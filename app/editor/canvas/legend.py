@@ -19,15 +19,6 @@ if TYPE_CHECKING:
 _POPUP = "sockets"
 _SIDE, _GAP = 24.0, 12.0
 
-_MEANING = {
-    Kind.IMAGE: "a picture: red, green, blue, alpha",
-    Kind.FIELD: "one channel: depth, mask, occlusion",
-    Kind.VECTOR: "data of 2 to 4 channels: normal, velocity",
-    Kind.NUMBER: "one number for the whole picture",
-    Kind.COLOR: "one color for the whole picture",
-    Kind.CAMERA: "the camera that a picture was taken with",
-}
-
 _MOUSE = (
     ("Wheel", "zoom"),
     ("Middle drag, Space + drag", "pan"),
@@ -77,7 +68,7 @@ class Legend:
     def _contents(self, brush: Brush) -> None:
         scale, line = ui_scale(), imgui.get_text_line_height()
         draw = imgui.get_window_draw_list()
-        for kind, meaning in _MEANING.items():
+        for kind, meaning in ((kind, kind.facts.doc) for kind in Kind):
             corner = imgui.get_cursor_screen_pos()
             at = corner.x + 8 * scale, corner.y + line / 2
             popup = Brush(draw, Transform(0, 0, scale), 1.0, brush.ink, brush.fonts, brush.texts, brush.seen)

@@ -108,7 +108,7 @@ def paint_pin(
                     (cx - size, cy - size), (cx + size, cy + size), ink, size * (0.75 if kind is Kind.COLOR else 0.15)
                 )
         return
-    if kind is Kind.CAMERA:
+    if kind is not None and kind.is_planned:
         for size, ink in ((r * 1.5, rim), (r * 1.15, color), (r * 0.5, core)):
             if ink:
                 draw.add_triangle_filled((cx - size, cy - size), (cx + size, cy), (cx - size, cy + size), ink)

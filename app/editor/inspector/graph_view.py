@@ -32,15 +32,10 @@ _SIDE = Value("size", "int", 1920, low=1.0, high=4096.0, minimum=1.0, maximum=16
 _PREROLL = Value("preroll", "int", 12, low=0.0, high=100.0, minimum=0.0)
 _TEXT = Value("name", "text", "")
 _COLOR = Value("color", "color", (0.0,) * 4, 4, low=0.0, high=1.0)
-_KINDS = (
-    ("Image", Kind.IMAGE, 4),
-    ("Field", Kind.FIELD, 1),
-    ("Vector2", Kind.VECTOR, 2),
-    ("Vector3", Kind.VECTOR, 3),
-    ("Vector4", Kind.VECTOR, 4),
-    ("Number", Kind.NUMBER, 1),
-    ("Color", Kind.COLOR, 4),
-    ("Camera", Kind.CAMERA, 12),
+_KINDS = tuple(
+    (f"{kind}{width}" if kind is Kind.VECTOR else f"{kind}", kind, width)
+    for kind in Kind
+    for width in ((2, 3, 4) if kind is Kind.VECTOR else (kind.facts.channels,))
 )
 FULL_HD = (1920, 1080)
 

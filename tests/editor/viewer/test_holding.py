@@ -13,12 +13,12 @@ from halation.editor.viewer.perspective import project, unproject
 from halation.editor.viewer.state import ViewerState
 from halation.graph import Port
 from halation.nodes import (
+    CameraSocket,
     Filter,
     Image,
     Light,
     LightKind,
     LightList,
-    Viewpoint,
     catalogue,
     lights_of,
     look_at,
@@ -34,7 +34,7 @@ class Lit(Filter):
     """Lights that a camera sees."""
 
     image = Image()
-    camera = Viewpoint(0.0)
+    camera = CameraSocket(0.0)
     lights: LightList = numbers_of((MIDDLE, BEHIND, Light(LightKind.SUN), SIDE))
 
 

@@ -19,6 +19,7 @@ from halation.editor.viewer.state import ViewerState
 from halation.graph import Port
 from halation.nodes import (
     MAX_LIGHTS,
+    CameraSocket,
     Field,
     Filter,
     Image,
@@ -26,7 +27,6 @@ from halation.nodes import (
     LightKind,
     LightList,
     Vector,
-    Viewpoint,
     catalogue,
     lights_of,
     look_at,
@@ -49,7 +49,7 @@ class Lit(Filter):
     image = Image()
     depth = Field(0.0)
     position = Vector(0.0, width=3)
-    camera = Viewpoint(0.0)
+    camera = CameraSocket(0.0)
     lights: LightList = numbers_of((POINT, SPOT, SUN, BALL))
 
 

@@ -1,0 +1,74 @@
+"""Socket kinds: what travels on links. All that the machine must know of a kind stands here, in one table.
+
+A kind is carried in one of three ways, which decides how it is lowered:
+
+- `pixels`: a texture of the picture's size. GLSL reads it; sizes are made to fit.
+- `value`: one value for the whole picture, a constant or a texture of one pixel. GLSL reads it as a parameter.
+- `plan`: an object that is known while the plan is made and that never becomes a texture. Only `Filter.passes` sees it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from types import MappingProxyType
+from typing import Literal
+
+from .camera import read_camera
+
+
+class Kind(StrEnum):
+    """What travels on a link. The value is the name of the type in graph files."""
+
+    IMAGE = "Image"
+    FIELD = "Field"
+    VECTOR = "Vector"
+    NUMBER = "Number"
+    COLOR = "Color"
+    CAMERA = "Camera"
+
+    @property
+    def facts(self) -> KindFacts:
+        """All that the machine knows of it."""
+        return KINDS[self]
+
+    @property
+    def is_planned(self) -> bool:
+        """True for an object that is known while the plan is made, and is never drawn."""
+        return self.facts.carried == "plan"
+
+
+@dataclass(frozen=True)
+class KindFacts:
+    """The declaration of a kind."""
+
+    carried: Literal["pixels", "value", "plan"]
+    channels: int
+    """How many numbers it is per pixel, and as a `default` in a graph file; those of a Vector vary."""
+    doc: str
+    """What the editor's legend says."""
+    fits: frozenset[Kind] = frozenset()
+    """The kinds of other inputs that it may be linked to, because nothing is lost."""
+    noun: str = "picture"
+    """What messages call it."""
+    read: Callable[[tuple[float, ...]], object | None] | None = None
+    """For a planned kind: the object that its numbers in a graph file stand for; None where they stand for nothing."""
+
+
+KINDS: Mapping[Kind, KindFacts] = MappingProxyType(
+    {
+        Kind.IMAGE: KindFacts("pixels", 4, "a picture: red, green, blue, alpha"),
+        Kind.FIELD: KindFacts("pixels", 1, "one channel: depth, mask, occlusion", frozenset({Kind.IMAGE, Kind.VECTOR})),
+        Kind.VECTOR: KindFacts("pixels", 4, "data of 2 to 4 channels: normal, velocity"),
+        Kind.NUMBER: KindFacts(
+            "value",
+            1,
+            "one number for the whole picture",
+            frozenset({Kind.IMAGE, Kind.FIELD, Kind.VECTOR, Kind.COLOR}),
+        ),
+        Kind.COLOR: KindFacts("value", 4, "one color for the whole picture", frozenset({Kind.IMAGE})),
+        Kind.CAMERA: KindFacts("plan", 12, "the camera that a picture was taken with", noun="camera", read=read_camera),
+    }
+)
+"""Every kind and its declaration."""
