@@ -6,7 +6,7 @@ import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any, Literal, Self
+from typing import Any, Self
 
 from halation.nodes import Node, Plain, Pointwise, Socket, Value
 from msgspec import structs
@@ -14,6 +14,7 @@ from msgspec import structs
 from ..errors import GraphError
 from .animation import ANIMATED, Animation, adapted, moved, unfit
 from .conversion import conversion
+from .ends import EndSection, move_end
 from .model import Control, Input, Output, Port, Settings, Signature, Unknown, freeze
 from .names import INPUTS, OUTPUTS, check_name, did_you_mean, fresh_name, pick
 from .notes import linked_routes, moved_keys, moved_layout, renamed, without, without_route
@@ -343,19 +344,8 @@ class Graph(Wired[Item]):
             return None
         return source if source and source.node != target.node else None
 
-    def _move_end(self, section: Literal["inputs", "outputs", "controls"], old: str, new: str | None = None) -> Self:
-        """Rename an input, output or control, or remove it if `new` is None."""
-        known: Mapping[str, Any] = getattr(self, section)
-        pick(known, old, f"the graph has no {section[:-1]}")
-        rest, here = without(known, old), Port(section, old)
-        if new is None:
-            ends, links = rest, {end: start for end, start in self.links.items() if here not in (end, start)}
-        else:
-            check_name(new, section[:-1], rest)
-            ends, links = renamed(known, old, new), moved_links(self.links, {here: Port(section, new)})
-        place, there = f"{section}.{old}", f"{section}.{new}" if new else ""
-        ui, extra = moved_layout(self.ui, place, there), moved_keys(self.extra, place, there)
-        return self._with(**{section: ends}, links=links, ui=ui, extra=extra)
+    def _move_end(self, section: EndSection, old: str, new: str | None = None) -> Self:
+        return self._with(**move_end(self, section, old, new))
 
 
 # --- faces of nodes --------------------------------------------------------------------------------------------------

@@ -1,0 +1,42 @@
+"""Renaming and removing the inputs, outputs and controls of a graph."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Literal, Protocol
+
+from .model import Port
+from .names import check_name, pick
+from .notes import moved_keys, moved_layout, renamed, without
+from .relink import moved_links
+
+EndSection = Literal["inputs", "outputs", "controls"]
+
+
+class _Ends(Protocol):
+    """The parts of a graph that name its ends."""
+
+    @property
+    def links(self) -> Mapping[Port, Port]: ...
+    @property
+    def ui(self) -> Mapping[str, Any]: ...
+    @property
+    def extra(self) -> Mapping[str, Mapping[str, Any]]: ...
+
+
+def move_end(graph: _Ends, section: EndSection, old: str, new: str | None) -> dict[str, Any]:
+    """The fields of a graph that change where an input, output or control is renamed, or removed if `new` is None.
+
+    Links, layout and unknown keys of the end follow, or go.
+    """
+    ends: Mapping[str, Any] = getattr(graph, section)
+    pick(ends, old, f"the graph has no {section[:-1]}")
+    others, port = without(ends, old), Port(section, old)
+    if new is None:
+        ends, links = others, {end: start for end, start in graph.links.items() if port not in (end, start)}
+    else:
+        check_name(new, section[:-1], others)
+        ends, links = renamed(ends, old, new), moved_links(graph.links, {port: Port(section, new)})
+    place, new_place = f"{section}.{old}", f"{section}.{new}" if new else ""
+    ui, extra = moved_layout(graph.ui, place, new_place), moved_keys(graph.extra, place, new_place)
+    return {section: ends, "links": links, "ui": ui, "extra": extra}
