@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from halation.nodes import Camera
 
     from ..media.layers import Layer
-    from ..media.sequences import Sequence
+    from ..media.sequences import FrameSequence
     from ..render_layers.analysis import Survey
     from ..render_layers.camera import Solved
 
@@ -30,13 +30,13 @@ def info(
 ) -> int:
     """Show the parts, layers and metadata of a picture, what each layer of a render is, how its data are meant, and the
     camera."""
-    from ..media.sequences import check_any, find_sequence
+    from ..media.sequences import check_has_files, find_sequence
     from ..render_layers.analysis import survey
     from ..render_layers.report import report
 
     shot = find_sequence(str(file))
     if shot is not None:
-        check_any(shot)
+        check_has_files(shot)
     found = survey(shot.path(shot.frames[0]) if shot else file, before)
     if as_json:
         print_json({**(_shot_facts(shot) if shot else {}), **_facts(found)})
@@ -46,10 +46,10 @@ def info(
     return 0
 
 
-def _shot_lines(shot: Sequence) -> str:
+def _shot_lines(shot: FrameSequence) -> str:
     """A sequence: how many frames, which, and what is missing between them."""
     lines = [shot.pattern.text, f"  {_frames(shot)}"]
-    return "\n".join([*lines, f"  {shot.missing} missing: {shot.lacking}"] if shot.missing else lines)
+    return "\n".join([*lines, f"  {shot.missing} missing: {shot.gaps_text}"] if shot.missing else lines)
 
 
 def _neighbors(path: str) -> str:
@@ -58,15 +58,15 @@ def _neighbors(path: str) -> str:
 
     pattern = suggest_pattern(path)
     shot = find_sequence(pattern) if pattern else None
-    return f"\n  one of {len(shot.frames)} frames of {shot.pattern.text}: {shot.said}" if shot else ""
+    return f"\n  one of {len(shot.frames)} frames of {shot.pattern.text}: {shot.frames_text}" if shot else ""
 
 
-def _frames(shot: Sequence) -> str:
+def _frames(shot: FrameSequence) -> str:
     count = len(shot.frames)
-    return f"{count} frame{'s' if count > 1 else ''}: {shot.said}"
+    return f"{count} frame{'s' if count > 1 else ''}: {shot.frames_text}"
 
 
-def _shot_facts(shot: Sequence) -> dict[str, Any]:
+def _shot_facts(shot: FrameSequence) -> dict[str, Any]:
     return {
         "sequence": {
             "pattern": shot.pattern.text,

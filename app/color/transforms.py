@@ -6,7 +6,6 @@ OpenColorIO is imported when a file needs it: sRGB into linear Rec.709, the comm
 from __future__ import annotations
 
 import difflib
-import os
 from functools import cache, lru_cache
 from typing import Any, Literal
 
@@ -14,6 +13,7 @@ import numpy as np
 from halation.nodes import ColorSettings
 
 from ..errors import UsageError
+from ..resources.machine import available_cores
 from .file_space import FileSpace
 from .management import BUILT_IN, DEFAULT_COLOR, LINEAR_REC709, Managed, Space, builtin, managed, ocio, studio
 
@@ -24,11 +24,6 @@ _PLAIN_VIEW = "Un-tone-mapped"
 _LARGEST = 65504.0
 
 Array = np.ndarray
-
-
-def available_cores() -> int:
-    """Processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def is_working(found: FileSpace, manager: Managed) -> bool:

@@ -12,9 +12,11 @@ from halation.nodes import ColorSettings, Kind
 from ..errors import HalationError
 from ..graph import INPUTS, OUTPUTS, Graph, Input, color_settings
 from ..graph.frames import Pattern, is_video
-from ..media.info import choose_layer, read_info
+from ..media.convert import Pixels
+from ..media.info import read_info
 from ..media.layers import split_layer
-from ..media.pixels import Pixels, read_layer
+from ..media.pixels import read_layer
+from .layer_choice import choose_layer
 
 MOST = 4
 """Pictures that may wait for somebody to want them."""

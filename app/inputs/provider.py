@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import numpy as np
     from halation.nodes import ColorChange, ColorSettings, Missing, Render, Scene
 
-    from ..media.info import ImageInfo
+    from ..media.layers import ImageInfo
     from ..resources.color_program import ColorProgram
     from ..resources.mesh import Mesh
     from ..resources.provider import FrameFile
@@ -88,9 +88,9 @@ class MediaProvider:
 
     def at(self, path: str, frame: int, missing: Missing) -> FrameFile:
         """The file of a frame. Raises InputError for a frame that has none."""
-        from ..media.sequences import frame_file
+        from ..media.sequences import find_frame_file
 
-        return frame_file(path, frame, missing)
+        return find_frame_file(path, frame, missing)
 
     def probe(self, picture: Picture) -> PictureProbe:
         """Size and precision of a picture. Raises InputError for what cannot be read."""
@@ -98,7 +98,7 @@ class MediaProvider:
             array = cast("Array", picture.pixels)
             height, width = array.shape[:2]
             return PictureProbe((width, height), array.dtype.name == "float16", self._marks[picture.path])
-        from ..media.info import find_layer
+        from ..media.layers import find_layer
 
         if picture.within:
             _check_within(picture.path, picture.within)
@@ -162,8 +162,8 @@ class MediaProvider:
 
     def _load_rows(self, picture: Picture, first: int, end: int) -> Array:
         """Rows of a file; what is repaired counts as often as it is read."""
+        from ..media.convert import LayerRequest
         from ..media.pictures.row_reader import read_rows
-        from ..media.pixels import LayerRequest
 
         want = LayerRequest(picture.layer, picture.kind, picture.width, picture.space, picture.color)
         pixels = read_rows(picture.path, want, first, end)
@@ -211,7 +211,7 @@ class MediaProvider:
 
     def _hinted(self, path: str, socket: Input) -> str:
         """The layer that the input asks for, if this file has it."""
-        from ..media.info import choose_layer
+        from .layer_choice import choose_layer
 
         if socket.layer and socket.kind is Kind.IMAGE:
             return choose_layer(self.info(self.at(path, 1, "nearest").path), socket)

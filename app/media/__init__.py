@@ -1,4 +1,17 @@
-"""Files and arrays: pictures by OpenImageIO, sequences, videos, meshes."""
+"""Files and arrays: pictures, sequences, videos and meshes on the disk, numpy arrays in memory.
+
+A path becomes an array in five steps, each a function with its own module:
+
+    path -> sequences.find_frame_file   which file shows a frame
+         -> info.read_info              the header: size and layers (`channels` sorts channels into layers)
+         -> layers.find_layer           the layer that a user names
+         -> pictures.reader, video.reader    the numbers of that layer, decoded
+         -> convert.convert_layer       what a socket takes: color in the working space, repaired, upright
+
+`pixels.read_layer` does all of it for one file. Arrays become files by `pictures.writer.write_picture`,
+`pictures.row_writer` (a picture that no memory holds) and `video.writer`. `meshes` are triangles of 3D scenes,
+`comparison` measures and shows how pictures differ, `header` and `metadata` are all else that a file says.
+"""
 
 from __future__ import annotations
 
@@ -6,29 +19,30 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from .info import ImageInfo, find_layer, read_info
-from .layers import Layer
+from .convert import LayerRequest, Pixels
+from .info import read_info
+from .layers import ImageInfo, Layer, find_layer
 from .metadata import TypedAttribute, read_metadata
 from .pictures.writer import check_destination, stores_halves, write_picture
-from .pixels import LayerRequest, Pixels, read_layer, read_layers
+from .pixels import read_layer, read_layers
 
 if TYPE_CHECKING:
-    from .sequences import Sequence, find_sequence, frame_file, suggest_pattern
-    from .video.writer import VideoFile, check_video
+    from .sequences import FrameSequence, find_frame_file, find_sequence, suggest_pattern
+    from .video.writer import VideoWriter, check_video
 
 __all__ = [
+    "FrameSequence",
     "ImageInfo",
     "Layer",
     "LayerRequest",
     "Pixels",
-    "Sequence",
     "TypedAttribute",
-    "VideoFile",
+    "VideoWriter",
     "check_destination",
     "check_video",
+    "find_frame_file",
     "find_layer",
     "find_sequence",
-    "frame_file",
     "read_info",
     "read_layer",
     "read_layers",
@@ -40,11 +54,11 @@ __all__ = [
 
 _LATER = MappingProxyType(
     {
-        "Sequence": "sequences",
-        "VideoFile": "video.writer",
+        "FrameSequence": "sequences",
+        "VideoWriter": "video.writer",
         "check_video": "video.writer",
         "find_sequence": "sequences",
-        "frame_file": "sequences",
+        "find_frame_file": "sequences",
         "suggest_pattern": "sequences",
     }
 )

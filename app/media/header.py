@@ -11,16 +11,9 @@ from typing import Any
 import OpenImageIO as oiio
 
 from ..graph.frames import is_video
-from .info import (
-    ImageInfo,
-    describe_picture,
-    describe_video,
-    make_printable,
-    open_picture,
-    read_color_tag,
-    read_video_info,
-)
-from .video import Facts, passed_on, said_of
+from .layers import ImageInfo
+from .pictures.open import describe_picture, make_printable, open_picture, read_color_tag
+from .video import VideoInfo, describe_video, describe_video_attributes, find_kept_tags, read_video_info
 
 Value = int | float | str | tuple[Any, ...]
 Window = tuple[int, int, int, int]
@@ -58,7 +51,7 @@ def read_header(path: str | Path) -> FileHeader:
         InputError: as `info`.
     """
     if is_video(str(path)):
-        return _describe_video_header(read_video_info(path))
+        return _describe_video_header(read_video_info(str(path)))
     with open_picture(path) as handle:
         info = describe_picture(handle, str(path))
         parts: list[PartHeader] = []
@@ -70,12 +63,12 @@ def read_header(path: str | Path) -> FileHeader:
     return FileHeader(info, tuple(parts), MappingProxyType(attributes))
 
 
-def _describe_video_header(facts: Facts) -> FileHeader:
-    info, window = describe_video(facts), (0, 0, *facts.size)
+def _describe_video_header(video: VideoInfo) -> FileHeader:
+    info, window = describe_video(video), (0, 0, *video.size)
     layer = info.layers[0]
     formats = (layer.format,) * len(layer.channels)
-    part = PartHeader(0, "", "", facts.container, facts.codec, window, window, layer.channels, formats, "")
-    return FileHeader(info, (part,), MappingProxyType({**passed_on(facts), **said_of(facts)}))
+    part = PartHeader(0, "", "", video.container, video.codec, window, window, layer.channels, formats, "")
+    return FileHeader(info, (part,), MappingProxyType({**find_kept_tags(video), **describe_video_attributes(video)}))
 
 
 def _read_part(index: int, spec: oiio.ImageSpec) -> PartHeader:

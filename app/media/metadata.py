@@ -12,7 +12,7 @@ import OpenImageIO as oiio
 from msgspec import Struct
 
 from ..graph.frames import is_video
-from .info import open_picture, read_video_info
+from .pictures.open import open_picture
 
 _STRUCTURAL = re.compile(
     r"(oiio|openexr|png|jpeg|tiff|targa|bmp|gif|hdr|webp|jpegxl|ICCProfile|dwa):.*|Exif:(ColorSpace|Pixel.Dimension|ImageHistory)"
@@ -44,9 +44,9 @@ def read_metadata(path: str | Path) -> dict[str, int | float | str | TypedAttrib
         InputError: the file cannot be read.
     """
     if is_video(str(path)):
-        from .video import passed_on
+        from .video import find_kept_tags, read_video_info
 
-        return {**passed_on(read_video_info(path))}
+        return {**find_kept_tags(read_video_info(str(path)))}
     with open_picture(path) as handle:
         found: dict[str, int | float | str | TypedAttribute] = {}
         for item in handle.spec().extra_attribs:

@@ -28,22 +28,21 @@ from ..errors import InputError, UsageError
 from ..graph.frames import Pattern, format_frames, is_video
 from ..resources.input_files import check_inside
 from ..resources.provider import FrameFile
-from .info import read_video_info
 from .pictures.thumbnail import list_readable_endings
 
 if TYPE_CHECKING:
     from fractions import Fraction
 
-_UNSETTLED = 2_000_000_000
+_CLOCK_STEP_NS = 2_000_000_000
 """Nanoseconds: how coarse the clocks of file systems are. A folder that changed just now may change again unseen."""
 
-_SHOWN = 60
+_LONGEST_TEXT = 60
 _MOST_NUMBERS = 8
 _WIDEST = 16
 _NUMBER = re.compile(r"(?:(?<![^._-])-)?[0-9]+")
 
 
-class Sequence(Struct, frozen=True, dict=True):
+class FrameSequence(Struct, frozen=True, dict=True):
     """The frames of a pattern that have a file; `names` are the names of the files, by frame and in order.
 
     Of a video all are in the one file, and `rate` is how many of them a second has.
@@ -69,21 +68,21 @@ class Sequence(Struct, frozen=True, dict=True):
         return sum(last - first + 1 for first, last in self.gaps)
 
     @cached_property
-    def said(self) -> str:
+    def frames_text(self) -> str:
         """The frames that are there as text, such as `1-12,14-24`, cut where that would be too long to read."""
-        return _cut(format_frames(self.frames))
+        return _shorten(format_frames(self.frames))
 
     @property
-    def lacking(self) -> str:
+    def gaps_text(self) -> str:
         """The gaps as text, cut likewise."""
-        return _cut(",".join(str(first) if first == last else f"{first}-{last}" for first, last in self.gaps))
+        return _shorten(",".join(str(first) if first == last else f"{first}-{last}" for first, last in self.gaps))
 
     def path(self, frame: int) -> str:
         """The file of a frame that is there."""
         return self.pattern.folder + self.names[frame]
 
 
-def find_sequence(path: str) -> Sequence | None:
+def find_sequence(path: str) -> FrameSequence | None:
     """The numbered pictures or the video that a path means, maybe without a frame; None for a path that is one picture.
 
     Raises:
@@ -91,21 +90,21 @@ def find_sequence(path: str) -> Sequence | None:
         UsageError: as `Pattern.parse`.
     """
     if _is_file(path):
-        return _video(path) if is_video(path) else None
+        return _find_video(path) if is_video(path) else None
     if pattern := Pattern.parse(path):
-        return _sequence(pattern, _listed(pattern.folder))
+        return _match_names(pattern, _list_folder(pattern.folder))
     if not _is_folder(path):
         return None
-    names = _listed(path)
-    groups = _groups(names)
+    names = _list_folder(path)
+    groups = _rank_patterns(names)
     if not groups:
         raise InputError(f"{path}: is a folder without numbered pictures: name a picture inside it")
     best = min(groups, key=lambda text: (groups[text], text))
     pattern = Pattern.parse(str(Path(path, best)))
-    return _sequence(pattern, names) if pattern else None
+    return _match_names(pattern, names) if pattern else None
 
 
-def frame_file(path: str, frame: int, missing: Missing = "error") -> FrameFile:
+def find_frame_file(path: str, frame: int, missing: Missing = "error") -> FrameFile:
     """The file that shows a frame; of a video, which of its frames. One picture is its own, whatever the frame.
 
     `hold` takes the last frame before it, or the first of all; `nearest` the one at the smallest distance, of two the
@@ -118,39 +117,43 @@ def frame_file(path: str, frame: int, missing: Missing = "error") -> FrameFile:
     if _is_file(path):
         return _video_frame(path, frame, missing) if is_video(path) else FrameFile(path)
     pattern = Pattern.parse(path)
-    if pattern and _is_file(usual := pattern.name(frame)):
-        return FrameFile(usual)
-    found = find_sequence(path)
-    if found is None:
+    if pattern and _is_file(usual_name := pattern.name(frame)):
+        return FrameFile(usual_name)
+    sequence = find_sequence(path)
+    if sequence is None:
         return FrameFile(path)
-    check_any(found)
-    if frame in found.names:
-        return FrameFile(found.path(frame))
+    check_has_files(sequence)
+    if frame in sequence.names:
+        return FrameFile(sequence.path(frame))
     if missing == "error":
         raise InputError(
-            f"{found.pattern.name(frame)}: there is no such file, only frames {found.said}: render it, or choose hold, "
-            "nearest or black for missing frames"
+            f"{sequence.pattern.name(frame)}: there is no such file, only frames {sequence.frames_text}: "
+            "render it, or choose hold, nearest or black for missing frames"
         )
-    after = bisect_left(found.frames, frame)
-    near = found.frames[max(0, after - 1) : after + 1]
+    after = bisect_left(sequence.frames, frame)
+    near = sequence.frames[max(0, after - 1) : after + 1]
     chosen = near[0] if missing == "hold" else min(near, key=lambda there: (abs(there - frame), there))
-    return FrameFile(found.path(chosen), missing == "black")
+    return FrameFile(sequence.path(chosen), missing == "black")
 
 
-def _video(path: str) -> Sequence:
+def _find_video(path: str) -> FrameSequence:
     """A video as a sequence of frames that are all in one file."""
-    facts = read_video_info(path)
-    return _filmed(path, facts.count, facts.rate)
+    from .video import read_video_info
+
+    video = read_video_info(path)
+    return _make_video_sequence(path, video.count, video.rate)
 
 
 @lru_cache(maxsize=16)
-def _filmed(path: str, count: int, rate: Fraction) -> Sequence:
+def _make_video_sequence(path: str, count: int, rate: Fraction) -> FrameSequence:
     name = Path(path).name
     pattern = Pattern(path, path[: len(path) - len(name)], (name,), ())
-    return Sequence(pattern, MappingProxyType(dict.fromkeys(range(1, count + 1), name)), rate)
+    return FrameSequence(pattern, MappingProxyType(dict.fromkeys(range(1, count + 1), name)), rate)
 
 
 def _video_frame(path: str, frame: int, missing: Missing) -> FrameFile:
+    from .video import read_video_info
+
     count = read_video_info(path).count
     if 1 <= frame <= count:
         return FrameFile(path, number=frame)
@@ -162,15 +165,15 @@ def _video_frame(path: str, frame: int, missing: Missing) -> FrameFile:
     return FrameFile(path, missing == "black", 1 if frame < 1 else count)
 
 
-def check_any(found: Sequence) -> None:
+def check_has_files(sequence: FrameSequence) -> None:
     """Raise InputError for a sequence without a single file, with the name that may have been meant."""
-    if found.frames:
+    if sequence.frames:
         return
-    text, folder = found.pattern.text, found.pattern.folder
+    text, folder = sequence.pattern.text, sequence.pattern.folder
     if not _is_folder(folder or "."):
         raise InputError(f"{text}: no file has such a name; its folder is missing too")
-    names, sought = _listed(folder), text[len(folder) :]
-    near = [*difflib.get_close_matches(sought, _groups(names), 1), *difflib.get_close_matches(sought, names, 1)]
+    names, sought = _list_folder(folder), text[len(folder) :]
+    near = [*difflib.get_close_matches(sought, _rank_patterns(names), 1), *difflib.get_close_matches(sought, names, 1)]
     hint = f"; did you mean '{near[0]}'?" if near else ": check it"
     raise InputError(f"{text}: no file has such a name{hint}")
 
@@ -182,30 +185,30 @@ def suggest_pattern(path: str) -> str | None:
     name = Path(path).name
     folder = path[: len(path) - len(name)]
     try:
-        groups = _groups(_listed(folder))
+        groups = _rank_patterns(_list_folder(folder))
     except InputError:
         return None
     fitting = [
         text
-        for before, number, after in _numbers(name)
+        for before, number, after in _find_numbers(name)
         for width in range(1, _WIDEST + 1)
-        if (text := _text(before, width, after)) in groups and groups[text][0] < -1 and _fits(number, width)
+        if (text := _pattern_text(before, width, after)) in groups and groups[text][0] < -1 and _fits(number, width)
     ]
     return folder + min(fitting, key=lambda text: (groups[text], text)) if fitting else None
 
 
 @lru_cache(maxsize=64)
-def _sequence(pattern: Pattern, names: tuple[str, ...]) -> Sequence:
-    found: dict[int, str] = {}
+def _match_names(pattern: Pattern, names: tuple[str, ...]) -> FrameSequence:
+    names_by_frame: dict[int, str] = {}
     for name in names:
         frame = pattern.frame(name)
-        if frame is not None and (frame not in found or name == Path(pattern.name(frame)).name):
-            found[frame] = name
-    return Sequence(pattern, MappingProxyType(dict(sorted(found.items()))))
+        if frame is not None and (frame not in names_by_frame or name == Path(pattern.name(frame)).name):
+            names_by_frame[frame] = name
+    return FrameSequence(pattern, MappingProxyType(dict(sorted(names_by_frame.items()))))
 
 
 @lru_cache(maxsize=16)
-def _groups(names: tuple[str, ...]) -> Mapping[str, tuple[int, int]]:
+def _rank_patterns(names: tuple[str, ...]) -> Mapping[str, tuple[int, int]]:
     """The patterns that pictures among these files fit, with their rank: by count, then by how far back the number is.
 
     Names that would look like something else as a pattern have none.
@@ -214,26 +217,26 @@ def _groups(names: tuple[str, ...]) -> Mapping[str, tuple[int, int]]:
     endings = list_readable_endings()
     for name in names:
         if not name.startswith(".") and Path(name).suffix.casefold() in endings:
-            for place, (before, number, after) in enumerate(_numbers(name)):
+            for place, (before, number, after) in enumerate(_find_numbers(name)):
                 numbers[before, after, place].append(number)
     groups: dict[str, tuple[int, int]] = {}
-    for (before, after, place), found in numbers.items():
-        for width in _widths(found):
-            text, count = _text(before, width, after), sum(_fits(number, width) for number in found)
+    for (before, after, place), candidates in numbers.items():
+        for width in _possible_widths(candidates):
+            text, count = _pattern_text(before, width, after), sum(_fits(number, width) for number in candidates)
             if count and _is_read_back(text, before, after):
                 groups[text] = (-count, place)
     return MappingProxyType(groups)
 
 
-def _numbers(name: str) -> Iterator[tuple[str, str, str]]:
+def _find_numbers(name: str) -> Iterator[tuple[str, str, str]]:
     """The numbers in a name without its ending, the last one first: what stands before, the number, what is after."""
     stem = name.rpartition(".")[0]
-    for found in list(_NUMBER.finditer(stem))[: -_MOST_NUMBERS - 1 : -1]:
-        if len(found[0]) <= _WIDEST:
-            yield name[: found.start()], found[0], name[found.end() :]
+    for match in list(_NUMBER.finditer(stem))[: -_MOST_NUMBERS - 1 : -1]:
+        if len(match[0]) <= _WIDEST:
+            yield name[: match.start()], match[0], name[match.end() :]
 
 
-def _widths(numbers: list[str]) -> set[int]:
+def _possible_widths(numbers: list[str]) -> set[int]:
     """The paddings that numbers may have: those that zeros show, or the length that all share, or none."""
     padded = {len(number) for number in numbers if number[0] == "0" and len(number) > 1}
     lengths = {len(number) for number in numbers}
@@ -241,11 +244,11 @@ def _widths(numbers: list[str]) -> set[int]:
 
 
 def _fits(number: str, width: int) -> bool:
-    return _bare(width).frame(number) is not None
+    return _bare_pattern(width).frame(number) is not None
 
 
 @lru_cache(maxsize=_WIDEST)
-def _bare(width: int) -> Pattern:
+def _bare_pattern(width: int) -> Pattern:
     """A number and nothing else."""
     return Pattern("", "", ("", ""), (width,))
 
@@ -258,11 +261,11 @@ def _is_folder(path: str) -> bool:
     return os.path.isdir(path)  # noqa: PTH112 - as above
 
 
-def _cut(frames: str) -> str:
-    return frames if len(frames) <= _SHOWN else f"{frames[:_SHOWN].rpartition(',')[0]},..."
+def _shorten(frames: str) -> str:
+    return frames if len(frames) <= _LONGEST_TEXT else f"{frames[:_LONGEST_TEXT].rpartition(',')[0]},..."
 
 
-def _text(before: str, width: int, after: str) -> str:
+def _pattern_text(before: str, width: int, after: str) -> str:
     return f"{before}{'#' * width}{after}"
 
 
@@ -274,14 +277,14 @@ def _is_read_back(text: str, before: str, after: str) -> bool:
     return pattern is not None and pattern.pieces == (before, after)
 
 
-def _listed(folder: str) -> tuple[str, ...]:
+def _list_folder(folder: str) -> tuple[str, ...]:
     """The names of the files of a folder, from memory where it has not changed since; none if there is no folder."""
     place = Path(folder or ".").absolute()
     check_inside(place)
     try:
         written = place.stat().st_mtime_ns
-        settled = time.time_ns() - written > _UNSETTLED
-        return _scanned(place, written) if settled else _scanned.__wrapped__(place, written)
+        settled = time.time_ns() - written > _CLOCK_STEP_NS
+        return _scan_folder(place, written) if settled else _scan_folder.__wrapped__(place, written)
     except (FileNotFoundError, NotADirectoryError, ValueError):
         return ()
     except OSError as error:
@@ -289,6 +292,6 @@ def _listed(folder: str) -> tuple[str, ...]:
 
 
 @lru_cache(maxsize=16)
-def _scanned(folder: Path, written: int) -> tuple[str, ...]:
+def _scan_folder(folder: Path, written: int) -> tuple[str, ...]:
     with os.scandir(folder) as entries:
         return tuple(sorted(entry.name for entry in entries if entry.is_file()))

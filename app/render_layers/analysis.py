@@ -18,10 +18,10 @@ from halation.nodes import Camera, Kind
 
 from ..color.transforms import Array
 from ..errors import InputError
+from ..media.convert import LayerRequest
 from ..media.header import FileHeader, read_header
-from ..media.info import find_layer
-from ..media.layers import Layer
-from ..media.pixels import LayerRequest, read_layers
+from ..media.layers import Layer, find_layer
+from ..media.pixels import read_layers
 from ..resources.input_files import fingerprint
 from . import evidence
 from .camera import Solved, header_camera, residual_of, solve_camera

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from types import MappingProxyType
 
-from ..media.layers import DATA_NAMES, normalize_name
+from ..media.channels import DATA_NAMES
+from ..media.layers import normalize_name
 
 
 class Role(StrEnum):

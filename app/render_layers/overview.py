@@ -9,8 +9,7 @@ from types import MappingProxyType
 from halation.nodes import Matte
 
 from ..errors import InputError
-from ..media.info import find_layer
-from ..media.layers import suggest_layers
+from ..media.layers import find_layer, suggest_layers
 from .analysis import FoundCamera, Survey, survey
 from .conventions import Convention
 from .mattes import mattes_of

@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 from enum import IntEnum
 from types import MappingProxyType
 
-from ..media.layers import Layer, is_depth, normalize_name
+from ..media.channels import is_depth
+from ..media.layers import Layer, normalize_name
 from .naming import HINTS, PATTERNS, SCHEMES, Renderer, Role
 
 _GROUP = re.compile(r"(?:combined|rgba?|beauty)_(.+)", re.IGNORECASE)

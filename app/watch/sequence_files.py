@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from ..errors import HalationError
-from ..media.sequences import find_sequence, frame_file, suggest_pattern
+from ..media.sequences import find_frame_file, find_sequence, suggest_pattern
 
 MOST = 400
 """Files of one sequence that are watched."""
@@ -18,7 +18,7 @@ AFTER = 24
 def standing(path: Path, frame: int = 1) -> Path:
     """The picture itself; of a sequence the one at that frame, or the nearest one. A path that is wrong stays."""
     try:
-        return Path(frame_file(str(path), frame, "nearest").path)
+        return Path(find_frame_file(str(path), frame, "nearest").path)
     except HalationError:
         return path
 

@@ -213,7 +213,7 @@ def test_without_pyav_there_is_a_sentence(fails, movie, monkeypatch):
     graph = movie()
     monkeypatch.setattr(index, "library", lambda: None)
     monkeypatch.setattr(codecs, "library", lambda: None)
-    index.surveyed.cache_clear()
+    index.survey_video.cache_clear()
     assert "pip install halation[video]" in fails(4, "render", graph, "--frame", 1)
     plain = graph.with_name("plain.json")
     tree = json.loads(graph.read_text())

@@ -118,7 +118,7 @@ def test_odd_names(tmp_path: Path, name: str) -> None:
     path = tmp_path / name
     media.write_picture(path, {"image": picture}, kinds={"image": Kind.IMAGE})
     assert media.read_layer(path, "", Kind.IMAGE).array.shape == (4, 6, 4)
-    assert media.frame_file(str(path), 7).path == str(path)
+    assert media.find_frame_file(str(path), 7).path == str(path)
     media.write_picture(path.with_suffix(".exr"), {"image": picture}, kinds={"image": Kind.IMAGE})
     assert media.read_info(path.with_suffix(".exr")).size == (6, 4)
 
@@ -175,7 +175,7 @@ def test_nothing_is_read_or_written_outside_of_a_fence(tmp_path: Path, make: Mak
         with pytest.raises(InputError, match="lies outside of"):
             media.find_sequence(str(tmp_path / "out.####.exr"))
         with pytest.raises(InputError, match="lies outside of"):
-            media.read_layer(media.frame_file(str(inside / "shot.####.exr"), 1).path, "", Kind.IMAGE)
+            media.read_layer(media.find_frame_file(str(inside / "shot.####.exr"), 1).path, "", Kind.IMAGE)
         for path in (tmp_path / "new.exr", inside / "../new.exr", inside / "link.exr"):
             with pytest.raises(OutputError, match="lies outside of"):
                 media.write_picture(path, {"image": picture}, kinds={"image": Kind.IMAGE})

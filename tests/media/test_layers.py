@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from halation.errors import InputError
 from halation.media import find_layer, read_info
-from halation.media.info import ImageInfo
-from halation.media.layers import ChannelPart, group_channels, is_depth
+from halation.media.channels import ChannelPart, group_channels, is_depth
+from halation.media.layers import ImageInfo
 
 ROOT = Path(__file__).parents[2]
 NEON = ROOT / "presets/samples/neon.exr"

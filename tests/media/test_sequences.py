@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from halation.errors import InputError
-from halation.media import find_sequence, frame_file, sequences, suggest_pattern
+from halation.media import find_frame_file, find_sequence, sequences, suggest_pattern
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -46,28 +46,28 @@ def test_the_frames_of_a_pattern(fill):
     for text in ("shot.####.exr", "shot.%04d.exr", "shot.$F4.exr"):
         found = find_sequence(f"{folder}/{text}")
         assert found is not None and found.frames == (*range(1, 13), *range(14, 25))
-        assert (found.gaps, found.missing, found.said, found.lacking) == (((13, 13),), 1, "1-12,14-24", "13")
+        assert (found.gaps, found.missing, found.frames_text, found.gaps_text) == (((13, 13),), 1, "1-12,14-24", "13")
         assert found.path(7) == f"{folder}/shot.0007.exr"
 
 
 def test_an_empty_sequence_and_a_gap_without_end(fill):
     found = find_sequence(f"{fill('x.exr')}/shot.#.exr")
-    assert found is not None and (found.frames, found.gaps, found.missing, found.said) == ((), (), 0, "")
+    assert found is not None and (found.frames, found.gaps, found.missing, found.frames_text) == ((), (), 0, "")
     found = find_sequence(f"{fill('shot.1.exr', 'shot.999999999.exr')}/shot.#.exr")
-    assert found is not None and found.gaps == ((2, 999999998),) and found.lacking == "2-999999998"
+    assert found is not None and found.gaps == ((2, 999999998),) and found.gaps_text == "2-999999998"
 
 
 def test_long_lists_are_cut(fill):
     found = find_sequence(f"{fill(*(f'x.{frame * frame}.exr' for frame in range(40)))}/x.#.exr")
     assert found is not None
-    assert found.said.endswith(",...") and found.lacking.endswith(",...") and len(found.said) < 70
+    assert found.frames_text.endswith(",...") and found.gaps_text.endswith(",...") and len(found.frames_text) < 70
 
 
 def test_one_picture_is_no_sequence(fill):
     folder = fill("shot.exr", "take #1.exr", "shot.%04d.exr", "shot.0001.exr")
     for name in ("shot.exr", "take #1.exr", "shot.%04d.exr", "shot.0001.exr", "gone.exr"):
         assert find_sequence(f"{folder}/{name}") is None
-        frame = frame_file(f"{folder}/{name}", 5)
+        frame = find_frame_file(f"{folder}/{name}", 5)
         assert (frame.path, frame.black) == (f"{folder}/{name}", False)
 
 
@@ -80,7 +80,7 @@ def test_negative_frames_by_printf_and_by_blender(fill):
         (-3, "a.-003.exr"),
         (0, "a.0000.exr"),
     ]
-    assert frame_file(f"{folder}/a.####.exr", -4).path == f"{folder}/a.-0004.exr"
+    assert find_frame_file(f"{folder}/a.####.exr", -4).path == f"{folder}/a.-0004.exr"
 
 
 @pytest.mark.parametrize(
@@ -109,7 +109,7 @@ def test_a_folder_is_the_sequence_with_the_most_frames(fill, names, pattern):
     folder = fill(*names)
     found = find_sequence(str(folder))
     assert found is not None and found.pattern.text == f"{folder}/{pattern}" and found.frames
-    assert frame_file(str(folder), found.frames[-1]).path == found.path(found.frames[-1])
+    assert find_frame_file(str(folder), found.frames[-1]).path == found.path(found.frames[-1])
 
 
 @pytest.mark.parametrize("names", [(), ("a.exr", "notes.01.txt", "b"), ("a.exr",)])
@@ -140,7 +140,7 @@ def test_a_folder_without_numbers(fill, names):
 def test_what_stands_for_a_missing_frame(fill, missing, frame, there, black):
     folder = fill(*SHOT)
     for path in (f"{folder}/shot.####.exr", str(folder)):
-        found = frame_file(path, frame, missing)
+        found = find_frame_file(path, frame, missing)
         assert (found.path, found.black) == (f"{folder}/shot.{there:04d}.exr", black)
 
 
@@ -153,14 +153,14 @@ def test_hold_and_nearest_by_their_definitions(tmp_path_factory, frames, frame):
     before = [there for there in frames if there <= frame]
     hold = max(before) if before else min(frames)
     near = min(sorted(frames), key=lambda there: abs(there - frame))
-    assert frame_file(f"{folder}/a.###.exr", frame, "hold").path == f"{folder}/a.{hold:03d}.exr"
-    assert frame_file(f"{folder}/a.###.exr", frame, "nearest").path == f"{folder}/a.{near:03d}.exr"
+    assert find_frame_file(f"{folder}/a.###.exr", frame, "hold").path == f"{folder}/a.{hold:03d}.exr"
+    assert find_frame_file(f"{folder}/a.###.exr", frame, "nearest").path == f"{folder}/a.{near:03d}.exr"
 
 
 def test_a_missing_frame_is_told_in_a_sentence(fill):
     folder = fill(*SHOT)
     with pytest.raises(InputError) as caught:
-        frame_file(f"{folder}/shot.####.exr", 13)
+        find_frame_file(f"{folder}/shot.####.exr", 13)
     assert str(caught.value) == (
         f"{folder}/shot.0013.exr: there is no such file, only frames 1-12,14-24: render it, or choose hold, nearest or "
         "black for missing frames"
@@ -181,41 +181,41 @@ def test_a_missing_frame_is_told_in_a_sentence(fill):
 def test_no_frame_at_all_is_an_error_whatever_stands_for_missing_ones(fill, text, said, missing):
     folder = fill(*SHOT)
     with pytest.raises(InputError) as caught:
-        frame_file(f"{folder}/{text}", 3, missing)
+        find_frame_file(f"{folder}/{text}", 3, missing)
     assert str(caught.value) == f"{folder}/{text}: {said}"
 
 
 def test_relative_names(fill, monkeypatch):
     monkeypatch.chdir(fill(*SHOT))
-    assert frame_file("shot.####.exr", 13, "hold").path == "shot.0012.exr"
-    assert frame_file("./shot.####.exr", 13, "hold").path == "./shot.0012.exr"
+    assert find_frame_file("shot.####.exr", 13, "hold").path == "shot.0012.exr"
+    assert find_frame_file("./shot.####.exr", 13, "hold").path == "./shot.0012.exr"
     assert suggest_pattern("shot.0001.exr") == "shot.####.exr"
     assert suggest_pattern("./shot.0001.exr") == "./shot.####.exr"
-    assert find_sequence(".").said == "1-12,14-24"
+    assert find_sequence(".").frames_text == "1-12,14-24"
 
 
 def test_a_render_lists_its_folder_once(fill, listings):
     folder = fill(*SHOT)
     for path in (f"{folder}/shot.####.exr", str(folder)):
         for frame in range(1, 1001):
-            frame_file(path, frame, "hold")
+            find_frame_file(path, frame, "hold")
     assert listings == [str(folder)]
 
 
 def test_frames_that_are_there_need_no_list(fill, listings):
     folder = fill(*SHOT)
-    assert [frame_file(f"{folder}/shot.####.exr", frame).path for frame in range(1, 13)] and not listings
+    assert [find_frame_file(f"{folder}/shot.####.exr", frame).path for frame in range(1, 13)] and not listings
 
 
 @pytest.mark.parametrize("age", [0, 100])
 def test_new_and_removed_files_are_noticed(fill, age):
     folder = fill(*SHOT, age=age)
     path = f"{folder}/shot.####.exr"
-    assert frame_file(path, 30, "hold").path.endswith("shot.0024.exr")
+    assert find_frame_file(path, 30, "hold").path.endswith("shot.0024.exr")
     (folder / "shot.0028.exr").touch()
-    assert frame_file(path, 30, "hold").path.endswith("shot.0028.exr")
+    assert find_frame_file(path, 30, "hold").path.endswith("shot.0028.exr")
     (folder / "shot.0028.exr").unlink()
-    assert frame_file(path, 30, "hold").path.endswith("shot.0024.exr")
+    assert find_frame_file(path, 30, "hold").path.endswith("shot.0024.exr")
 
 
 def test_only_the_one_folder_is_listed(fill, listings, tmp_path):
@@ -224,7 +224,7 @@ def test_only_the_one_folder_is_listed(fill, listings, tmp_path):
     find_sequence(f"{folder}/a.#.exr")
     find_sequence(str(folder))
     with pytest.raises(InputError):
-        frame_file(f"{folder}/*/b.#.exr", 1)
+        find_frame_file(f"{folder}/*/b.#.exr", 1)
     assert listings == [str(folder)]
 
 
@@ -276,9 +276,9 @@ def test_a_folder_that_may_not_be_read(fill, monkeypatch):
     folder = fill(*SHOT)
     monkeypatch.setattr(sequences.os, "scandir", refused)
     with pytest.raises(InputError, match=f"^{folder}/: the folder cannot be read: Permission denied$"):
-        frame_file(f"{folder}/shot.####.exr", 13, "hold")
+        find_frame_file(f"{folder}/shot.####.exr", 13, "hold")
     assert suggest_pattern(f"{folder}/shot.0001.exr") is None
-    assert frame_file(f"{folder}/shot.####.exr", 12).path == f"{folder}/shot.0012.exr"
+    assert find_frame_file(f"{folder}/shot.####.exr", 12).path == f"{folder}/shot.0012.exr"
 
 
 def test_names_that_no_system_knows():

@@ -14,8 +14,8 @@ av: Any = pytest.importorskip("av", reason="PyAV is not installed: pip install h
 
 from halation import media  # noqa: E402
 from halation.errors import InputError  # noqa: E402
-from halation.media.video.index import surveyed  # noqa: E402
-from halation.media.video.reader import Reader, raw_frame  # noqa: E402
+from halation.media.video.index import survey_video  # noqa: E402
+from halation.media.video.reader import VideoReader, read_frame  # noqa: E402
 from halation.nodes import Kind  # noqa: E402
 from halation.resources.input_files import fingerprint  # noqa: E402
 from videos import bars, decoded, number_in, write_frames, write_numbers  # noqa: E402
@@ -56,16 +56,16 @@ def shown(frame: Any) -> np.ndarray:
 
 def test_frames_are_those_of_decoding_from_the_start_in_any_order(video: Path) -> None:
     expected, mark = decoded(video), fingerprint(video)
-    assert surveyed(str(video), mark)[0].count == len(expected) == COUNT
+    assert survey_video(str(video), mark)[0].count == len(expected) == COUNT
     order = [*range(1, COUNT + 1)] * 2
     random.Random(7).shuffle(order)
-    forgetful = Reader(str(video), mark)
+    forgetful = VideoReader(str(video), mark)
     for place, number in enumerate([1, 2, 3, *order]):
         if place % 3:
-            forgetful._kept.clear()  # so that it must look for it
-            forgetful._bytes = 0
-        assert np.array_equal(shown(forgetful.frame(number)), expected[number - 1]), number
-        assert np.array_equal(shown(raw_frame(str(video), mark, number)), expected[number - 1]), number
+            forgetful._cache.clear()  # so that it must look for it
+            forgetful._cached_bytes = 0
+        assert np.array_equal(shown(forgetful.read_frame(number)), expected[number - 1]), number
+        assert np.array_equal(shown(read_frame(str(video), mark, number)), expected[number - 1]), number
 
 
 def test_frame_n_shows_n(video: Path) -> None:
@@ -77,20 +77,20 @@ def test_a_video_stands_where_a_sequence_does(video: Path) -> None:
     found = media.find_sequence(str(video))
     assert found is not None and found.frames == tuple(range(1, COUNT + 1)) and not found.gaps
     assert found.path(5) == str(video)
-    assert media.frame_file(str(video), 7).number == 7
-    assert [media.frame_file(str(video), at, "hold").number for at in (-3, COUNT + 9)] == [1, COUNT]
-    assert media.frame_file(str(video), COUNT + 1, "black").black
+    assert media.find_frame_file(str(video), 7).number == 7
+    assert [media.find_frame_file(str(video), at, "hold").number for at in (-3, COUNT + 9)] == [1, COUNT]
+    assert media.find_frame_file(str(video), COUNT + 1, "black").black
     with pytest.raises(InputError, match=f"has no frame {COUNT + 1}, only 1-{COUNT}"):
-        media.frame_file(str(video), COUNT + 1)
+        media.find_frame_file(str(video), COUNT + 1)
     with pytest.raises(InputError, match="has no frame 0"):
         media.read_layer(video, "", Kind.IMAGE, frame=0)
 
 
 def test_reading_in_order_decodes_every_frame_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = write_numbers(tmp_path / "a.mp4", "libx264", "yuv420p", COUNT, options={"g": "10", "bf": "2"})
-    reader, fed = Reader(str(path), fingerprint(path)), 0
-    surveyed(str(path), fingerprint(path))
-    real = reader._from
+    reader, fed = VideoReader(str(path), fingerprint(path)), 0
+    survey_video(str(path), fingerprint(path))
+    real = reader._decode_from
 
     def counting(index: Any, key: Any) -> Any:
         nonlocal fed
@@ -99,7 +99,7 @@ def test_reading_in_order_decodes_every_frame_once(tmp_path: Path, monkeypatch: 
 
     monkeypatch.setattr(reader, "_from", counting)
     for number in range(1, COUNT + 1):
-        reader.frame(number)
+        reader.read_frame(number)
     assert fed == 1
 
 
@@ -115,17 +115,17 @@ def test_what_an_edit_list_cuts_off_is_no_frame(tmp_path: Path) -> None:
                 target.mux(packet)
     expected = decoded(cut)
     assert len(expected) < COUNT
-    facts, index = surveyed(str(cut), fingerprint(cut))
+    facts, index = survey_video(str(cut), fingerprint(cut))
     assert facts.count == len(expected) and index.times
     for number in (len(expected), 1, 20, 2):
-        assert np.array_equal(shown(raw_frame(str(cut), fingerprint(cut), number)), expected[number - 1])
+        assert np.array_equal(shown(read_frame(str(cut), fingerprint(cut), number)), expected[number - 1])
     assert number_in(expected[0]) == 8
 
 
 def test_facts_are_those_of_the_file(tmp_path: Path) -> None:
     color = {"colorspace": 9, "color_range": 1, "color_primaries": 9, "color_trc": 16}
     path = write_numbers(tmp_path / "a.mkv", "ffv1", "yuv420p10le", 10, rate=25, color=color)
-    facts, _ = surveyed(str(path), fingerprint(path))
+    facts, _ = survey_video(str(path), fingerprint(path))
     assert (facts.size, facts.count, facts.rate, facts.seconds) == ((80, 32), 10, Fraction(25), 0.4)
     assert (facts.codec, facts.pixels, facts.bits, facts.alpha) == ("ffv1", "yuv420p10le", 10, False)
     assert (facts.matrix, facts.range, facts.primaries, facts.transfer) == (9, 1, 9, 16)

@@ -15,8 +15,8 @@ av: Any = pytest.importorskip("av", reason="PyAV is not installed: pip install h
 
 from halation import media  # noqa: E402
 from halation.color.encoding import Encoding  # noqa: E402
-from halation.media.video.signals import LUMA, from_rgb, linear, to_rgb  # noqa: E402
-from halation.media.video.writer import exact_rate  # noqa: E402
+from halation.media.video.signals import LUMA, chroma_to_rgb, decode_transfer, rgb_to_chroma  # noqa: E402
+from halation.media.video.writer import to_exact_rate  # noqa: E402
 from halation.nodes import Kind  # noqa: E402
 from videos import write_frames  # noqa: E402
 
@@ -91,23 +91,23 @@ def test_without_tags_small_pictures_are_bt601_and_large_ones_bt709(tmp_path: Pa
 @given(st.sampled_from(list(LUMA)), st.lists(st.floats(0.0, 1.0, width=32), min_size=3, max_size=3))
 def test_the_way_there_and_back(matrix: int, color: list[float]) -> None:
     rgb = np.array([[color]], np.float32)
-    assert np.abs(to_rgb(*from_rgb(rgb, matrix), matrix) - rgb).max() < 2e-6
+    assert np.abs(chroma_to_rgb(*rgb_to_chroma(rgb, matrix), matrix) - rgb).max() < 2e-6
 
 
 def test_curves_are_those_of_the_standards() -> None:
     light = np.linspace(0.0, 1.0, 101)
     bt709 = np.where(light < 0.018, 4.5 * light, 1.099 * np.maximum(light, 1e-9) ** 0.45 - 0.099)
     for number in (1, 6, 14, 15):
-        assert np.abs(linear(bt709.astype(np.float32), number) - light).max() < 1e-3
-    assert linear(np.array([0.5, 0.5, 0.25], np.float32), 8).tolist() == [0.5, 0.5, 0.25]
-    assert np.abs(linear(np.array([0.5]), 4) - 0.5**2.2) < 1e-6
+        assert np.abs(decode_transfer(bt709.astype(np.float32), number) - light).max() < 1e-3
+    assert decode_transfer(np.array([0.5, 0.5, 0.25], np.float32), 8).tolist() == [0.5, 0.5, 0.25]
+    assert np.abs(decode_transfer(np.array([0.5]), 4) - 0.5**2.2) < 1e-6
     # BT.2408, table 1: 203 cd/m2 is 58 % of PQ and 75 % of HLG; PQ ends at 10000 cd/m2; 75 % of HLG are 26.5 % light.
-    assert linear(np.array([0.58068888]), 16)[0] == pytest.approx(1.0, abs=1e-3)
-    assert linear(np.array([1.0]), 16)[0] == pytest.approx(10000.0 / 203.0, rel=1e-5)
-    assert linear(np.array([0.75]), 18)[0] == pytest.approx(1.0, abs=1e-6)
-    assert linear(np.array([1.0]), 18)[0] == pytest.approx(1.0 / 0.265, rel=2e-3)
+    assert decode_transfer(np.array([0.58068888]), 16)[0] == pytest.approx(1.0, abs=1e-3)
+    assert decode_transfer(np.array([1.0]), 16)[0] == pytest.approx(10000.0 / 203.0, rel=1e-5)
+    assert decode_transfer(np.array([0.75]), 18)[0] == pytest.approx(1.0, abs=1e-6)
+    assert decode_transfer(np.array([1.0]), 18)[0] == pytest.approx(1.0 / 0.265, rel=2e-3)
     for number in (1, 4, 5, 13, 16, 18):
-        assert np.allclose(linear(-bt709, number), -linear(bt709, number))
+        assert np.allclose(decode_transfer(-bt709, number), -decode_transfer(bt709, number))
 
 
 def test_wide_primaries_become_those_of_the_working_space(tmp_path: Path) -> None:
@@ -124,7 +124,7 @@ def test_wide_primaries_become_those_of_the_working_space(tmp_path: Path) -> Non
 def test_a_lossless_video_is_the_same_as_png_files_to_the_bit(tmp_path: Path, precision: Any) -> None:
     random = np.random.default_rng(3)
     pictures = [random.random((31, 45, 4)).astype(np.float32) for _ in range(3)]
-    video = media.VideoFile(tmp_path / "a.mkv", (45, 31), 24.0, deep=precision == "float")
+    video = media.VideoWriter(tmp_path / "a.mkv", (45, 31), 24.0, deep=precision == "float")
     for number, picture in enumerate(pictures, 1):
         picture[..., :3] *= picture[..., 3:]
         layers, kinds = {"image": picture}, {"image": Kind.IMAGE}
@@ -152,7 +152,7 @@ def test_colors_survive_every_codec(tmp_path: Path, name: str, codec: str, toler
     """Flat fields of color, so that nothing but matrix, range and curve is left to go wrong."""
     colors = np.array([[0.9, 0.1, 0.1], [0.1, 0.8, 0.2], [0.1, 0.2, 0.9], [0.5, 0.5, 0.5], [1.0, 1.0, 1.0], [0, 0, 0]])
     light = colors.repeat(16, 0)[None].repeat(32, 0).astype(np.float32)
-    video = media.VideoFile(tmp_path / name, (96, 32), 24.0, codec=codec, encoding=Encoding("none"))
+    video = media.VideoWriter(tmp_path / name, (96, 32), 24.0, codec=codec, encoding=Encoding("none"))
     for _ in range(3):
         video.add({"image": light}, {"image": Kind.IMAGE})
     video.close()
@@ -165,7 +165,7 @@ def test_colors_survive_every_codec(tmp_path: Path, name: str, codec: str, toler
 
 @pytest.mark.parametrize("name", ["a.mp4", "a.mov", "a.mkv", "a.webm"])
 def test_tags_say_what_is_in_the_file(tmp_path: Path, name: str) -> None:
-    video = media.VideoFile(tmp_path / name, (64, 32), 30000 / 1001)
+    video = media.VideoWriter(tmp_path / name, (64, 32), 30000 / 1001)
     video.add({"image": np.zeros((32, 64, 4), np.float32)}, {"image": Kind.IMAGE})
     video.close()
     with av.open(str(tmp_path / name)) as file:
@@ -178,7 +178,7 @@ def test_tags_say_what_is_in_the_file(tmp_path: Path, name: str) -> None:
 
 
 def test_rates_are_those_of_the_trade() -> None:
-    assert [str(exact_rate(rate)) for rate in (24.0, 25, 23.976, 29.97, 59.94, 30000 / 1001, 12.5)] == [
+    assert [str(to_exact_rate(rate)) for rate in (24.0, 25, 23.976, 29.97, 59.94, 30000 / 1001, 12.5)] == [
         "24",
         "25",
         "24000/1001",

@@ -11,7 +11,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 from halation.errors import InputError
-from halation.media.pixels import LayerRequest, read_layers
+from halation.media import LayerRequest, read_layers
 from halation.nodes import Camera, Kind
 from halation.nodes._declare.camera import look_at
 from halation.render_layers.analysis import Survey, survey

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from halation.errors import InputError
-from halation.media.pixels import LayerRequest, read_layers
+from halation.media import LayerRequest, read_layers
 from halation.nodes import Camera, Kind
 from halation.nodes._declare.camera import look_at
 from halation.render_layers.camera import header_camera, residual_of, solve_camera

@@ -55,7 +55,7 @@ def test_what_is_not_finished_leaves_nothing_behind(tmp_path, picture, monkeypat
     def full(*_: object) -> None:
         raise OutputError("no room")
 
-    monkeypatch.setattr(row_writer.ScanlineFile, "add", full)
+    monkeypatch.setattr(row_writer.ScanlineWriter, "add", full)
     before = set(tmp_path.iterdir())
     with pytest.raises(HalationError, match="no room"):
         written(tmp_path, picture, MEMORY)

@@ -171,4 +171,4 @@ def _frames(path: Path) -> str:
         return ""
     if found is None or not found.frames:
         return ""
-    return f"frames {found.said}{f', {found.missing} missing' if found.missing else ''} · "
+    return f"frames {found.frames_text}{f', {found.missing} missing' if found.missing else ''} · "

@@ -16,7 +16,7 @@ from ...authoring.services.exporting import Export, RenderJob
 from ...errors import HalationError, UsageError
 from ...graph.frames import Pattern, check_numbered, format_frames, is_video, numbered, parse_frames, unnumbered
 from ...media.sequences import find_sequence
-from ...media.video.library import library
+from ...media.video.library import load_pyav
 
 if TYPE_CHECKING:
     from .context import RendersContext
@@ -181,7 +181,7 @@ class Form:
 
 def formats() -> tuple[str, ...]:
     """The endings to choose from: those of videos where PyAV is installed."""
-    return (*PICTURES, *VIDEOS) if library() is not None else PICTURES
+    return (*PICTURES, *VIDEOS) if load_pyav() is not None else PICTURES
 
 
 @lru_cache(maxsize=8)

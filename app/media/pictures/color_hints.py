@@ -1,4 +1,4 @@
-"""What the header of a file says of its color."""
+"""What the header of a picture says about its color."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ import OpenImageIO as oiio
 
 from ...color.file_space import SRGB, Hints
 from ...color.management import LINEAR_REC709
-from ..info import make_printable
-from ..info import read_color_tag as tag_of
+from .open import make_printable, read_color_tag
 
 
 def read_color_hints(spec: oiio.ImageSpec, format: str, integer: bool) -> Hints:
-    """What a header says of its color."""
-    tag, usual = tag_of(spec), ""
-    if format != "openexr" and tag in (SRGB, "sRGB"):  # as good as nothing: readers say so of any picture
-        tag, usual = "", SRGB
-    if format == "hdr" and tag == LINEAR_REC709:
-        tag, usual = "", tag
+    """What a header says about color: a tag, what its format means without one, an ICC profile, chromaticities.
+
+    OpenImageIO tags every picture of some formats by itself. Such a tag says no more than the format does.
+    """
+    tag, usual = read_color_tag(spec), ""
+    if (format != "openexr" and tag in (SRGB, "sRGB")) or (format == "hdr" and tag == LINEAR_REC709):
+        tag, usual = "", SRGB if tag == "sRGB" else tag
     primaries = spec.getattribute("chromaticities")
     return Hints(
         tag,

@@ -4,66 +4,72 @@ from __future__ import annotations
 
 import numpy as np
 import OpenImageIO as oiio
-from halation.nodes import Kind
 from msgspec.structs import replace
 
 from ...color.transforms import Array
 from ...errors import InputError
-from ..info import check_memory, describe_fault, describe_picture, find_layer, open_picture
-from ..layers import Layer
-from ..pixels import READ_AS, LayerRequest, Pixels, pixels_of, select
+from ..convert import LayerRequest, Pixels, convert_layer, select_channels
+from ..layers import Layer, find_layer
+from ..limits import check_memory
 from .finite import find_non_finite, has_non_finite
+from .open import describe_fault, describe_picture, open_picture
+from .reader import DECODED_AS
 
-_MORE = 16
-"""Rows that are read besides at a time, until what is repaired in the first one that is wanted can be known."""
+_MORE_ROWS = 16
+"""Rows that are read at a time above the first one, until its repair can be known. Such rows are rare, and 16 is the
+block of scan lines in EXR files with ZIP compression (OpenEXR file layout): fewer would decode the same block again."""
 
 
-def read_rows(path: str, want: LayerRequest, first: int, end: int) -> Pixels:
-    """Rows `first` to before `end` of what `read` returns, of a file that can be read by rows (`ImageInfo.by_rows`).
+def read_rows(path: str, request: LayerRequest, first: int, end: int) -> Pixels:
+    """Rows `first` to before `end` of what `read_layer` returns, of a file that can be read by rows (`by_rows`).
+
+    A pixel that is not finite is repaired from its neighbors, from the top down, and a repaired pixel counts as a
+    finite neighbor. So the repair of a row depends on the row above wherever that has such pixels too: rows above are
+    added until one has none, which is where the repair of the whole picture would have begun anew.
 
     Raises:
-        InputError: as `read`.
+        InputError: as `read_layer`.
     """
-    with open_picture(path) as handle:
-        header = describe_picture(handle, path)
-        layer = find_layer(header, want.layer)
-        handle.seek_subimage(layer.part, 0)
-        spec = handle.spec()
-        if not header.by_rows or end > header.size[1]:
-            raise InputError(f"{path}: it is not the file any more that it was when the rendering began; render again")
-        color = want.kind in (Kind.IMAGE, Kind.COLOR) and not layer.is_data
-        # What is no number is made of what is around it, from the top down: where a row has none, it begins anew.
-        top, bottom = max(first - 1, 0), min(end + 1, header.size[1])
-        block = _decode_rows(handle, spec, layer, path, top, bottom)
-        while color and top and block.dtype.kind == "f" and has_non_finite(block[:1]):
-            above = max(top - _MORE, 0)
-            block = np.concatenate([_decode_rows(handle, spec, layer, path, above, top), block])
+    with open_picture(path) as picture:
+        info = describe_picture(picture, path)
+        layer = find_layer(info, request.layer)
+        picture.seek_subimage(layer.part, 0)
+        spec = picture.spec()
+        if not info.by_rows or end > info.size[1]:
+            raise InputError(f"{path}: the file has changed since the rendering began: render again")
+        is_color = request.wants_color and not layer.is_data
+        top, bottom = max(first - 1, 0), min(end + 1, info.size[1])
+        block = _decode_rows(picture, spec, layer, path, top, bottom)
+        while is_color and top and block.dtype.kind == "f" and has_non_finite(block[:1]):
+            above = max(top - _MORE_ROWS, 0)
+            block = np.concatenate([_decode_rows(picture, spec, layer, path, above, top), block])
             top = above
-        made = pixels_of(block, layer, want, spec, header)
-        own = slice(first - top, end - top)
-        repaired = _count_repaired(block[own], color) if made.repaired else 0
-        return replace(made, array=made.array[own], repaired=repaired)
+        pixels = convert_layer(block, layer, request, spec, info)
+        rows = slice(first - top, end - top)
+        repaired = _count_repaired(block[rows], is_color) if pixels.repaired else 0
+        return replace(pixels, array=pixels.array[rows], repaired=repaired)
 
 
-def _decode_rows(handle: oiio.ImageInput, spec: oiio.ImageSpec, layer: Layer, path: str, first: int, end: int) -> Array:
+def _decode_rows(
+    picture: oiio.ImageInput, spec: oiio.ImageSpec, layer: Layer, path: str, first: int, end: int
+) -> Array:
     """The channels of a layer in some rows, in the file's precision."""
-    low, high, kind = min(layer.indices), max(layer.indices) + 1, READ_AS.get(layer.format, "float")
+    low, high, format = min(layer.indices), max(layer.indices) + 1, DECODED_AS.get(layer.format, "float")
     tile = spec.tile_height
     start, stop = (first // tile * tile, min(-(-end // tile) * tile, spec.height)) if tile else (first, end)
     check_memory(path, (spec.width, stop - start), high - low)
     rows = (spec.y + start, spec.y + stop)
     if tile:
-        across = (spec.x, spec.x + spec.width)
-        block = handle.read_tiles(layer.part, 0, *across, *rows, 0, 1, low, high, kind)
+        columns = (spec.x, spec.x + spec.width)
+        block = picture.read_tiles(layer.part, 0, *columns, *rows, 0, 1, low, high, format)
     else:
-        block = handle.read_scanlines(layer.part, 0, *rows, 0, low, high, kind)
+        block = picture.read_scanlines(layer.part, 0, *rows, 0, low, high, format)
     if block is None:
-        raise InputError(f"{path}: {describe_fault(handle.geterror() or 'corrupt')}")
-    array = np.asarray(block)
-    array = array.reshape(stop - start, spec.width, high - low)[first - start : end - start]
-    return select(array, layer.indices, low)
+        raise InputError(f"{path}: {describe_fault(picture.geterror() or 'corrupt')}")
+    array = np.asarray(block).reshape(stop - start, spec.width, high - low)[first - start : end - start]
+    return select_channels(array, layer.indices, low)
 
 
-def _count_repaired(block: Array, color: bool) -> int:
+def _count_repaired(block: Array, is_color: bool) -> int:
     """How many pixels are repaired: in color those with anything that is not finite, in data with a NaN."""
-    return int((find_non_finite(block) if color else np.isnan(block)).any(axis=2).sum())
+    return int((find_non_finite(block) if is_color else np.isnan(block)).any(axis=2).sum())

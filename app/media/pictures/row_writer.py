@@ -19,7 +19,7 @@ _BLOCK = 2**16
 """Bytes that a disk should have left."""
 
 
-class ScanlineFile:
+class ScanlineWriter:
     """An EXR of one layer of `size` and `kind`, the same that `write` makes of all rows together.
 
     It is there when it is closed, and not before. Raises OutputError.

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...color.transforms import Array
 from ...errors import InputError
-from ..info import describe_fault, describe_picture, open_picture
+from .open import describe_fault, describe_picture, open_picture
 
 
 def stored(path: str | Path) -> Mapping[str, Array]:

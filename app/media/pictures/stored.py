@@ -16,8 +16,8 @@ from ...color.transforms import Array, to_display
 from ...errors import InputError, OutputError
 from ...resources.atomic_write import write_atomically
 from ..comparison.metrics import to_three_channels
-from ..info import describe_fault, open_picture
 from ..metadata import read_metadata
+from .open import describe_fault, open_picture
 from .writer import write_picture
 
 _MAKER = ("halation:renderer", "halation:driver", "halation:version")

@@ -11,7 +11,8 @@ from halation.nodes import Kind
 from ...color.transforms import NO_VIEW, Array, to_display
 from ...errors import InputError
 from ...resources.atomic_write import write_atomically
-from ..info import find_layer, read_info
+from ..info import read_info
+from ..layers import find_layer
 from ..pixels import read_layer
 
 _NO_PICTURES = ("null", "term", "ffmpeg", "openvdb", "ptex")

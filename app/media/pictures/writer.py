@@ -17,10 +17,10 @@ from ...color.transforms import Array
 from ...errors import OutputError, UsageError
 from ...resources.atomic_write import check_writable, write_atomically
 from ...resources.render_choices import Precision
-from ..info import TAG
-from ..layers import is_depth
+from ..channels import is_depth
 from ..metadata import add_metadata
 from .finite import to_half
+from .open import COLOR_TAG
 
 _FORMATS = {
     ".exr": "openexr",
@@ -220,7 +220,7 @@ def _encode_picture(
         spec.attribute("oiio:ColorSpace", png_space(encoding.shown_as))
         spec.attribute("oiio:UnassociatedAlpha", 1)
     if format == "png" and encoding.shown_as != "srgb_rec709_scene":
-        spec.attribute(TAG, encoding.shown_as)
+        spec.attribute(COLOR_TAG, encoding.shown_as)
     return EncodedPart(spec, np.ascontiguousarray(array))
 
 

@@ -1,7 +1,11 @@
-"""Frames of videos by number, exactly, and their color; what a video can be written as. Needs the extra `video`."""
+"""Videos: frames by number, exactly, with their color, and videos that are written. Needs the extra `video` (PyAV).
 
-from .facts import passed_on, said_of
-from .index import Facts
-from .reading import facts_of, signal_at
+Reading goes `index` (which frames there are) -> `reader` (a frame as PyAV decodes it) -> `planes` and `signals` (that
+as R'G'B', or as light) -> `layers` (the frame as layers of a picture). Writing is `codecs` -> `writer`.
+"""
 
-__all__ = ["Facts", "facts_of", "passed_on", "said_of", "signal_at"]
+from .facts import describe_video_attributes, find_kept_tags
+from .index import VideoInfo
+from .layers import describe_video, read_video_info
+
+__all__ = ["VideoInfo", "describe_video", "describe_video_attributes", "find_kept_tags", "read_video_info"]

@@ -14,11 +14,11 @@ from types import MappingProxyType
 from halation.nodes import Size
 
 from ...errors import UsageError
-from .library import HOW_TO_INSTALL, library
+from .library import HOW_TO_INSTALL, load_pyav
 
 
 @dataclass(frozen=True)
-class Codec:
+class VideoCodec:
     """An encoder. `pixels` are the format for 8 bits and for more; `alpha` says that transparency is kept."""
 
     encoder: str
@@ -31,37 +31,37 @@ class Codec:
 
 
 _LOSSLESS = MappingProxyType({"level": "3", "slicecrc": "1", "slices": "4", "g": "1"})
-CODECS: Mapping[str, Codec] = MappingProxyType(
+CODECS: Mapping[str, VideoCodec] = MappingProxyType(
     {
-        "h264": Codec(
+        "h264": VideoCodec(
             "libx264", ("yuv420p", "yuv420p"), MappingProxyType({"crf": "16", "preset": "medium"}), even=True
         ),
-        "h265": Codec(
+        "h265": VideoCodec(
             "libx265",
             ("yuv420p10le", "yuv420p10le"),
             MappingProxyType({"crf": "18", "x265-params": "log-level=none:pools=none:frame-threads=1:info=0"}),
             even=True,
             tag="hvc1",
         ),
-        "prores": Codec(
+        "prores": VideoCodec(
             "prores_ks", ("yuv422p10le", "yuv422p10le"), MappingProxyType({"profile": "3", "vendor": "apl0"})
         ),
-        "prores4444": Codec(
+        "prores4444": VideoCodec(
             "prores_ks",
             ("yuva444p10le", "yuva444p10le"),
             MappingProxyType({"profile": "4", "vendor": "apl0"}),
             alpha=True,
         ),
-        "ffv1": Codec("ffv1", ("bgra", "gbrap16le"), _LOSSLESS, alpha=True),
-        "qtrle": Codec("qtrle", ("argb", "argb"), MappingProxyType({}), alpha=True),
-        "vp9": Codec(
+        "ffv1": VideoCodec("ffv1", ("bgra", "gbrap16le"), _LOSSLESS, alpha=True),
+        "qtrle": VideoCodec("qtrle", ("argb", "argb"), MappingProxyType({}), alpha=True),
+        "vp9": VideoCodec(
             "libvpx-vp9",
             ("yuv420p", "yuv420p"),
             MappingProxyType({"crf": "24", "b": "0", "cpu-used": "2"}),
         ),
     }
 )
-_HELD = MappingProxyType(
+_CODECS_BY_ENDING = MappingProxyType(
     {
         ".mp4": ("h264", "h265"),
         ".m4v": ("h264", "h265"),
@@ -72,31 +72,31 @@ _HELD = MappingProxyType(
 )
 """Ending -> the codecs that such a file holds, the usual one first."""
 
-WRITABLE = tuple(_HELD)
+WRITABLE = tuple(_CODECS_BY_ENDING)
 
 
-def find_codec(path: str | Path, name: str, size: Size | None = None) -> Codec:
+def find_codec(path: str | Path, name: str, size: Size | None = None) -> VideoCodec:
     """How a video is to be written; without a name as is usual for its ending.
 
     Raises:
         UsageError: no such codec in such a file, a size that it cannot have, or PyAV is missing.
     """
-    av = library()
+    av = load_pyav()
     if av is None:
         raise UsageError(f"{path}: {HOW_TO_INSTALL}, or write numbered pictures")
-    known = _HELD.get(Path(path).suffix.casefold())
-    if known is None:
+    codecs = _CODECS_BY_ENDING.get(Path(path).suffix.casefold())
+    if codecs is None:
         raise UsageError(f"{path}: videos are written as {', '.join(WRITABLE)}: choose one of these endings")
-    chosen = name or known[0]
-    if chosen not in known:
-        guess = difflib.get_close_matches(chosen.casefold(), known, 1, 0.5)
-        homes = [ending for ending, held in _HELD.items() if chosen in held]
-        hint = f"did you mean '{guess[0]}'? Choose" if guess else "choose"
+    chosen = name or codecs[0]
+    if chosen not in codecs:
+        close_names = difflib.get_close_matches(chosen.casefold(), codecs, 1, 0.5)
+        homes = [ending for ending, codec_names in _CODECS_BY_ENDING.items() if chosen in codec_names]
+        hint = f"did you mean '{close_names[0]}'? Choose" if close_names else "choose"
         rest = f", or write to {' or '.join(homes)}" if homes else ""
-        raise UsageError(f"{path}: such a file holds no codec '{chosen}': {hint} from {', '.join(known)}{rest}")
+        raise UsageError(f"{path}: such a file holds no codec '{chosen}': {hint} from {', '.join(codecs)}{rest}")
     codec = CODECS[chosen]
     if codec.encoder not in av.codecs_available:
-        raise UsageError(f"{path}: this PyAV has no encoder for {chosen}: choose from {', '.join(known)} with --codec")
+        raise UsageError(f"{path}: this PyAV has no encoder for {chosen}: choose from {', '.join(codecs)} with --codec")
     if size and codec.even and (size[0] % 2 or size[1] % 2):
         even = f"{size[0] // 2 * 2 or 2}x{size[1] // 2 * 2 or 2}"
         raise UsageError(

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from .index import Facts
-from .signals import RGB, matrix_of
+from .index import VideoInfo
+from .signals import RGB, choose_matrix
 
 _MATRICES = {0: "RGB", 1: "BT.709", 4: "FCC", 5: "BT.601", 6: "BT.601", 7: "SMPTE 240M", 8: "YCgCo", 9: "BT.2020"}
 _TRANSFERS = {
@@ -22,7 +22,7 @@ _TRANSFERS = {
     18: "HLG",
 }
 _PRIMARIES = {1: "BT.709", 5: "BT.601, 625 lines", 6: "BT.601, 525 lines", 9: "BT.2020", 11: "DCI P3", 12: "Display P3"}
-_STORED = frozenset(
+_STORAGE_TAGS = frozenset(
     {
         "major_brand",
         "minor_version",
@@ -35,12 +35,12 @@ _STORED = frozenset(
 """Tags that say how a file is stored."""
 
 
-def said_of(facts: Facts) -> Mapping[str, int | float | str]:
+def describe_video_attributes(facts: VideoInfo) -> Mapping[str, int | float | str]:
     """All that is known, by names that begin with `video:`."""
-    matrix = matrix_of(facts.matrix, facts.size)
+    matrix = choose_matrix(facts.matrix, facts.size)
     luma = facts.pixels.startswith(("yuv", "nv", "p0", "p2", "p4", "uyvy", "y2"))
     full = facts.range == 2 or facts.pixels.startswith("yuvj") or not luma
-    guessed = "" if matrix == facts.matrix else " (not said)"
+    note = "" if matrix == facts.matrix else " (not said)"
     return MappingProxyType(
         {
             "video:frames": facts.count,
@@ -48,7 +48,7 @@ def said_of(facts: Facts) -> Mapping[str, int | float | str]:
             "video:seconds": round(facts.seconds, 6),
             "video:codec": facts.codec,
             "video:pixels": facts.pixels,
-            "video:matrix": _MATRICES.get(matrix, str(matrix)) + guessed if luma else _MATRICES[RGB],
+            "video:matrix": _MATRICES.get(matrix, str(matrix)) + note if luma else _MATRICES[RGB],
             "video:range": "full" if full else "limited",
             "video:transfer": _TRANSFERS.get(
                 facts.transfer, "sRGB (not said)" if facts.transfer in (0, 2) else "unknown"
@@ -58,6 +58,6 @@ def said_of(facts: Facts) -> Mapping[str, int | float | str]:
     )
 
 
-def passed_on(facts: Facts) -> Mapping[str, str]:
+def find_kept_tags(facts: VideoInfo) -> Mapping[str, str]:
     """The tags that hold for pictures that are made from the video."""
-    return MappingProxyType({name: text for name, text in facts.tags.items() if name.casefold() not in _STORED})
+    return MappingProxyType({name: text for name, text in facts.tags.items() if name.casefold() not in _STORAGE_TAGS})

@@ -21,9 +21,9 @@ from typing import Any
 from halation.nodes import Size
 
 from ...errors import InputError
-from .library import HOW_TO_INSTALL, library
+from .library import HOW_TO_INSTALL, load_pyav
 
-_TRIED = 8
+_CHECKED_FRAMES = 8
 """Frames that are decoded to see whether packets tell the truth."""
 
 _CONTAINERS = (
@@ -41,7 +41,7 @@ _ATTACHED_PICTURE = 1024
 
 
 @dataclass(frozen=True)
-class Key:
+class KeyFrame:
     """A packet from which decoding can begin: when it is shown, and its place among all packets."""
 
     time: int
@@ -49,7 +49,7 @@ class Key:
 
 
 @dataclass(frozen=True)
-class Index:
+class FrameIndex:
     """Where frames are: `times` of presentation in the units of the stream, `places` of packets by their two times.
 
     Without `times`, frames can only be counted from the first on.
@@ -58,15 +58,15 @@ class Index:
     count: int
     times: tuple[int, ...] = ()
     places: Mapping[tuple[int | None, int | None], int] = field(default_factory=dict[Any, int])
-    keys: tuple[Key, ...] = ()
+    keys: tuple[KeyFrame, ...] = ()
 
-    def key(self, time: int) -> int:
+    def last_key_before(self, time: int) -> int:
         """The last key that is shown at a time or before; which of `keys`."""
         return max(bisect_right(self.keys, time, key=lambda key: key.time) - 1, 0)
 
 
 @dataclass(frozen=True)
-class Facts:
+class VideoInfo:
     """What is known of a video. `size` is upright; `rate` is frames per second on average.
 
     `pixels` is FFmpeg's name of the pixel format, `bits` those of a channel. `matrix`, `range`, `transfer` and
@@ -95,102 +95,102 @@ class Facts:
 
 
 @contextmanager
-def opened(path: str) -> Iterator[tuple[Any, Any, Any]]:
+def open_video(path: str) -> Iterator[tuple[Any, Any, Any]]:
     """An open container, its first stream of pictures, and what decodes that.
 
     Raises:
         InputError: it is no video, has no pictures, needs a decoder that is not there, or PyAV is missing.
     """
-    av = library()
+    av = load_pyav()
     if av is None:
         raise InputError(f"{path}: {HOW_TO_INSTALL}")
     try:
         options = {"format_whitelist": _CONTAINERS, "protocol_whitelist": "file"}
         container = av.open(path, metadata_errors="replace", options=options)
     except (av.FFmpegError, ValueError, UnicodeError) as error:
-        raise InputError(f"{path}: {fault(error)}") from error
+        raise InputError(f"{path}: {describe_video_fault(error)}") from error
     with container:
-        stream = next((one for one in container.streams.video if not _is_cover(one)), None)
+        stream = next((candidate for candidate in container.streams.video if not _is_cover(candidate)), None)
         if stream is None or stream.codec_context is None:
             raise InputError(f"{path}: holds no moving pictures that can be decoded")
-        yield container, stream, _decoder(av, stream)
+        yield container, stream, _open_decoder(av, stream)
 
 
-def packets(container: Any, stream: Any) -> Iterator[Any]:
+def demux_packets(container: Any, stream: Any) -> Iterator[Any]:
     """Those of a stream, without the empty one at the end."""
     return (packet for packet in container.demux(stream) if packet.size)
 
 
-def frames(container: Any, stream: Any, decoder: Any) -> Iterator[Any]:
+def decode_frames(container: Any, stream: Any, decoder: Any) -> Iterator[Any]:
     """All frames from here on, in the order of their presentation."""
-    for packet in packets(container, stream):
+    for packet in demux_packets(container, stream):
         yield from decoder.decode(packet)
     yield from decoder.decode(None)
 
 
-def fault(error: Exception) -> str:
+def describe_video_fault(error: Exception) -> str:
     """What FFmpeg complains about, as the rest of a sentence that starts with the path."""
-    said = getattr(error, "strerror", None) or str(error)
-    if "nvalid data" in said or "End of file" in said:
+    message = getattr(error, "strerror", None) or str(error)
+    if "nvalid data" in message or "End of file" in message:
         return "is no video, or is cut short or damaged: copy or render it again"
-    return f"cannot be read as a video ({said})"
+    return f"cannot be read as a video ({message})"
 
 
 @lru_cache(maxsize=64)
-def surveyed(path: str, mark: str) -> tuple[Facts, Index]:
+def survey_video(path: str, mark: str) -> tuple[VideoInfo, FrameIndex]:
     """Look through a video; the same version of a file, which `mark` tells, is looked through once.
 
     Raises:
         InputError: it cannot be read, or has no frames.
     """
-    av = library()
-    with opened(path) as (container, stream, decoder):
+    av = load_pyav()
+    with open_video(path) as (container, stream, decoder):
         try:
-            index = _packet_index(container, stream)
+            index = _index_packets(container, stream)
         except av.FFmpegError as error:
-            raise InputError(f"{path}: {fault(error)}") from error
-    with opened(path) as (container, stream, decoder):
+            raise InputError(f"{path}: {describe_video_fault(error)}") from error
+    with open_video(path) as (container, stream, decoder):
         try:
-            found = frames(container, stream, decoder)
-            first = list(islice(found, _TRIED))
-            if index is None or tuple(frame.pts for frame in first) != index.times[:_TRIED]:
-                index = Index(len(first) + sum(1 for _ in found))
+            decoded_frames = decode_frames(container, stream, decoder)
+            first = list(islice(decoded_frames, _CHECKED_FRAMES))
+            if index is None or tuple(frame.pts for frame in first) != index.times[:_CHECKED_FRAMES]:
+                index = FrameIndex(len(first) + sum(1 for _ in decoded_frames))
         except (av.FFmpegError, MemoryError) as error:
-            raise InputError(f"{path}: {fault(error)}") from error
+            raise InputError(f"{path}: {describe_video_fault(error)}") from error
         if not first:
             raise InputError(f"{path}: holds no frame that can be decoded: copy or render it again")
-        return _facts(path, container, stream, first[0], index.count), index
+        return _describe_stream(path, container, stream, first[0], index.count), index
 
 
-def _packet_index(container: Any, stream: Any) -> Index | None:
+def _index_packets(container: Any, stream: Any) -> FrameIndex | None:
     """What the packets tell, or None where that may not be what comes out."""
     context = stream.codec_context
     if context.name in _HIDING or (container.format.name in _TIMELESS and not context.codec.intra_only):
         return None
     times: list[int] = []
     places: dict[tuple[int | None, int | None], int] = {}
-    keys: list[Key] = []
-    for place, packet in enumerate(packets(container, stream)):
+    keys: list[KeyFrame] = []
+    for place, packet in enumerate(demux_packets(container, stream)):
         places[packet.pts, packet.dts] = place
         if packet.pts is None:
             return None
         if packet.is_keyframe and (not keys or packet.pts > keys[-1].time):
-            keys.append(Key(packet.pts, place))
+            keys.append(KeyFrame(packet.pts, place))
         if not packet.is_discard:
             times.append(packet.pts)
     if not keys or keys[0].place or min(times, default=0) < keys[0].time:
         return None
     if len(set(times)) < len(times) or len(places) <= max(places.values()):
         return None
-    return Index(len(times), tuple(sorted(times)), places, tuple(keys))
+    return FrameIndex(len(times), tuple(sorted(times)), places, tuple(keys))
 
 
-def _facts(path: str, container: Any, stream: Any, frame: Any, count: int) -> Facts:
-    turned = frame.rotation % 180 == 90
-    size = (frame.height, frame.width) if turned else (frame.width, frame.height)
+def _describe_stream(path: str, container: Any, stream: Any, frame: Any, count: int) -> VideoInfo:
+    is_turned = frame.rotation % 180 == 90
+    size = (frame.height, frame.width) if is_turned else (frame.width, frame.height)
     rate = stream.average_rate or stream.guessed_rate or _USUAL_RATE
-    parts = frame.format.components
-    return Facts(
+    components = frame.format.components
+    return VideoInfo(
         path,
         size,
         count,
@@ -198,27 +198,27 @@ def _facts(path: str, container: Any, stream: Any, frame: Any, count: int) -> Fa
         container.format.name.partition(",")[0],
         stream.codec_context.codec.name,
         frame.format.name,
-        max(part.bits for part in parts),
-        any(part.is_alpha for part in parts) or frame.format.has_palette,
+        max(part.bits for part in components),
+        any(part.is_alpha for part in components) or frame.format.has_palette,
         int(frame.colorspace),
         int(frame.color_range),
         int(frame.color_trc),
         int(frame.color_primaries),
-        MappingProxyType({_tag(name): text for name, text in container.metadata.items()}),
+        MappingProxyType({_restore_tag_case(name): text for name, text in container.metadata.items()}),
     )
 
 
-def _tag(name: str) -> str:
+def _restore_tag_case(name: str) -> str:
     """Matroska knows capitals only."""
     return name.lower() if name.startswith("HALATION:") else name
 
 
-def _decoder(av: Any, stream: Any) -> Any:
+def _open_decoder(av: Any, stream: Any) -> Any:
     """The stream's own, or one that knows of the transparency that a VP8 or VP9 stream says it has."""
     context = stream.codec_context
     name = _ALPHA_DECODERS.get(context.name, "")
-    said = {key.casefold(): text for key, text in stream.metadata.items()}
-    if name and said.get("alpha_mode") == "1" and name in av.codecs_available:
+    tags = {key.casefold(): text for key, text in stream.metadata.items()}
+    if name and tags.get("alpha_mode") == "1" and name in av.codecs_available:
         return av.CodecContext.create(name, "r")
     context.thread_type = "AUTO"
     return context

@@ -9,7 +9,7 @@ HOW_TO_INSTALL = "videos need PyAV: pip install halation[video]"
 
 
 @cache
-def library() -> Any:
+def load_pyav() -> Any:
     """PyAV, or None where it is not installed."""
     try:
         import av

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from ...errors import InputError
-from .index import Facts
-from .signals import GAMUTS, Array, enlarged, linear, matrix_of, scales, to_rgb
+from .index import VideoInfo
+from .signals import GAMUTS, Array, choose_matrix, chroma_to_rgb, code_ranges, decode_transfer, enlarge_plane
 
 _CENTERED = ("mjpeg", "mpeg1video", "theora")
 """Codecs whose chroma lies in the middle between samples of luma; elsewhere it lies at the left ones, as in MPEG-2."""
@@ -41,7 +41,7 @@ _UNPACKED = {
 
 
 @dataclass(frozen=True)
-class Signal:
+class DecodedFrame:
     """R'G'B' [h, w, 3] of a frame, 8- or 16-bit integers where the file has these, else floats; straight alpha."""
 
     rgb: Array
@@ -55,7 +55,7 @@ class Signal:
         if self.alpha is None:
             return self.rgb
         same = self.rgb.dtype == self.alpha.dtype
-        rgb, alpha = (self.rgb, self.alpha) if same else (_floats(self.rgb), _floats(self.alpha))
+        rgb, alpha = (self.rgb, self.alpha) if same else (_to_float(self.rgb), _to_float(self.alpha))
         return np.concatenate([rgb, alpha[..., None]], axis=2)
 
     @property
@@ -64,84 +64,86 @@ class Signal:
         gamut = GAMUTS.get(self.primaries, "")
         if not gamut and self.transfer in (0, 2, 13):
             return self.numbers, "srgb_rec709_scene"
-        made = linear(_floats(self.rgb), self.transfer)
+        light = decode_transfer(_to_float(self.rgb), self.transfer)
         if self.alpha is not None:
-            made = np.concatenate([made, _floats(self.alpha)[..., None]], axis=2)
-        return made, gamut or "lin_rec709_scene"
+            light = np.concatenate([light, _to_float(self.alpha)[..., None]], axis=2)
+        return light, gamut or "lin_rec709_scene"
 
 
-def signal_of(frame: Any, facts: Facts) -> Signal:
+def convert_frame(frame: Any, facts: VideoInfo) -> DecodedFrame:
     """What a frame of PyAV shows, upright. Raises InputError for a matrix that nobody knows."""
-    frame = _separate(frame)
-    form = frame.format
-    parts = [_plane(frame, part) for part in form.components]
-    alpha = next((plane for plane, part in zip(parts, form.components, strict=True) if part.is_alpha), None)
-    colors = [plane for plane, part in zip(parts, form.components, strict=True) if not part.is_alpha]
-    bits, full = form.components[0].bits, _is_full(frame, facts)
-    if form.is_rgb:
-        rgb = np.stack([_ranged(plane, bits, False) for plane in colors], axis=2)
+    frame = _separate_planes(frame)
+    format = frame.format
+    planes = [_read_plane(frame, part) for part in format.components]
+    alpha = next((plane for plane, part in zip(planes, format.components, strict=True) if part.is_alpha), None)
+    colors = [plane for plane, part in zip(planes, format.components, strict=True) if not part.is_alpha]
+    bits, full = format.components[0].bits, _is_full(frame, facts)
+    if format.is_rgb:
+        rgb = np.stack([_to_unit_range(plane, bits, False) for plane in colors], axis=2)
     elif len(colors) == 1:
-        rgb = _ranged(colors[0], bits, int(frame.color_range) == 1)[..., None].repeat(3, axis=2)
+        rgb = _to_unit_range(colors[0], bits, int(frame.color_range) == 1)[..., None].repeat(3, axis=2)
     else:
-        rgb = _from_chroma(frame, facts, colors, scales(bits, not full))
+        rgb = _decode_chroma(frame, facts, colors, code_ranges(bits, not full))
     if alpha is not None:
-        alpha = _ranged(alpha, next(part.bits for part in form.components if part.is_alpha), False)
+        alpha = _to_unit_range(alpha, next(part.bits for part in format.components if part.is_alpha), False)
     turns = round(frame.rotation / 90) % 4
     rgb, alpha = np.rot90(rgb, turns), None if alpha is None else np.rot90(alpha, turns)
-    return Signal(rgb, alpha, int(frame.color_trc), int(frame.color_primaries))
+    return DecodedFrame(rgb, alpha, int(frame.color_trc), int(frame.color_primaries))
 
 
-def _from_chroma(frame: Any, facts: Facts, colors: list[Array], scale: tuple[float, float, float, float]) -> Array:
+def _decode_chroma(
+    frame: Any, facts: VideoInfo, colors: list[Array], scale: tuple[float, float, float, float]
+) -> Array:
     black, white, none, all = (np.float32(number) for number in scale)
     height, width = colors[0].shape
     luma = (colors[0].astype(np.float32) - black) / white
     centered = facts.codec in _CENTERED
-    found: list[Array] = []
+    differences: list[Array] = []
     for plane in colors[1:3]:
         across, down = max(1, round(width / plane.shape[1])), max(1, round(height / plane.shape[0]))
         chroma = (plane.astype(np.float32) - none) / all
-        chroma = enlarged(chroma, 0, height, down, (down - 1) / 2)
-        found.append(enlarged(chroma, 1, width, across, (across - 1) / 2 if centered else 0.0))
+        chroma = enlarge_plane(chroma, 0, height, down, (down - 1) / 2)
+        differences.append(enlarge_plane(chroma, 1, width, across, (across - 1) / 2 if centered else 0.0))
     try:
-        return to_rgb(luma, found[0], found[1], matrix_of(int(frame.colorspace), facts.size))
+        return chroma_to_rgb(luma, differences[0], differences[1], choose_matrix(int(frame.colorspace), facts.size))
     except InputError as error:
         raise InputError(f"{facts.path}: {error}") from None
 
 
-def _is_full(frame: Any, facts: Facts) -> bool:
+def _is_full(frame: Any, facts: VideoInfo) -> bool:
     """True where 0 is black; luma with color differences leaves room at both ends unless it says otherwise."""
     return int(frame.color_range) == 2 or facts.pixels.startswith("yuvj")
 
 
-def _ranged(plane: Array, bits: int, limited: bool) -> Array:
+def _to_unit_range(plane: Array, bits: int, limited: bool) -> Array:
     """Numbers of a channel as 0..1; 8 and 16 bits of the full range stay integers, and floats stay."""
     if plane.dtype.kind == "f" or (not limited and bits in (8, 16)):
         return plane
-    black, white, _, _ = scales(bits, limited)
+    black, white, _, _ = code_ranges(bits, limited)
     return (plane.astype(np.float32) - np.float32(black)) / np.float32(white)
 
 
-def _separate(frame: Any) -> Any:
+def _separate_planes(frame: Any) -> Any:
     """The frame with a plane for every channel."""
-    form = frame.format
-    planes = [part.plane for part in form.components]
-    if form.name in _UNPACKED:
-        return _converted(frame, _UNPACKED[form.name])
-    if form.is_bit_stream or form.is_bayer or len(set(planes)) < len(planes):
-        deep = max(part.bits for part in form.components) > 8
-        alpha = any(part.is_alpha for part in form.components)
-        if not form.is_rgb and not form.is_bit_stream and not form.is_bayer:
-            return _converted(frame, f"yuv{'a' if alpha else ''}444p{'16le' if deep else ''}")
-        return _converted(frame, f"gbr{'a' if alpha else ''}p{'16le' if deep else ''}")
+    format = frame.format
+    planes = [part.plane for part in format.components]
+    if format.name in _UNPACKED:
+        return _reformat(frame, _UNPACKED[format.name])
+    if format.is_bit_stream or format.is_bayer or len(set(planes)) < len(planes):
+        deep = max(part.bits for part in format.components) > 8
+        alpha = any(part.is_alpha for part in format.components)
+        if not format.is_rgb and not format.is_bit_stream and not format.is_bayer:
+            return _reformat(frame, f"yuv{'a' if alpha else ''}444p{'16le' if deep else ''}")
+        return _reformat(frame, f"gbr{'a' if alpha else ''}p{'16le' if deep else ''}")
     return frame
 
 
-def _converted(frame: Any, name: str) -> Any:
+def _reformat(frame: Any, name: str) -> Any:
     """Another arrangement of the same numbers: neither matrix nor range changes."""
     return frame.reformat(format=name)
 
 
-def _plane(frame: Any, part: Any) -> Array:
+def _read_plane(frame: Any, part: Any) -> Array:
     """The numbers of a channel."""
     plane = frame.planes[part.plane]
     order = ">" if frame.format.is_big_endian else "<"
@@ -150,7 +152,7 @@ def _plane(frame: Any, part: Any) -> Array:
     return rows[:, : plane.width].astype(dtype.newbyteorder("="), copy=False)
 
 
-def _floats(array: Array) -> Array:
+def _to_float(array: Array) -> Array:
     if array.dtype.kind == "f":
         return array
     return array.astype(np.float32) / np.float32(np.iinfo(array.dtype).max)

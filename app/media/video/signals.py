@@ -30,7 +30,7 @@ LUMA: Mapping[int, tuple[float, float]] = MappingProxyType(
 
 RGB, UNKNOWN = 0, 2
 _YCGCO = 8
-_UNTOLD = (UNKNOWN, 3)
+_UNSPECIFIED = (UNKNOWN, 3)
 _SMALL = (1024, 576)
 _BT709_ALPHA, _BT709_BETA = 1.09929682680944, 0.018053968510807
 _PQ_WHITE = 203.0
@@ -39,14 +39,14 @@ GAMUTS = MappingProxyType({9: "lin_rec2020_scene", 12: "lin_p3d65_scene"})
 """Primaries that are another color space than Rec.709 by far, as linear spaces of OpenColorIO."""
 
 
-def matrix_of(said: int, size: tuple[int, int]) -> int:
+def choose_matrix(number: int, size: tuple[int, int]) -> int:
     """The matrix of a video; where it does not say, that of its time: BT.601 up to 1024x576, else BT.709."""
-    if said not in _UNTOLD and said != RGB:
-        return said
+    if number not in _UNSPECIFIED and number != RGB:
+        return number
     return 6 if size[0] <= _SMALL[0] and size[1] <= _SMALL[1] else 1
 
 
-def scales(bits: int, limited: bool) -> tuple[float, float, float, float]:
+def code_ranges(bits: int, limited: bool) -> tuple[float, float, float, float]:
     """What is black and how much is white in luma, what is none and how much is all in chroma."""
     step = float(1 << (bits - 8)) if bits > 8 else 1.0
     if limited:
@@ -54,25 +54,25 @@ def scales(bits: int, limited: bool) -> tuple[float, float, float, float]:
     return 0.0, float((1 << bits) - 1), float(1 << (bits - 1)), float((1 << bits) - 1)
 
 
-def to_rgb(luma: Array, blue: Array, red: Array, matrix: int) -> Array:
+def chroma_to_rgb(luma: Array, blue: Array, red: Array, matrix: int) -> Array:
     """R'G'B' [h, w, 3] of Y' (0..1) and color differences (-0.5..0.5). Raises InputError for an unknown matrix."""
-    made = np.empty((*luma.shape, 3), np.float32)
+    rgb = np.empty((*luma.shape, 3), np.float32)
     if matrix == _YCGCO:  # blue is Cg, red is Co
         middle = luma - blue
-        made[..., 0], made[..., 1], made[..., 2] = middle + red, luma + blue, middle - red
-        return made
+        rgb[..., 0], rgb[..., 1], rgb[..., 2] = middle + red, luma + blue, middle - red
+        return rgb
     if matrix not in LUMA:
         raise InputError(f"its color matrix (number {matrix} of H.273) is unknown here: convert it to BT.709")
     kr, kb = LUMA[matrix]
     kg = 1.0 - kr - kb
-    np.add(luma, np.float32(2.0 * (1.0 - kr)) * red, out=made[..., 0])
-    np.add(luma, np.float32(2.0 * (1.0 - kb)) * blue, out=made[..., 2])
-    other = np.float32(2.0 * kb * (1.0 - kb) / kg) * blue + np.float32(2.0 * kr * (1.0 - kr) / kg) * red
-    np.subtract(luma, other, out=made[..., 1])
-    return made
+    np.add(luma, np.float32(2.0 * (1.0 - kr)) * red, out=rgb[..., 0])
+    np.add(luma, np.float32(2.0 * (1.0 - kb)) * blue, out=rgb[..., 2])
+    green_share = np.float32(2.0 * kb * (1.0 - kb) / kg) * blue + np.float32(2.0 * kr * (1.0 - kr) / kg) * red
+    np.subtract(luma, green_share, out=rgb[..., 1])
+    return rgb
 
 
-def from_rgb(rgb: Array, matrix: int) -> tuple[Array, Array, Array]:
+def rgb_to_chroma(rgb: Array, matrix: int) -> tuple[Array, Array, Array]:
     """Y' and the color differences to blue and red of R'G'B' [h, w, 3]."""
     kr, kb = LUMA[matrix]
     luma = rgb @ np.array([kr, 1.0 - kr - kb, kb], np.float32)
@@ -80,7 +80,7 @@ def from_rgb(rgb: Array, matrix: int) -> tuple[Array, Array, Array]:
     return luma, (rgb[..., 2] - luma) / blue, (rgb[..., 0] - luma) / red
 
 
-def enlarged(plane: Array, axis: int, length: int, factor: int, offset: float) -> Array:
+def enlarge_plane(plane: Array, axis: int, length: int, factor: int, offset: float) -> Array:
     """A plane of chroma at the size of luma along one axis, linear between samples.
 
     Sample 0 lies at luma position `offset`, the others `factor` apart; beyond the border its samples go on.
@@ -97,14 +97,14 @@ def enlarged(plane: Array, axis: int, length: int, factor: int, offset: float) -
     return here + part * (there - here)
 
 
-def linear(encoded: Array, transfer: int) -> Array:
+def decode_transfer(encoded: Array, transfer: int) -> Array:
     """Scene-linear light of R'G'B' by the number of the transfer characteristics in H.273, without change of primaries.
 
     Camera curves are undone (BT.709, BT.601, BT.2020); of PQ and HLG, reference white (BT.2408: 203 cd/m2, 75 %)
     becomes 1. What says nothing is taken for sRGB, as 8-bit pictures are. Raises InputError for an unknown curve.
     """
     if transfer in (1, 6, 14, 15):
-        return _mirrored(
+        return _mirror_curve(
             encoded,
             lambda size: np.where(
                 size < 4.5 * _BT709_BETA,
@@ -117,27 +117,27 @@ def linear(encoded: Array, transfer: int) -> Array:
     if transfer == 8:
         return encoded
     if transfer in (4, 5):
-        return _mirrored(encoded, lambda size: size ** (2.2 if transfer == 4 else 2.8))
+        return _mirror_curve(encoded, lambda size: size ** (2.2 if transfer == 4 else 2.8))
     if transfer == 16:
-        return _mirrored(encoded, _from_pq) / np.float32(_PQ_WHITE)
+        return _mirror_curve(encoded, _decode_pq) / np.float32(_PQ_WHITE)
     if transfer == 18:
-        return _mirrored(encoded, _from_hlg) / np.float32(_from_hlg(np.array(_HLG_WHITE)))
+        return _mirror_curve(encoded, _decode_hlg) / np.float32(_decode_hlg(np.array(_HLG_WHITE)))
     raise InputError(f"its transfer curve (number {transfer} of H.273) is unknown here: convert it to sRGB or BT.709")
 
 
-def _from_pq(signal: Array) -> Array:
+def _decode_pq(signal: Array) -> Array:
     """cd/m2 (SMPTE ST 2084)."""
     m1, m2, c1, c2, c3 = 2610 / 16384, 2523 / 32, 3424 / 4096, 2413 / 128, 2392 / 128
     root = np.clip(signal, 0.0, 1.0).astype(np.float64) ** (1.0 / m2)
     return 10000.0 * (np.maximum(root - c1, 0.0) / (c2 - c3 * root)) ** (1.0 / m1)
 
 
-def _from_hlg(signal: Array) -> Array:
+def _decode_hlg(signal: Array) -> Array:
     """Light of the scene, 0..1 (BT.2100)."""
     a, b, c = 0.17883277, 0.28466892, 0.55991073
     return np.where(signal <= 0.5, signal**2 / 3.0, (np.exp((signal - c) / a) + b) / 12.0)
 
 
-def _mirrored(encoded: Array, curve: Callable[[Array], Array]) -> Array:
+def _mirror_curve(encoded: Array, curve: Callable[[Array], Array]) -> Array:
     """A curve for 0 and above, turned around for numbers below."""
     return np.copysign(curve(np.abs(encoded)), encoded).astype(np.float32)

@@ -17,8 +17,8 @@ from ...errors import OutputError
 from ...resources.atomic_write import check_writable, replace_file
 from ..pictures.writer import choose_shown_layer
 from .codecs import find_codec
-from .library import library
-from .signals import Array, from_rgb, scales
+from .library import load_pyav
+from .signals import Array, code_ranges, rgb_to_chroma
 
 _RGB, _UNKNOWN = 0, 2
 _LIMITED, _FULL = 1, 2
@@ -42,13 +42,13 @@ _NTSC = 1001
 def check_video(
     path: str | Path, kinds: Mapping[str, Kind], sizes: Mapping[str, Size], *, codec: str, encoding: Encoding
 ) -> None:
-    """Refuse, before there are pixels, what a `VideoFile` would refuse. Raises UsageError, OutputError."""
+    """Refuse, before there are pixels, what a `VideoWriter` would refuse. Raises UsageError, OutputError."""
     encoding.check()
     find_codec(path, codec, sizes[choose_shown_layer(path, kinds)])
     check_writable(path)
 
 
-class VideoFile:
+class VideoWriter:
     """Takes pictures one after the other. Until `close`, and after `abort`, an older file is as it was.
 
     Pictures are encoded as PNG files are, and tagged so: for the usual display BT.709 primaries with the curve of sRGB,
@@ -68,13 +68,13 @@ class VideoFile:
         metadata: Mapping[str, Any] | None = None,
     ) -> None:
         """Open it. Raises UsageError for what cannot be, OutputError where nothing can be written."""
-        self.path, self.size, self._rate = Path(path), size, exact_rate(rate)
+        self.path, self.size, self._rate = Path(path), size, to_exact_rate(rate)
         self._codec, self._encoding = find_codec(path, codec, size), encoding or Encoding()
         self._format, self._count = self._codec.pixels[deep], 0
-        self._av, self._open = library(), ExitStack()
-        self._replacement = self._open.enter_context(replace_file(path, self.path.suffix))
+        self._av, self._resources = load_pyav(), ExitStack()
+        self._replacement = self._resources.enter_context(replace_file(path, self.path.suffix))
         try:
-            self._container, self._stream = self._opened(_tags(metadata or {}))
+            self._container, self._stream = self._open_container(_choose_tags(metadata or {}))
         except BaseException:
             self.abort()
             raise
@@ -86,15 +86,15 @@ class VideoFile:
         if (width, height) != self.size:
             here, there = f"{width}x{height}", f"{self.size[0]}x{self.size[1]}"
             raise OutputError(f"{self.path}: frame {self._count + 1} is {here}, those before it {there}: give --size")
-        frame = self._frame(picture)
+        frame = self._make_frame(picture)
         frame.pts, frame.time_base = self._count, 1 / self._rate
         self._count += 1
-        self._put(frame)
+        self._encode_frame(frame)
 
     def close(self) -> None:
         """Finish it and give it its name. Raises OutputError; the file is not there then."""
         try:
-            self._put(None)
+            self._encode_frame(None)
             self._try(self._container.close)
             self._replacement.commit()
         except OSError as error:
@@ -104,17 +104,17 @@ class VideoFile:
 
     def abort(self) -> None:
         """Leave nothing behind, unless it was closed."""
-        self._open.close()
+        self._resources.close()
 
     # --- parts -------------------------------------------------------------------------------------------------------
 
-    def _opened(self, tags: Mapping[str, str]) -> tuple[Any, Any]:
+    def _open_container(self, tags: Mapping[str, str]) -> tuple[Any, Any]:
         options = {"fflags": "+bitexact"}
         suffix = self.path.suffix.casefold()
         if suffix in (".mp4", ".m4v", ".mov"):
             options["movflags"] = "+faststart+use_metadata_tags+write_colr"
         container = self._try(lambda: self._av.open(str(self._replacement.temporary), "w", options=options))
-        self._open.callback(lambda: self._quietly(container))
+        self._resources.callback(lambda: self._close_quietly(container))
         stream = self._try(lambda: container.add_stream(self._codec.encoder, rate=self._rate))
         context = stream.codec_context
         stream.width, stream.height, stream.pix_fmt = *self.size, self._format
@@ -136,7 +136,7 @@ class VideoFile:
     def _matrix(self) -> int:
         return 9 if _TAGS.get(self._encoding.shown_as, (1, 0))[0] == 9 else 1
 
-    def _put(self, frame: Any) -> None:
+    def _encode_frame(self, frame: Any) -> None:
         for packet in self._try(lambda: self._stream.encode(frame)):
             self._try(lambda packet=packet: self._container.mux(packet))
 
@@ -146,23 +146,23 @@ class VideoFile:
         except (self._av.FFmpegError, OSError, MemoryError) as error:
             raise self._replacement.explain(error) from error
 
-    def _quietly(self, container: Any) -> None:
+    def _close_quietly(self, container: Any) -> None:
         try:
             container.close()
         except self._av.FFmpegError:
             return
 
-    def _frame(self, picture: Array) -> Any:
+    def _make_frame(self, picture: Array) -> Any:
         """The planes of a picture."""
         if picture.shape[2] < 3:
             picture = picture[..., :1].repeat(3, axis=2)
         if not self._codec.alpha:
             picture = picture[..., :3]
-        form = self._av.VideoFormat(self._format)
-        bits = max(part.bits for part in form.components)
+        format = self._av.VideoFormat(self._format)
+        bits = max(part.bits for part in format.components)
         if self._format.startswith("yuv"):
-            shown = self._encoding.codes(picture, 16) / np.float32(65535.0)
-            planes = _chroma_planes(shown, self._matrix, self._format, bits)
+            codes = self._encoding.codes(picture, 16) / np.float32(65535.0)
+            planes = _chroma_planes(codes, self._matrix, self._format, bits)
         else:
             planes = _rgb_planes(self._encoding.codes(picture, 16 if bits == 16 else 8), self._format)
         frame = self._av.VideoFrame(*self.size, self._format)
@@ -174,13 +174,13 @@ class VideoFile:
         return frame
 
 
-def _tags(metadata: Mapping[str, Any]) -> dict[str, str]:
+def _choose_tags(metadata: Mapping[str, Any]) -> dict[str, str]:
     """How the video was made; what its pictures say of themselves is that of one frame."""
-    said = {name: text for name, text in metadata.items() if name.startswith("halation:") and isinstance(text, str)}
-    return {name: text for name, text in said.items() if name != "halation:key"}
+    own_tags = {name: text for name, text in metadata.items() if name.startswith("halation:") and isinstance(text, str)}
+    return {name: text for name, text in own_tags.items() if name != "halation:key"}
 
 
-def exact_rate(rate: float | Fraction) -> Fraction:
+def to_exact_rate(rate: float | Fraction) -> Fraction:
     """Frames per second as a fraction: 23.976, 29.97 and 59.94 are those of NTSC, 24000/1001 and so on."""
     if isinstance(rate, Fraction):
         return rate
@@ -190,32 +190,35 @@ def exact_rate(rate: float | Fraction) -> Fraction:
     return Fraction(rate).limit_denominator(100_000)
 
 
-def _rgb_planes(shown: Array, format: str) -> list[Array]:
+def _rgb_planes(codes: Array, format: str) -> list[Array]:
     """Red, green, blue and alpha in the order of a format."""
-    height, width, channels = shown.shape
+    height, width, channels = codes.shape
     if channels == 3:
-        opaque = np.full((height, width, 1), np.iinfo(shown.dtype).max, shown.dtype)
-        shown = np.concatenate([shown, opaque], axis=2)
+        opaque = np.full((height, width, 1), np.iinfo(codes.dtype).max, codes.dtype)
+        codes = np.concatenate([codes, opaque], axis=2)
     if format.startswith("gbr"):
-        return [shown[..., index] for index in (1, 2, 0, 3)]
+        return [codes[..., index] for index in (1, 2, 0, 3)]
     order = ["rgba".index(letter) for letter in format]
-    return [shown[..., order].reshape(height, width * 4)]
+    return [codes[..., order].reshape(height, width * 4)]
 
 
-def _chroma_planes(shown: Array, matrix: int, format: str, bits: int) -> list[Array]:
+def _chroma_planes(codes: Array, matrix: int, format: str, bits: int) -> list[Array]:
     """Luma, both color differences and alpha, rounded to the limited range."""
-    black, white, none, all = scales(bits, True)
-    luma, blue, red = from_rgb(shown[..., :3], matrix)
+    black, white, none, all = code_ranges(bits, True)
+    luma, blue, red = rgb_to_chroma(codes[..., :3], matrix)
     across, down = ("420" in format or "422" in format), "420" in format
-    planes: list[Array] = [luma * white + black, *(_halved(one, across, down) * all + none for one in (blue, red))]
+    planes: list[Array] = [
+        luma * white + black,
+        *(_halve_chroma(difference, across, down) * all + none for difference in (blue, red)),
+    ]
     if format.startswith("yuva"):
-        alpha = shown[..., 3] if shown.shape[2] == 4 else np.ones_like(shown[..., 0])
+        alpha = codes[..., 3] if codes.shape[2] == 4 else np.ones_like(codes[..., 0])
         planes.append(alpha * np.float32((1 << bits) - 1))
     top = (1 << bits) - 1
     return [np.clip(plane + 0.5, 0.0, top).astype(np.uint16 if bits > 8 else np.uint8) for plane in planes]
 
 
-def _halved(plane: Array, across: bool, down: bool) -> Array:
+def _halve_chroma(plane: Array, across: bool, down: bool) -> Array:
     """Chroma at half the size: over the left samples of luma, and in the middle between its rows."""
     if across:
         wide = np.pad(plane, ((0, 0), (1, 2)), mode="edge")

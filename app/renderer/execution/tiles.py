@@ -14,7 +14,7 @@ from ...compiler.areas import Span
 from ...compiler.explain import size_text
 from ...compiler.ir import LoweredProgram
 from ...errors import DeviceError, HalationError
-from ...media.info import machine_memory
+from ...resources.machine import machine_memory
 from ...resources.picture import Picture
 from .arrays import Arrays
 from .decoding import Array, Loader

@@ -11,7 +11,7 @@ from ..execution.decoding import Array
 from .destinations import Destination, Writing
 
 if TYPE_CHECKING:
-    from ...media.pictures.row_writer import ScanlineFile
+    from ...media.pictures.row_writer import ScanlineWriter
 
 
 def written_by_rows(files: Sequence[Destination]) -> frozenset[str]:
@@ -37,11 +37,11 @@ class Strips:
         names = plan.tiling.by_rows if plan.tiling else frozenset[str]()
         self._plan, self._writing, self._said = plan, writing, said
         self._files = [file for file in files if names.issuperset(file.layers.values())]
-        self._open: dict[Path, ScanlineFile] = {}
+        self._open: dict[Path, ScanlineWriter] = {}
 
     def take(self, name: str, row: int, pixels: Array) -> None:
         """Write rows of an output. Raises OutputError."""
-        from ...media.pictures.row_writer import ScanlineFile
+        from ...media.pictures.row_writer import ScanlineWriter
 
         size = self._plan.surfaces[self._plan.outputs[name]].size
         for file in self._files:
@@ -49,7 +49,7 @@ class Strips:
             if output != name:
                 continue
             if row == 0:
-                self._open[file.path] = ScanlineFile(
+                self._open[file.path] = ScanlineWriter(
                     file.path,
                     size,
                     layer,

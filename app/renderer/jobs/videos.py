@@ -19,13 +19,13 @@ class Videos:
 
     def __init__(self, writing: Writing, rate: Callable[[], float | Fraction]) -> None:
         self._writing, self._rate = writing, rate
-        self._open: dict[Path, media.VideoFile] = {}
+        self._open: dict[Path, media.VideoWriter] = {}
 
     def add(self, file: Destination, layers: Mapping[str, Array], said: Mapping[str, Any]) -> None:
         """Write one more frame; what the first one says of itself is said of all. Raises OutputError."""
         if file.path not in self._open:
             height, width = next(iter(layers.values())).shape[:2]
-            self._open[file.path] = media.VideoFile(
+            self._open[file.path] = media.VideoWriter(
                 file.path,
                 (width, height),
                 self._rate(),

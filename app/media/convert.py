@@ -1,0 +1,181 @@
+"""From the channels of a file to the array that a socket takes: color, missing channels, repair, placement.
+
+`convert_layer` is the one way there, for pictures, rows of pictures and frames of videos.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import OpenImageIO as oiio
+from halation.nodes import ColorSettings, Kind
+from msgspec import Struct, field
+
+from ..color.file_space import space_of
+from ..color.management import managed
+from ..color.transforms import Array, as_float, is_working, to_working
+from .layers import ImageInfo, Layer
+from .pictures.color_hints import read_color_hints
+from .pictures.finite import find_non_finite, has_non_finite
+
+_ALPHA_NAMES = ("a", "alpha")
+_RGBA_LAYOUTS = {(*"rgb", alpha) for alpha in _ALPHA_NAMES}
+
+
+class LayerRequest(Struct, frozen=True):
+    """A layer, and the socket it is for; `width` counts the channels of a Vector.
+
+    `space` is what its color is in, by name or role, "" to find out; `color` says how colors are managed.
+    """
+
+    layer: str
+    kind: Kind = Kind.IMAGE
+    width: int = 4
+    space: str = ""
+    color: ColorSettings = field(default_factory=ColorSettings)
+
+    @property
+    def wants_color(self) -> bool:
+        """True for sockets of color, whatever the layer turns out to be."""
+        return self.kind in (Kind.IMAGE, Kind.COLOR)
+
+
+class Pixels(Struct, frozen=True):
+    """A contiguous [height, width, channels] array; row 0 is the top.
+
+    `half` says that 16 bits hold it without loss (the dtype is then float16), `repaired` how many pixels were not
+    finite in the file and were replaced.
+    """
+
+    array: Array
+    half: bool
+    repaired: int
+
+
+def convert_layer(block: Array, layer: Layer, request: LayerRequest, spec: oiio.ImageSpec, info: ImageInfo) -> Pixels:
+    """The array that a socket takes, from the channels of a layer over the data window that `spec` describes.
+
+    The order matters: what is not finite is repaired among the pixels that the file has, before the display window
+    surrounds them with zeros.
+    """
+    is_color = request.wants_color and not layer.is_data
+    if is_color:
+        array = _to_light(block, layer, request, spec, info)
+    elif request.wants_color:
+        rgb, alpha = _split_alpha(block, layer)
+        array = _join_rgba(as_float(rgb), None if alpha is None else as_float(alpha))
+    else:
+        width = request.width if request.kind is Kind.VECTOR else 1
+        array = _fit_width(as_float(block[..., :width]), width)
+    array, repaired = _repair(np.ascontiguousarray(array), is_color)
+    array = _place_in_display_window(array, spec)
+    array = np.ascontiguousarray(_turn_upright(array, spec.get_int_attribute("Orientation", 1)))
+    return Pixels(array, array.dtype == np.float16, repaired)
+
+
+def select_channels(block: Array, indices: Sequence[int], first: int) -> Array:
+    """Channels at these places in a part, of a block that begins with the one at `first`."""
+    places = [index - first for index in indices]
+    if places == list(range(places[0], places[0] + len(places))):
+        return block[..., places[0] : places[-1] + 1]
+    return block[..., places]
+
+
+def _to_light(block: Array, layer: Layer, request: LayerRequest, spec: oiio.ImageSpec, info: ImageInfo) -> Array:
+    """Premultiplied RGBA in the working space.
+
+    A file stores color either straight or multiplied by alpha after encoding. Encoding is not linear, so the second
+    has to be divided out before it is undone, and alpha is applied to linear color in the end.
+    """
+    manager = managed(request.color)
+    hints = read_color_hints(spec, info.format, block.dtype.kind in "ui")
+    space = space_of(info.path, hints, manager, request.space)
+    is_straight = spec.get_int_attribute("oiio:UnassociatedAlpha") == 1
+    keeps_numbers = is_working(space, manager)
+    if keeps_numbers and not is_straight and tuple(map(str.casefold, layer.channels)) in _RGBA_LAYOUTS:
+        return as_float(block)
+    rgb, alpha = _split_alpha(block, layer)
+    if alpha is not None:
+        alpha = as_float(alpha)
+    if keeps_numbers:
+        rgb = as_float(rgb)
+    elif alpha is None or is_straight:
+        rgb = to_working(rgb, space, manager)
+    else:
+        rgb = np.divide(as_float(rgb), alpha, out=np.zeros(rgb.shape, np.float32), where=alpha > 0.0)
+        rgb = to_working(rgb, space, manager) * alpha
+    if alpha is not None and is_straight:
+        rgb = rgb * alpha
+    return _join_rgba(rgb, alpha)
+
+
+def _split_alpha(block: Array, layer: Layer) -> tuple[Array, Array | None]:
+    """Three channels of color (one is gray, two are red and green), and alpha if there is one."""
+    names = [name.casefold() for name in layer.channels]
+    place = next((index for index, name in enumerate(names) if name in _ALPHA_NAMES and len(names) > 1), None)
+    colors = [index for index in range(len(names)) if index != place]
+    if len(colors) == 1:
+        rgb = block[..., colors * 3]
+    elif len(colors) == 2:
+        rgb = np.concatenate([block[..., colors], np.zeros_like(block[..., :1])], axis=2)
+    else:
+        rgb = block[..., :3] if colors[:3] == [0, 1, 2] else block[..., colors[:3]]
+    return rgb, None if place is None else block[..., place : place + 1]
+
+
+def _join_rgba(rgb: Array, alpha: Array | None) -> Array:
+    """Color and alpha in one array, opaque without alpha."""
+    rgba = np.ones((*rgb.shape[:2], 4), rgb.dtype)
+    rgba[..., :3] = rgb
+    if alpha is not None:
+        rgba[..., 3:] = alpha
+    return rgba
+
+
+def _fit_width(array: Array, width: int) -> Array:
+    """The channels, followed by zeros for those that are missing."""
+    missing = width - array.shape[2]
+    if missing <= 0:
+        return array
+    return np.concatenate([array, np.zeros((*array.shape[:2], missing), array.dtype)], axis=2)
+
+
+def _repair(array: Array, is_color: bool) -> tuple[Array, int]:
+    """The array without broken pixels, and how many there were.
+
+    Color takes the mean of its finite neighbors (OpenImageIO, fixNonFinite BOX3); in data a NaN becomes 0 and
+    infinity, the background of many depth passes, stays.
+    """
+    if not has_non_finite(array):
+        return array, 0
+    if not is_color:
+        nan = np.isnan(array)
+        return np.where(nan, array.dtype.type(0.0), array), int(nan.any(axis=2).sum())
+    # one thread: a repaired neighbor counts as finite, so the order decides the result
+    fixed = oiio.ImageBufAlgo.fixNonFinite(oiio.ImageBuf(array), oiio.NONFINITE_BOX3, nthreads=1)
+    repaired = int(find_non_finite(array).any(axis=2).sum())
+    return np.asarray(fixed.get_pixels("half" if array.dtype == np.float16 else "float")), repaired
+
+
+def _place_in_display_window(array: Array, spec: oiio.ImageSpec) -> Array:
+    """The data window inside the display window; what lies outside of it is cut off."""
+    width, height = spec.full_width or spec.width, spec.full_height or spec.height
+    x, y = spec.x - spec.full_x, spec.y - spec.full_y
+    if (x, y, spec.width, spec.height) == (0, 0, width, height):
+        return array
+    window = np.zeros((height, width, array.shape[2]), array.dtype)
+    rows = slice(max(y, 0), min(y + spec.height, height))
+    columns = slice(max(x, 0), min(x + spec.width, width))
+    if rows.start < rows.stop and columns.start < columns.stop:
+        window[rows, columns] = array[rows.start - y : rows.stop - y, columns.start - x : columns.stop - x]
+    return window
+
+
+def _turn_upright(array: Array, orientation: int) -> Array:
+    """Undo the rotation that a camera noted (TIFF 6.0, tag 274)."""
+    if orientation > 4:
+        array = array.transpose(1, 0, 2)
+    rows = -1 if orientation in (3, 4, 7, 8) else 1
+    columns = -1 if orientation in (2, 3, 6, 7) else 1
+    return array[::rows, ::columns]

@@ -1,0 +1,46 @@
+"""How large a picture may be: a damaged or hostile header must not end the process."""
+
+from __future__ import annotations
+
+import os
+
+from halation.nodes import Size
+
+from ..errors import InputError
+from ..resources.machine import machine_memory
+
+LIMIT = "HALATION_MAX_PIXELS"
+"""The environment variable for how many pixels a picture may have at most."""
+
+_LONGEST_SIDE = 1 << 17
+"""Four times the largest texture of today's GPUs (32768): what is longer is a damaged header."""
+
+_MOST_PIXELS = 1 << 28
+"""16384 x 16384: 4 GiB as RGBA in 32-bit floats, where nobody sets the limit."""
+
+_CHANNEL_BYTES = 4
+_WORKING_COPIES = 3
+_WORKING_CHANNELS = 4
+"""What converting takes besides the file's own channels: as stored, as light and as RGBA, of four channels each."""
+
+
+def check_size(path: str, size: Size) -> None:
+    """Refuse a picture that is larger than allowed. Raises InputError."""
+    setting = os.environ.get(LIMIT, "")
+    most = int(setting) if setting.isascii() and setting.isdecimal() else _MOST_PIXELS
+    if not all(0 < side <= _LONGEST_SIDE for side in size) or size[0] * size[1] > most:
+        raise InputError(
+            f"{path}: claims to be {size[0]}x{size[1]} pixels, more than can be read ({most:,} in all): if that is "
+            f"right, set {LIMIT} to more"
+        )
+
+
+def check_memory(path: str, size: Size, channels: int) -> None:
+    """Refuse what this machine cannot hold, before the system ends the process for it. Raises InputError."""
+    available = machine_memory()
+    needed = size[0] * size[1] * _CHANNEL_BYTES * (channels + _WORKING_COPIES * _WORKING_CHANNELS)
+    if available < needed:
+        raise InputError(
+            f"{path}: {size[0]}x{size[1]} pixels of {channels} channels take {needed / 2**30:.0f} GiB, and this "
+            f"machine has {available / 2**30:.0f}: make it smaller first"
+        )

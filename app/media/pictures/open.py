@@ -1,0 +1,117 @@
+"""Open a picture file, and read what its header says about size and layers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import OpenImageIO as oiio
+from halation.nodes import Size
+
+from ...errors import InputError
+from ...resources.input_files import check_file, fingerprint
+from ...resources.machine import available_cores
+from ..channels import ChannelPart, group_channels
+from ..layers import ImageInfo
+from ..limits import check_size
+
+COLOR_TAG = "halation:colorspace"
+"""The attribute that names the color space in formats that have no word for it."""
+
+_DTYPES = {"half": "float16", "uint8": "uint8", "uint16": "uint16", "uint": "uint32"}
+_BY_ROWS = ("openexr", "tiff")
+"""Formats that need not be decoded from their beginning."""
+
+_FAULTS = (
+    ("subsampled", "stores color at a lower resolution than brightness, which cannot be read: save it as plain RGB"),
+    ("not an openexr file", "is not an EXR file, whatever its name says: check what wrote it"),
+    ("corrupt", "is cut short or damaged: copy or render it again"),
+    ("end of file", "is cut short or damaged: copy or render it again"),
+    ("exr_err_", "is cut short or damaged: copy or render it again"),
+    ("permission", "may not be read: check its permissions"),
+)
+
+# OpenImageIO hears OPENIMAGEIO_THREADS, but not which processors this process may use, and OpenEXR hears neither.
+oiio.attribute("threads", min(available_cores(), oiio.get_int_attribute("threads")))
+oiio.attribute("exr_threads", oiio.get_int_attribute("threads"))
+
+
+@contextmanager
+def open_picture(path: str | Path) -> Iterator[oiio.ImageInput]:
+    """Open a file; alpha is left as stored, because it must be applied to linear color. Raises InputError."""
+    file = check_file(path)
+    settings = oiio.ImageSpec()
+    settings.attribute("oiio:UnassociatedAlpha", 1)
+    picture = None
+    try:
+        picture = oiio.ImageInput.open(str(file), settings)
+        if picture is None:
+            raise InputError(f"{path}: {describe_fault(oiio.geterror())}")
+        yield picture
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path}: {describe_fault('corrupt')}") from error
+    finally:
+        if picture is not None:
+            picture.close()
+
+
+def describe_picture(picture: oiio.ImageInput, path: str) -> ImageInfo:
+    """The header of an open file. Parts of another size (previews, pages) are left out. Raises InputError."""
+    size = _upright_size(picture.spec())
+    check_size(path, size)
+    parts: list[ChannelPart] = []
+    index, is_whole = 0, True
+    while picture.seek_subimage(index, 0):
+        spec = picture.spec()
+        if spec.deep:
+            raise InputError(f"{path}: holds deep samples, which cannot be read: flatten it first")
+        if _upright_size(spec) == size:
+            parts.append(_read_channels(index, spec))
+            is_whole = is_whole and _is_whole(spec)
+        index += 1
+    format = picture.format_name()
+    return ImageInfo(path, size, group_channels(parts), fingerprint(path), format, is_whole and format in _BY_ROWS)
+
+
+def read_color_tag(spec: oiio.ImageSpec) -> str:
+    """The color space that the header names, "data" for none at all, "" where it says nothing."""
+    names = (COLOR_TAG, "oiio:ColorSpace", "colorInteropID")
+    return make_printable(next(filter(None, map(spec.get_string_attribute, names)), ""))
+
+
+def make_printable(text: str) -> str:
+    """A text of a header that can be printed, whatever bytes were in the file."""
+    return text.encode("utf-8", "replace").decode()
+
+
+def describe_fault(message: str) -> str:
+    """OpenImageIO's complaint as the rest of a sentence that starts with the path."""
+    for word, sentence in _FAULTS:
+        if word in message.casefold():
+            return sentence
+    first_line = message.strip().splitlines()[0] if message.strip() else "no reason given"
+    return f"is no picture that can be read ({first_line})"
+
+
+def _read_channels(index: int, spec: oiio.ImageSpec) -> ChannelPart:
+    formats = spec.channelformats or (spec.format,) * spec.nchannels
+    return ChannelPart(
+        index,
+        make_printable(spec.get_string_attribute("oiio:subimagename")),
+        tuple(map(make_printable, spec.channelnames)),
+        tuple(_DTYPES.get(str(format), "float32") for format in formats),
+        read_color_tag(spec),
+    )
+
+
+def _upright_size(spec: oiio.ImageSpec) -> Size:
+    """Width and height of the display window, as it is seen."""
+    width, height = spec.full_width or spec.width, spec.full_height or spec.height
+    return (height, width) if spec.get_int_attribute("Orientation", 1) > 4 else (width, height)
+
+
+def _is_whole(spec: oiio.ImageSpec) -> bool:
+    """True if there are pixels for all of the display window and nothing else, and it is upright."""
+    display = (spec.full_x, spec.full_y, spec.full_width or spec.width, spec.full_height or spec.height)
+    return (spec.x, spec.y, spec.width, spec.height) == display and spec.get_int_attribute("Orientation", 1) == 1

@@ -1,0 +1,56 @@
+"""Layers of picture files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import OpenImageIO as oiio
+
+from ...color.transforms import Array
+from ...errors import InputError
+from ..convert import LayerRequest, Pixels, convert_layer, select_channels
+from ..layers import ImageInfo, Layer, find_layer
+from ..limits import check_memory
+from .open import describe_fault, describe_picture, open_picture
+
+DECODED_AS = {"float16": "half", "uint8": "uint8", "uint16": "uint16", "uint32": "uint"}
+"""The formats that OpenImageIO decodes as they are; all others become 32-bit floats."""
+
+
+def read_picture_layers(path: str, requests: Sequence[LayerRequest]) -> list[Pixels]:
+    """Read layers of one file. Raises InputError."""
+    with open_picture(path) as picture:
+        info = describe_picture(picture, path)
+        layers = [find_layer(info, request.layer) for request in requests]
+        results: list[Pixels] = []
+        for request, layer, block in zip(requests, layers, decode_layers(picture, info, layers), strict=True):
+            picture.seek_subimage(layer.part, 0)
+            results.append(convert_layer(block, layer, request, picture.spec(), info))
+        return results
+
+
+def decode_layers(picture: oiio.ImageInput, info: ImageInfo, layers: Sequence[Layer]) -> list[Array]:
+    """The channels of every layer over the data window, in the file's precision.
+
+    Layers of one part and precision are decoded in one go, with whatever lies between them: an EXR is compressed by
+    rows of all channels, so a second reading would decompress all of it again.
+    """
+    spans: dict[tuple[int, str], list[int]] = {}
+    for layer in layers:
+        spans.setdefault((layer.part, layer.format), []).extend(layer.indices)
+    blocks: dict[tuple[int, str], Array] = {}
+    for (part, format), indices in spans.items():
+        check_memory(info.path, info.size, max(indices) + 1 - min(indices))
+        try:
+            block = picture.read_image(part, 0, min(indices), max(indices) + 1, DECODED_AS.get(format, "float"))
+        except (MemoryError, ValueError) as error:
+            width, height = info.size
+            raise InputError(f"{info.path}: {width}x{height} pixels do not fit into memory") from error
+        if block is None:
+            raise InputError(f"{info.path}: {describe_fault(picture.geterror() or 'corrupt')}")
+        blocks[part, format] = np.asarray(block)
+    keys = [(layer.part, layer.format) for layer in layers]
+    return [
+        select_channels(blocks[key], layer.indices, min(spans[key])) for key, layer in zip(keys, layers, strict=True)
+    ]

@@ -1,0 +1,19 @@
+"""What this machine has: processors and memory."""
+
+from __future__ import annotations
+
+import math
+import os
+
+
+def available_cores() -> int:
+    """Count the processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def machine_memory() -> float:
+    """Bytes of memory that this machine has; infinite where the system does not say."""
+    if not hasattr(os, "sysconf"):
+        return math.inf
+    size = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    return size if size > 0 else math.inf
