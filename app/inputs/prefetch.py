@@ -1,4 +1,4 @@
-"""Files are read while what will want their pixels is still being loaded, and before there is a plan."""
+"""Files that are read while the libraries for rendering are still being loaded, before there is a plan."""
 
 from __future__ import annotations
 
@@ -7,50 +7,54 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from itertools import islice
 from pathlib import Path, PurePath
 
-from halation.nodes import ColorSettings, Kind
-
 from ..errors import HalationError
 from ..graph import INPUTS, OUTPUTS, Graph, Input, color_settings
 from ..graph.frames import Pattern, is_video
-from ..media.convert import Pixels
+from ..media.convert import LayerRequest, Pixels
 from ..media.info import read_info
 from ..media.layers import split_layer
-from ..media.pixels import read_layer
+from ..media.pixels import read_layers
 from .layer_choice import choose_layer
 
 MOST = 4
-"""Pictures that may wait for somebody to want them."""
+"""Pictures that may wait in memory to be taken: a render has a few large ones, and more would not be decoded before
+the graph is compiled."""
 
-What = tuple[str, str, Kind, int, str, ColorSettings]
-"""What is read: path, layer, for what kind of socket of how many channels, from which color space, and to which."""
+Request = tuple[str, LayerRequest]
+"""A path, and the layer that is read from it."""
 
 
 class Ahead:
-    """Reads, one after the other, what the outputs of a graph are likely to want: plain files of its inputs.
+    """Reads, one after the other, the files that the outputs of a graph are likely to need: those of its inputs.
 
-    `inputs` are paths, or `path:layer`, by the names of inputs. A file that cannot be read is no matter here: who wants
-    it will find out.
+    `inputs` are paths, or `path:layer`, by the names of inputs. A file that cannot be read is no error here: the error
+    is raised when its pixels are taken.
     """
 
     def __init__(self, graph: Graph, inputs: Mapping[str, str]) -> None:
         threads = ThreadPoolExecutor(1, thread_name_prefix="ahead")
-        self._begun: dict[What, Future[Pixels]] = {
-            what: threads.submit(_read, what) for what in islice(dict.fromkeys(_wanted(graph, inputs)), MOST)
+        self._pending: dict[Request, Future[Pixels]] = {
+            request: threads.submit(_read, *request)
+            for request in islice(dict.fromkeys(_predict_requests(graph, inputs)), MOST)
         }
         threads.shutdown(wait=False)
 
-    def take(self, what: What) -> Pixels | None:
-        """What was read of it, once; None if nothing was begun. Raises what reading it raised."""
-        begun = self._begun.pop(what, None)
-        return begun.result() if begun else None
+    def take(self, request: Request) -> Pixels | None:
+        """The pixels of a request, once; None if it is not being read. Raises what reading it raised."""
+        pending = self._pending.pop(request, None)
+        return pending.result() if pending else None
 
 
-def _read(what: What) -> Pixels:
-    path, layer, kind, width, space, color = what
-    return read_layer(path, layer, kind, width, space=space, color=color)
+def _read(path: str, request: LayerRequest) -> Pixels:
+    return read_layers(path, [request])[0]
 
 
-def _wanted(graph: Graph, inputs: Mapping[str, str]) -> Iterator[What]:
+def _predict_requests(graph: Graph, inputs: Mapping[str, str]) -> Iterator[Request]:
+    """The requests that rendering will make, as far as that is certain before the graph is compiled.
+
+    Sequences and videos are left out, as their frame is not known yet, and so are inputs whose file follows another
+    input to a new file: which layer that has is decided by binding.
+    """
     needed = graph.upstream(OUTPUTS) | {OUTPUTS}
     links = ((target, source) for target, source in graph.links.items() if source.node == INPUTS)
     linked = {source.socket for target, source in links if target.node in needed}
@@ -58,12 +62,13 @@ def _wanted(graph: Graph, inputs: Mapping[str, str]) -> Iterator[What]:
     for name, socket in graph.inputs.items():
         if name not in linked or socket.socket().single or (name not in inputs and socket.file in replaced):
             continue
-        path, layer = _file(graph, socket, inputs.get(name))
+        path, layer = _find_file(graph, socket, inputs.get(name))
         if path and not is_video(path) and Pattern.parse(path) is None and Path(path).is_file():
-            yield path, layer, socket.kind, socket.socket().channels, socket.color_space, color_settings(graph)
+            width = socket.socket().channels
+            yield path, LayerRequest(layer, socket.kind, width, socket.color_space, color_settings(graph))
 
 
-def _file(graph: Graph, socket: Input, bound: str | None) -> tuple[str, str]:
+def _find_file(graph: Graph, socket: Input, bound: str | None) -> tuple[str, str]:
     """The file of an input and the layer of it; "" without one."""
     if bound is None:
         return (str(PurePath(graph.folder, socket.file)), socket.layer) if socket.file else ("", "")

@@ -1,4 +1,4 @@
-"""What a graph's inputs are filled with: files and arrays, probed while compiling and read while rendering."""
+"""Files and arrays for the inputs of a graph: their headers while it is compiled, their pixels while it renders."""
 
 from __future__ import annotations
 
@@ -36,23 +36,23 @@ if TYPE_CHECKING:
 
 
 class MediaProvider:
-    """Probes and loads what the pictures of one graph stand for. `ahead` reads some of them already."""
+    """The `ResourceProvider` of one graph: bound arrays, files, meshes and colors. `ahead` reads some files already."""
 
     def __init__(self, ahead: Ahead | None = None) -> None:
         self.ahead = ahead
         self.repaired: dict[str, int] = {}
-        """Broken pixels by path."""
+        """How many pixels were repaired, by path."""
         self.look: Callable[[str, Mapping[str, str]], Render] | None = None
-        """Finds out what a render holds, where that is not to be waited for."""
+        """Reads what a render holds in place of `read_render`, for callers that cannot wait for it."""
         self._infos: dict[str, ImageInfo] = {}
-        self._marks: dict[str, str] = {}
+        self._fingerprints: dict[str, str] = {}
 
     def bind(self, graph: Graph, inputs: Mapping[str, Binding]) -> dict[str, Picture]:
         """Pictures for graph inputs by name. Raises UsageError for a name that the graph does not have."""
-        self._marks = {}
+        self._fingerprints = {}
         self._infos.clear()
-        bound = {name: self._bind(_input(graph, name), name, item) for name, item in inputs.items()}
-        return bound | self._siblings(graph, bound)
+        bound = {name: self._bind_input(_find_input(graph, name), name, item) for name, item in inputs.items()}
+        return bound | self._bind_siblings(graph, bound)
 
     def frames(self, graph: Graph, bound: Mapping[str, Picture]) -> tuple[int, int]:
         """The first and last frame of a graph: as it says, else those of the first sequence it reads, else of keys.
@@ -64,8 +64,8 @@ class MediaProvider:
         if graph.settings.frames is not None:
             return graph.settings.frames
         for path, _, _ in named_files(graph, bound):
-            if (found := find_sequence(path)) and found.frames:
-                return found.frames[0], found.frames[-1]
+            if (sequence := find_sequence(path)) and sequence.frames:
+                return sequence.frames[0], sequence.frames[-1]
         return keyed_range(graph)
 
     def rate(self, graph: Graph, bound: Mapping[str, Picture]) -> Fraction | float:
@@ -74,8 +74,8 @@ class MediaProvider:
 
         usual = type(graph.settings)().rate
         for path, _, _ in named_files(graph, bound) if graph.settings.rate == usual else ():
-            if is_video(path) and (found := find_sequence(path)) and found.rate:
-                return found.rate
+            if is_video(path) and (sequence := find_sequence(path)) and sequence.rate:
+                return sequence.rate
         return graph.settings.rate
 
     def check_frames(self, graph: Graph, frames: range) -> None:
@@ -97,7 +97,7 @@ class MediaProvider:
         if picture.in_memory:
             array = cast("Array", picture.pixels)
             height, width = array.shape[:2]
-            return PictureProbe((width, height), array.dtype.name == "float16", self._marks[picture.path])
+            return PictureProbe((width, height), array.dtype.name == "float16", self._fingerprints[picture.path])
         from ..media.layers import find_layer
 
         if picture.within:
@@ -105,8 +105,8 @@ class MediaProvider:
         header = self.info(picture.path)
         layer = find_layer(header, picture.layer)
         color = picture.kind in (Kind.IMAGE, Kind.COLOR) and not layer.is_data
-        mark = _converted(picture) if color else ""
-        half = layer.is_half and not (mark and _changes(picture, layer.full_name))
+        mark = _conversion_mark(picture) if color else ""
+        half = layer.is_half and not (mark and _changes_numbers(picture, layer.full_name))
         return PictureProbe(header.size, half, header.fingerprint + mark, header.by_rows)
 
     def load(self, picture: Picture) -> Array:
@@ -117,15 +117,23 @@ class MediaProvider:
             pixels: Any = picture.pixels
             array = np.array(pixels, np.float32) if isinstance(pixels, tuple) else pixels
             return fit_channels(array, picture.kind, picture.width)
-        if picture.rows is not None:
-            return self._load_rows(picture, *picture.rows)
-        from ..media.pixels import read_layer
+        from ..media.convert import LayerRequest
 
-        what = (picture.path, picture.layer, picture.kind, picture.width)
-        pixels = self.ahead and self.ahead.take((*what, picture.space, picture.color))
-        pixels = pixels or read_layer(*what, picture.frame, space=picture.space, color=picture.color)
+        path = picture.path
+        request = LayerRequest(picture.layer, picture.kind, picture.width, picture.space, picture.color)
+        if picture.rows is not None:
+            from ..media.pictures.row_reader import read_rows
+
+            pixels = read_rows(path, request, *picture.rows)
+            repaired = self.repaired.get(path, 0) + pixels.repaired  # rows of one picture come one after the other
+        else:
+            from ..media.pixels import read_layers
+
+            pixels = self.ahead and self.ahead.take((path, request))
+            pixels = pixels or read_layers(path, [request], picture.frame)[0]
+            repaired = pixels.repaired
         if pixels.repaired:
-            self.repaired[picture.path] = pixels.repaired
+            self.repaired[path] = repaired
         return pixels.array
 
     def recolor(self, change: ColorChange) -> ColorProgram:
@@ -160,24 +168,13 @@ class MediaProvider:
             self._infos[path] = read_info(path)
         return self._infos[path]
 
-    def _load_rows(self, picture: Picture, first: int, end: int) -> Array:
-        """Rows of a file; what is repaired counts as often as it is read."""
-        from ..media.convert import LayerRequest
-        from ..media.pictures.row_reader import read_rows
-
-        want = LayerRequest(picture.layer, picture.kind, picture.width, picture.space, picture.color)
-        pixels = read_rows(picture.path, want, first, end)
-        if pixels.repaired:
-            self.repaired[picture.path] = self.repaired.get(picture.path, 0) + pixels.repaired
-        return pixels.array
-
-    def _siblings(self, graph: Graph, bound: Mapping[str, Picture]) -> dict[str, Picture]:
+    def _bind_siblings(self, graph: Graph, bound: Mapping[str, Picture]) -> dict[str, Picture]:
         """Inputs whose default is another layer of a file that was replaced follow it to the new file.
 
         Otherwise a new picture would quietly be mixed with the depth of the sample.
         """
         replaced = {graph.inputs[name].file: picture for name, picture in bound.items() if graph.inputs[name].file}
-        found: dict[str, Picture] = {}
+        siblings: dict[str, Picture] = {}
         for name, socket in graph.inputs.items():
             new = replaced.get(socket.file)
             if name in bound or new is None:
@@ -187,29 +184,31 @@ class MediaProvider:
                     f"input '{name}' is a layer of {socket.file}, which input '{new.path}' no longer comes from: "
                     f"bind '{name}' too"
                 )
-            found[name] = Picture(new.path, self._hinted(new.path, socket), socket.kind, socket.socket().channels)
-        return found
+            siblings[name] = Picture(
+                new.path, self._choose_layer(new.path, socket), socket.kind, socket.socket().channels
+            )
+        return siblings
 
-    def _bind(self, socket: Input, name: str, item: Binding) -> Picture:
+    def _bind_input(self, socket: Input, name: str, item: Binding) -> Picture:
         if socket.kind.is_planned:
             noun = socket.kind.facts.noun
-            raise UsageError(f"input '{name}' is a {noun}, which no file or number stands for: link one in the graph")
+            raise UsageError(f"input '{name}' is a {noun}, which cannot be a file or a number: link one in the graph")
         if not isinstance(item, str | Path):
-            array = _array(item, socket.socket().single)
+            array = _as_input_array(item, socket.socket().single)
             if array.ndim not in (2, 3) or not array.size or array.dtype.kind not in "fiub":
-                said = f"{array.dtype} {list(array.shape)}"
-                raise UsageError(f"input '{name}': the array is {said}; give numbers as [height, width, channels]")
+                shape = f"{array.dtype} {list(array.shape)}"
+                raise UsageError(f"input '{name}': the array is {shape}; give numbers as [height, width, channels]")
             if array.dtype.kind == "u" and array.dtype.itemsize < 4:
                 raise UsageError(
                     f"input '{name}': {array.dtype} pixels are those of a file and encoded for a display; give "
                     "scene-linear floats, or the path of the file"
                 )
-            self._marks[name] = _content(array)
+            self._fingerprints[name] = _array_fingerprint(array)
             return Picture(name, "", socket.kind, socket.socket().channels, in_memory=True, pixels=array)
         path, layer = split_layer(str(item))
-        return Picture(path, layer or self._hinted(path, socket), socket.kind, socket.socket().channels)
+        return Picture(path, layer or self._choose_layer(path, socket), socket.kind, socket.socket().channels)
 
-    def _hinted(self, path: str, socket: Input) -> str:
+    def _choose_layer(self, path: str, socket: Input) -> str:
         """The layer that the input asks for, if this file has it."""
         from .layer_choice import choose_layer
 
@@ -218,7 +217,7 @@ class MediaProvider:
         return socket.layer
 
 
-def _array(item: Array | float | tuple[float, ...], single: bool) -> Array:
+def _as_input_array(item: Array | float | tuple[float, ...], single: bool) -> Array:
     """An array that is bound to an input; one number, or one per channel, will do where the input takes one value."""
     import numpy as np
 
@@ -226,33 +225,33 @@ def _array(item: Array | float | tuple[float, ...], single: bool) -> Array:
     return array.reshape(1, 1, -1) if single and array.ndim < 2 else array
 
 
-def _converted(picture: Picture) -> str:
-    """A mark that changes with what color in a file is taken for, and with what it becomes."""
+def _conversion_mark(picture: Picture) -> str:
+    """A mark that changes when the color of a file is converted in another way."""
     from ..color.file_space import check_wanted
     from ..color.management import color_mark, managed
 
     manager = managed(picture.color)
     check_wanted(picture.space, manager)
     if not manager.plain:
-        _ = manager.config, manager.working  # what is wrong with them is to be said before anything is read
+        _ = manager.config, manager.working  # a config that is wrong is an error before anything is read
     return "" if manager.plain and not picture.space else f" {picture.space} {color_mark(picture.color)}"
 
 
-def _changes(picture: Picture, layer: str) -> bool:
+def _changes_numbers(picture: Picture, layer: str) -> bool:
     """True if the numbers of a layer do not stay as they are in the file: half floats are not enough for others."""
     from ..color.management import managed
     from ..color.transforms import is_working
     from ..media.color_spaces import find_layer_spaces
 
     try:
-        found = find_layer_spaces(picture.path, picture.color, picture.space).get(layer)
-    except InputError:  # said again when it is read
+        space = find_layer_spaces(picture.path, picture.color, picture.space).get(layer)
+    except InputError:  # reading the file raises it again
         return True
-    return found is not None and not is_working(found, managed(picture.color))
+    return space is not None and not is_working(space, managed(picture.color))
 
 
-def _content(array: Array) -> str:
-    """A mark that changes with the pixels: the same array may be filled anew between two renders."""
+def _array_fingerprint(array: Array) -> str:
+    """A fingerprint of the pixels: the same array may hold others in the next render."""
     import numpy as np
 
     digest = blake2b(np.ascontiguousarray(array).data, digest_size=16).hexdigest()
@@ -266,7 +265,7 @@ def _check_within(path: str, folder: str) -> None:
     except (OSError, RuntimeError, ValueError):
         inside = False
     if not inside:
-        raise InputError(f"{path}: it does not lie in the folder '{folder}', which it may not leave")
+        raise InputError(f"{path}: does not lie in the folder '{folder}', which it may not leave")
 
 
 def fit_channels(array: Array, kind: Kind, width: int) -> Array:
@@ -286,8 +285,8 @@ def fit_channels(array: Array, kind: Kind, width: int) -> Array:
     return np.concatenate([array, fill], axis=2)
 
 
-def _input(graph: Graph, name: str) -> Input:
+def _find_input(graph: Graph, name: str) -> Input:
     if name not in graph.inputs:
-        known = ", ".join(graph.inputs) or "none"
-        raise UsageError(f"the graph has no input '{name}': its inputs are {known}")
+        names = ", ".join(graph.inputs) or "none"
+        raise UsageError(f"the graph has no input '{name}': its inputs are {names}")
     return graph.inputs[name]

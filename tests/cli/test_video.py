@@ -211,8 +211,8 @@ def test_without_pyav_there_is_a_sentence(fails, movie, monkeypatch):
     from halation.media.video import codecs, index
 
     graph = movie()
-    monkeypatch.setattr(index, "library", lambda: None)
-    monkeypatch.setattr(codecs, "library", lambda: None)
+    monkeypatch.setattr(index, "load_pyav", lambda: None)
+    monkeypatch.setattr(codecs, "load_pyav", lambda: None)
     index.survey_video.cache_clear()
     assert "pip install halation[video]" in fails(4, "render", graph, "--frame", 1)
     plain = graph.with_name("plain.json")

@@ -9,11 +9,9 @@ import pytest
 from halation.graph import Graph, Input, Output, Port
 from halation.inputs.prefetch import MOST, Ahead
 from halation.inputs.provider import MediaProvider
-from halation.media import read_layer, write_picture
-from halation.nodes import ColorSettings, Kind
+from halation.media import LayerRequest, read_layer, write_picture
+from halation.nodes import Kind
 from halation.resources.picture import Picture
-
-WANTED = (Kind.IMAGE, 4, "", ColorSettings())
 
 
 def graph(**inputs: Input) -> Graph:
@@ -43,16 +41,16 @@ def test_it_is_what_would_be_read(picture: str) -> None:
 
 def test_it_is_there_once(picture: str) -> None:
     ahead = Ahead(graph(a=Input()), {"a": picture})
-    assert ahead.take((picture, "depth", *WANTED)) is None
-    assert ahead.take((picture, "", *WANTED)) is not None
-    assert ahead.take((picture, "", *WANTED)) is None
+    assert ahead.take((picture, LayerRequest("depth"))) is None
+    assert ahead.take((picture, LayerRequest(""))) is not None
+    assert ahead.take((picture, LayerRequest(""))) is None
 
 
 def test_an_input_asks_for_a_layer_that_the_file_may_lack(picture: str) -> None:
-    """As `Pictures.bind` has it: a plain picture stands for any layer of color."""
+    """As `MediaProvider.bind` has it: a plain picture stands for any layer of color."""
     made = graph(a=Input(layer="Combined"))
     bound = MediaProvider().bind(made, {"a": picture})["a"]
-    assert Ahead(made, {"a": picture}).take((bound.path, bound.layer, *WANTED)) is not None
+    assert Ahead(made, {"a": picture}).take((bound.path, LayerRequest(bound.layer))) is not None
 
 
 def test_files_of_the_graph_are_beside_it(picture: str) -> None:
@@ -62,7 +60,7 @@ def test_files_of_the_graph_are_beside_it(picture: str) -> None:
         folder=str(Path(picture).parent),
         links={Port("outputs", "a"): Port("inputs", "a")},
     )
-    assert Ahead(made, {}).take((picture, "", *WANTED)) is not None
+    assert Ahead(made, {}).take((picture, LayerRequest(""))) is not None
 
 
 def test_what_nobody_is_sure_to_want_is_not_read(picture: str, tmp_path: Path) -> None:
@@ -70,11 +68,11 @@ def test_what_nobody_is_sure_to_want_is_not_read(picture: str, tmp_path: Path) -
     other = tmp_path / "other.exr"
     other.write_bytes(Path(picture).read_bytes())
     ahead = Ahead(made, {"a": str(other), "c": str(tmp_path / "picture.####.exr")})
-    assert ahead.take((picture, "", *WANTED)) is None  # b follows a to the other file
-    assert ahead.take((str(tmp_path / "picture.####.exr"), "", *WANTED)) is None
-    assert ahead.take((str(other), "", *WANTED)) is not None
+    assert ahead.take((picture, LayerRequest(""))) is None  # b follows a to the other file
+    assert ahead.take((str(tmp_path / "picture.####.exr"), LayerRequest(""))) is None
+    assert ahead.take((str(other), LayerRequest(""))) is not None
     idle = Graph(inputs={"a": Input()}, outputs={"a": Output()})
-    assert Ahead(idle, {"a": picture}).take((picture, "", *WANTED)) is None
+    assert Ahead(idle, {"a": picture}).take((picture, LayerRequest(""))) is None
 
 
 def test_few_pictures_wait(picture: str, tmp_path: Path) -> None:
@@ -83,7 +81,7 @@ def test_few_pictures_wait(picture: str, tmp_path: Path) -> None:
     for file in files.values():
         Path(file).write_bytes(Path(picture).read_bytes())
     ahead = Ahead(graph(**{name: Input() for name in names}), files)
-    assert [ahead.take((file, "", *WANTED)) is None for file in files.values()] == [False] * MOST + [True] * 2
+    assert [ahead.take((file, LayerRequest(""))) is None for file in files.values()] == [False] * MOST + [True] * 2
 
 
 def test_a_damaged_file_is_found_out_by_who_wants_it(tmp_path: Path) -> None:

@@ -97,7 +97,7 @@ def test_reading_in_order_decodes_every_frame_once(tmp_path: Path, monkeypatch: 
         fed += 1
         return real(index, key)
 
-    monkeypatch.setattr(reader, "_from", counting)
+    monkeypatch.setattr(reader, "_decode_from", counting)
     for number in range(1, COUNT + 1):
         reader.read_frame(number)
     assert fed == 1
@@ -191,7 +191,7 @@ def test_without_pyav_there_is_a_sentence(tmp_path: Path, monkeypatch: pytest.Mo
     from halation.media.video import index
 
     path = write_numbers(tmp_path / "a.mkv", "ffv1", "bgr0", 2)
-    monkeypatch.setattr(index, "library", lambda: None)
+    monkeypatch.setattr(index, "load_pyav", lambda: None)
     with pytest.raises(InputError, match=r"a\.mkv: videos need PyAV: pip install halation\[video\]"):
         media.read_info(path)
 
