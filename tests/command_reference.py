@@ -34,12 +34,12 @@ def describe_command(name: str, command: Any) -> str:
     own = [item for item in options if item.name != "help" and not set(_EVERYWHERE) & set(item.opts)]
     rows += [(_flags(item), item.help or "") for item in own]
     lines = [f"| {head} | {_cell(text)} |" for head, text in rows]
-    table = "\n".join(["", "| | |", "|---|---|", *lines]) if rows else ""
-    return f"<!-- {name} -->\n`{usage}`\n{table}\n<!-- /{name} -->"
+    table = "\n".join(["", "| | |", "|---|---|", *lines, ""]) if rows else ""
+    return f"<!-- {name} -->\n`{usage}`\n{table}<!-- /{name} -->"
 
 
 def _usage(item: Any) -> str:
-    word = (item.metavar or item.name or "").upper().strip("[]")
+    word = (item.metavar or item.name or "").upper().replace("[", "").replace("]", "")
     word += "..." if item.nargs == -1 and not word.endswith("...") else ""
     return word if item.required else f"[{word}]"
 
