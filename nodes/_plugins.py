@@ -89,8 +89,10 @@ def find_class(module: ModuleType, id: str) -> type[Node]:
 
 def _load(point: EntryPoint) -> Plugin:
     """The plug-in of an entry point. Whatever goes wrong in its code becomes its fault."""
-    known = point.dist
-    plugin = Plugin(known.name if known else point.name, known.version if known else "0", point.value)
+    distribution = point.dist
+    plugin = Plugin(
+        distribution.name if distribution else point.name, distribution.version if distribution else "0", point.value
+    )
     if not point.value.isidentifier():
         return replace(plugin, fault=f"its entry point names '{point.value}', which is no top-level package")
     try:
@@ -125,7 +127,7 @@ def _refuse_shared_ids(loaded: list[Plugin]) -> Iterator[Plugin]:
     for plugin in loaded:
         shared = next((id for id in plugin.nodes if counts[id] > 1), "")
         if shared:
-            rivals = " and ".join(str(other) for other in loaded if shared in other.nodes)
+            rivals = " and ".join(str(rival) for rival in loaded if shared in rival.nodes)
             fault = f"{rivals} both bring a node '{shared}': uninstall one of them"
             yield replace(plugin, nodes={}, fault=fault)
         else:

@@ -255,7 +255,7 @@ class Graph(Wired[Item]):
         if isinstance(item, Group) and port.socket in item.graph.controls:
             item = dataclasses.replace(item, values={**item.values, port.socket: plain})
         elif isinstance(item, Node) and port.socket in item.values:
-            item = item.changed(**{port.socket: plain})
+            item = item.with_values(**{port.socket: plain})
         else:
             return self
         animation = without(self.animation, port) if port in self.animation else self.animation

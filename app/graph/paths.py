@@ -69,7 +69,7 @@ def _item(item: Item, folder: str, change: Change) -> Item:
     paths = _paths(item)
     if isinstance(item, Node):
         changed: dict[str, Plain] = {name: change(getattr(item, name)) for name in paths}
-        return _code(item.changed(**changed) if changed else item, change)
+        return _code(item.with_values(**changed) if changed else item, change)
     if isinstance(item, Group):
         values = {
             name: change(str(plain)) if name in paths and _is_ours(item, name) else plain

@@ -25,7 +25,7 @@ from .curves import MAX_POINTS, curve_at, curve_knots, ramp_at, ramp_knots
 from .draw import Affine, Argument, Draw, Drawn, Kernel, Overlap, Pixels, Reach, ShaderText, Stage
 from .kinds import KINDS, Kind, KindFacts
 from .lights import LIGHT_NUMBERS, MAX_LIGHTS, Light, LightKind, lights_of, numbers_of
-from .mattes import float_bits, listed, matte_of, murmur3, picked, picked_names, toggled
+from .mattes import float_bits, format_names, matte_of, murmur3, pick_ids, pick_names, toggle_name
 from .node import Filter, Node, Pointwise, Reader, Source, Temporal
 from .recolor import WORKING_SPACE, ColorChange, ColorSettings, LookupFile, SpaceChange
 from .render import Matte, Meaning, Render
@@ -34,6 +34,7 @@ from .sockets import CameraSocket, Color, Edge, Field, Image, Number, Output, Si
 from .traits import Trait
 from .values import (
     RGBA,
+    ColorRamp,
     Curve,
     Doc,
     File,
@@ -51,7 +52,6 @@ from .values import (
     Plain,
     Points,
     Position,
-    Ramp,
     RenderPath,
     ScenePath,
     Slider,
@@ -61,7 +61,7 @@ from .values import (
     Uniform,
     Unit,
     Value,
-    working_factor,
+    unit_factor,
 )
 
 __all__ = [
@@ -78,6 +78,7 @@ __all__ = [
     "CameraSocket",
     "Color",
     "ColorChange",
+    "ColorRamp",
     "ColorSettings",
     "Curve",
     "Doc",
@@ -117,7 +118,6 @@ __all__ = [
     "Points",
     "Pointwise",
     "Position",
-    "Ramp",
     "Reach",
     "Reader",
     "Render",
@@ -145,18 +145,18 @@ __all__ = [
     "curve_at",
     "curve_knots",
     "float_bits",
+    "format_names",
     "glsl_type",
     "lights_of",
-    "listed",
     "look_at",
     "matte_of",
     "murmur3",
     "numbers_of",
     "orbit_camera",
-    "picked",
-    "picked_names",
+    "pick_ids",
+    "pick_names",
     "ramp_at",
     "ramp_knots",
-    "toggled",
-    "working_factor",
+    "toggle_name",
+    "unit_factor",
 ]

@@ -75,7 +75,7 @@ class Camera(Struct, frozen=True):
         u, v, depth = (_dot(self._row(index), place) + self.rows[4 * index + 3] for index in range(3))
         return u / depth, v / depth, depth
 
-    def shifted(self, x: float, y: float) -> Camera:
+    def shift(self, x: float, y: float) -> Camera:
         """The same camera with the picture cut out that so far to the right and down, in fractions of it."""
         u, v, depth = _in_fours(self.rows)
         u = tuple(part - x * ahead for part, ahead in zip(u, depth, strict=True))

@@ -78,7 +78,7 @@ def _stop(stops: tuple[float, ...], index: int) -> tuple[float, float, float, fl
 
 def _slopes(xs: tuple[float, ...], ys: tuple[float, ...]) -> list[float]:
     """The slope at every point: the weighted harmonic mean of those beside it, 0 at a peak."""
-    widths = [right - left for left, right in pairwise(xs)]
+    widths = [end - start for start, end in pairwise(xs)]
     rises = [(right - left) / width for (left, right), width in zip(pairwise(ys), widths, strict=True)]
     if len(rises) == 1:
         return [rises[0], rises[0]]
@@ -90,10 +90,10 @@ def _slopes(xs: tuple[float, ...], ys: tuple[float, ...]) -> list[float]:
     return [first, *inner, _at_end(rises[-1], rises[-2], widths[-1], widths[-2])]
 
 
-def _between(before: float, after: float, left: float, right: float) -> float:
+def _between(before: float, after: float, width_before: float, width_after: float) -> float:
     if before * after <= 0.0:
         return 0.0
-    first, second = 2 * right + left, right + 2 * left
+    first, second = 2 * width_after + width_before, width_after + 2 * width_before
     return (first + second) / (first / before + second / after)
 
 

@@ -108,7 +108,7 @@ class Draw(Protocol):
         """The size of an input or of something drawn."""
         ...
 
-    def linked(self, socket: Socket) -> bool:
+    def is_linked(self, socket: Socket) -> bool:
         """True if something is linked to this input of the node."""
         ...
 

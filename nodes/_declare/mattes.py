@@ -21,43 +21,43 @@ def matte_of(mattes: Sequence[Matte], kind: str) -> Matte | None:
     return next((matte for matte in mattes if matte.kind == kind), plain[0] if len(plain) == 1 else None)
 
 
-def picked(pick: str, manifest: Mapping[str, int]) -> set[int]:
+def pick_ids(pick: str, manifest: Mapping[str, int]) -> set[int]:
     """The ids that a list of names stands for, from left to right: a name adds its ids, a minus before it takes them.
 
     In a name, * is any text, ? any letter, [ab] one of these; what the manifest has as it stands is that name.
     """
-    found: set[int] = set()
+    picked_ids: set[int] = set()
     for name in _entries(pick, manifest):
         leaves_out = name.startswith("-") and name not in manifest
         ids = set(_ids(name[1:] if leaves_out else name, manifest))
-        found = found - ids if leaves_out else found | ids
-    return found
+        picked_ids = picked_ids - ids if leaves_out else picked_ids | ids
+    return picked_ids
 
 
-def toggled(pick: str, name: str, manifest: Mapping[str, int]) -> str:
+def toggle_name(pick: str, name: str, manifest: Mapping[str, int]) -> str:
     """The list that picks a name of the manifest as well, or no longer. Everything becomes that name alone."""
     if pick.strip() == EVERYTHING:
-        return listed([name])
-    id, wanted = float_bits(manifest[name]), name not in picked_names(pick, manifest)
+        return format_names([name])
+    id, is_added = float_bits(manifest[name]), name not in pick_names(pick, manifest)
     minus = f"-{name}"
-    kept = [entry for entry in _entries(pick, manifest) if entry not in ({minus} if wanted else {name})]
-    if (id in picked(listed(kept), manifest)) != wanted:
-        kept.append(name if wanted else minus)
-    return listed(kept)
+    entries = [entry for entry in _entries(pick, manifest) if entry not in ({minus} if is_added else {name})]
+    if (id in pick_ids(format_names(entries), manifest)) != is_added:
+        entries.append(name if is_added else minus)
+    return format_names(entries)
 
 
-def picked_names(pick: str, manifest: Mapping[str, int]) -> frozenset[str]:
+def pick_names(pick: str, manifest: Mapping[str, int]) -> frozenset[str]:
     """The names of the manifest that a list picks."""
-    ids = picked(pick, manifest)
+    ids = pick_ids(pick, manifest)
     return frozenset(name for name, bits in manifest.items() if float_bits(bits) in ids)
 
 
-def listed(names: Sequence[str]) -> str:
+def format_names(names: Sequence[str]) -> str:
     """Names as a list, in quotes where they need them."""
-    return ", ".join(map(_quoted, names))
+    return ", ".join(map(_quote, names))
 
 
-def _quoted(name: str) -> str:
+def _quote(name: str) -> str:
     if name and name == name.strip() and not any(letter in name for letter in ',"\n\r'):
         return name
     import csv
@@ -82,28 +82,28 @@ def _ids(name: str, manifest: Mapping[str, int]) -> Iterator[int]:
     if name in manifest:
         yield float_bits(manifest[name])
     elif any(letter in name for letter in "*?["):
-        yield from (float_bits(bits) for other, bits in manifest.items() if fnmatchcase(other, name))
+        yield from (float_bits(bits) for candidate, bits in manifest.items() if fnmatchcase(candidate, name))
     elif name:
         yield float_bits(murmur3(name.encode()))
 
 
 def murmur3(data: bytes) -> int:
     """MurmurHash3_x86_32 with seed 0 (Appleby 2011, public domain)."""
-    whole = len(data) // 4 * 4
-    result = 0
-    for (word,) in struct.iter_unpack("<I", data[:whole]):
-        result = (_rotated(result ^ _scrambled(word), 13) * 5 + 0xE6546B64) & 0xFFFFFFFF
-    result ^= _scrambled(int.from_bytes(data[whole:], "little")) ^ len(data)
-    result = ((result ^ result >> 16) * 0x85EBCA6B) & 0xFFFFFFFF
-    result = ((result ^ result >> 13) * 0xC2B2AE35) & 0xFFFFFFFF
-    return result ^ result >> 16
+    aligned = len(data) // 4 * 4
+    digest = 0
+    for (word,) in struct.iter_unpack("<I", data[:aligned]):
+        digest = (_rotate(digest ^ _scramble(word), 13) * 5 + 0xE6546B64) & 0xFFFFFFFF
+    digest ^= _scramble(int.from_bytes(data[aligned:], "little")) ^ len(data)
+    digest = ((digest ^ digest >> 16) * 0x85EBCA6B) & 0xFFFFFFFF
+    digest = ((digest ^ digest >> 13) * 0xC2B2AE35) & 0xFFFFFFFF
+    return digest ^ digest >> 16
 
 
-def _scrambled(word: int) -> int:
-    return _rotated(word * 0xCC9E2D51 & 0xFFFFFFFF, 15) * 0x1B873593 & 0xFFFFFFFF
+def _scramble(word: int) -> int:
+    return _rotate(word * 0xCC9E2D51 & 0xFFFFFFFF, 15) * 0x1B873593 & 0xFFFFFFFF
 
 
-def _rotated(word: int, count: int) -> int:
+def _rotate(word: int, count: int) -> int:
     return (word << count | word >> 32 - count) & 0xFFFFFFFF
 
 

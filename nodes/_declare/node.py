@@ -11,7 +11,7 @@ from .camera import Camera
 from .draw import Draw, Drawn
 from .sockets import Output, Size, Socket
 from .traits import Trait
-from .values import Doc, Missing, Value, read_value, working_factor
+from .values import Doc, Missing, Value, read_value, unit_factor
 
 
 def _fields(cls: Any) -> tuple[dataclasses.Field[Any], ...]:
@@ -99,17 +99,19 @@ class Node:
         """Values saved by an older `version` of this node, as the next version would have saved them."""
         return values
 
-    def working(self, scale: float, height: int) -> Self:
+    def to_working_units(self, scale: float, height: int) -> Self:
         """The same values in working units, as `passes` and GLSL see them: see `Unit`."""
-        changed: dict[str, Any] = {}
+        converted: dict[str, Any] = {}
         for name, value in self.values.items():
-            factor = working_factor(value.unit, scale, height)
+            factor = unit_factor(value.unit, scale, height)
             if factor != 1.0:
-                now: float | tuple[float, ...] = getattr(self, name)
-                changed[name] = tuple(part * factor for part in now) if isinstance(now, tuple) else now * factor
-        return self.changed(**changed) if changed else self
+                stored: float | tuple[float, ...] = getattr(self, name)
+                converted[name] = (
+                    tuple(part * factor for part in stored) if isinstance(stored, tuple) else stored * factor
+                )
+        return self.with_values(**converted) if converted else self
 
-    def changed(self, **values: Any) -> Self:
+    def with_values(self, **values: Any) -> Self:
         """The same node with other values."""
         return type(self)(**({name: getattr(self, name) for name in self.values} | values))
 

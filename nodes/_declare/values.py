@@ -20,7 +20,7 @@ things; `s` seconds; `scene` the scene's own units (radiance, depth).
 """
 
 
-def working_factor(unit: Unit | None, scale: float, height: float) -> float:
+def unit_factor(unit: Unit | None, scale: float, height: float) -> float:
     """What turns a number into working units, for a proxy of `scale` and a picture `height` pixels high."""
     return {"px": scale, "height": height, "deg": math.pi / 180.0}.get(unit or "", 1.0)
 
@@ -97,7 +97,7 @@ class Curve(Struct, frozen=True):
     maximum: float = float("inf")
 
 
-class Ramp(Struct, frozen=True):
+class ColorRamp(Struct, frozen=True):
     """The value is a color ramp of stops `t, r, g, b, a, ...`, scene-linear, t never falling: see `ramp_at`."""
 
 
@@ -113,7 +113,7 @@ RenderPath = Annotated[str, File(holds="render")]
 TablePath = Annotated[str, File(holds="table")]
 ScenePath = Annotated[str, File(holds="scene")]
 Points = Annotated[tuple[float, ...], Curve()]
-Stops = Annotated[tuple[float, ...], Ramp()]
+Stops = Annotated[tuple[float, ...], ColorRamp()]
 LightList = Annotated[tuple[float, ...], Lights()]
 Kernel3x3 = tuple[float, float, float, float, float, float, float, float, float]
 
@@ -183,38 +183,38 @@ class Value(Struct, frozen=True):
 def read_value(name: str, hint: Any, default: Any) -> Value:
     """Turn `Annotated[type, Slider(...), ...] = default` into a Value."""
     base, notes = (hint.__origin__, hint.__metadata__) if get_origin(hint) is Annotated else (hint, ())
-    found: dict[str, Any] = {"name": name, "default": default}
+    facts: dict[str, Any] = {"name": name, "default": default}
     if base in (float, int, bool):
-        found["type"] = base.__name__
+        facts["type"] = base.__name__
     elif get_origin(base) is Literal:
-        found |= {"type": "choice", "choices": get_args(base)}
+        facts |= {"type": "choice", "choices": get_args(base)}
     elif get_origin(base) is tuple:
-        found |= _tuple_type(name, get_args(base), notes)
+        facts |= _tuple_type(name, get_args(base), notes)
     elif base is str:
-        found["type"] = "text"
+        facts["type"] = "text"
     else:
         raise TypeError(f"value '{name}': {hint!r} is no type that a value can have")
     for note in notes:
         if isinstance(note, Slider):
-            found |= {key: getattr(note, key) for key in ("low", "high", "minimum", "maximum", "unit")}
-            found["doc"] = note.doc or found.get("doc", "")
+            facts |= {key: getattr(note, key) for key in ("low", "high", "minimum", "maximum", "unit")}
+            facts["doc"] = note.doc or facts.get("doc", "")
         elif isinstance(note, Doc):
-            found["doc"] = note.text
+            facts["doc"] = note.text
         elif isinstance(note, Swatch):
-            found["type"] = "color"
+            facts["type"] = "color"
         elif isinstance(note, File):
-            found |= {"type": "path", "layer_by": note.layer, "holds": note.holds}
+            facts |= {"type": "path", "layer_by": note.layer, "holds": note.holds}
         elif isinstance(note, OfLayer):
-            found |= {"file": note.path, "role": note.role}
+            facts |= {"file": note.path, "role": note.role}
         elif isinstance(note, OfSpace):
-            found["space"] = True
+            facts["space"] = True
         elif isinstance(note, Picks):
-            found |= {"file": note.path, "matte": note.layer}
+            facts |= {"file": note.path, "matte": note.layer}
         elif isinstance(note, Handle):
-            found |= {"handle": True, "low": 0.0, "high": 1.0}
+            facts |= {"handle": True, "low": 0.0, "high": 1.0}
         elif isinstance(note, Curve):
-            found |= {key: getattr(note, key) for key in ("low", "high", "minimum", "maximum")}
-    return Value(**found)
+            facts |= {key: getattr(note, key) for key in ("low", "high", "minimum", "maximum")}
+    return Value(**facts)
 
 
 def _tuple_type(name: str, parts: tuple[Any, ...], notes: tuple[Any, ...]) -> dict[str, Any]:
@@ -222,8 +222,8 @@ def _tuple_type(name: str, parts: tuple[Any, ...], notes: tuple[Any, ...]) -> di
     if Ellipsis not in parts:
         return {"type": "matrix" if len(parts) == 9 else "vector", "length": len(parts)}
     for note in notes:
-        if isinstance(note, Curve | Ramp):
+        if isinstance(note, Curve | ColorRamp):
             return {"type": "curve", "length": 2} if isinstance(note, Curve) else {"type": "ramp", "length": 5}
         if isinstance(note, Lights):
             return {"type": "lights", "length": LIGHT_NUMBERS}
-    raise TypeError(f"value '{name}': a list of any length is a Curve or a Ramp, or Lights")
+    raise TypeError(f"value '{name}': a list of any length is a Curve, a ColorRamp or Lights")

@@ -80,7 +80,7 @@ class TemporalAa(Temporal):
                 share=self.share,
                 gamma=self.gamma,
                 tolerance=self.tolerance,
-                deep=draw.linked(self.depth),
+                deep=draw.is_linked(self.depth),
                 kernel=self.kernel,
             )
         draw.remember(blended)

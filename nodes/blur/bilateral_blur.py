@@ -32,7 +32,7 @@ class BilateralBlur(Filter):
         return draw(
             "bilateral_blur",
             image=self.image,
-            guide=self.guide if draw.linked(self.guide) else self.image,
+            guide=self.guide if draw.is_linked(self.guide) else self.image,
             edge=self.edge,
             overlap=radius,
             radius=radius,

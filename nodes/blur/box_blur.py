@@ -45,14 +45,14 @@ class BoxBlur(Filter):
         if 2.0 * self.radius < _DIRECT:
             weights = _weights(radius, times)
             return draw.convolve(draw.convolve(self.image, weights, "x", self.edge), weights, "y", self.edge)
-        made: Pixels = self.image
+        blurred: Pixels = self.image
         for axis in (0, 1):
             # Every box but the last also makes the pixels beyond the ends that those after it read.
-            aprons = [left * (floor(radius) + 1) for left in reversed(range(times))]
+            aprons = [remaining * (floor(radius) + 1) for remaining in reversed(range(times))]
             for before, apron in zip([0, *aprons], aprons, strict=False):
-                made = self._box(draw, made, axis, radius, before, apron)
-        assert not isinstance(made, Image)
-        return made
+                blurred = self._box(draw, blurred, axis, radius, before, apron)
+        assert not isinstance(blurred, Image)
+        return blurred
 
     def _box(self, draw: Draw, image: Pixels, axis: int, radius: float, before: int, apron: int) -> Drawn:
         """One box along an axis of a picture that starts `before` pixels early; the result starts `apron` early."""
@@ -117,12 +117,12 @@ def _blocks(width: int) -> tuple[int, int]:
 def _weights(radius: float, times: int) -> tuple[float, ...]:
     """A box of `radius` pixels, spread by itself `times` - 1 times."""
     whole = floor(radius)
-    part, found = radius - whole, [1.0]
+    part, weights = radius - whole, [1.0]
     for _ in range(times):
-        ends, last = [*accumulate(found, initial=0.0)], len(found)
-        found = [
+        ends, last = [*accumulate(weights, initial=0.0)], len(weights)
+        weights = [
             (1.0 - part) * (ends[min(i, last)] - ends[min(max(i - 2 * whole - 1, 0), last)])
             + part * (ends[min(i + 1, last)] - ends[max(i - 2 * whole - 2, 0)])
             for i in range(last + 2 * whole + 2)
         ]
-    return tuple(weight / (2.0 * radius + 1.0) ** times for weight in found)
+    return tuple(weight / (2.0 * radius + 1.0) ** times for weight in weights)

@@ -37,7 +37,7 @@ class RadialBlur(Filter):
         sides = zip(self.center, draw.size, strict=True)
         far = [max(abs(at), abs(1.0 - at)) * side for at, side in sides]
         if self.kind == "zoom":
-            reach = [0.5 * self.zoom * one for one in far]
+            reach = [0.5 * self.zoom * distance for distance in far]
         else:
             reach = [min(0.5 * self.angle, 2.0) * math.hypot(*far)] * 2
         return draw(

@@ -33,17 +33,17 @@ class VariableBlur(Filter):
         return "image" if self.sigma == 0.0 else None
 
     def passes(self, draw: Draw) -> Drawn:
-        if not draw.linked(self.field) or self.sigma <= _NOTHING:
+        if not draw.is_linked(self.field) or self.sigma <= _NOTHING:
             return draw.blur(self.image, self.sigma, self.edge)
         full = _variance(self.sigma)
         last = max(math.ceil(math.log(full / _FINEST, _STEP)), 0)
         sigmas = [self.sigma, *(_sigma(full / _STEP**number) for number in range(1, last + 1))]
         rung = draw.point("variable_blur_rung", self.field, result=Field(), sigma=self.sigma, full=full, last=last)
-        found = draw.point("variable_blur_sharp", self.image, at=rung, last=last)
+        blended = draw.point("variable_blur_sharp", self.image, at=rung, last=last)
         for number, sigma in enumerate(sigmas):
             soft = draw.blur(self.image, sigma, self.edge)
-            found = draw.point("variable_blur", sum=found, soft=soft, at=rung, rung=number, last=last)
-        return found
+            blended = draw.point("variable_blur", sum=blended, soft=soft, at=rung, rung=number, last=last)
+        return blended
 
 
 def _variance(sigma: float) -> float:

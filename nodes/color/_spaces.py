@@ -77,6 +77,6 @@ SPACES: Mapping[str, str] = MappingProxyType(
 )
 
 
-def named(space: Space) -> str:
+def name_space(space: Space) -> str:
     """What the library calls a space; the working space is whatever the graph says."""
     return SPACES.get(space, space)

@@ -87,16 +87,16 @@ class ColorMatrix(Filter):
         Slider(-1.0, 1.0, unit="scene", doc="Light added to red, green and blue after the matrix."),
     ] = (0.0, 0.0, 0.0)
 
-    def resolved(self) -> Kernel3x3:
+    def resolve_matrix(self) -> Kernel3x3:
         """The matrix that is applied: preset and direction resolved."""
         matrix = _MATRICES.get(self.preset, self.matrix)
         return _inverse(matrix) if self.direction == "inverse" else matrix
 
     def identity(self) -> str | None:
-        return "image" if self.resolved() == _IDENTITY and self.offset == (0.0, 0.0, 0.0) else None
+        return "image" if self.resolve_matrix() == _IDENTITY and self.offset == (0.0, 0.0, 0.0) else None
 
     def passes(self, draw: Draw) -> Drawn:
-        return draw.point("color_matrix", self.image, matrix=self.resolved(), offset=self.offset)
+        return draw.point("color_matrix", self.image, matrix=self.resolve_matrix(), offset=self.offset)
 
 
 def _inverse(matrix: Kernel3x3) -> Kernel3x3:

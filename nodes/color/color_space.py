@@ -1,7 +1,7 @@
 from typing import Annotated
 
 from .._declare import Doc, Draw, Drawn, Filter, Image, OfSpace, SpaceChange, Trait
-from ._spaces import WORKING, Space, named
+from ._spaces import WORKING, Space, name_space
 
 
 class ColorSpace(Filter):
@@ -30,7 +30,7 @@ class ColorSpace(Filter):
 
     @property
     def _names(self) -> tuple[str, str]:
-        return self.source_name or named(self.source), self.target_name or named(self.target)
+        return self.source_name or name_space(self.source), self.target_name or name_space(self.target)
 
     def passes(self, draw: Draw) -> Drawn:
         color = draw.point("color_space_color", self.image)

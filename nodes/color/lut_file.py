@@ -1,7 +1,7 @@
 from typing import Annotated
 
 from .._declare import Doc, Draw, Drawn, Filter, Fraction, Image, LookupFile, SpaceChange, TablePath, Trait
-from ._spaces import WORKING, Space, named
+from ._spaces import WORKING, Space, name_space
 
 
 class LutFile(Filter):
@@ -28,8 +28,8 @@ class LutFile(Filter):
         first, last = (self.gives, self.takes) if self.inverse else (self.takes, self.gives)
         color = draw.point("lut_file_color", self.image)
         if first != WORKING:
-            color = draw.recolor(color, SpaceChange(named(WORKING), named(first)))
+            color = draw.recolor(color, SpaceChange(name_space(WORKING), name_space(first)))
         color = draw.recolor(color, LookupFile(self.file, self.inverse))
         if last != WORKING:
-            color = draw.recolor(color, SpaceChange(named(last), named(WORKING)))
+            color = draw.recolor(color, SpaceChange(name_space(last), name_space(WORKING)))
         return draw.point("lut_file", self.image, changed=color, amount=self.amount)

@@ -47,8 +47,8 @@ class Crop(Filter):
         )
 
 
-def _span(one: float, other: float, length: int) -> tuple[int, int]:
+def _span(start: float, end: float, length: int) -> tuple[int, int]:
     """Between two fractions of a length, in whole pixels, at least one of them."""
-    low, high = (round(min(max(end, 0.0), 1.0) * length) for end in sorted((one, other)))
+    low, high = (round(min(max(end, 0.0), 1.0) * length) for end in sorted((start, end)))
     low = min(low, length - 1)
     return low, max(high, low + 1)

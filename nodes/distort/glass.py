@@ -51,7 +51,7 @@ class Glass(Filter):
         # However steep the glass is, light leaves it within the critical angle of what is grazed.
         index = max(self.index + 0.5 * self.dispersion, 1.0)
         reach = math.ceil(self.thickness * math.sqrt(index**2 - 1.0)) + 3
-        if draw.linked(self.surface):
+        if draw.is_linked(self.surface):
             return draw(
                 "glass",
                 self.image,

@@ -33,7 +33,7 @@ class HeatHaze(Filter):
 
     def passes(self, draw: Draw) -> Drawn:
         # A picture of heat may hold any number; without one nothing moves farther than the amount.
-        overlap = {"heat": 0} | ({} if draw.linked(self.heat) else {"image": math.ceil(abs(self.amount)) + 2})
+        overlap = {"heat": 0} | ({} if draw.is_linked(self.heat) else {"image": math.ceil(abs(self.amount)) + 2})
         return draw(
             "heat_haze",
             self.image,

@@ -77,12 +77,12 @@ class LensDistortion(Filter):
         if self.p1 or self.p2 or self.edge != "black":  # what a bend hides that turns back lies anywhere
             return _ENDLESS, None
         step = radius / _STEPS
-        straight = seen = moved = 0.0
-        while seen < radius and straight < _STEPS * radius:
+        straight = bent = moved = 0.0
+        while bent < radius and straight < _STEPS * radius:
             straight += step
             square = straight * straight
-            before, seen = seen, straight * (1.0 + square * (self.k1 + square * (self.k2 + square * self.k3)))
-            moved = max(moved, abs(straight - seen))
-            if seen < before:
+            before, bent = bent, straight * (1.0 + square * (self.k1 + square * (self.k2 + square * self.k3)))
+            moved = max(moved, abs(straight - bent))
+            if bent < before:
                 break
         return straight + step, moved + 2.0 * step + _MISSED

@@ -52,5 +52,5 @@ class NoiseWarp(Filter):
         )
         # A mask may hold any number; without one nothing moves farther than the amount.
         far = math.ceil(abs(self.amount))
-        overlap = {"ways": 1, "mask": 0} | ({} if draw.linked(self.mask) else {"image": 2 * far + 3})
+        overlap = {"ways": 1, "mask": 0} | ({} if draw.is_linked(self.mask) else {"image": 2 * far + 3})
         return draw("noise_warp", self.image, self.mask, edge=self.edge, overlap=overlap, ways=ways, amount=self.amount)

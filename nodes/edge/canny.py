@@ -57,7 +57,7 @@ class Canny(Filter):
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         tone = draw.blur(draw.point("canny_tone", self.image, result=Field()), self.sigma, self.edge)
         gradient = draw("canny_gradient", tone=tone, edge=self.edge, overlap=1, result=Vector(width=2))
-        found = draw(
+        state = draw(
             "canny_ridge",
             gradient=gradient,
             edge="black",
@@ -67,6 +67,6 @@ class Canny(Filter):
             high=max(self.low, self.high),
         )
         for _ in range(ceil(self.reach / _STEP)):
-            found = draw("canny_follow", state=found, edge="black", overlap=_STEP, result=Field())
-        lines = draw.point("canny_lines", result=Field(), state=found)
+            state = draw("canny_follow", state=state, edge="black", overlap=_STEP, result=Field())
+        lines = draw.point("canny_lines", result=Field(), state=state)
         return {"out": draw.point("canny", self.image, lines=lines), "lines": lines}

@@ -68,7 +68,7 @@ class DifferenceOfGaussians(Filter):
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         tone = draw.point("difference_of_gaussians_tone", self.image, result=Field())
         fine, coarse = (
-            self._guided(draw, tone)
+            self._blur_along_edges(draw, tone)
             if self.guide == "flow"
             else (draw.blur(tone, self.sigma, self.edge), draw.blur(tone, self.sigma * self.ratio, self.edge))
         )
@@ -84,7 +84,7 @@ class DifferenceOfGaussians(Filter):
         )
         return {"out": draw.point("difference_of_gaussians", self.image, value=value, kind=self.kind), "value": value}
 
-    def _guided(self, draw: Draw, tone: Drawn) -> tuple[Drawn, Drawn]:
+    def _blur_along_edges(self, draw: Draw, tone: Drawn) -> tuple[Drawn, Drawn]:
         changes = draw("difference_of_gaussians_changes", tone=tone, edge=self.edge, overlap=1, result=Vector(width=3))
         tensor = draw.blur(changes, self.smoothing, self.edge)
         blurs = draw(
@@ -93,7 +93,7 @@ class DifferenceOfGaussians(Filter):
             tensor=tensor,
             edge=self.edge,
             result=Vector(width=2),
-            overlap={"tone": _walked(self.sigma * max(self.ratio, 0.0)), "tensor": 0},
+            overlap={"tone": measure_reach(self.sigma * max(self.ratio, 0.0)), "tensor": 0},
             sigma=self.sigma,
             ratio=self.ratio,
         )
@@ -104,7 +104,7 @@ class DifferenceOfGaussians(Filter):
                 tensor=tensor,
                 edge=self.edge,
                 result=Vector(width=2),
-                overlap=_walked(self.stroke),
+                overlap=measure_reach(self.stroke),
                 stroke=self.stroke,
             )
         return (
@@ -113,7 +113,7 @@ class DifferenceOfGaussians(Filter):
         )
 
 
-def _walked(sigma: float) -> int:
+def measure_reach(sigma: float) -> int:
     """How far away samples of a Gaussian are taken, in pixels: see the shader."""
     reach = 3.0 * max(sigma, 1e-3)
     return math.ceil(reach + 0.5 * max(1.0, reach / 64.0)) + 1

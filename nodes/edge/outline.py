@@ -28,7 +28,9 @@ class Outline(Filter):
     line = Output(Field(doc="How much of each pixel the line covers."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
-        mask: Pixels = self.mask if draw.linked(self.mask) else draw.point("outline_alpha", self.image, result=Field())
+        mask: Pixels = (
+            self.mask if draw.is_linked(self.mask) else draw.point("outline_alpha", self.image, result=Field())
+        )
         reach = ceil(self.width + 0.5 * self.softness) + 2
         columns = draw.point("outline_seeds", result=Vector(width=2), mask=mask)
         for level in reversed(range(ceil(log2(reach + 1)))):
@@ -43,7 +45,7 @@ class Outline(Filter):
             result=Field(),
             reach=reach,
         )
-        behind = self.position == "outside" and not draw.linked(self.mask)
+        behind = self.position == "outside" and not draw.is_linked(self.mask)
         first, last = {
             "outside": (0.0, self.width),
             "inside": (-self.width, 0.0),

@@ -22,7 +22,7 @@ class CameraVelocity(Filter):
         return {"camera": (frame, frame - 1, frame + 1)}
 
     def passes(self, draw: Draw) -> Drawn:
-        now, before, after = (draw.camera(one) for one in (self.camera, self.before, self.after))
+        camera, before, after = (draw.camera(socket) for socket in (self.camera, self.before, self.after))
         if before is None:
             before = draw.camera(self.camera, draw.frame - 1)
             after = after or draw.camera(self.camera, draw.frame + 1)
@@ -31,21 +31,21 @@ class CameraVelocity(Filter):
             "camera_velocity",
             self.depth,
             result=Vector(width=4),
-            before=_change(now, before) if now and before else stay,
-            after=_change(now, after) if now and after else stay,
+            before=_change(camera, before) if camera and before else stay,
+            after=_change(camera, after) if camera and after else stay,
             ahead=after is not None,
         )
 
 
-def _change(now: Camera, other: Camera) -> tuple[float, ...]:
+def _change(camera: Camera, neighbor: Camera) -> tuple[float, ...]:
     """What the other camera adds to (u d, v d, d) that now sees: rows of a 3 x 4 matrix for (u d, v d, d, 1).
 
     As a difference, in 64 bits, so that a still camera makes no motion at all and a slow one loses no digits.
     """
-    rays = now.inverse
+    rays = camera.inverse
     rows: list[float] = []
     for axis in range(3):
-        ahead, offset = other.rows[4 * axis : 4 * axis + 3], other.rows[4 * axis + 3]
+        ahead, offset = neighbor.rows[4 * axis : 4 * axis + 3], neighbor.rows[4 * axis + 3]
         row = [sum(part * rays[4 * index + column] for index, part in enumerate(ahead)) for column in range(4)]
         row[axis] -= 1.0
         row[3] += offset

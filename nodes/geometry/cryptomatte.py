@@ -1,7 +1,7 @@
 from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from .._declare import Doc, Draw, Drawn, Field, Image, Output, Picks, Reader, RenderPath, Vector, matte_of, picked
+from .._declare import Doc, Draw, Drawn, Field, Image, Output, Picks, Reader, RenderPath, Vector, matte_of, pick_ids
 
 _AT_ONCE = 32
 """Ids that one draw looks for: two to a vector."""
@@ -34,24 +34,29 @@ class Cryptomatte(Reader):
         if matte is None:
             return {}
         ranks = [draw.read(self.path, layer, Vector(width=4)) for layer in matte.layers]
-        ids = sorted(picked(self.pick, matte.ids))
-        found = draw.point("cryptomatte_nothing", result=Field())
+        ids = sorted(pick_ids(self.pick, matte.ids))
+        coverage = draw.point("cryptomatte_nothing", result=Field())
         if not matte.ids and self.pick.strip() == "*":
             for layer in ranks:
-                found = draw.point("cryptomatte_anything", result=Field(), found=found, ranks=layer)
+                coverage = draw.point("cryptomatte_anything", result=Field(), found=coverage, ranks=layer)
         for first in range(0, len(ids), _AT_ONCE):
-            some = ids[first : first + _AT_ONCE]
+            batch = ids[first : first + _AT_ONCE]
             # Halves of the bits: floats hold them exactly, and no driver takes them for a number that it may change.
-            halves = [float(half) for bits in some for half in (bits >> 16, bits & 0xFFFF)]
+            halves = [float(half) for bits in batch for half in (bits >> 16, bits & 0xFFFF)]
             halves += [0.0] * (2 * _AT_ONCE - len(halves))
             for layer in ranks:
-                found = draw.point(
-                    "cryptomatte_covered", result=Field(), found=found, ranks=layer, ids=tuple(halves), count=len(some)
+                coverage = draw.point(
+                    "cryptomatte_covered",
+                    result=Field(),
+                    found=coverage,
+                    ranks=layer,
+                    ids=tuple(halves),
+                    count=len(batch),
                 )
         colors = draw.point("cryptomatte_no_colors", result=Vector(width=4))
         for layer in ranks:
             colors = draw.point("cryptomatte_mixed", result=Vector(width=4), colors=colors, ranks=layer)
         return {
-            "matte": draw.point("cryptomatte", result=Field(), found=found, invert=self.invert),
+            "matte": draw.point("cryptomatte", result=Field(), found=coverage, invert=self.invert),
             "colors": draw.point("cryptomatte_colors", colors=colors),
         }

@@ -30,8 +30,8 @@ class Curvature(Filter):
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         camera, reach, field = draw.camera(self.camera), max(round(self.reach), 1), Field()
-        places = self.position if draw.linked(self.position) else None
-        if places is None and camera and draw.linked(self.depth):
+        places = self.position if draw.is_linked(self.position) else None
+        if places is None and camera and draw.is_linked(self.depth):
             places = draw.point("curvature_place", self.depth, result=Vector(width=3), rays=camera.inverse)
         if places:
             mean = draw(

@@ -96,7 +96,7 @@ class Fog(Filter):
     amount = Output(Field(doc="How much of each pixel the fog hides, 0..1."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
-        camera, placed = draw.camera(self.camera), draw.linked(self.position)
+        camera, placed = draw.camera(self.camera), draw.is_linked(self.position)
         rays = camera.inverse if camera else (0.0,) * 12
         length = math.hypot(*self.sun_direction)
         sun = tuple(part / length for part in self.sun_direction) if length and camera else (0.0, 0.0, 0.0)

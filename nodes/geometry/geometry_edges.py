@@ -48,11 +48,11 @@ class GeometryEdges(Filter):
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         field = Field()
-        found = draw("geometry_edges_found", self.depth, self.normal, self.ids, overlap=1, result=Vector(width=3))
+        differences = draw("geometry_edges_found", self.depth, self.normal, self.ids, overlap=1, result=Vector(width=3))
         edges = draw.point(
             "geometry_edges",
             result=field,
-            found=found,
+            found=differences,
             amounts=(self.depth_amount, self.crease_amount, self.id_amount),
             gap=self.depth_threshold,
             crease=self.crease_threshold,
@@ -60,15 +60,15 @@ class GeometryEdges(Filter):
             cover=min(self.width / _SEAM, 1.0),
         )
         if self.width > _SEAM:
-            edges = self._widened(draw, edges)
+            edges = self._widen(draw, edges)
         return {
             "edges": edges,
-            "gap": draw.point("geometry_edges_gap", result=field, found=found),
-            "crease": draw.point("geometry_edges_crease", result=field, found=found),
-            "border": draw.point("geometry_edges_border", result=field, found=found),
+            "gap": draw.point("geometry_edges_gap", result=field, found=differences),
+            "crease": draw.point("geometry_edges_crease", result=field, found=differences),
+            "border": draw.point("geometry_edges_border", result=field, found=differences),
         }
 
-    def _widened(self, draw: Draw, edges: Drawn) -> Drawn:
+    def _widen(self, draw: Draw, edges: Drawn) -> Drawn:
         """What lies within half the width of a seam, by the distance to the bare edges' contour."""
         beyond = (self.width - _SEAM) / 2.0
         reach = ceil(beyond) + 2

@@ -25,13 +25,13 @@ class IdMask(Filter):
     colors = Output(Image(doc="A color for every number, to see which is where; 0 is black."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
-        found, spans = draw.point("id_mask_none", result=Field()), _spans(self.pick)
+        mask, spans = draw.point("id_mask_none", result=Field()), _spans(self.pick)
         for first in range(0, len(spans), _SPANS):
             chosen = [*spans[first : first + _SPANS], *[(1.0, 0.0)] * _SPANS][:_SPANS]
             flat = tuple(end for span in chosen for end in span)
-            found = draw.point("id_mask_add", self.ids, result=Field(), found=found, spans=flat)
+            mask = draw.point("id_mask_add", self.ids, result=Field(), found=mask, spans=flat)
         return {
-            "mask": draw.point("id_mask", result=Field(), found=found, invert=self.invert),
+            "mask": draw.point("id_mask", result=Field(), found=mask, invert=self.invert),
             "colors": draw.point("id_mask_colors", self.ids),
         }
 

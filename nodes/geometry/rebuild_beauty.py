@@ -34,7 +34,7 @@ class RebuildBeauty(Filter):
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         total = draw.point("rebuild_beauty_none", result=Vector(width=4))
         for color, direct, indirect in self._lobes():
-            if draw.linked(direct) or draw.linked(indirect):
+            if draw.is_linked(direct) or draw.is_linked(indirect):
                 total = draw.point(
                     "rebuild_beauty_lobe",
                     result=Vector(width=4),
@@ -44,14 +44,14 @@ class RebuildBeauty(Filter):
                     indirect=indirect,
                 )
         for light in (self.volume_direct, self.volume_indirect, self.emission, self.environment, self.other):
-            if draw.linked(light):
+            if draw.is_linked(light):
                 total = draw.point("rebuild_beauty_light", result=Vector(width=4), total=total, light=light)
-        known = draw.linked(self.beauty)
+        has_beauty = draw.is_linked(self.beauty)
         difference = draw.point(
-            "rebuild_beauty_difference", result=Field(), total=total, beauty=self.beauty, known=known
+            "rebuild_beauty_difference", result=Field(), total=total, beauty=self.beauty, known=has_beauty
         )
         return {
-            "out": draw.point("rebuild_beauty", total=total, beauty=self.beauty, known=known),
+            "out": draw.point("rebuild_beauty", total=total, beauty=self.beauty, known=has_beauty),
             "difference": difference,
             "error": draw.point("rebuild_beauty_error", result=Number(), most=draw.reduce(difference, "max")),
         }

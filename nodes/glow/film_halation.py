@@ -114,10 +114,10 @@ class FilmHalation(Filter):
         if factor > 1:
             light = draw("film_halation_shrink", image=light, size=size, overlap=2 * factor, factor=factor)
         # What shrinking (a box) and enlarging (a tent) blur themselves.
-        known = (factor**2 - 1.0) / 12.0 + factor**2 / 6.0 if factor > 1 else 0.0
+        resampling_variance = (factor**2 - 1.0) / 12.0 + factor**2 / 6.0 if factor > 1 else 0.0
         halo = draw.point("film_halation_none", light=light)
         for sigma, share in gaussians.items():
-            soft = draw.blur(light, math.sqrt(max((sigma * way) ** 2 - known, 0.0)) / factor)
+            soft = draw.blur(light, math.sqrt(max((sigma * way) ** 2 - resampling_variance, 0.0)) / factor)
             halo = draw.point("film_halation_add", halo=halo, soft=soft, share=tuple(share))
         if factor > 1:
             halo = draw("film_halation_enlarge", image=halo, size=draw.size, overlap=3, factor=factor)
@@ -142,5 +142,5 @@ def _mixture(reach: float) -> list[tuple[float, float]]:
     # Taken off: as much as leaves the film, so narrow that in the middle only what is reflected straight stays.
     variance = 0.5 * _LOST / (1.0 - _STRAIGHT)
     lost = (1.0 - _STRAIGHT) * variance * sum(a * b for a, b in zip(back, precisions, strict=True))
-    found = [(sigma, share / (1.0 - lost)) for sigma, share in zip(_SIGMAS, back, strict=True)]
-    return [*found, (math.sqrt(variance) * reach, -lost / (1.0 - lost))]
+    mixture = [(sigma, share / (1.0 - lost)) for sigma, share in zip(_SIGMAS, back, strict=True)]
+    return [*mixture, (math.sqrt(variance) * reach, -lost / (1.0 - lost))]

@@ -110,7 +110,7 @@ class Ghosts(Filter):
             colors=self.colors,
         )
         flare = draw("ghosts_enlarge", image=flare, size=draw.size, overlap=Reach.within(2, 2, 1))
-        if draw.linked(self.dirt):
+        if draw.is_linked(self.dirt):
             dirt = draw.point("ghosts_dirt", self.image, dirt=self.dirt)
         else:
             dirt = draw.point("ghosts_smudges", self.image)

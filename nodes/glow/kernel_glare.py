@@ -103,7 +103,7 @@ class KernelGlare(Filter):
 
     def _kernel(self, draw: Draw, height: float) -> Drawn:
         """The kernel at a height in pixels; it has a middle pixel."""
-        linked = draw.linked(self.kernel)
+        linked = draw.is_linked(self.kernel)
         if linked:
             width, full = draw.size_of(self.kernel)
             size = (_odd(height * width / full), _odd(height))

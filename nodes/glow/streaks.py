@@ -107,7 +107,7 @@ class Streaks(Filter):
         lengths = [length * (wave / _WAVELENGTHS[1]) ** self.dispersion for wave in _WAVELENGTHS]
         stride = 1
         while stride < _BEYOND * max(lengths):
-            fade = tuple(_LEFT ** (stride / max(one, 1e-3)) for one in lengths)
+            fade = tuple(_LEFT ** (stride / max(reach, 1e-3)) for reach in lengths)
             light = draw(
                 "streaks_pass",
                 image=light,

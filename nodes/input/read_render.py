@@ -92,20 +92,20 @@ class ReadRender(Reader):
     camera = Output(CameraSocket())
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn | Camera]:
-        render = draw.render(self.path, self._named())
-        found: dict[str, Drawn | Camera] = {}
+        render = draw.render(self.path, self._list_chosen_layers())
+        outputs: dict[str, Drawn | Camera] = {}
         for name, role in _PLAIN.items():
             if (layer := render.layers.get(role)) is not None:
-                found[name] = draw.read(self.path, layer, self.outputs[name].socket, self.color_space)
+                outputs[name] = draw.read(self.path, layer, self.outputs[name].socket, self.color_space)
         if render.camera:
-            found["camera"] = render.camera
-        for name, made in (("depth", self._depth), ("normal", self._normal), ("velocity", self._velocity)):
+            outputs["camera"] = render.camera
+        for name, convert in (("depth", self._depth), ("normal", self._normal), ("velocity", self._velocity)):
             if (layer := render.layers.get(name)) is not None:
-                drawn = draw.read(self.path, layer, self.outputs[name].socket)
-                found[name] = made(draw, render, drawn, render.meanings.get(name, Meaning("")))
-        return found
+                stored = draw.read(self.path, layer, self.outputs[name].socket)
+                outputs[name] = convert(draw, render, stored, render.meanings.get(name, Meaning("")))
+        return outputs
 
-    def _named(self) -> dict[str, str]:
+    def _list_chosen_layers(self) -> dict[str, str]:
         """The layers that somebody chose, by role."""
         chosen = {value.role: str(getattr(self, value.name)) for value in self.values.values() if value.type == "text"}
         return {role: layer for role, layer in chosen.items() if role and layer}

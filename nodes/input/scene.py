@@ -99,24 +99,24 @@ class Scene(Source):
         first, second, third = (self._motion(time) for time in times)
         x, y = (self.jitter * part for part in _halton(draw.frame))
         at = (x / width, y / height)
-        seen = (now.shifted(*at), before.shifted(*at), after.shifted(*at))
-        drawn = draw.raster(scene, (first, second, third), seen, _NEAR * self.distance)
-        place, surface = drawn["place"], drawn["surface"]
+        cameras = (now.shift(*at), before.shift(*at), after.shift(*at))
+        surfaces = draw.raster(scene, (first, second, third), cameras, _NEAR * self.distance)
+        place, surface = surfaces["place"], surfaces["surface"]
         return {
             "color": draw.point(
                 "scene_color",
-                albedo=drawn["albedo"],
-                normal=drawn["normal"],
-                emission=drawn["emission"],
+                albedo=surfaces["albedo"],
+                normal=surfaces["normal"],
+                emission=surfaces["emission"],
                 eye=now.forward,
             ),
-            "albedo": drawn["albedo"],
-            "normal": drawn["normal"],
-            "emission": drawn["emission"],
+            "albedo": surfaces["albedo"],
+            "normal": surfaces["normal"],
+            "emission": surfaces["emission"],
             "position": draw.point("scene_position", result=Vector(), place=place),
             "depth": draw.point("scene_depth", result=Field(), place=place),
-            "material": drawn["metal_rough"],
-            "velocity": drawn["velocity"],
+            "material": surfaces["metal_rough"],
+            "velocity": surfaces["velocity"],
             "uv": draw.point("scene_uv", result=Vector(width=2), surface=surface),
             "object_id": draw.point("scene_object", result=Field(), surface=surface),
             "material_id": draw.point("scene_material", result=Field(), surface=surface),
@@ -143,9 +143,9 @@ def _halton(frame: int) -> tuple[float, float]:
 
 def _radical_inverse(index: int, base: int) -> float:
     """The digits of a whole number, mirrored behind the point."""
-    found, place = 0.0, 1.0 / base
+    fraction, place = 0.0, 1.0 / base
     while index:
         index, digit = divmod(index, base)
-        found += digit * place
+        fraction += digit * place
         place /= base
-    return found
+    return fraction

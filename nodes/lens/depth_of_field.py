@@ -124,7 +124,7 @@ class DepthOfField(Filter):
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         largest = self.max_blur / 2.0
         radius = self._radius(draw, largest)
-        kept, clean = draw.several(
+        sharp, clean = draw.several(
             "depth_of_field_apart",
             (Image(), Image()),
             self.image,
@@ -136,7 +136,7 @@ class DepthOfField(Filter):
             "depth_of_field_whole",
             self.image,
             clean=clean,
-            kept=kept,
+            kept=sharp,
             radius=radius,
             edge="reflect",
             overlap={"image": 1, "clean": 1, "kept": 1, "radius": 2},
@@ -160,7 +160,7 @@ class DepthOfField(Filter):
         bokeh = self._bokeh(draw, finest, stretch)
         if not levels:
             out = draw(
-                "depth_of_field_alone", image=image, kept=kept, radius=radius, reach=reach, overlap=looks, **bokeh
+                "depth_of_field_alone", image=image, kept=sharp, radius=radius, reach=reach, overlap=looks, **bokeh
             )
         else:
             # Averaging and interpolating spreads light along both axes, and makes smaller discs rounder.
@@ -177,7 +177,7 @@ class DepthOfField(Filter):
             out = draw(
                 "depth_of_field",
                 image=image,
-                kept=kept,
+                kept=sharp,
                 radius=radius,
                 reach=reach,
                 near=near,

@@ -74,7 +74,7 @@ class MotionBlur(Filter):
         layer = draw("motion_blur_layer", self.velocity, self.depth, overlap=2, result=Vector(width=2))
         velocity: Pixels = self.velocity
         fronts: Pixels = self.image
-        if draw.linked(self.depth):
+        if draw.is_linked(self.depth):
             velocity = draw("motion_blur_clean", self.velocity, self.depth, layer=layer, overlap=2, result=vector)
             fronts = draw("motion_blur_front", self.image, layer=layer, overlap=2)
         paths = draw.point(

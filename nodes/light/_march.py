@@ -12,8 +12,8 @@ def surfaces(draw: Draw, depth: Field, owner: str) -> Drawn:
     """
     width, height = draw.size
     cells = [(-(-width // 4**level), -(-height // 4**level)) for level in range(1, _LEVELS + 1)]
-    kept = Vector(width=3)
-    planes = draw(f"{owner}_planes", depth=depth, edge="black", result=kept)
-    bounds = draw(f"{owner}_bounds", planes=planes, edge="black", size=cells[0], result=kept)
+    texels = Vector(width=3)
+    planes = draw(f"{owner}_planes", depth=depth, edge="black", result=texels)
+    bounds = draw(f"{owner}_bounds", planes=planes, edge="black", size=cells[0], result=texels)
     whole = (max(width, sum(across for across, _ in cells)), height + cells[0][1])
-    return draw(f"{owner}_surfaces", planes=planes, bounds=bounds, edge="black", size=whole, result=kept)
+    return draw(f"{owner}_surfaces", planes=planes, bounds=bounds, edge="black", size=whole, result=texels)

@@ -11,26 +11,33 @@ FACTORS = {"full": 1, "half": 2}
 """Of every how many pixels one is measured, along each axis."""
 
 
-def measured(size: Size, factor: int) -> Size:
+def measure_size(size: Size, factor: int) -> Size:
     """How many pixels are measured."""
     return -(-size[0] // factor), -(-size[1] // factor)
 
 
-def settled(
-    draw: Draw, id: str, depth: Pixels, normal: Pixels, made: Drawn, rays: tuple[float, ...], factor: int, denoise: bool
+def denoise_and_enlarge(
+    draw: Draw,
+    id: str,
+    depth: Pixels,
+    normal: Pixels,
+    occlusion: Drawn,
+    rays: tuple[float, ...],
+    factor: int,
+    denoise: bool,
 ) -> Drawn:
     """What was measured at every `factor`-th pixel, without noise and at full size, by functions of node `id`."""
     if denoise:
-        made = draw(
+        occlusion = draw(
             f"{id}_denoise",
             depth=depth,
             normal=normal,
-            open=made,
-            size=made.size,
+            open=occlusion,
+            size=occlusion.size,
             result=DATA,
             rays=rays,
             factor=factor,
         )
     if factor == 1:
-        return made
-    return draw(f"{id}_enlarge", depth=depth, normal=normal, open=made, result=DATA, rays=rays, factor=factor)
+        return occlusion
+    return draw(f"{id}_enlarge", depth=depth, normal=normal, open=occlusion, result=DATA, rays=rays, factor=factor)

@@ -2,7 +2,7 @@ from collections.abc import Mapping
 from typing import Annotated, Literal
 
 from .._declare import CameraSocket, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Vector
-from ._occlusion import DATA, FACTORS, SAMPLES, measured, settled
+from ._occlusion import DATA, FACTORS, SAMPLES, denoise_and_enlarge, measure_size
 
 
 class AmbientOcclusion(Filter):
@@ -73,7 +73,7 @@ class AmbientOcclusion(Filter):
             "ambient_occlusion_normal", self.depth, self.normal, edge="black", result=Vector(width=3), rows=rows
         )
         factor = FACTORS[self.resolution]
-        size = measured(draw.size, factor)
+        size = measure_size(draw.size, factor)
         slices, steps = SAMPLES[self.quality]
         if self.mode in ("gtao", "hbao", "bitmask"):
             open_ = draw(
@@ -109,7 +109,7 @@ class AmbientOcclusion(Filter):
                 thickness=self.thickness,
                 matched=self.denoise,
             )
-        open_ = settled(draw, "ambient_occlusion", self.depth, normal, open_, rays, factor, self.denoise)
+        open_ = denoise_and_enlarge(draw, "ambient_occlusion", self.depth, normal, open_, rays, factor, self.denoise)
         return {
             "out": draw.point(
                 "ambient_occlusion", open=open_, albedo=self.albedo, power=self.power, multi_bounce=self.multi_bounce

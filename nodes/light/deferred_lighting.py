@@ -135,14 +135,14 @@ class DeferredLighting(Filter):
     specular_light = Output(Image(doc="The light that they mirror."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
-        camera, placed = draw.camera(self.camera), draw.linked(self.position)
+        camera, placed = draw.camera(self.camera), draw.is_linked(self.position)
         rows, rays = (camera.rows, camera.inverse) if camera else ((0.0,) * 12, (0.0,) * 12)
         place = draw.point(
             "deferred_lighting_place", self.depth, self.position, result=Vector(width=4), rays=rays, placed=placed
         )
         normal = (
             self.normal
-            if draw.linked(self.normal)
+            if draw.is_linked(self.normal)
             else draw(
                 "deferred_lighting_normal", self.depth, edge="black", overlap=2, result=Vector(width=3), rows=rows
             )
@@ -152,7 +152,7 @@ class DeferredLighting(Filter):
         texels = max(1, -(-len(lights) // (4 * _BITS)))
         tiled = len(lights) > FEW and any(_ball(light)[3] < math.inf for light in lights)
         words = self._tiles(draw, place, lights, texels) if tiled else draw.table(_all(len(lights), texels), texels)
-        table = draw.table(tuple(part for light in lights for part in _packed(light, self.intensity)), 3)
+        table = draw.table(tuple(part for light in lights for part in _pack_light(light, self.intensity)), 3)
         ambient = tuple(self.ambient_intensity * self.ambient[3] * part for part in self.ambient[:3])
 
         def lit(scattered: float, mirrored: float) -> Drawn:
@@ -170,7 +170,7 @@ class DeferredLighting(Filter):
                 texels=texels,
                 tiled=tiled,
                 share=(scattered, mirrored),
-                mapped=draw.linked(self.material),
+                mapped=draw.is_linked(self.material),
                 metal=self.metal,
                 roughness=self.roughness,
                 specular=self.specular,
@@ -229,7 +229,7 @@ class DeferredLighting(Filter):
             )
 
 
-def _packed(light: Light, gain: float) -> tuple[float, ...]:
+def _pack_light(light: Light, gain: float) -> tuple[float, ...]:
     """What the GLSL reads of a light, as three texels.
 
     The place, or the way to a sun; 1 / reach^2. The color times the intensity; the radius, -1 for a sun. What takes the

@@ -3,7 +3,7 @@ from typing import Annotated, Literal
 
 from .._declare import CameraSocket, Doc, Draw, Drawn, Field, Filter, Fraction, Image, Output, Slider, Vector
 from ._environment import SKY, irradiance, shrunk
-from ._occlusion import DATA, FACTORS, SAMPLES, measured, settled
+from ._occlusion import DATA, FACTORS, SAMPLES, denoise_and_enlarge, measure_size
 
 _COARSE = (24, 12)
 """What is hidden of the surroundings is seen this coarsely."""
@@ -73,13 +73,13 @@ class DirectionalOcclusion(Filter):
         sky = shrunk(draw, "directional_occlusion", self.environment, SKY)
         factor = FACTORS[self.resolution]
         slices, steps = SAMPLES[self.quality]
-        seen = draw(
+        visible = draw(
             "directional_occlusion_seen",
             self.image,
             self.depth,
             normal=normal,
             sky=shrunk(draw, "directional_occlusion", sky, _COARSE),
-            size=measured(draw.size, factor),
+            size=measure_size(draw.size, factor),
             result=DATA,
             rows=rows,
             rays=rays,
@@ -99,7 +99,9 @@ class DirectionalOcclusion(Filter):
             self.depth,
             self.albedo,
             normal=normal,
-            gathered=settled(draw, "directional_occlusion", self.depth, normal, seen, rays, factor, self.denoise),
+            gathered=denoise_and_enlarge(
+                draw, "directional_occlusion", self.depth, normal, visible, rays, factor, self.denoise
+            ),
             sky=irradiance(draw, "directional_occlusion", sky),
             rays=rays,
             intensity=self.intensity,

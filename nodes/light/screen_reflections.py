@@ -98,7 +98,7 @@ class ScreenReflections(Filter):
             "screen_reflections_roughness",
             self.material,
             result=Field(),
-            linked=draw.linked(self.material),
+            linked=draw.is_linked(self.material),
             roughness=self.roughness,
         )
         mirror = draw(
@@ -115,7 +115,7 @@ class ScreenReflections(Filter):
             sky=self.sky,
             steps=self.steps,
         )
-        if draw.linked(self.material) or self.roughness > 0.0:
+        if draw.is_linked(self.material) or self.roughness > 0.0:
             scattered = draw(
                 "screen_reflections_scattered",
                 self.image,

@@ -55,12 +55,12 @@ class Kuwahara(Filter):
         tones = draw.point("kuwahara_tones", self.image, result=Vector(width=4))
         if self.kind == "classic":
             radius = ceil(self.radius - 0.5)
-            found = draw(
+            smoothed = draw(
                 "kuwahara_quadrants", tones=tones, edge=self.edge, overlap=radius, result=Vector(width=4), radius=radius
             )
         else:
             changes = draw("kuwahara_changes", tones=tones, edge=self.edge, overlap=1, result=Vector(width=3))
-            found = draw(
+            smoothed = draw(
                 "kuwahara_sectors",
                 tones=tones,
                 changes=draw.blur(changes, self.smoothing, self.edge),
@@ -71,4 +71,4 @@ class Kuwahara(Filter):
                 radius=self.radius,
                 sharpness=self.sharpness,
             )
-        return draw.point("kuwahara", tones=found)
+        return draw.point("kuwahara", tones=smoothed)

@@ -33,16 +33,16 @@ class Echo(Filter):
     def passes(self, draw: Draw) -> Drawn:
         """All but the last sum stay in 32 bits."""
         vector, total = Vector(width=4), 1.0
-        seen = draw.point("echo_first", self.image, result=vector)
+        joined = draw.point("echo_first", self.image, result=vector)
         for back in range(1, self.echoes + 1):
             strength = self.decay**back
             total += strength
-            seen = draw.point(
+            joined = draw.point(
                 "echo_join",
                 image=draw.at(self.image, draw.frame - back * self.spacing),
-                seen=seen,
+                seen=joined,
                 strength=strength,
                 mode=self.mode,
                 result=vector,
             )
-        return draw.point("echo", seen=seen, total=total if self.mode == "average" else 1.0)
+        return draw.point("echo", seen=joined, total=total if self.mode == "average" else 1.0)

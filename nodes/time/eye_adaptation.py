@@ -61,15 +61,15 @@ class EyeAdaptation(Temporal):
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         number, natural = Number(), self.model == "natural"
-        if draw.linked(self.luminance):
-            seen = draw.point("eye_adaptation_given", self.luminance, result=number)
+        if draw.is_linked(self.luminance):
+            average = draw.point("eye_adaptation_given", self.luminance, result=number)
         else:
             terms = draw.point("eye_adaptation_terms", self.image, result=Vector(width=2))
-            seen = draw.point("eye_adaptation_average", sums=draw.reduce(terms, "sum"), result=number)
+            average = draw.point("eye_adaptation_average", sums=draw.reduce(terms, "sum"), result=number)
         adapted = draw.point(
             "eye_adaptation_follow",
-            seen=seen,
-            before=draw.history(seen),
+            seen=average,
+            before=draw.history(average),
             passed=1.0 / draw.rate,
             model=self.model,
             times=(self.to_bright, self.to_dark),

@@ -44,16 +44,16 @@ class FrameAverage(Filter):
     def share(self) -> dict[int, float]:
         """What part of the result every frame is, by how many frames later it is."""
         if self.window == "trailing":
-            found = {-back: _weight(self.weights, back / self.frames) for back in range(self.frames)}
+            weights = {-back: _weight(self.weights, back / self.frames) for back in range(self.frames)}
         else:
             reach = self.frames // 2
-            found = {
+            weights = {
                 offset: _weight(self.weights, 2.0 * abs(offset) / (self.frames + 1))
                 * (0.5 if 2 * abs(offset) == self.frames else 1.0)
                 for offset in range(-reach, reach + 1)
             }
-        total = sum(found.values())
-        return {offset: weight / total for offset, weight in found.items()}
+        total = sum(weights.values())
+        return {offset: weight / total for offset, weight in weights.items()}
 
 
 def _weight(shape: Shape, away: float) -> float:

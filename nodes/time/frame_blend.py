@@ -21,10 +21,10 @@ class FrameBlend(Temporal):
     persistence: Annotated[Fraction, Doc("By persistence: what is left after one frame, a.")] = 0.7
 
     def passes(self, draw: Draw) -> Drawn:
-        kept = self.persistence if self.mode == "persistence" else 0.0
+        decay = self.persistence if self.mode == "persistence" else 0.0
         if self.mode == "time" and self.time > 0.0:
-            kept = math.exp(-1.0 / (draw.rate * self.time))
+            decay = math.exp(-1.0 / (draw.rate * self.time))
         first = draw.point("frame_blend_first", self.image, result=Vector(width=4))
-        blended = draw.point("frame_blend", self.image, before=draw.history(first), kept=kept, result=Vector(width=4))
+        blended = draw.point("frame_blend", self.image, before=draw.history(first), kept=decay, result=Vector(width=4))
         draw.remember(blended)
         return blended

@@ -32,11 +32,11 @@ class Freeze(Filter):
     vector_out = Output(Vector(width=4))
 
     def times(self, frame: int) -> Mapping[str, tuple[int, ...]]:
-        return dict.fromkeys(self.inputs, (self._held(frame),))
+        return dict.fromkeys(self.inputs, (self._find_held_frame(frame),))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
         outputs = {"out": self.image, "field_out": self.field, "vector_out": self.vector}
-        return {name: draw.at(socket, self._held(draw.frame)) for name, socket in outputs.items()}
+        return {name: draw.at(socket, self._find_held_frame(draw.frame)) for name, socket in outputs.items()}
 
-    def _held(self, frame: int) -> int:
+    def _find_held_frame(self, frame: int) -> int:
         return self.frame + (frame - self.frame) // self.every * self.every if self.every else self.frame

@@ -36,12 +36,12 @@ class LightTrails(Temporal):
     trail = Output(Image(doc="The trails alone."))
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
-        kept = 1.0
+        decay = 1.0
         if self.fade == "time":
-            kept = math.exp(-1.0 / (draw.rate * self.time)) if self.time > 0.0 else 0.0
+            decay = math.exp(-1.0 / (draw.rate * self.time)) if self.time > 0.0 else 0.0
         vector = Vector(width=4)
         bright = draw.point("light_trails_bright", self.image, threshold=self.threshold, knee=self.knee, result=vector)
-        trail = draw.point("light_trails_fade", bright=bright, before=draw.history(bright), kept=kept, result=vector)
+        trail = draw.point("light_trails_fade", bright=bright, before=draw.history(bright), kept=decay, result=vector)
         draw.remember(trail)
         out = draw.point("light_trails", self.image, trail=trail, intensity=self.intensity)
         return {"out": out, "trail": draw.point("light_trails_alone", trail=trail, intensity=self.intensity)}

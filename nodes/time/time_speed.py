@@ -46,13 +46,17 @@ class TimeSpeed(Filter):
     vector_out = Output(Vector(width=4))
 
     def times(self, frame: int) -> Mapping[str, tuple[int, ...]]:
-        seen = self._source(frame)
-        pair = (math.floor(seen), math.ceil(seen)) if self.between == "blend" else (_nearest(seen),)
-        return dict.fromkeys(self.inputs, (_nearest(seen),)) | {"image": tuple(dict.fromkeys(pair))}
+        source_frame = self._source(frame)
+        pair = (
+            (math.floor(source_frame), math.ceil(source_frame))
+            if self.between == "blend"
+            else (_nearest(source_frame),)
+        )
+        return dict.fromkeys(self.inputs, (_nearest(source_frame),)) | {"image": tuple(dict.fromkeys(pair))}
 
     def passes(self, draw: Draw) -> Mapping[str, Drawn]:
-        seen = self._source(draw.frame)
-        before, near, part = math.floor(seen), _nearest(seen), seen - math.floor(seen)
+        source_frame = self._source(draw.frame)
+        before, near, part = math.floor(source_frame), _nearest(source_frame), source_frame - math.floor(source_frame)
         if self.between == "blend" and part > 0.0:
             image = draw.point(
                 "time_speed_dissolve",
@@ -65,8 +69,8 @@ class TimeSpeed(Filter):
         return {"out": image, "field_out": draw.at(self.field, near), "vector_out": draw.at(self.vector, near)}
 
     def _source(self, frame: int) -> float:
-        seen = self.pivot + self.speed * (frame - self.pivot) if self.mode == "speed" else self.source
-        return round(seen, 6)  # 0.1 times 10 is a whole frame
+        source_frame = self.pivot + self.speed * (frame - self.pivot) if self.mode == "speed" else self.source
+        return round(source_frame, 6)  # 0.1 times 10 is a whole frame
 
 
 def _nearest(frame: float) -> int:

@@ -114,12 +114,12 @@ class LocalToneMap(Filter):
         )
 
     def _average(self, draw: Draw) -> Pixels:
-        if draw.linked(self.average):
+        if draw.is_linked(self.average):
             return self.average
         logs = draw.reduce(draw.point("local_tone_map_log", self.image, result=Vector(width=2)), "sum")
         return draw.point("local_tone_map_average", result=Number(), logs=logs)
 
     def _maximum(self, draw: Draw) -> Pixels:
-        if draw.linked(self.maximum):
+        if draw.is_linked(self.maximum):
             return self.maximum
         return draw.reduce(draw.point("local_tone_map_luminance", self.image, result=Field()), "max")

@@ -63,10 +63,10 @@ class ScotopicVision(Filter):
             self.image,
             result=Field(),
             adaptation=self.adaptation,
-            local=not draw.linked(self.adaptation),
+            local=not draw.is_linked(self.adaptation),
             nits=self.nits,
         )
-        seen = draw.point(
+        night_view = draw.point(
             "scotopic_vision",
             self.image,
             light=light,
@@ -78,15 +78,15 @@ class ScotopicVision(Filter):
         scale = self.amount * self.blur * draw.size[0] / degrees(self.field_of_view) / 1.86
         widest = scale * sqrt(_NIGHT**-2 - _DAY**-2)
         if widest < _FINEST / 2.0:
-            return seen
+            return night_view
         sigma = draw.point("scotopic_vision_sigma", result=Field(), light=light, scale=scale)
         sigmas = [min(_FINEST, widest)]
         while sigmas[-1] < widest:
             sigmas.append(min(sigmas[-1] * _STEP, widest))
-        found: Pixels = seen
+        blurred: Pixels = night_view
         for low, high in zip([0.0, *sigmas], sigmas, strict=False):
-            found = draw.point(
-                "scotopic_vision_blur", sharp=found, soft=draw.blur(seen, high), sigma=sigma, low=low, high=high
+            blurred = draw.point(
+                "scotopic_vision_blur", sharp=blurred, soft=draw.blur(night_view, high), sigma=sigma, low=low, high=high
             )
-        assert not isinstance(found, Image)
-        return found
+        assert not isinstance(blurred, Image)
+        return blurred

@@ -56,7 +56,7 @@ def test_everything_that_a_parameter_can_be() -> None:
     assert kind.order == ("image", "mask", "amount", "shade", "center", "steps", "mode", "invert")
     assert (kind.id, kind.category, kind.title) == ("glsl", "code", "tint")
     assert kind.__doc__ == "Mixes a color into the dark parts.\nRec.709."
-    assert issubclass(kind, Pointwise) and kind(amount=1.0).changed(steps=4).values is kind.values
+    assert issubclass(kind, Pointwise) and kind(amount=1.0).with_values(steps=4).values is kind.values
 
 
 def test_what_looks_around_is_a_filter() -> None:

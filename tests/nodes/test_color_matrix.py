@@ -62,7 +62,7 @@ def test_inverse_undoes(run, hdr, preset):
 def test_a_matrix_without_an_inverse_is_used_as_it_is(run, hdr):
     flat = (0.2, 0.7, 0.1) * 3
     node = ColorMatrix(preset="custom", matrix=flat, direction="inverse")
-    assert node.resolved() == flat
+    assert node.resolve_matrix() == flat
 
 
 def test_the_identity_vanishes(run, hdr):

@@ -26,7 +26,7 @@ def test_declarations():
 
 
 def test_a_list_of_any_length_must_say_what_it_is():
-    with pytest.raises(TypeError, match="Curve or a Ramp"):
+    with pytest.raises(TypeError, match="a Curve, a ColorRamp or Lights"):
         type("Wrong", (Filter,), {"__annotations__": {"many": tuple[float, ...]}, "many": (0.0,), "image": Image()})
 
 

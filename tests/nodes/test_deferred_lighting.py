@@ -404,7 +404,7 @@ def test_a_swarm_fills_its_box_evenly_in_all_its_colors():
     assert octants.min() > 20
     assert lights[0].intensity == -3.0 and lights[0].reach == node.swarm_reach
     assert np.ptp([light.color for light in lights], axis=0).min() > 0.5
-    other = tuple(node.changed(swarm_seed=1)._swarm(1000))
+    other = tuple(node.with_values(swarm_seed=1)._swarm(1000))
     assert other[0].place != lights[0].place
     assert len(tuple(node._swarm(7))) == 7
 

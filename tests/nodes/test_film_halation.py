@@ -116,7 +116,7 @@ def blurred(image: np.ndarray, sigma: float) -> np.ndarray:
 def test_it_is_the_convolution_with_its_point_spread(run, hdr):
     picture = np.pad(hdr(30, 24), ((20, 20), (17, 17), (0, 0)))
     node = FilmHalation(**PLAIN, radius=1.6 / picture.shape[0])
-    spread = run(node.changed(radius=1.6 / 63), {"image": impulse(63)}, output="glow").astype(np.float64)
+    spread = run(node.with_values(radius=1.6 / 63), {"image": impulse(63)}, output="glow").astype(np.float64)
     found = run(node, {"image": picture}, output="glow")
     for channel in range(3):
         expected = fftconvolve(picture[..., channel].astype(np.float64), spread[..., channel], mode="same")

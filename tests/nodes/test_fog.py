@@ -143,6 +143,6 @@ def test_the_fog_glows_towards_the_sun(run):
     expected = np.array([0.2, 0.3, 0.4]) * (1.0 - share) + np.array([2.0, 1.5, 1.0]) * share
     found = run(node, {"image": picture, "depth": depth, "camera": CAMERA})
     np.testing.assert_allclose(found[..., :3], expected, rtol=1e-5)
-    away = node.changed(sun_direction=tuple(-np.array(CAMERA.forward)))
+    away = node.with_values(sun_direction=tuple(-np.array(CAMERA.forward)))
     found = run(away, {"image": picture, "depth": depth, "camera": CAMERA})
     np.testing.assert_allclose(found[0, 0], (0.2, 0.3, 0.4, 1.0), rtol=1e-6)

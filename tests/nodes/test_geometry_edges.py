@@ -97,7 +97,7 @@ def test_the_strongest_line_counts(run):
     node = GeometryEdges(depth_threshold=0.04, softness=0.5, depth_amount=0.8, id_amount=0.3)
     inputs = {"depth": depth, "ids": ids}
     np.testing.assert_allclose(run(node, inputs)[:, 4:6, 0], 0.8 * (0.05 - 0.04) / 0.02, rtol=1e-4)
-    np.testing.assert_allclose(run(node.changed(id_amount=0.7), inputs)[:, 4:6, 0], 0.7, rtol=1e-6)
+    np.testing.assert_allclose(run(node.with_values(id_amount=0.7), inputs)[:, 4:6, 0], 0.7, rtol=1e-6)
     assert (run(GeometryEdges(depth_amount=0.0, id_amount=0.0), inputs) == 0.0).all()
 
 

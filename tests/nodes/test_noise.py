@@ -24,7 +24,7 @@ def folded(fractal: str, layer: np.ndarray, contrast: float, carried: np.ndarray
 def model(p: np.ndarray, node: Noise) -> np.ndarray:
     """All three outputs of the node in double precision, -1..1: [h, w, 3]."""
     if node.fractal == "warped":
-        bend = model(p, node.changed(fractal="fbm", contrast=1.0))[..., 1:]
+        bend = model(p, node.with_values(fractal="fbm", contrast=1.0))[..., 1:]
         p = p + node.warp * np.concatenate([bend, 0 * bend[..., :1]], -1)
     total, carried, strengths = np.zeros(p.shape), np.ones(p.shape), node.gain ** np.arange(node.octaves)
     for octave, strength in enumerate(strengths):
@@ -198,7 +198,7 @@ def test_evolution_is_smooth(run, kind, fractal):
 
     def change(step: float) -> float:
         node = Noise(kind=kind, fractal=fractal, size=16.0, octaves=2, contrast=1.0, warp=0.5)
-        first, then = (run(node.changed(evolution=z), size=(48, 48), output="value") for z in (0.7, 0.7 + step))
+        first, then = (run(node.with_values(evolution=z), size=(48, 48), output="value") for z in (0.7, 0.7 + step))
         return float(np.abs(first - then).mean())
 
     assert 0.0 < change(0.001) < 0.15 * change(0.01) < 0.002
@@ -214,5 +214,5 @@ def test_simplex_features_are_as_large_as_those_of_gradient_noise(run):
 
 def test_simplex_noise_is_as_strong_at_every_evolution(run):
     node = Noise(kind="simplex", size=4.0, octaves=1, contrast=1.0)
-    spreads = [run(node.changed(evolution=z), size=(256, 256), output="value").std() for z in (0.0, 0.37, 1.0, 5.5)]
+    spreads = [run(node.with_values(evolution=z), size=(256, 256), output="value").std() for z in (0.0, 0.37, 1.0, 5.5)]
     assert np.ptp(spreads) < 0.03 * np.mean(spreads)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from random import Random
 
 import pytest
-from halation.nodes import Matte, float_bits, listed, matte_of, murmur3, picked, picked_names, toggled
+from halation.nodes import Matte, float_bits, format_names, matte_of, murmur3, pick_ids, pick_names, toggle_name
 
 NAMES = ("monkey", "ring_blue", "ring_pink", "a, b", 'say "hi"', "-minus", "x*", "[y]", " blank ", "Ärger", "two words")
 MANIFEST = {name: murmur3(name.encode()) for name in NAMES}
@@ -13,8 +13,8 @@ MANIFEST = {name: murmur3(name.encode()) for name in NAMES}
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_name_can_be_listed(name):
-    assert picked_names(listed([name]), MANIFEST) == {name}
-    assert picked_names(listed(["*", f"-{name}"]), MANIFEST) == set(NAMES) - {name}
+    assert pick_names(format_names([name]), MANIFEST) == {name}
+    assert pick_names(format_names(["*", f"-{name}"]), MANIFEST) == set(NAMES) - {name}
 
 
 @pytest.mark.parametrize(
@@ -36,21 +36,21 @@ def test_every_name_can_be_listed(name):
     ],
 )
 def test_a_click_changes_one_name(pick, name, wanted):
-    assert toggled(pick, name, MANIFEST) == wanted
+    assert toggle_name(pick, name, MANIFEST) == wanted
 
 
 def test_whatever_was_typed_a_click_changes_that_name_alone():
     random = Random(5)
     entries = [*map(str, NAMES), "ring_*", "?onkey", "-ring_*", "-monkey", "*", "-*", "nobody", "[xy]*"]
     for _ in range(2000):
-        pick = listed(random.choices(entries, k=random.randint(0, 5)))
+        pick = format_names(random.choices(entries, k=random.randint(0, 5)))
         name = random.choice(NAMES)
-        before, after = picked_names(pick, MANIFEST), picked_names(toggled(pick, name, MANIFEST), MANIFEST)
+        before, after = pick_names(pick, MANIFEST), pick_names(toggle_name(pick, name, MANIFEST), MANIFEST)
         assert after == ({name} if pick == "*" else before ^ {name}), (pick, name)
 
 
 def test_a_name_that_is_not_in_the_manifest_is_hashed():
-    assert picked("first, monkey", {}) == {float_bits(murmur3(b"first")), float_bits(murmur3(b"monkey"))}
+    assert pick_ids("first, monkey", {}) == {float_bits(murmur3(b"first")), float_bits(murmur3(b"monkey"))}
 
 
 def test_which_cryptomatte_is_meant():

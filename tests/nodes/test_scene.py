@@ -40,7 +40,7 @@ def rendered(renderer, node, frame=1, size=SIZE, scale=1.0):
 
 def camera_of(node: Scene, frame: int = 1, size=SIZE):
     """The same camera, as the node says, in working units."""
-    return node.working(1.0, size[1])._camera(frame, size[0] / size[1])
+    return node.to_working_units(1.0, size[1])._camera(frame, size[0] / size[1])
 
 
 def cast(mesh, camera, pixels, size=SIZE):
@@ -101,7 +101,7 @@ def test_velocity_is_where_the_same_point_was_and_will_be(renderer):
     node = Scene(scene="corner", orbit=2.0, drift=(0.1, 0.0, 0.05), turn=3.0)
     found = rendered(renderer, node, frame=4)
     cameras = [camera_of(node, frame) for frame in (4, 3, 5)]
-    motions = [np.reshape(node.working(1.0, SIZE[1])._motion(frame), (3, 4)) for frame in (4, 3, 5)]
+    motions = [np.reshape(node.to_working_units(1.0, SIZE[1])._motion(frame), (3, 4)) for frame in (4, 3, 5)]
     moving = found["object_id"][..., 0] == 5
     assert 50 < moving.sum() < moving.size / 2
     place = found["position"].reshape(-1, 3)

@@ -106,7 +106,7 @@ def test_only_light_near_the_source_and_in_the_mask(run, hdr):
     masked = run(node, {"image": picture, "mask": mask}, output="glow")
     cut = run(node, {"image": picture * np.r_[mask[0], 1.0][:60, None]}, output="glow")
     np.testing.assert_allclose(masked[..., :3], cut[..., :3], rtol=1e-6)
-    near = run(node.changed(radius=0.2), {"image": picture}, output="glow")
+    near = run(node.with_values(radius=0.2), {"image": picture}, output="glow")
     x, y = away(60, 40, (0.5, 0.5))
     ramp = np.clip(np.hypot(x, y) / 8.0 - 1.0, 0.0, 1.0)
     window = 1.0 - ramp**2 * (3.0 - 2.0 * ramp)

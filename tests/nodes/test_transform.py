@@ -98,9 +98,9 @@ def test_shrinking_does_not_alias(run, kernel):
 
 def test_inverse_is_the_inverse_matrix():
     pivot = (12.0, 9.0)
-    node = Transform(position=(5.0, -3.0), rotation=40.0, scale=(1.5, 0.7), pivot=(0.3, 0.3)).working(1.0, 30)
+    node = Transform(position=(5.0, -3.0), rotation=40.0, scale=(1.5, 0.7), pivot=(0.3, 0.3)).to_working_units(1.0, 30)
     matrices = [
-        np.array([*node.changed(direction=direction).backward(pivot), 0, 0, 1]).reshape(3, 3)
+        np.array([*node.with_values(direction=direction).backward(pivot), 0, 0, 1]).reshape(3, 3)
         for direction in ("forward", "inverse")
     ]
     assert np.abs(matrices[0] @ matrices[1] - np.eye(3)).max() < 1e-12
@@ -172,7 +172,7 @@ def test_five_in_a_row_sample_once_by_their_product(run, hdr, edge, seed, size):
 def test_the_last_kernel_filters_them_all(run, hdr):
     picture, nodes = hdr(48, 40), moves(7, 4, kernel="nearest")
     nodes.append(Transform(rotation=9.0, kernel="lanczos"))
-    nodes = [node.changed(scale=(1.0, 1.0)) for node in nodes]
+    nodes = [node.with_values(scale=(1.0, 1.0)) for node in nodes]
     matrix = tuple(float(part) for part in product(nodes, (48, 40)).T.ravel())
     expected = oiio.ImageBufAlgo.warp(buffer(picture), matrix, "lanczos3", wrap="black").get_pixels("float")
     found = run(chain(nodes), {"image": picture}, output="out4")
@@ -195,7 +195,7 @@ def test_there_and_back_is_the_picture_itself(run, hdr, renderer, kernel):
     picture = hdr(37, 26)
     for seed in range(5):
         there = moves(seed, 3, kernel=kernel)
-        back = [node.changed(direction="inverse") for node in reversed(there)]
+        back = [node.with_values(direction="inverse") for node in reversed(there)]
         np.testing.assert_array_equal(run(chain([*there, *back]), {"image": picture}, output="out5"), picture)
     turns = [Transform(rotation=angle, kernel=kernel) for angle in (33.3, -33.3)]
     np.testing.assert_array_equal(run(chain(turns), {"image": picture}, output="out1"), picture)

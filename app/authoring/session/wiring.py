@@ -185,7 +185,7 @@ class Wiring(State):
         """A node that cuts out of the render that another one reads, beside it; returns its id."""
         made = self._new("cryptomatte")
         path = self.graph.value(Port(id, "path"))
-        made = made.changed(path=path, **({"layer": kind} if kind else {}))
+        made = made.with_values(path=path, **({"layer": kind} if kind else {}))
         x, y = self.positions[id]
         return self._add("cryptomatte", made, (x, y - ABOVE), None, True)
 
@@ -229,7 +229,7 @@ class Wiring(State):
         if Path(path).suffix.lower() in coding.ENDINGS:
             return coding.file_item(self.relative(path), self.root.folder)
         type_id = "read_render" if "read_render" in self.types and is_render(standing(Path(path))) else "read_image"
-        return self._new(type_id).changed(path=self.relative(path))
+        return self._new(type_id).with_values(path=self.relative(path))
 
     def _middle(self, target: Port) -> Place:
         """Halfway between the ends of a link."""

@@ -103,7 +103,7 @@ class Recorder:
         operand = self._operand(pixels)
         return self._builder.shape(operand).size if isinstance(operand, Ref) else (1, 1)
 
-    def linked(self, socket: Socket) -> bool:
+    def is_linked(self, socket: Socket) -> bool:
         return socket.name in self._fed.linked
 
     def camera(self, socket: CameraSocket, frame: int | None = None) -> Camera | None:

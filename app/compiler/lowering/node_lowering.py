@@ -18,7 +18,7 @@ from halation.nodes import (
     Value,
     curve_knots,
     ramp_knots,
-    working_factor,
+    unit_factor,
 )
 from msgspec import Struct
 from msgspec.structs import replace
@@ -83,7 +83,7 @@ class NodeLowering:
                 step.results[Port(path, name), frame - context.frame] = fitted
             return
         self._fit_all(inputs, size)
-        working = node.working(context.request.scale, size[1])
+        working = node.to_working_units(context.request.scale, size[1])
         if isinstance(working, Pointwise):
             self._lower_pointwise(replace(inputs, node=working), working, size, step)
         elif isinstance(working, Filter):
@@ -203,7 +203,7 @@ class NodeLowering:
     def _value_parameter(self, node: Node, value: Value, wire: Operand | None, size: Size) -> Parameter:
         glsl = value.glsl or "float"
         if wire is not None:
-            factor = working_factor(value.unit, self._context.request.scale, size[1])
+            factor = unit_factor(value.unit, self._context.request.scale, size[1])
             if isinstance(wire, UniformConstant):
                 return Parameter(glsl, constants.limited(wire, value, factor))
             return Parameter(glsl, wire, factor, value.minimum, value.maximum)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from halation.nodes import Matte, picked_names, toggled
+from halation.nodes import Matte, pick_names, toggle_name
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
@@ -55,7 +55,7 @@ class MatteRows:
         if session.linked(port) is not None:
             return
         names = self._found(rows, key, matte)
-        self._list(rows, key, names, picked, lambda name: session.set(port, toggled(pick, name, matte.ids)))
+        self._list(rows, key, names, picked, lambda name: session.set(port, toggle_name(pick, name, matte.ids)))
         self._buttons(rows, port)
 
     # --- parts -------------------------------------------------------------------------------------------------------
@@ -64,7 +64,7 @@ class MatteRows:
         """The names that are picked, until something changes."""
         if not self._known or self._known[0] != pick or self._known[1] is not matte.ids:
             before, same = self._picked, bool(self._known) and self._known[1] is matte.ids
-            self._known, self._picked = (pick, matte.ids), picked_names(pick, matte.ids)
+            self._known, self._picked = (pick, matte.ids), pick_names(pick, matte.ids)
             new = self._picked - before if same else frozenset[str]()
             self._seek = next(iter(new)) if len(new) == 1 else ""
         return self._picked

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from halation.nodes import Matte, float_bits, picked, toggled
+from halation.nodes import Matte, float_bits, pick_ids, toggle_name
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
@@ -59,7 +59,7 @@ def under(context: ViewerContext, sight: Sight, at: Point) -> Under | None:
         return None
     name = known.names.get(id, "")
     alone = {name: matte.ids[name]} if name in matte.ids else {}
-    on = bool(alone) and float_bits(matte.ids[name]) in picked(str(context.session.value(port)), alone)
+    on = bool(alone) and float_bits(matte.ids[name]) in pick_ids(str(context.session.value(port)), alone)
     return Under(port, matte, id, name if alone else "", on)
 
 
@@ -72,7 +72,7 @@ def click(context: ViewerContext, sight: Sight, at: Point) -> None:
         context.log.add(f"the file has no name for the id {found.id:08x}: it cannot be picked by name")
         return
     session = context.session
-    pick = toggled(str(session.value(found.port)), found.name, found.matte.ids)
+    pick = toggle_name(str(session.value(found.port)), found.name, found.matte.ids)
     context.log.attempt(lambda: session.set(found.port, pick))
 
 
