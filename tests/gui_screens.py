@@ -9,8 +9,8 @@ from pathlib import Path
 from gui_driver import Ui
 from gui_keys import animation
 from halation import presets
-from halation.authoring.services.export import Export, Job, State
-from halation.authoring.services.recovery import Recovery
+from halation.authoring.recovery.recovery import RecoveryFile
+from halation.authoring.render_queue.queued_render import QueuedJob, QueuedRender, RenderState
 from halation.document import save
 from halation.editor.shared.dialogs import Browse, Purpose, Question
 from halation.editor.window.editor import Editor
@@ -241,12 +241,14 @@ def panels(ui: Ui) -> Screens:
     show(ui, "Graph")
 
 
-def render(place: Path, state: State, done: int = 0, total: int = 24, **facts: object) -> Export:
+def render(place: Path, state: RenderState, done: int = 0, total: int = 24, **facts: object) -> QueuedRender:
     """A render to files as the panel sees it, without a process."""
-    made = Export(Job(RenderJob(destinations=(("image", str(place)),), frames=tuple(range(1, total + 1))), Graph()))
+    made = QueuedRender(
+        QueuedJob(RenderJob(destinations=(("image", str(place)),), frames=tuple(range(1, total + 1))), Graph())
+    )
     made.state, made.done = state, done
-    made.began, made.ended = 1.0, 0.0 if state in ("running", "waiting") else 43.0
-    made.written = tuple(place.with_name(f"{place.stem}.{frame:04d}.exr") for frame in range(1, done + 1))
+    made.started_at, made.ended_at = 1.0, 0.0 if state in ("running", "waiting") else 43.0
+    made.written_files = tuple(place.with_name(f"{place.stem}.{frame:04d}.exr") for frame in range(1, done + 1))
     for name, fact in facts.items():
         setattr(made, name, fact)
     return made
@@ -278,7 +280,7 @@ def files(ui: Ui) -> Screens:
     """The file browser as pictures and as a list, opening and saving."""
     purposes: tuple[tuple[Purpose, bool], ...] = (("image", False), ("graph", False), ("export", True))
     for purpose, saving in purposes:
-        ui.editor.store.used(purpose, (SAMPLES if purpose == "image" else SAMPLES.parent) / "x")
+        ui.editor.store.note_folder(purpose, (SAMPLES if purpose == "image" else SAMPLES.parent) / "x")
         ui.editor.dialogs.browse = Browse(f"Choose: {purpose}", purpose, lambda path: None, saving, "halation.png")
         ui.wait(12)
         yield f"files_{purpose}"
@@ -362,11 +364,11 @@ def start(ui: Ui) -> Screens:
     yield "start_first"
     ui.editor.dialogs.open.clear()
     ui.wait(2)
-    lost = Recovery(ui.editor.store.file.parent, 0.05)
+    lost = RecoveryFile(ui.editor.store.file.parent, 0.05)
     lost.note(Graph().add("noise", catalogue()["noise"]()), Path("/pictures/lost_look.json"), True)
     lost.close(keep=True)
     for path in (*presets.paths()[:4], Path("/pictures/a/long/way/down/gone_with_the_wind.json")):
-        ui.editor.store.opened(path)
+        ui.editor.store.note_opened(path)
     _open_start(ui.editor)
     ui.wait(6)
     yield "start_later"

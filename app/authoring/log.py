@@ -19,7 +19,7 @@ TOAST_SECONDS = 6.0
 
 
 @dataclass(frozen=True)
-class Entry:
+class LogEntry:
     """One sentence; `detail` (a traceback, say) is shown on demand. `at` is seconds since the epoch."""
 
     sentence: str
@@ -32,7 +32,7 @@ class Entry:
 class Log:
     """The newest sentences, oldest first."""
 
-    entries: deque[Entry] = field(default_factory=lambda: deque[Entry](maxlen=KEPT))
+    entries: deque[LogEntry] = field(default_factory=lambda: deque[LogEntry](maxlen=KEPT))
     dismissed: float = 0.0
     """Entries up to this time are not repeated as toasts any more."""
 
@@ -41,7 +41,7 @@ class Log:
         newest = self.entries[-1] if self.entries else None
         if newest and (newest.sentence, newest.level, newest.detail) == (sentence, level, detail):
             self.entries.pop()
-        self.entries.append(Entry(sentence, level, detail))
+        self.entries.append(LogEntry(sentence, level, detail))
 
     def attempt(self, act: Callable[[], T], default: T | None = None) -> T | None:
         """Do something that the user asked for; what goes wrong becomes an entry, and `default` is returned.
@@ -61,7 +61,7 @@ class Log:
             )
         return default
 
-    def toasts(self) -> tuple[Entry, ...]:
+    def toasts(self) -> tuple[LogEntry, ...]:
         """What was said just now."""
         since = max(time() - TOAST_SECONDS, self.dismissed)
         return tuple(entry for entry in self.entries if entry.at > since)

@@ -12,19 +12,7 @@ import typer
 from ..resources.render_choices import DEFAULT_TIMEOUT
 from . import parsing
 from .batch import shown
-from .options import (
-    AsJson,
-    Form,
-    GraphFile,
-    Inputs,
-    Node,
-    Scale,
-    Sets,
-    SizeText,
-    bound,
-    opened,
-    report_problems,
-)
+from .options import AsJson, Form, GraphFile, Inputs, Node, Scale, Sets, SizeText, bound, opened, report_problems
 from .outcome import print_json
 from .watchdog import Timeout, rerun_watched
 

@@ -7,19 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from . import parsing
-from .options import (
-    AsJson,
-    GraphFile,
-    Inputs,
-    Memory,
-    Node,
-    Scale,
-    Sets,
-    SizeText,
-    bound,
-    opened,
-    report_problems,
-)
+from .options import AsJson, GraphFile, Inputs, Memory, Node, Scale, Sets, SizeText, bound, opened, report_problems
 from .outcome import print_json
 
 if TYPE_CHECKING:

@@ -159,15 +159,15 @@ def light_of(kind: Kind, array: Array) -> Array:
     """An output as light of the display, which a picture that stays within 0..1 is taken to be already."""
     from halation.nodes import Kind
 
-    from ..authoring.preview.data import are_normals, balanced, data_range
+    from ..authoring.preview.data_range import are_normals, balance_range, find_data_range
     from ..media.comparison.contact_sheet import show_any_light, show_data, show_over_checker
 
     if kind in (Kind.IMAGE, Kind.COLOR):
         return show_over_checker(array, "none" if array[..., :3].max() <= 1.0 else "")
     array = array.astype("float32")
-    low, high = data_range(array)
+    low, high = find_data_range(array)
     if low >= 0.0 and high > 1.0:
         return show_any_light(array)
     if kind is Kind.VECTOR:
-        return show_data(array, *((-1.0, 1.0) if are_normals(array) else balanced(low, high)))
+        return show_data(array, *((-1.0, 1.0) if are_normals(array) else balance_range(low, high)))
     return show_data(array, low, high)

@@ -11,18 +11,7 @@ import typer
 from ..resources.render_choices import DEFAULT_TIMEOUT
 from . import parsing
 from .batch import batch
-from .options import (
-    AsJson,
-    GraphFile,
-    Inputs,
-    Node,
-    Precision,
-    Scale,
-    SizeText,
-    bound,
-    opened,
-    report_problems,
-)
+from .options import AsJson, GraphFile, Inputs, Node, Precision, Scale, SizeText, bound, opened, report_problems
 from .outcome import note, print_json
 from .sweeping import axes
 from .watchdog import Timeout, rerun_watched

@@ -24,7 +24,7 @@ class LazyResourceProvider:
     @cached_property
     def pictures(self) -> MediaProvider:
         """The provider that reads files."""
-        from ..inputs.provider import MediaProvider
+        from .provider import MediaProvider
 
         return MediaProvider()
 

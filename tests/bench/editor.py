@@ -28,7 +28,7 @@ sys.path.append(str(Path(__file__).parents[1]))
 import numpy as np
 from gui_driver import Ui, drive, headless
 from halation import document
-from halation.authoring.preview import Glimpse, Preview
+from halation.authoring.preview import Preview, VisibleRegion
 from halation.editor.window.panels import DOCKED
 from halation.graph import Graph, Output, Port
 from halation.nodes import Kind, catalogue
@@ -148,7 +148,7 @@ def zoomed(folder: Path) -> dict[str, Any]:
     renderer = Renderer()
     for width, height in ((1920, 1080), (3840, 2160)):
         box = (0.3, 0.3, 0.3 + 640 / width, 0.3 + 360 / height)
-        glimpse, graph = Glimpse(box, (width, height), frozenset("A")), chain(list(_STACK), (width, height))
+        glimpse, graph = VisibleRegion(box, (width, height), frozenset("A")), chain(list(_STACK), (width, height))
         preview, value = Preview(renderer, Display(renderer.device)), 1.0
         preview.thumbnailing = False
         for word in ("n0.stops", "n1.sigma", "n5.saturation"):

@@ -222,7 +222,7 @@ def test_code_is_added_from_the_list(gui, path) -> None:
         for query, id, kind in (("code", "code", "glsl"), ("red room", "Red_Room", "isf")):
             ui.editor.canvas.searching = True
             ui.wait(4)
-            ui.until(lambda: ui.editor.shaders.find(ui.editor.store.now.isf_folders) is not None)
+            ui.until(lambda: ui.editor.shaders.find(ui.editor.store.current.isf_folders) is not None)
             ui.ctx.key_chars(query)
             ui.wait(3)
             ui.shot(f"code_search_{kind}.png")

@@ -171,7 +171,7 @@ def test_work_is_offered_again_after_the_process_was_killed(gui, look: Path, tmp
 
     def body(ui) -> None:
         assert "start" in ui.editor.dialogs.open
-        (found,) = ui.editor.recovery.found()
+        (found,) = ui.editor.recovery.find_abandoned()
         assert found.path == look
         ui.click("recover 0")
         ui.wait(3)

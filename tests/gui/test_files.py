@@ -26,7 +26,7 @@ def shelf(tmp_path: Path) -> Path:
 
 def at(ui, folder: Path) -> None:
     for purpose in ("graph", "image", "export"):
-        ui.editor.store.used(purpose, folder / "x")
+        ui.editor.store.note_folder(purpose, folder / "x")
 
 
 def test_a_graph_is_opened_by_keyboard(gui, shelf: Path) -> None:

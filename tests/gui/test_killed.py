@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytest
 from halation import document, presets
-from halation.authoring.services.recovery import Recovery
+from halation.authoring.recovery.recovery import RecoveryFile
 from halation.graph import Port
 
 ROUNDS = int(os.environ.get("HALATION_KILLS", "10"))
@@ -84,8 +84,8 @@ def test_killed_while_editing_and_saving(tmp_path: Path) -> None:
         one = killed(path, state, chance.uniform(0.0, 0.4) if round % 5 else chance.uniform(1.2, 1.8))
         there = document.load(path).value(STOPS) * 1024
         assert not one.saved or one.saved <= there <= one.saved + 7, "the last save is whole"
-        after = Recovery(state)
-        for found in after.found():
+        after = RecoveryFile(state)
+        for found in after.find_abandoned():
             offered += 1
             assert found.path == path
             number = int(found.load().value(STOPS) * 1024)

@@ -32,7 +32,7 @@ def test_the_palette_runs_an_action(gui) -> None:
         ui.shot("palette.png")
         ui.keys("Enter")
         assert not ui.editor.dialogs.any
-        assert ui.editor.store.now.theme == "light"
+        assert ui.editor.store.current.theme == "light"
         ui.keys("Ctrl+P")
         ui.type("gb", enter=False)
         ui.keys("DownArrow")
@@ -93,19 +93,19 @@ def test_a_shortcut_that_is_taken_is_offered(gui) -> None:
         ui.click("page Shortcuts")
         ui.click("shortcut file.new")
         ui.keys("Ctrl+O")
-        assert ui.editor.store.now.shortcuts == {}
+        assert ui.editor.store.current.shortcuts == {}
         assert ui.editor.dialogs.browse is None
         ui.shot("conflict.png")
         ui.click("take over")
-        assert dict(ui.editor.store.now.shortcuts) == {"file.new": "Ctrl+O", "file.open": ""}
+        assert dict(ui.editor.store.current.shortcuts) == {"file.new": "Ctrl+O", "file.open": ""}
         ui.click("shortcut file.new")
         ui.keys("Escape")
         assert "preferences" in ui.editor.dialogs.open
         ui.click("shortcut file.new")
         ui.keys("F7")
-        assert ui.editor.store.now.shortcuts["file.new"] == "F7"
+        assert ui.editor.store.current.shortcuts["file.new"] == "F7"
         ui.click("reset shortcuts")
-        assert ui.editor.store.now.shortcuts == {}
+        assert ui.editor.store.current.shortcuts == {}
         ui.keys("Escape")
         assert not ui.editor.dialogs.any
 
@@ -116,17 +116,17 @@ def test_preferences_hold_at_once(gui) -> None:
     def body(ui) -> None:
         ui.keys("Ctrl+Comma")
         ui.click("theme light", fraction=(0.1, 0.5))
-        assert ui.editor.store.now.theme == "light"
+        assert ui.editor.store.current.theme == "light"
         ui.click("preference thumbnails", fraction=(0.1, 0.5))
-        assert not ui.editor.store.now.thumbnails
+        assert not ui.editor.store.current.thumbnails
         ui.click("page System")
         ui.shot("system.png")
         ui.click("preference autosave", keys="Ctrl")
         ui.type("2")
-        assert ui.editor.store.now.autosave == 2.0
+        assert ui.editor.store.current.autosave == 2.0
         assert ui.editor.recovery.interval == 2.0
         ui.click("reset preferences")
-        assert ui.editor.store.now.theme == "dark"
+        assert ui.editor.store.current.theme == "dark"
         assert ui.editor.recovery.interval == 5.0
         ui.click("close preferences")
         assert not ui.editor.dialogs.any
@@ -199,10 +199,10 @@ def test_the_start_screen_opens_a_preset(gui) -> None:
 
 def test_recent_files_are_offered_and_forgotten(gui, look: Path) -> None:
     def first(ui) -> None:
-        ui.editor.store.opened(look.parent / "gone.json")
+        ui.editor.store.note_opened(look.parent / "gone.json")
 
     def second(ui) -> None:
-        assert [Path(one.path).name for one in ui.editor.store.now.recent] == ["gone.json", "look.json"]
+        assert [Path(one.path).name for one in ui.editor.store.current.recent] == ["gone.json", "look.json"]
         ui.shot("start.png")
         ui.click("recent 0")
         assert "start" in ui.editor.dialogs.open
@@ -241,7 +241,7 @@ def test_a_render_from_the_form(gui, look: Path) -> None:
         ui.click("render")
         (export,) = ui.editor.exports.all
         ui.until(lambda: export.state != "running", 60)
-        assert (export.state, export.sentence) == ("done", "")
+        assert (export.state, export.failure) == ("done", "")
         assert (look.parent / "look.exr").is_file()
         ui.click("copy path 0")
         assert ui.editor.clipboard.get() == str(look.parent / "look.exr")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from halation.authoring.preview import rounds
+from halation.authoring.preview import work as rounds
 from halation.document import save
 from halation.editor.window.status import _figures
 from halation.graph import Graph, Output, Port, Settings

@@ -86,7 +86,7 @@ def test_a_range_is_rendered_and_played(gui, shot: Path) -> None:
         ui.wait(3)
         ui.shot("queue_running.png")
         ended(ui)
-        assert (export.state, export.sentence, export.done) == ("done", "", 8)
+        assert (export.state, export.failure, export.done) == ("done", "", 8)
         assert len(list(shot.parent.glob("comp.*.exr"))) == 8
         ui.until(lambda: "render exists" in ui.editor.places)
         ui.click("render resume instead")

@@ -13,7 +13,7 @@ import pytest
 from devices import open_renderer
 from exr_files import write_exr
 from halation import document, media
-from halation.authoring.preview.data import data_range
+from halation.authoring.preview.data_range import find_data_range
 from halation.cli.specimen import drawn, over
 from halation.color.transforms import decode_srgb
 from halation.compiler import installed
@@ -172,7 +172,7 @@ def seen(array: Array, reference: Array, kind: Kind) -> Array:
     if kind is Kind.IMAGE:
         light = array if reference[..., :3].max() <= 1.0 else array / (1.0 + np.maximum(array, 0.0))
     else:
-        low, high = data_range(reference)
+        low, high = find_data_range(reference)
         light = decode_srgb(np.clip((array - low) / (high - low), 0.0, 1.0))
     light = np.pad(light, ((0, 0), (0, 0), (0, 1))) if light.shape[2] == 2 else light
     light = light[..., [0, 0, 0]] if light.shape[2] == 1 else light[..., :3]

@@ -8,32 +8,32 @@ from typing import Literal, get_args
 from ...errors import GraphError
 from ...graph import Graph
 from .elements import Place, Sizes
-from .sizes import size
+from .sizes import element_size
 
 Side = Literal["left", "right", "top", "bottom", "center x", "center y", "distribute x", "distribute y"]
 
 
-def aligned(
-    graph: Graph, some: Collection[str], side: str, places: Mapping[str, Place], sizes: Sizes | None = None
+def align_elements(
+    graph: Graph, elements: Collection[str], side: str, places: Mapping[str, Place], sizes: Sizes | None = None
 ) -> dict[str, Place]:
     """The new places of some elements.
 
     `left` to `bottom` line up that edge with the outermost one, `center x` and `center y` the centers with their mean;
     `distribute` leaves the outermost elements and makes the gaps between all equal. Raises GraphError.
     """
-    across = side in ("left", "right", "center x", "distribute x")
+    is_horizontal = side in ("left", "right", "center x", "distribute x")
     if side.startswith("distribute"):
-        if len(some) < 3:
+        if len(elements) < 3:
             raise GraphError("select at least three elements to distribute")
-    elif len(some) < 2:
+    elif len(elements) < 2:
         raise GraphError("select at least two elements to align")
-    axis = 0 if across else 1
-    spans = {key: (places[key][axis], size(graph, key, sizes)[axis]) for key in some}
-    starts = _starts(spans, side)
-    return {key: (starts[key], places[key][1]) if across else (places[key][0], starts[key]) for key in some}
+    axis = 0 if is_horizontal else 1
+    spans = {key: (places[key][axis], element_size(graph, key, sizes)[axis]) for key in elements}
+    starts = _align_spans(spans, side)
+    return {key: (starts[key], places[key][1]) if is_horizontal else (places[key][0], starts[key]) for key in elements}
 
 
-def _starts(spans: Mapping[str, tuple[float, float]], side: str) -> dict[str, float]:
+def _align_spans(spans: Mapping[str, tuple[float, float]], side: str) -> dict[str, float]:
     """Where each span (start, length) starts afterwards."""
     match side:
         case "left" | "top":
@@ -46,11 +46,11 @@ def _starts(spans: Mapping[str, tuple[float, float]], side: str) -> dict[str, fl
             mean = sum(start + length / 2.0 for start, length in spans.values()) / len(spans)
             return {key: mean - length / 2.0 for key, (_, length) in spans.items()}
         case "distribute x" | "distribute y":
-            return _distributed(spans)
+            return _distribute(spans)
     raise GraphError(f"'{side}' is no way to align: it is one of {', '.join(get_args(Side))}")
 
 
-def _distributed(spans: Mapping[str, tuple[float, float]]) -> dict[str, float]:
+def _distribute(spans: Mapping[str, tuple[float, float]]) -> dict[str, float]:
     order = sorted(spans, key=lambda key: (spans[key][0] + spans[key][1] / 2.0, key))
     first, last = spans[order[0]][0], sum(spans[order[-1]])
     gap = (last - first - sum(length for _, length in spans.values())) / (len(order) - 1)

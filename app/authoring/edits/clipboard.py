@@ -12,9 +12,9 @@ from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Port
 from ...graph.names import fresh_name
 from . import timing
-from .elements import Place, end_port, entry, keys, owner, with_entries, with_places
-from .layout import positions, uncovered
-from .merging import merged, moved_dots
+from .elements import Place, element_of, end_port, entry, list_elements, with_entries, with_places
+from .layout import positions, shift_off
+from .merging import merge_part, rename_dots
 from .paths import rebased
 from .routes import routes, with_routes
 from .wiring import Types
@@ -23,21 +23,21 @@ _FROM = "from"
 """Where relative paths of the text start."""
 
 
-def part(graph: Graph, chosen: Collection[str]) -> Graph:
+def cut_part(graph: Graph, chosen: Collection[str]) -> Graph:
     """A graph of the chosen elements: with the links that lead to them, even from what was not chosen."""
-    known = [key for key in keys(graph) if key in chosen]
-    links = {end: start for end, start in graph.links.items() if owner(end) in chosen}
-    inner = [end for end, start in links.items() if owner(start) in chosen]
+    elements = [key for key in list_elements(graph) if key in chosen]
+    links = {end: start for end, start in graph.links.items() if element_of(end) in chosen}
+    inner = [end for end, start in links.items() if element_of(start) in chosen]
     passed = {end: dots for end in inner if (dots := routes(graph).get(str(end)))}
     dots = {f"dots.{dot}" for route in passed.values() for dot in route}
     spots = positions(graph)
-    found = Graph(
+    copied_graph = Graph(
         nodes={id: item for id, item in graph.nodes.items() if id in chosen},
         links=links,
         inputs={name: end for name, end in graph.inputs.items() if f"{INPUTS}.{name}" in chosen},
         outputs={name: end for name, end in graph.outputs.items() if f"{OUTPUTS}.{name}" in chosen},
         muted=graph.muted.intersection(chosen),
-        animation=timing.of_nodes(graph, chosen),
+        animation=timing.animation_of(graph, chosen),
         folder=graph.folder,
         extra={
             path: kept
@@ -45,31 +45,31 @@ def part(graph: Graph, chosen: Collection[str]) -> Graph:
             if ".".join(path.split(".")[1:2]) in chosen and path.startswith("nodes.")
         },
     )
-    laid = [key for key in known if not key.startswith("dots.")] + sorted(dots)
-    found = with_entries(found, {key: entry(graph, key) for key in laid})
-    return with_routes(with_places(found, {key: spots[key] for key in laid}), passed)
+    laid = [key for key in elements if not key.startswith("dots.")] + sorted(dots)
+    copied_graph = with_entries(copied_graph, {key: entry(graph, key) for key in laid})
+    return with_routes(with_places(copied_graph, {key: spots[key] for key in laid}), passed)
 
 
-def copied(graph: Graph, chosen: Collection[str]) -> str:
+def copy_elements(graph: Graph, chosen: Collection[str]) -> str:
     """The chosen elements as text: a graph file, which says in `from` where its relative paths start."""
-    found = part(graph, chosen)
+    copied_graph = cut_part(graph, chosen)
     folder = str(Path(graph.folder).absolute())
-    return dumps(replace(found, extra={**found.extra, "": {_FROM: folder}}))
+    return dumps(replace(copied_graph, extra={**copied_graph.extra, "": {_FROM: folder}}))
 
 
-def read(text: str, folder: str, types: Types) -> Graph:
+def read_part(text: str, folder: str, types: Types) -> Graph:
     """The graph in a text, with paths that start in `folder`. Raises GraphError for a text without any."""
     if not text.lstrip().startswith("{"):
         raise GraphError("there are no nodes to paste: copy some first")
     try:
-        told = json.loads(text).get(_FROM)
+        stated_folder = json.loads(text).get(_FROM)
     except (ValueError, RecursionError):
-        told = None
-    graph = loads(text, "clipboard", told if isinstance(told, str) else folder, types)
+        stated_folder = None
+    graph = loads(text, "clipboard", stated_folder if isinstance(stated_folder, str) else folder, types)
     return rebased(replace(graph, extra={path: kept for path, kept in graph.extra.items() if path}), folder)
 
 
-def pasted(
+def paste_part(
     graph: Graph,
     part: Graph,
     places: Mapping[str, Place],
@@ -82,46 +82,46 @@ def pasted(
     An input of `part` is the one of that name and type if there is one and a node reads it; an output takes the place
     of a loose one. With `keep_links`, links from what is not in `part` stay where that exists. Raises GraphError.
     """
-    ends = _ends(graph, part)
-    known = set(keys(graph))
-    found = merged(_with_ends(graph, part, ends), part, {})
-    names = {**found.keys, **ends}
+    ends = _name_ends(graph, part)
+    known = set(list_elements(graph))
+    combined = merge_part(_add_ends(graph, part, ends), part, {})
+    names = {**combined.keys, **ends}
     put = {key: name for key, name in names.items() if name not in known}
     if not put:
         raise GraphError("there is nothing in it to paste")
-    spots = _placed({key: spot for key, spot in positions(part).items() if key in put}, places, at, offset)
-    after = with_places(found.graph, {put[key]: spot for key, spot in spots.items()})
+    spots = _place_part({key: spot for key, spot in positions(part).items() if key in put}, places, at, offset)
+    after = with_places(combined.graph, {put[key]: spot for key, spot in spots.items()})
     folded = [name for key, name in put.items() if end_port(key) and entry(part, key).get("collapsed") is True]
     after = with_entries(after, {name: {"collapsed": True} for name in folded})
     passed = routes(part)
     for target, source in sorted(part.links.items()):
-        inside = owner(source) in names
+        inside = element_of(source) in names
         if (target.node in part.nodes and source.node in part.nodes) or not (inside or keep_links):
             continue
-        end, start = _renamed(target, names), _renamed(source, names) if inside else source
+        end, start = _rename_port(target, names), _rename_port(source, names) if inside else source
         if after.link_fault(start, end) is None and end not in after.links:
-            after = with_routes(after.connect(start, end), {end: moved_dots(found, passed.get(str(target), ()))})
+            after = with_routes(after.connect(start, end), {end: rename_dots(combined, passed.get(str(target), ()))})
     return after, tuple(put.values())
 
 
-def _ends(graph: Graph, part: Graph) -> dict[str, str]:
+def _name_ends(graph: Graph, part: Graph) -> dict[str, str]:
     """What the ends of `part` are called in the graph: an equal one that serves, else one under a free name."""
-    read = {source for target, source in part.links.items() if owner(target) != owner(source)}
-    found: dict[str, str] = {}
+    read = {source for target, source in part.links.items() if element_of(target) != element_of(source)}
+    end_names: dict[str, str] = {}
     for name, end in part.inputs.items():
         own = graph.inputs.get(name)
         serves = own is not None and (own.kind, own.width) == (end.kind, end.width) and Port(INPUTS, name) in read
-        found[f"{INPUTS}.{name}"] = f"{INPUTS}.{name if serves else fresh_name(name, graph.inputs)}"
+        end_names[f"{INPUTS}.{name}"] = f"{INPUTS}.{name if serves else fresh_name(name, graph.inputs)}"
     for name, end in part.outputs.items():
         own = graph.outputs.get(name)
         port = Port(OUTPUTS, name)
         serves = own is not None and (own.kind, own.width) == (end.kind, end.width)
         serves = serves and port in part.links and port not in graph.links
-        found[f"{OUTPUTS}.{name}"] = f"{OUTPUTS}.{name if serves else fresh_name(name, graph.outputs)}"
-    return found
+        end_names[f"{OUTPUTS}.{name}"] = f"{OUTPUTS}.{name if serves else fresh_name(name, graph.outputs)}"
+    return end_names
 
 
-def _with_ends(graph: Graph, part: Graph, ends: Mapping[str, str]) -> Graph:
+def _add_ends(graph: Graph, part: Graph, ends: Mapping[str, str]) -> Graph:
     inputs, outputs = dict(graph.inputs), dict(graph.outputs)
     for key, name in ends.items():
         old, new = end_port(key), end_port(name)
@@ -132,15 +132,15 @@ def _with_ends(graph: Graph, part: Graph, ends: Mapping[str, str]) -> Graph:
     return replace(graph, inputs=inputs, outputs=outputs)
 
 
-def _placed(
+def _place_part(
     spots: Mapping[str, Place], places: Mapping[str, Place], at: Place | None, offset: Place
 ) -> dict[str, Place]:
     """Places of what is pasted: the upper left corner at `at`, else moved by `offset`, and nothing exactly covered."""
     x, y = min((x for x, _ in spots.values()), default=0.0), min((y for _, y in spots.values()), default=0.0)
     dx, dy = (at[0] - x, at[1] - y) if at else offset
-    return uncovered({key: (x + dx, y + dy) for key, (x, y) in spots.items()}, places.values())
+    return shift_off({key: (x + dx, y + dy) for key, (x, y) in spots.items()}, places.values())
 
 
-def _renamed(port: Port, names: Mapping[str, str]) -> Port:
-    name = names[owner(port)]
+def _rename_port(port: Port, names: Mapping[str, str]) -> Port:
+    name = names[element_of(port)]
     return end_port(name) or Port(name, port.socket)

@@ -38,25 +38,25 @@ vec4 tint(
 
 
 @dataclass(frozen=True)
-class Broken(Unknown):
+class BrokenCodeNode(Unknown):
     """A node whose code says no node, with the `code` as it is here: that in the file may be another one."""
 
     code: Code | None = None
 
 
-def starter() -> Node:
+def make_starter_node() -> Node:
     """A new node of code."""
     return node_type(Code(CODE, STARTER))()
 
 
-def code_of(item: Item | None, folder: str) -> Code | None:
+def read_node_code(item: Item | None, folder: str) -> Code | None:
     """The code of a node, even of one whose code says no node; None for all other nodes."""
     if isinstance(item, Written):
         return item.code
     if not isinstance(item, Unknown) or item.type not in get_args(Language):
         return None
     language, file, lines = cast("Language", item.type), item.raw.get("file"), item.raw.get("code")
-    if isinstance(item, Broken) and item.code is not None:
+    if isinstance(item, BrokenCodeNode) and item.code is not None:
         return structs.replace(item.code, file=file or "")
     if isinstance(file, str):
         try:
@@ -66,73 +66,75 @@ def code_of(item: Item | None, folder: str) -> Code | None:
     return Code(language, "\n".join(map(str, lines or ())))
 
 
-def item_of(code: Code, values: Mapping[str, Any] | None = None) -> Item:
+def make_code_node(code: Code, values: Mapping[str, Any] | None = None) -> Item:
     """A node of that code, with those of the values that fit; if the code says none, what is to be mended."""
     try:
         kind = node_type(code)
     except CodeFault as fault:
-        return _broken(code, fault, values or {})
-    return kind(**_fitting(kind, values or {}))
+        return _make_broken(code, fault, values or {})
+    return kind(**_keep_valid_values(kind, values or {}))
 
 
-def file_item(file: str, folder: str) -> Item:
+def make_file_node(file: str, folder: str) -> Item:
     """A node whose code is in a file."""
     language = ENDINGS[Path(file).suffix.lower()]
     try:
-        return item_of(read_code(language, None, file, folder))
+        return make_code_node(read_code(language, None, file, folder))
     except CodeFault as fault:
-        return _broken(Code(language, "", file), fault, {})
+        return _make_broken(Code(language, "", file), fault, {})
 
 
-def coded(graph: Graph, id: str, code: Code) -> Graph:
+def set_code(graph: Graph, id: str, code: Code) -> Graph:
     """A graph where a node has that code. Links, values and what animates them stay where names and types agree."""
-    return _replaced(graph, id, item_of(code, _values(graph.node(id))))
+    return _replace_node(graph, id, make_code_node(code, _changed_values(graph.node(id))))
 
 
-def texts(graph: Graph) -> dict[Path, str]:
+def file_texts(graph: Graph) -> dict[Path, str]:
     """The text of every file of code as nodes of the graph have it, and of groups that are part of it."""
-    found: dict[Path, str] = {}
+    text_by_file: dict[Path, str] = {}
     for body, item in code_items(graph, borrowed=False):
         file = code_file(item, body.folder)
-        if file is not None and (isinstance(item, Written | Broken)):
-            code = code_of(item, body.folder)
-            found[file] = code.text if code else ""
-    return found
+        if file is not None and (isinstance(item, Written | BrokenCodeNode)):
+            code = read_node_code(item, body.folder)
+            text_by_file[file] = code.text if code else ""
+    return text_by_file
 
 
-def refiled(graph: Graph, file: Path, text: str) -> Graph:
+def set_file_code(graph: Graph, file: Path, text: str) -> Graph:
     """The graph with another text in a file of code; the very same one if no node has its code in it."""
-    return _changed(
+    return _map_code_nodes(
         graph,
         lambda body, id, item, code: (
-            coded(body, id, structs.replace(code, text=text))
+            set_code(body, id, structs.replace(code, text=text))
             if code_file(item, body.folder) == file and code.text != text
             else body
         ),
     )
 
 
-def reread(graph: Graph, file: Path) -> Graph:
+def reread_file_code(graph: Graph, file: Path) -> Graph:
     """The graph with the code of a file as it is on the disk now; the very same one if nothing differs."""
 
     def change(body: Graph, id: str, item: Item, code: Code) -> Graph:
         if file not in (path := code_file(item, body.folder), path and path.with_suffix(".vs")):
             return body
         try:
-            now = read_code(code.language, None, code.file, body.folder)
+            disk_code = read_code(code.language, None, code.file, body.folder)
         except CodeFault as fault:
-            return _replaced(body, id, _broken(code, fault, _values(item)))
-        return body if now == code and isinstance(item, Written | Broken) else coded(body, id, now)
+            return _replace_node(body, id, _make_broken(code, fault, _changed_values(item)))
+        return (
+            body if disk_code == code and isinstance(item, Written | BrokenCodeNode) else set_code(body, id, disk_code)
+        )
 
-    return _changed(graph, change, borrowed=True)
+    return _map_code_nodes(graph, change, borrowed=True)
 
 
-def kept(graph: Graph, drafts: Mapping[Path, str]) -> Graph:
+def embed_drafts(graph: Graph, drafts: Mapping[Path, str]) -> Graph:
     """The graph with code in it that differs from the file it belongs to, so that it is not lost with the graph."""
-    return _changed(
+    return _map_code_nodes(
         graph,
         lambda body, id, item, code: (
-            coded(body, id, structs.replace(code, file="")) if code_file(item, body.folder) in drafts else body
+            set_code(body, id, structs.replace(code, file="")) if code_file(item, body.folder) in drafts else body
         ),
     )
 
@@ -140,46 +142,46 @@ def kept(graph: Graph, drafts: Mapping[Path, str]) -> Graph:
 # --- inside ----------------------------------------------------------------------------------------------------------
 
 
-def _changed(graph: Graph, change: Callable[[Graph, str, Item, Code], Graph], borrowed: bool = False) -> Graph:
+def _map_code_nodes(graph: Graph, change: Callable[[Graph, str, Item, Code], Graph], borrowed: bool = False) -> Graph:
     """The graph with nodes of code changed, those of groups included; if `borrowed`, of groups from files too."""
     after = graph
     for id, item in graph.nodes.items():
         if isinstance(item, Group):
-            inner = _changed(item.graph, change, borrowed) if borrowed or not item.path else item.graph
+            inner = _map_code_nodes(item.graph, change, borrowed) if borrowed or not item.path else item.graph
             if inner is not item.graph:
                 after = replace(after, nodes={**after.nodes, id: replace(item, graph=inner)})
-        elif code := code_of(item, graph.folder):
+        elif code := read_node_code(item, graph.folder):
             after = change(after, id, item, code)
     return after
 
 
-def _values(item: Item) -> Mapping[str, Any]:
+def _changed_values(item: Item) -> Mapping[str, Any]:
     """What is set of a node: the values that are not at their default."""
     if isinstance(item, Unknown):
         raw = item.raw.get("values")
         return cast("Mapping[str, Any]", raw) if isinstance(raw, Mapping) else {}
     if isinstance(item, Group):
         return {}
-    now = {name: (getattr(item, name), value.default) for name, value in item.values.items()}
-    return {name: plain for name, (plain, default) in now.items() if plain != default}
+    values = {name: (getattr(item, name), value.default) for name, value in item.values.items()}
+    return {name: plain for name, (plain, default) in values.items() if plain != default}
 
 
-def _fitting(kind: type[Node], values: Mapping[str, Any]) -> dict[str, Plain]:
-    found: dict[str, Plain] = {}
+def _keep_valid_values(kind: type[Node], values: Mapping[str, Any]) -> dict[str, Plain]:
+    valid_values: dict[str, Plain] = {}
     for name, value in kind.values.items():
         plain = coerced(value, values[name]) if name in values else None
         if plain is not None and value_fault(value, plain) is None:
-            found[name] = plain
-    return found
+            valid_values[name] = plain
+    return valid_values
 
 
-def _broken(code: Code, fault: CodeFault, values: Mapping[str, Any]) -> Broken:
-    said = f"{code.name}, {fault}" if fault.line else str(fault)
+def _make_broken(code: Code, fault: CodeFault, values: Mapping[str, Any]) -> BrokenCodeNode:
+    message = f"{code.name}, {fault}" if fault.line else str(fault)
     raw = {**written_code(code), **({"values": dict(values)} if values else {})}
-    return Broken(code.language, raw, said, code)
+    return BrokenCodeNode(code.language, raw, message, code)
 
 
-def _replaced(graph: Graph, id: str, item: Item) -> Graph:
+def _replace_node(graph: Graph, id: str, item: Item) -> Graph:
     """The graph with another node in that place; keys of the document that mean nothing here stay with it."""
     extra = {key: kept for key, kept in graph.extra.items() if key == f"nodes.{id}"}
     after = graph.replace(id, item)

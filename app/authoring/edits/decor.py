@@ -6,9 +6,9 @@ from collections.abc import Collection, Mapping
 
 from ...errors import GraphError
 from ...graph import Graph
-from .elements import Place, Sizes, clean, entries, entry, fresh_id, keys, tidy, with_entries
+from .elements import Place, Sizes, clean_text, entries, entry, fresh_id, list_elements, round_coordinate, with_entries
 from .layout import bounds
-from .sizes import COMMENT, size
+from .sizes import COMMENT, element_size
 
 PADDING, TITLE = 24.0, 28.0
 """Room between a frame and what is in it, and for its title above that."""
@@ -36,25 +36,30 @@ def add_frame(
         box = (left - PADDING, top - PADDING - TITLE, right - left + 2 * PADDING, bottom - top + 2 * PADDING + TITLE)
     else:
         box = (*at, *EMPTY)
-    return boxed(with_entries(graph, {f"frames.{id}": {"title": clean(title)}}), f"frames.{id}", *box), id
+    return set_box(with_entries(graph, {f"frames.{id}": {"title": clean_text(title)}}), f"frames.{id}", *box), id
 
 
 def add_comment(graph: Graph, at: Place, text: str) -> tuple[Graph, str]:
     """A comment at that place, and its id."""
     id = fresh_id(graph, "comments")
-    graph = with_entries(graph, {f"comments.{id}": {"text": clean(text)}})
-    return boxed(graph, f"comments.{id}", *at, *COMMENT), id
+    graph = with_entries(graph, {f"comments.{id}": {"text": clean_text(text)}})
+    return set_box(graph, f"comments.{id}", *at, *COMMENT), id
 
 
-def boxed(graph: Graph, key: str, x: float, y: float, width: float, height: float) -> Graph:
+def set_box(graph: Graph, key: str, x: float, y: float, width: float, height: float) -> Graph:
     """A graph where a frame or comment has that rectangle, which never gets too small to be grabbed."""
-    facts = {"x": tidy(x), "y": tidy(y), "w": tidy(max(width, SMALLEST)), "h": tidy(max(height, SMALLEST))}
+    facts = {
+        "x": round_coordinate(x),
+        "y": round_coordinate(y),
+        "w": round_coordinate(max(width, SMALLEST)),
+        "h": round_coordinate(max(height, SMALLEST)),
+    }
     if "comments." in key:
         del facts["h"]
     return with_entries(graph, {key: facts})
 
 
-def described(graph: Graph, key: str, **facts: object) -> Graph:
+def set_facts(graph: Graph, key: str, **facts: object) -> Graph:
     """A graph where a frame or comment says something else. Raises GraphError if there is none."""
     section, _, id = key.partition(".")
     if id not in entries(graph, section):
@@ -62,16 +67,18 @@ def described(graph: Graph, key: str, **facts: object) -> Graph:
     return with_entries(graph, {key: facts})
 
 
-def frame_members(graph: Graph, id: str, places: Mapping[str, Place], sizes: Sizes | None = None) -> frozenset[str]:
+def find_frame_members(
+    graph: Graph, id: str, places: Mapping[str, Place], sizes: Sizes | None = None
+) -> frozenset[str]:
     """The elements that lie inside a frame with all of their box; smaller frames too."""
     key = f"frames.{id}"
     if not entry(graph, key) or key not in places:
         return frozenset()
     left, top, right, bottom = bounds(graph, [key], places, sizes)
-    found = set[str]()
-    for other in keys(graph):
+    members = set[str]()
+    for other in list_elements(graph):
         if other != key and other in places:
-            (x, y), (width, height) = places[other], size(graph, other, sizes)
+            (x, y), (width, height) = places[other], element_size(graph, other, sizes)
             if left <= x and top <= y and x + width <= right and y + height <= bottom:
-                found.add(other)
-    return frozenset(found)
+                members.add(other)
+    return frozenset(members)

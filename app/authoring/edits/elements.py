@@ -19,14 +19,14 @@ Sizes = Mapping[str, tuple[float, float]]
 """Width and height of elements by key."""
 
 
-def keys(graph: Graph) -> tuple[str, ...]:
+def list_elements(graph: Graph) -> tuple[str, ...]:
     """Every element of a graph: nodes, ends, then decor."""
     ends = (*(f"{INPUTS}.{name}" for name in graph.inputs), *(f"{OUTPUTS}.{name}" for name in graph.outputs))
     decor = (f"{section}.{id}" for section in DECOR for id in entries(graph, section))
     return (*graph.nodes, *ends, *decor)
 
 
-def owner(port: Port) -> str:
+def element_of(port: Port) -> str:
     """The key of the element that shows a port."""
     return str(port) if port.node in (INPUTS, OUTPUTS) else port.node
 
@@ -37,7 +37,7 @@ def end_port(key: str) -> Port | None:
     return Port(side, name) if dot and side in (INPUTS, OUTPUTS) else None
 
 
-def linked_elements(key: str, graph: Graph) -> bool:
+def can_be_linked(key: str, graph: Graph) -> bool:
     """True for what links can meet: nodes and ends."""
     return key in graph.nodes or end_port(key) is not None
 
@@ -56,14 +56,14 @@ def entries(graph: Graph, section: str) -> Mapping[str, Mapping[str, Any]]:
 def entry(graph: Graph, key: str) -> Mapping[str, Any]:
     """What `ui` says of an element, empty if nothing."""
     section, id = _address(key)
-    found = _section(graph, section).get(id)
-    return found if _is_object(found) else {}
+    facts = _section(graph, section).get(id)
+    return facts if _is_object(facts) else {}
 
 
 def place(graph: Graph, key: str) -> Place | None:
     """Where an element was put, or None."""
-    found = entry(graph, key)
-    x, y = found.get("x"), found.get("y")
+    facts = entry(graph, key)
+    x, y = facts.get("x"), facts.get("y")
     return (float(x), float(y)) if _is_number(x) and _is_number(y) else None
 
 
@@ -72,15 +72,15 @@ def with_entries(graph: Graph, changes: Mapping[str, Mapping[str, Any]]) -> Grap
     sections: dict[str, dict[str, Any]] = {}
     for key, facts in changes.items():
         section, id = _address(key)
-        known = sections.setdefault(section, dict(_section(graph, section)))
-        known[id] = {name: fact for name, fact in {**entry(graph, key), **facts}.items() if fact is not None}
+        entries_by_id = sections.setdefault(section, dict(_section(graph, section)))
+        entries_by_id[id] = {name: fact for name, fact in {**entry(graph, key), **facts}.items() if fact is not None}
     return with_sections(graph, sections)
 
 
-def without_entries(graph: Graph, gone: Iterable[str]) -> Graph:
+def without_entries(graph: Graph, elements: Iterable[str]) -> Graph:
     """`ui` without what it says of some elements."""
     sections: dict[str, dict[str, Any]] = {}
-    for key in gone:
+    for key in elements:
         section, id = _address(key)
         sections.setdefault(section, dict(_section(graph, section))).pop(id, None)
     return with_sections(graph, sections)
@@ -88,7 +88,9 @@ def without_entries(graph: Graph, gone: Iterable[str]) -> Graph:
 
 def with_places(graph: Graph, places: Mapping[str, Place]) -> Graph:
     """`ui` with elements somewhere else."""
-    return with_entries(graph, {key: {"x": tidy(x), "y": tidy(y)} for key, (x, y) in places.items()})
+    return with_entries(
+        graph, {key: {"x": round_coordinate(x), "y": round_coordinate(y)} for key, (x, y) in places.items()}
+    )
 
 
 def with_sections(graph: Graph, sections: Mapping[str, Mapping[str, Any]]) -> Graph:
@@ -102,26 +104,26 @@ def with_sections(graph: Graph, sections: Mapping[str, Mapping[str, Any]]) -> Gr
 
 def fresh_id(graph: Graph, section: str) -> str:
     """A free id for a frame, comment or dot: `f1`, `f2`, ..."""
-    known, number = entries(graph, section), 1
-    while f"{section[0]}{number}" in known:
+    taken, number = entries(graph, section), 1
+    while f"{section[0]}{number}" in taken:
         number += 1
     return f"{section[0]}{number}"
 
 
-def tidy(number: float) -> float:
+def round_coordinate(number: float) -> float:
     """A coordinate with as many digits as anyone can see; a whole one without a point, as people write it."""
-    found = round(float(number), 2)
-    return int(found) if found == int(found) else found
+    rounded = round(float(number), 2)
+    return int(rounded) if rounded == int(rounded) else rounded
 
 
-def clean(text: str) -> str:
+def clean_text(text: str) -> str:
     """Text as a file can hold it."""
     return text.encode("utf-8", "replace").decode()
 
 
 def _section(graph: Graph, name: str) -> Mapping[str, Any]:
-    found = graph.ui.get(name)
-    return found if _is_object(found) else {}
+    section = graph.ui.get(name)
+    return section if _is_object(section) else {}
 
 
 def _is_object(item: object) -> TypeGuard[Mapping[str, Any]]:

@@ -11,18 +11,18 @@ from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Port, signature
 from ...graph.notes import moved_layout
 from . import timing
-from .routes import tidied
+from .routes import tidy_routes
 
 CONTROLS = "controls"
 
-Route = tuple[str, ...]
+GroupPath = tuple[str, ...]
 """Ids of groups, each inside the one before."""
 
 Moves = Mapping[Port, Port]
 """Ends and controls of a body that got another name: `inputs.a`, `outputs.a` or `controls.a` by what it was before."""
 
 
-def group(graph: Graph, id: str) -> Group:
+def find_group(graph: Graph, id: str) -> Group:
     """The group of that id. Raises GraphError."""
     item = graph.node(id)
     if not isinstance(item, Group):
@@ -30,33 +30,33 @@ def group(graph: Graph, id: str) -> Group:
     return item
 
 
-def inside(graph: Graph, path: Route) -> Graph:
+def body_at(graph: Graph, path: GroupPath) -> Graph:
     """The body at `path`, with the values that its groups set. Raises GraphError."""
     for id in path:
-        graph = group(graph, id).body()
+        graph = find_group(graph, id).body()
     return graph
 
 
-def leads(graph: Graph, path: Route) -> bool:
+def is_place(graph: Graph, path: GroupPath) -> bool:
     """True if there is a group at `path`."""
     try:
-        inside(graph, path)
+        body_at(graph, path)
     except GraphError:
         return False
     return True
 
 
-def borrowed(graph: Graph, path: Route) -> tuple[Route, str] | None:
+def find_borrowed_group(graph: Graph, path: GroupPath) -> tuple[GroupPath, str] | None:
     """The outermost group on the way whose body is a file of its own, with the file's path; None if there is none."""
     for depth, id in enumerate(path, 1):
-        item = group(graph, id)
+        item = find_group(graph, id)
         if item.path:
             return path[:depth], item.path
         graph = item.body()
     return None
 
 
-def folded(graph: Graph, path: Route, body: Graph, moves: Moves | None = None) -> Graph:
+def put_body(graph: Graph, path: GroupPath, body: Graph, moves: Moves | None = None) -> Graph:
     """The outermost graph, where `body` is what is inside at `path`.
 
     The values that groups on the way set become part of their bodies. Links to and from ends that were renamed
@@ -64,23 +64,25 @@ def folded(graph: Graph, path: Route, body: Graph, moves: Moves | None = None) -
     """
     if not path:
         return body
-    if found := borrowed(graph, path):
-        file = f"'{found[1]}'"
-        raise GraphError(f"group '{found[0][-1]}' comes from the file {file}: make it local first, or open that file")
+    if borrowed_group := find_borrowed_group(graph, path):
+        file = f"'{borrowed_group[1]}'"
+        raise GraphError(
+            f"group '{borrowed_group[0][-1]}' comes from the file {file}: make it local first, or open that file"
+        )
     for depth in range(len(path) - 1, -1, -1):
-        body = _put(inside(graph, path[:depth]), path[depth], body, moves or {})
+        body = _put_group_body(body_at(graph, path[:depth]), path[depth], body, moves or {})
         moves = None
     return body
 
 
-def reread(graph: Graph, body: Callable[[Path], Graph]) -> Graph:
+def reread_groups(graph: Graph, body: Callable[[Path], Graph]) -> Graph:
     """The graph with the bodies of groups that come from files as `body` reads them; the same one if none differs."""
     changed: dict[str, Group] = {}
     for id, item in graph.nodes.items():
         if isinstance(item, Group):
-            now = body(Path(graph.folder, item.path)) if item.path else reread(item.graph, body)
-            if now is not item.graph and now != item.graph:
-                changed[id] = replace(item, graph=now)
+            body_now = body(Path(graph.folder, item.path)) if item.path else reread_groups(item.graph, body)
+            if body_now is not item.graph and body_now != item.graph:
+                changed[id] = replace(item, graph=body_now)
     return replace(graph, nodes={**graph.nodes, **changed}) if changed else graph
 
 
@@ -97,34 +99,41 @@ def check_depth(graph: Graph) -> None:
                 todo.append((item.graph, depth + 1))
 
 
-def _put(outer: Graph, id: str, body: Graph, moves: Moves) -> Graph:
+def _put_group_body(outer: Graph, id: str, body: Graph, moves: Moves) -> Graph:
     """`outer` with another body in group `id`."""
     item = Group(replace(body, folder=outer.folder))
     old, new = signature(outer.nodes[id]), signature(item)
-    gone = {name for name in (*old.inputs, *old.values) if name not in new.inputs and name not in new.values}
-    lost = old.outputs.keys() - new.outputs.keys()
+    removed_sockets = {name for name in (*old.inputs, *old.values) if name not in new.inputs and name not in new.values}
+    removed_outputs = old.outputs.keys() - new.outputs.keys()
 
-    def moved(port: Port, side: str) -> Port:
+    def follow(port: Port, side: str) -> Port:
         there = moves.get(Port(side, port.socket)) if port.node == id else None
         return Port(id, there.socket) if there else port
 
-    ends = {end: moved(end, INPUTS if end.socket in old.inputs else CONTROLS) for end in outer.links}
-    links = {ends[end]: moved(start, OUTPUTS) for end, start in outer.links.items()}
+    ends = {end: follow(end, INPUTS if end.socket in old.inputs else CONTROLS) for end in outer.links}
+    links = {ends[end]: follow(start, OUTPUTS) for end, start in outer.links.items()}
     links = {
         end: start
         for end, start in links.items()
-        if not (end.node == id and end.socket in gone) and not (start.node == id and start.socket in lost)
+        if not (end.node == id and end.socket in removed_sockets)
+        and not (start.node == id and start.socket in removed_outputs)
     }
-    controls = {name: replace(item, target=moved(item.target, CONTROLS)) for name, item in outer.controls.items()}
+    controls = {name: replace(item, target=follow(item.target, CONTROLS)) for name, item in outer.controls.items()}
     controls = {
-        name: item for name, item in controls.items() if item.target.node != id or item.target.socket not in gone
+        name: item
+        for name, item in controls.items()
+        if item.target.node != id or item.target.socket not in removed_sockets
     }
     names = {f"{id}.{port.socket}": f"{id}.{there.socket}" for port, there in moves.items() if port.node == CONTROLS}
-    animation = {moved(port, CONTROLS): timing.renamed(item, names) for port, item in outer.animation.items()}
-    animation = {port: item for port, item in animation.items() if port.node != id or port.socket not in gone}
+    animation = {
+        follow(port, CONTROLS): timing.rename_in_expression(item, names) for port, item in outer.animation.items()
+    }
+    animation = {
+        port: item for port, item in animation.items() if port.node != id or port.socket not in removed_sockets
+    }
     ui = outer.ui
     for before, after in moves.items():
         ui = moved_layout(ui, f"{id}.{before.socket}", f"{id}.{after.socket}")
-    return tidied(
+    return tidy_routes(
         replace(outer, nodes={**outer.nodes, id: item}, links=links, controls=controls, animation=animation, ui=ui)
     )

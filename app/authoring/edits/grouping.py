@@ -11,16 +11,26 @@ from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Control, Graph, Group, Input, Output, Port
 from ...graph.names import check_name, fresh_name
 from . import timing
-from .elements import Place, entry, is_note, keys, place, with_entries, with_places, with_sections, without_entries
+from .elements import (
+    Place,
+    entry,
+    is_note,
+    list_elements,
+    place,
+    with_entries,
+    with_places,
+    with_sections,
+    without_entries,
+)
 from .layout import GAP, bounds, positions
-from .routes import routes, tidied
-from .sizes import WIDTH, size
+from .routes import routes, tidy_routes
+from .sizes import WIDTH, element_size
 
 _KINDS = {"float": Kind.FIELD, "int": Kind.FIELD, "bool": Kind.FIELD, "color": Kind.IMAGE, "vector": Kind.VECTOR}
 """What an input is that feeds a value of that type."""
 
 
-def grouped(graph: Graph, chosen: Collection[str], name: str = "") -> tuple[Graph, str]:
+def make_group(graph: Graph, chosen: Collection[str], name: str = "") -> tuple[Graph, str]:
     """A graph where the chosen nodes and decor are a group, and its id.
 
     Every source outside that feeds chosen nodes becomes an input, every output of theirs that is read outside an
@@ -33,10 +43,10 @@ def grouped(graph: Graph, chosen: Collection[str], name: str = "") -> tuple[Grap
     rest = {id: item for id, item in graph.nodes.items() if id not in chosen}
     id = fresh_name(name or "group", {*rest, INPUTS, OUTPUTS})
     check_name(id, "node")
-    crossing = _crossing(graph, set(ids))
+    crossing = _find_crossings(graph, set(ids))
     spots = positions(graph)
     body = _body(graph, ids, chosen, crossing, spots)
-    inner, around = timing.split(graph, ids, id)
+    inner, around = timing.split_animation(graph, ids, id)
     body = replace(body, animation=inner)
     outer = replace(
         graph,
@@ -59,11 +69,11 @@ def grouped(graph: Graph, chosen: Collection[str], name: str = "") -> tuple[Grap
     )
     timing.check_names(graph, body, inner)
     timing.check_names(graph, outer, around)
-    notes = [key for key in keys(graph) if key in chosen and is_note(key)]
-    return tidied(with_places(without_entries(outer, notes), {id: corner(graph, ids, spots)})), id
+    notes = [key for key in list_elements(graph) if key in chosen and is_note(key)]
+    return tidy_routes(with_places(without_entries(outer, notes), {id: group_corner(graph, ids, spots)})), id
 
 
-def corner(graph: Graph, ids: Collection[str], spots: Mapping[str, Place]) -> Place:
+def group_corner(graph: Graph, ids: Collection[str], spots: Mapping[str, Place]) -> Place:
     """Where a group goes that stands for some nodes: their center, less half a node."""
     left, top, right, bottom = bounds(graph, ids, spots)
     return round((left + right - WIDTH) / 2.0, 2), round((top + bottom) / 2.0 - GAP[1], 2)
@@ -83,27 +93,27 @@ class _Crossing:
     """The output that shows each source inside."""
 
 
-def _crossing(graph: Graph, ids: set[str]) -> _Crossing:
-    found = _Crossing()
-    known: dict[tuple[Port, Kind, int], str] = {}
-    taken = {name for name, item in graph.controls.items() if item.target.node in ids}
-    for target, source in sorted(graph.links.items(), key=lambda link: _reading_order(graph, link[0])):
+def _find_crossings(graph: Graph, ids: set[str]) -> _Crossing:
+    crossing = _Crossing()
+    input_names: dict[tuple[Port, Kind, int], str] = {}
+    control_names = {name for name, item in graph.controls.items() if item.target.node in ids}
+    for target, source in sorted(graph.links.items(), key=lambda link: _vertical_order(graph, link[0])):
         if target.node in ids and source.node not in ids:
             kind, width = _kind(graph, source, target)
-            name = known.get((source, kind, width))
+            name = input_names.get((source, kind, width))
             if name is None:
-                name = fresh_name(target.socket, {*found.inputs, *taken})
-                known[source, kind, width] = name
-                found.inputs[name], found.sources[name] = Input(kind, width), source
-            found.entering[target] = name
-        elif source.node in ids and target.node not in ids and source not in found.leaving:
-            name = fresh_name(source.socket, found.outputs)
-            found.outputs[name] = Output(*_kind(graph, source, target))
-            found.leaving[source] = name
-    return found
+                name = fresh_name(target.socket, {*crossing.inputs, *control_names})
+                input_names[source, kind, width] = name
+                crossing.inputs[name], crossing.sources[name] = Input(kind, width), source
+            crossing.entering[target] = name
+        elif source.node in ids and target.node not in ids and source not in crossing.leaving:
+            name = fresh_name(source.socket, crossing.outputs)
+            crossing.outputs[name] = Output(*_kind(graph, source, target))
+            crossing.leaving[source] = name
+    return crossing
 
 
-def _reading_order(graph: Graph, target: Port) -> tuple[float, float, Port]:
+def _vertical_order(graph: Graph, target: Port) -> tuple[float, float, Port]:
     """Targets from top to bottom, so that the sockets of a group lie as its links did."""
     spot = place(graph, target.node) or (0.0, 0.0)
     return spot[1], spot[0], target
@@ -146,9 +156,9 @@ def _body(
     inner = {str(end) for end in graph.links if end.node in ids and graph.links[end].node in ids}
     passed = {target: dots for target, dots in routes(graph).items() if target in inner}
     dots = {f"dots.{dot}" for route in passed.values() for dot in route}
-    moved = [key for key in keys(graph) if key in ids or key in dots or (key in chosen and is_note(key))]
+    moved = [key for key in list_elements(graph) if key in ids or key in dots or (key in chosen and is_note(key))]
     body = with_entries(body, {key: entry(graph, key) for key in moved})
-    return tidied(with_places(with_sections(body, {"routes": passed}), _spots(body, graph, ids, spots)))
+    return tidy_routes(with_places(with_sections(body, {"routes": passed}), _spots(body, graph, ids, spots)))
 
 
 def _spots(body: Graph, graph: Graph, ids: list[str], spots: Mapping[str, Place]) -> dict[str, Place]:
@@ -159,7 +169,7 @@ def _spots(body: Graph, graph: Graph, ids: list[str], spots: Mapping[str, Place]
         y = top
         for name in ends:
             found[f"{side}.{name}"] = (x, y)
-            y += size(body, f"{side}.{name}")[1] + GAP[1]
+            y += element_size(body, f"{side}.{name}")[1] + GAP[1]
     return found
 
 

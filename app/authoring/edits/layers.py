@@ -19,7 +19,7 @@ Link = tuple[str, str]
 
 
 @dataclass
-class Layered:
+class BoxLayers:
     """Boxes in layers. A link over several layers passes a virtual box of no height in each between."""
 
     layers: list[list[str]]
@@ -40,7 +40,7 @@ def layer_numbers(
     for start, end in links:
         feeds[start].append(end)
         fed[end].append(start)
-    order = _order(names, fed)
+    order = _order_by_links(names, fed)
     rank = {name: place for place, name in enumerate(order)}
     number: dict[str, int] = {}
     for name in order:
@@ -54,7 +54,7 @@ def layer_numbers(
     return number | dict.fromkeys((name for name in names if name in ends), bottom)
 
 
-def drawn(
+def place_boxes(
     names: Sequence[str],
     links: Iterable[Link],
     sizes: Mapping[str, tuple[float, float]],
@@ -65,22 +65,22 @@ def drawn(
     """Top left of every box of `sizes`, the whole drawing starting at 0,0. The same for equal arguments."""
     pairs = sorted({(start, end) for start, end in links if start != end})
     numbers = layer_numbers(names, pairs, first, last)
-    made = _layered(names, pairs, numbers)
-    _uncross(made)
-    heights = {name: sizes[name][1] if name in sizes else 0.0 for layer in made.layers for name in layer}
-    tops = _tops(made, heights, gap[1])
+    layering = _make_layers(names, pairs, numbers)
+    _uncross(layering)
+    heights = {name: sizes[name][1] if name in sizes else 0.0 for layer in layering.layers for name in layer}
+    tops = _find_tops(layering, heights, gap[1])
     places: dict[str, tuple[float, float]] = {}
     x = 0.0
     least = min(tops[name] for name in names)
-    for layer in made.layers:
-        real = [name for name in layer if name not in made.virtual]
+    for layer in layering.layers:
+        real = [name for name in layer if name not in layering.virtual]
         for name in real:
             places[name] = (x, float(round(tops[name] - least)))
         x += max((sizes[name][0] for name in real), default=-gap[0]) + gap[0]
     return places
 
 
-def _order(names: Sequence[str], fed: Mapping[str, Sequence[str]]) -> list[str]:
+def _order_by_links(names: Sequence[str], fed: Mapping[str, Sequence[str]]) -> list[str]:
     """Every name after what feeds it, as far as there are no loops."""
     order: list[str] = []
     state: dict[str, bool] = {}
@@ -97,107 +97,107 @@ def _order(names: Sequence[str], fed: Mapping[str, Sequence[str]]) -> list[str]:
     return order
 
 
-def _layered(names: Sequence[str], links: Sequence[Link], numbers: Mapping[str, int]) -> Layered:
-    made = Layered([[] for _ in range(max(numbers.values()) + 1)])
+def _make_layers(names: Sequence[str], links: Sequence[Link], numbers: Mapping[str, int]) -> BoxLayers:
+    layering = BoxLayers([[] for _ in range(max(numbers.values()) + 1)])
     for name in names:
-        made.layers[numbers[name]].append(name)
-        made.before[name], made.after[name] = [], []
+        layering.layers[numbers[name]].append(name)
+        layering.before[name], layering.after[name] = [], []
     for start, end in links:
         if numbers[start] >= numbers[end]:
             continue
         came = start
         for number in range(numbers[start] + 1, numbers[end]):
             bend = f"\0{start}\0{end}\0{number}"
-            made.virtual.add(bend)
-            made.layers[number].append(bend)
-            made.before[bend], made.after[bend] = [came], []
-            made.after[came].append(bend)
+            layering.virtual.add(bend)
+            layering.layers[number].append(bend)
+            layering.before[bend], layering.after[bend] = [came], []
+            layering.after[came].append(bend)
             came = bend
-        made.after[came].append(end)
-        made.before[end].append(came)
-    return made
+        layering.after[came].append(end)
+        layering.before[end].append(came)
+    return layering
 
 
-def _uncross(made: Layered) -> None:
+def _uncross(layering: BoxLayers) -> None:
     """Order each layer by the mean place of its neighbors, to and fro; the order with fewest crossings stays."""
-    best, fewest = [list(layer) for layer in made.layers], _crossings(made)
+    best, fewest = [list(layer) for layer in layering.layers], _count_crossings(layering)
     for sweep in range(_SWEEPS):
         if not fewest:
             break
         down = sweep % 2 == 0
-        indices = range(1, len(made.layers)) if down else range(len(made.layers) - 2, -1, -1)
+        indices = range(1, len(layering.layers)) if down else range(len(layering.layers) - 2, -1, -1)
         for index in indices:
-            beside = made.layers[index - 1 if down else index + 1]
+            beside = layering.layers[index - 1 if down else index + 1]
             place = {name: number for number, name in enumerate(beside)}
-            neighbors = made.before if down else made.after
-            own = {name: number for number, name in enumerate(made.layers[index])}
-            wanted = {name: _mean([place[one] for one in neighbors[name]], own[name]) for name in own}
-            made.layers[index].sort(key=lambda name: (wanted[name], own[name]))
-        if (count := _crossings(made)) < fewest:
-            best, fewest = [list(layer) for layer in made.layers], count
-    made.layers = best
+            neighbors = layering.before if down else layering.after
+            own = {name: number for number, name in enumerate(layering.layers[index])}
+            mean_places = {name: _mean([place[one] for one in neighbors[name]], own[name]) for name in own}
+            layering.layers[index].sort(key=lambda name: (mean_places[name], own[name]))
+        if (count := _count_crossings(layering)) < fewest:
+            best, fewest = [list(layer) for layer in layering.layers], count
+    layering.layers = best
 
 
-def _crossings(made: Layered) -> int:
+def _count_crossings(layering: BoxLayers) -> int:
     """How many pairs of links between neighboring layers cross."""
     total = 0
-    for upper, lower in pairwise(made.layers):
+    for upper, lower in pairwise(layering.layers):
         place = {name: number for number, name in enumerate(lower)}
-        ends = [number for name in upper for number in sorted(place[one] for one in made.after[name])]
-        seen: list[int] = []
+        ends = [number for name in upper for number in sorted(place[one] for one in layering.after[name])]
+        passed: list[int] = []
         for end in ends:
-            low, high = 0, len(seen)
+            low, high = 0, len(passed)
             while low < high:
                 middle = (low + high) // 2
-                low, high = (middle + 1, high) if seen[middle] <= end else (low, middle)
-            total += len(seen) - low
-            seen.insert(low, end)
+                low, high = (middle + 1, high) if passed[middle] <= end else (low, middle)
+            total += len(passed) - low
+            passed.insert(low, end)
     return total
 
 
-def _tops(made: Layered, heights: Mapping[str, float], gap: float) -> dict[str, float]:
+def _find_tops(layering: BoxLayers, heights: Mapping[str, float], gap: float) -> dict[str, float]:
     """The upper edge of every box. Those of one line move together, as near to what they are linked to as they can."""
-    line = _lines(made)
+    line = _find_straight_lines(layering)
     above: dict[str, dict[str, float]] = {root: {} for root in line.values()}
     below: dict[str, dict[str, float]] = {root: {} for root in line.values()}
-    for layer in made.layers:
+    for layer in layering.layers:
         for upper, lower in pairwise(layer):
-            one, other, need = line[upper], line[lower], heights[upper] + gap
-            below[one][other] = above[other][one] = max(need, below[one].get(other, 0.0))
+            one, lower_line, need = line[upper], line[lower], heights[upper] + gap
+            below[one][lower_line] = above[lower_line][one] = max(need, below[one].get(lower_line, 0.0))
     order = sort({root: sorted(above[root]) for root in sorted(above)})
     tops: dict[str, float] = {}
     for root in order:
         tops[root] = max((tops[one] + need for one, need in above[root].items()), default=0.0)
     beside: dict[str, list[str]] = {root: [] for root in above}
     for name, root in line.items():
-        beside[root] += [line[one] for one in (*made.before[name], *made.after[name]) if line[one] != root]
+        beside[root] += [line[one] for one in (*layering.before[name], *layering.after[name]) if line[one] != root]
     for sweep in range(_SWEEPS):
         for root in order[::-1] if sweep % 2 == 0 else order:
             low = max((tops[one] + need for one, need in above[root].items()), default=-math.inf)
             high = min((tops[one] - need for one, need in below[root].items()), default=math.inf)
-            wanted = _median([tops[one] for one in beside[root]], tops[root])
-            tops[root] = max(low, min(wanted, high))
+            target_top = _median([tops[one] for one in beside[root]], tops[root])
+            tops[root] = max(low, min(target_top, high))
     return {name: tops[root] for name, root in line.items()}
 
 
-def _lines(made: Layered) -> dict[str, str]:
+def _find_straight_lines(layering: BoxLayers) -> dict[str, str]:
     """Boxes that lie on one straight line, by the first of them: each box joins its median source if it can.
 
     Lines never cross; long links come first.
     """
-    line = {name: name for layer in made.layers for name in layer}
-    for upper, lower in pairwise(made.layers):
+    line = {name: name for layer in layering.layers for name in layer}
+    for upper, lower in pairwise(layering.layers):
         place = {name: number for number, name in enumerate(upper)}
         long = [
             (place[one], number)
             for number, name in enumerate(lower)
-            if name in made.virtual
-            for one in made.before[name]
-            if one in made.virtual
+            if name in layering.virtual
+            for one in layering.before[name]
+            if one in layering.virtual
         ]
         reached = -1
         for number, name in enumerate(lower):
-            sources = sorted(place[one] for one in made.before[name])
+            sources = sorted(place[one] for one in layering.before[name])
             middle = len(sources) // 2
             for source in sources[(len(sources) - 1) // 2 : middle + 1]:
                 crosses = any((one < source) != (end < number) and one != source for one, end in long if end != number)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 
 from ...graph import INPUTS, OUTPUTS, Graph
-from .elements import Place, Sizes, end_port, keys, linked_elements, owner, place, with_places
-from .layers import drawn
-from .sizes import size
+from .elements import Place, Sizes, can_be_linked, element_of, end_port, list_elements, place, with_places
+from .layers import place_boxes
+from .sizes import element_size
 
 GAP = (80.0, 40.0)
 """Room between the columns and rows of a layout."""
@@ -18,55 +18,55 @@ OFFSET = 24.0
 
 def positions(graph: Graph, sizes: Sizes | None = None) -> dict[str, Place]:
     """The place of every element: as saved, else laid out beside what it is linked to."""
-    found = {key: spot for key in keys(graph) if (spot := place(graph, key)) is not None}
-    missing = [key for key in keys(graph) if key not in found]
+    places = {key: spot for key in list_elements(graph) if (spot := place(graph, key)) is not None}
+    missing = [key for key in list_elements(graph) if key not in places]
     if not missing:
-        return found
-    linked = [key for key in missing if linked_elements(key, graph)]
-    if not any(linked_elements(key, graph) for key in found):
-        left, top = 0.0, _bottom(graph, found, sizes)
-        found |= {key: (x + left, y + top) for key, (x, y) in laid_out(graph, linked, sizes).items()}
-    for key in _fed_first(graph, linked):
-        if key not in found:
-            found[key] = _beside(graph, key, found, sizes)
+        return places
+    linked = [key for key in missing if can_be_linked(key, graph)]
+    if not any(can_be_linked(key, graph) for key in places):
+        left, top = 0.0, _bottom(graph, places, sizes)
+        places |= {key: (x + left, y + top) for key, (x, y) in lay_out(graph, linked, sizes).items()}
+    for key in _sort_by_column(graph, linked):
+        if key not in places:
+            places[key] = _place_beside(graph, key, places, sizes)
     for key in missing:
-        if key not in found:
-            found[key] = (0.0, _bottom(graph, found, sizes))
-    return found
+        if key not in places:
+            places[key] = (0.0, _bottom(graph, places, sizes))
+    return places
 
 
-def pinned(graph: Graph, before: Graph | None = None) -> Graph:
+def pin_places(graph: Graph, before: Graph | None = None) -> Graph:
     """A graph where every element has a saved place, so that later edits move none.
 
     There is nothing to do for one that has the layout and elements of a graph `before` that was pinned.
     """
-    known = keys(graph)
-    if before is not None and graph.ui is before.ui and known == keys(before):
+    elements = list_elements(graph)
+    if before is not None and graph.ui is before.ui and elements == list_elements(before):
         return graph
-    missing = [key for key in known if place(graph, key) is None]
+    missing = [key for key in elements if place(graph, key) is None]
     places = positions(graph) if missing else {}
     return with_places(graph, {key: places[key] for key in missing})
 
 
-def laid_out(graph: Graph, wanted: Collection[str], sizes: Sizes | None = None) -> dict[str, Place]:
+def lay_out(graph: Graph, elements: Collection[str], sizes: Sizes | None = None) -> dict[str, Place]:
     """A layered layout of some nodes and ends, from 0,0 on; parts that no link holds together lie below each other."""
-    rest = {key: size(graph, key, sizes) for key in keys(graph) if key in set(wanted)}
+    rest = {key: element_size(graph, key, sizes) for key in list_elements(graph) if key in set(elements)}
     links = [pair for pair in element_links(graph) if pair[0] in rest and pair[1] in rest]
     places: dict[str, Place] = {}
-    top, single = 0.0, list[str]()
-    for part in _parts(list(rest), links):
+    top, unlinked = 0.0, list[str]()
+    for part in _connected_parts(list(rest), links):
         if len(part) == 1:
-            single += part
+            unlinked += part
             continue
         boxes = {key: rest[key] for key in part}
         inside = [(start, end) for start, end in links if start in boxes]
         ends = [key for key in part if key.startswith(f"{OUTPUTS}.")]
         starts = [key for key in part if key.startswith(f"{INPUTS}.")]
-        spots = drawn(part, inside, boxes, starts, ends, GAP)
+        spots = place_boxes(part, inside, boxes, starts, ends, GAP)
         places |= {key: (x, y + top) for key, (x, y) in spots.items()}
         top += max(spots[key][1] + boxes[key][1] for key in part) + GAP[1]
     x = 0.0
-    for key in single:
+    for key in unlinked:
         places[key] = (x, top)
         x += rest[key][0] + GAP[0]
     return places
@@ -74,16 +74,16 @@ def laid_out(graph: Graph, wanted: Collection[str], sizes: Sizes | None = None) 
 
 def element_links(graph: Graph) -> list[tuple[str, str]]:
     """All links as pairs of elements, source first, without those that lead nowhere."""
-    known = set(keys(graph))
-    pairs = [(owner(source), owner(target)) for target, source in sorted(graph.links.items())]
-    return [pair for pair in pairs if pair[0] in known and pair[1] in known]
+    elements = set(list_elements(graph))
+    pairs = [(element_of(source), element_of(target)) for target, source in sorted(graph.links.items())]
+    return [pair for pair in pairs if pair[0] in elements and pair[1] in elements]
 
 
 def bounds(
-    graph: Graph, some: Iterable[str], places: Mapping[str, Place], sizes: Sizes | None = None
+    graph: Graph, elements: Iterable[str], places: Mapping[str, Place], sizes: Sizes | None = None
 ) -> tuple[float, float, float, float]:
     """Left, top, right and bottom of some elements; zeros for none."""
-    boxes = [(*places[key], *size(graph, key, sizes)) for key in some]
+    boxes = [(*places[key], *element_size(graph, key, sizes)) for key in elements]
     if not boxes:
         return (0.0, 0.0, 0.0, 0.0)
     return (
@@ -94,23 +94,23 @@ def bounds(
     )
 
 
-def uncovered(places: Mapping[str, Place], others: Collection[Place]) -> dict[str, Place]:
+def shift_off(places: Mapping[str, Place], others: Collection[Place]) -> dict[str, Place]:
     """`places` moved together until none is exactly where one of the `others` is."""
-    step, taken = 0, set(others)
-    while any((x + step * OFFSET, y + step * OFFSET) in taken for x, y in places.values()):
+    step, occupied = 0, set(others)
+    while any((x + step * OFFSET, y + step * OFFSET) in occupied for x, y in places.values()):
         step += 1
     return {key: (x + step * OFFSET, y + step * OFFSET) for key, (x, y) in places.items()}
 
 
-def _parts(names: list[str], links: list[tuple[str, str]]) -> list[list[str]]:
+def _connected_parts(names: list[str], links: list[tuple[str, str]]) -> list[list[str]]:
     """The names that links hold together, in the order of `names`."""
     beside: dict[str, list[str]] = {name: [] for name in names}
     for start, end in links:
         beside[start].append(end)
         beside[end].append(start)
-    seen, parts = set[str](), list[list[str]]()
+    visited, parts = set[str](), list[list[str]]()
     for start in names:
-        if start in seen:
+        if start in visited:
             continue
         todo, part = [start], set[str]()
         while todo:
@@ -118,52 +118,52 @@ def _parts(names: list[str], links: list[tuple[str, str]]) -> list[list[str]]:
             if name not in part:
                 part.add(name)
                 todo += beside[name]
-        seen |= part
+        visited |= part
         parts.append([name for name in names if name in part])
     return parts
 
 
-def _fed_first(graph: Graph, some: list[str]) -> list[str]:
+def _sort_by_column(graph: Graph, elements: list[str]) -> list[str]:
     """Some elements, each after what feeds it where there are no loops."""
-    rank = {key: column[0] for key, column in laid_out(graph, some).items()}
-    return sorted(some, key=lambda key: (rank[key], some.index(key)))
+    rank = {key: column[0] for key, column in lay_out(graph, elements).items()}
+    return sorted(elements, key=lambda key: (rank[key], elements.index(key)))
 
 
-def _beside(graph: Graph, key: str, found: Mapping[str, Place], sizes: Sizes | None) -> Place:
+def _place_beside(graph: Graph, key: str, places: Mapping[str, Place], sizes: Sizes | None) -> Place:
     """Right of what feeds an element, else left of what it feeds, else below everything."""
     links = element_links(graph)
-    feeders = [start for start, end in links if end == key and start in found]
-    readers = [end for start, end in links if start == key and end in found]
-    width = size(graph, key, sizes)[0]
+    feeders = [start for start, end in links if end == key and start in places]
+    readers = [end for start, end in links if start == key and end in places]
+    width = element_size(graph, key, sizes)[0]
     if feeders:
-        nearest = max(feeders, key=lambda one: found[one][0])
-        spot = (found[nearest][0] + size(graph, nearest, sizes)[0] + GAP[0], found[nearest][1])
+        nearest = max(feeders, key=lambda one: places[one][0])
+        spot = (places[nearest][0] + element_size(graph, nearest, sizes)[0] + GAP[0], places[nearest][1])
     elif readers:
-        nearest = min(readers, key=lambda one: found[one][0])
-        spot = (found[nearest][0] - width - GAP[0], found[nearest][1])
+        nearest = min(readers, key=lambda one: places[one][0])
+        spot = (places[nearest][0] - width - GAP[0], places[nearest][1])
     else:
         side = end_port(key)
-        left, _, right, _ = bounds(graph, found, found, sizes)
+        left, _, right, _ = bounds(graph, places, places, sizes)
         x = right + GAP[0] if side and side.node == OUTPUTS else left
-        spot = (x, _bottom(graph, found, sizes))
-    return _free(graph, key, spot, found, sizes)
+        spot = (x, _bottom(graph, places, sizes))
+    return _find_free_place(graph, key, spot, places, sizes)
 
 
-def _free(graph: Graph, key: str, spot: Place, found: Mapping[str, Place], sizes: Sizes | None) -> Place:
+def _find_free_place(graph: Graph, key: str, spot: Place, places: Mapping[str, Place], sizes: Sizes | None) -> Place:
     """The nearest place below `spot` where an element covers no other node or end."""
-    width, height = size(graph, key, sizes)
-    boxes = [(*at, *size(graph, one, sizes)) for one, at in found.items() if linked_elements(one, graph)]
+    width, height = element_size(graph, key, sizes)
+    boxes = [(*at, *element_size(graph, one, sizes)) for one, at in places.items() if can_be_linked(one, graph)]
     x, y = spot
     while True:
-        hit = [
+        covered_bottoms = [
             top + tall
             for left, top, wide, tall in boxes
             if left < x + width and x < left + wide and top < y + height and y < top + tall
         ]
-        if not hit:
+        if not covered_bottoms:
             return x, y
-        y = max(hit) + GAP[1] / 2.0
+        y = max(covered_bottoms) + GAP[1] / 2.0
 
 
-def _bottom(graph: Graph, found: Mapping[str, Place], sizes: Sizes | None) -> float:
-    return bounds(graph, found, found, sizes)[3] + GAP[1] if found else 0.0
+def _bottom(graph: Graph, places: Mapping[str, Place], sizes: Sizes | None) -> float:
+    return bounds(graph, places, places, sizes)[3] + GAP[1] if places else 0.0

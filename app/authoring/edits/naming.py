@@ -9,13 +9,13 @@ from ...graph import Graph, Port, Unknown, signature
 from ...graph.names import name_fault
 
 
-def stem(path: str | Path) -> str:
+def node_stem(path: str | Path) -> str:
     """A node id from the name of a file."""
     name = "".join(letter if letter.isalnum() else "_" for letter in Path(path).stem).strip("_") or "file"
     return name if name_fault(name, "node") is None else f"{name}_file"
 
 
-def copy_of(name: str, taken: Container[str], kind: str = "") -> str:
+def name_copy(name: str, taken: Container[str], kind: str = "") -> str:
     """A free name for a copy: `blur2` for `blur`, `n4` for `n3`; digits that belong to its `kind` are left alone."""
     if name not in taken:
         return name
@@ -28,14 +28,14 @@ def copy_of(name: str, taken: Container[str], kind: str = "") -> str:
     return f"{head}{number}"
 
 
-def called(graph: Graph, port: Port) -> str:
+def value_label(graph: Graph, port: Port) -> str:
     """A value as people read it: as it is labelled, else by its name."""
     item = graph.nodes.get(port.node)
     value = None if item is None or isinstance(item, Unknown) else signature(item).values.get(port.socket)
     return (value.label if value else "") or port.socket.replace("_", " ")
 
 
-def spoken(keys: Collection[str]) -> str:
+def describe_elements(keys: Collection[str]) -> str:
     """Some elements for the label of a step: `blur`, `3 nodes`, `4 elements`."""
     if len(keys) == 1:
         return next(iter(keys))

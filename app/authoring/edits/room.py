@@ -6,11 +6,11 @@ from collections.abc import Collection
 
 from ...graph import Graph, Port
 from ...graph.walk import reach
-from .decor import boxed, frame_members
-from .elements import Place, Sizes, entries, owner, with_places
+from .decor import find_frame_members, set_box
+from .elements import Place, Sizes, element_of, entries, with_places
 from .layout import bounds, element_links, positions
-from .routes import inner
-from .sizes import size
+from .routes import inner_dots
+from .sizes import element_size
 
 MARGIN = 40.0
 """Room between boxes that were in each other's way."""
@@ -18,7 +18,7 @@ MARGIN = 40.0
 Box = tuple[float, float, float, float]
 
 
-def roomy(graph: Graph, ids: Collection[str], target: Port, sizes: Sizes | None = None) -> Graph:
+def make_space(graph: Graph, ids: Collection[str], target: Port, sizes: Sizes | None = None) -> Graph:
     """A graph where nodes that were put into the link to `target` cover neither what feeds them nor what they feed.
 
     They move right of what feeds them, and everything that depends on them moves right by as much as is needed; what
@@ -27,46 +27,48 @@ def roomy(graph: Graph, ids: Collection[str], target: Port, sizes: Sizes | None 
     places = positions(graph, sizes)
     links = element_links(graph)
     feeders = {start for start, end in links if end in ids and start not in ids}
-    ahead = _overlap(graph, feeders, ids, places, sizes)
+    ahead = _measure_overlap(graph, feeders, ids, places, sizes)
     if ahead > 0.0:
         graph = with_places(graph, {id: (places[id][0] + ahead, places[id][1]) for id in ids})
         places = positions(graph, sizes)
     after: dict[str, list[str]] = {}
     for start, end in links:
         after.setdefault(start, []).append(end)
-    behind = {owner(target), *reach(owner(target), after)} - {*ids}
-    by = _overlap(graph, ids, behind, places, sizes)
-    return _pushed(graph, behind, by, places, sizes) if by > 0.0 else graph
+    behind = {element_of(target), *reach(element_of(target), after)} - {*ids}
+    by = _measure_overlap(graph, ids, behind, places, sizes)
+    return _push_right(graph, behind, by, places, sizes) if by > 0.0 else graph
 
 
-def _overlap(
+def _measure_overlap(
     graph: Graph, left: Collection[str], right: Collection[str], places: dict[str, Place], sizes: Sizes | None
 ) -> float:
     """How far the elements at the right must move so that none is in the way of those at the left."""
-    found = 0.0
-    for one in left:
-        a = _box(graph, one, places, sizes)
-        for other in right:
-            b = _box(graph, other, places, sizes)
+    overlap = 0.0
+    for left_element in left:
+        a = _box(graph, left_element, places, sizes)
+        for right_element in right:
+            b = _box(graph, right_element, places, sizes)
             if b[0] < a[2] and a[0] < b[2] and b[1] < a[3] and a[1] < b[3]:
-                found = max(found, a[2] + MARGIN - b[0])
-    return found
+                overlap = max(overlap, a[2] + MARGIN - b[0])
+    return overlap
 
 
-def _pushed(graph: Graph, some: Collection[str], by: float, places: dict[str, Place], sizes: Sizes | None) -> Graph:
+def _push_right(
+    graph: Graph, elements: Collection[str], by: float, places: dict[str, Place], sizes: Sizes | None
+) -> Graph:
     """A graph where elements lie further right, with the dots between them, and the frames that they fill."""
-    moved = {*some, *inner(graph, some)}
-    after = with_places(graph, {key: (places[key][0] + by, places[key][1]) for key in moved})
+    moved_elements = {*elements, *inner_dots(graph, elements)}
+    after = with_places(graph, {key: (places[key][0] + by, places[key][1]) for key in moved_elements})
     for id in entries(graph, "frames"):
-        members = {key for key in frame_members(graph, id, places, sizes) if not key.startswith("frames.")}
-        if members & moved:
+        members = {key for key in find_frame_members(graph, id, places, sizes) if not key.startswith("frames.")}
+        if members & moved_elements:
             left, top, right, bottom = bounds(graph, [f"frames.{id}"], places, sizes)
-            if members <= moved:
+            if members <= moved_elements:
                 left += by
-            after = boxed(after, f"frames.{id}", left, top, right + by - left, bottom - top)
+            after = set_box(after, f"frames.{id}", left, top, right + by - left, bottom - top)
     return after
 
 
 def _box(graph: Graph, key: str, places: dict[str, Place], sizes: Sizes | None) -> Box:
-    (x, y), (width, height) = places[key], size(graph, key, sizes)
+    (x, y), (width, height) = places[key], element_size(graph, key, sizes)
     return x, y, x + width, y + height

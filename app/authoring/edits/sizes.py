@@ -9,10 +9,10 @@ WIDTH, HEADER, ROW = 180.0, 34.0, 22.0
 COMMENT = (200.0, 60.0)
 
 
-def size(graph: Graph, key: str, known: Sizes | None = None) -> tuple[float, float]:
+def element_size(graph: Graph, key: str, measured: Sizes | None = None) -> tuple[float, float]:
     """Width and height of an element: as measured, as saved, or a guess from its sockets."""
-    if known and key in known:
-        return known[key]
+    if measured and key in measured:
+        return measured[key]
     section = key.partition(".")[0]
     facts = entry(graph, key)
     if section == "dots" and key not in graph.nodes:

@@ -11,17 +11,17 @@ from ...graph.names import fresh_name
 Animations = Mapping[Port, Animation]
 
 
-def renamed(animation: Animation, names: Mapping[str, str]) -> Animation:
+def rename_in_expression(animation: Animation, names: Mapping[str, str]) -> Animation:
     """An expression where nodes, controls or values (`node.value`) are called otherwise, all at once; keys as is."""
     if not isinstance(animation, Expression):
         return animation
     heads = {name.partition(".")[0] for name in animation.names}
-    asked = [(old, new) for old, new in names.items() if old != new and old.partition(".")[0] in heads]
-    taken = {*heads, *names, *names.values()}
+    renames = [(old, new) for old, new in names.items() if old != new and old.partition(".")[0] in heads]
+    taken_names = {*heads, *names, *names.values()}
     waiting: list[tuple[str, str]] = []
-    for old, new in sorted(asked, key=lambda pair: -pair[0].count(".")):
-        between = fresh_name("between", taken)
-        taken.add(between)
+    for old, new in sorted(renames, key=lambda pair: -pair[0].count(".")):
+        between = fresh_name("between", taken_names)
+        taken_names.add(between)
         animation = animation.renamed(old, between)
         waiting.append((between, new))
     for between, new in waiting:
@@ -29,30 +29,32 @@ def renamed(animation: Animation, names: Mapping[str, str]) -> Animation:
     return animation
 
 
-def of_nodes(graph: Graph, ids: Collection[str]) -> dict[Port, Animation]:
+def animation_of(graph: Graph, ids: Collection[str]) -> dict[Port, Animation]:
     """What changes over time in some nodes."""
     return {port: item for port, item in graph.animation.items() if port.node in ids}
 
 
-def split(graph: Graph, ids: Collection[str], group: str) -> tuple[dict[Port, Animation], dict[Port, Animation]]:
+def split_animation(
+    graph: Graph, ids: Collection[str], group: str
+) -> tuple[dict[Port, Animation], dict[Port, Animation]]:
     """The animation of what becomes a group, and of what is left around it.
 
     Values with a control stay animated outside, as what the group shows.
     """
-    shown = {item.target: name for name, item in graph.controls.items() if item.target.node in ids}
-    names = {str(target): f"{group}.{name}" for target, name in shown.items()}
+    exposed = {item.target: name for name, item in graph.controls.items() if item.target.node in ids}
+    names = {str(target): f"{group}.{name}" for target, name in exposed.items()}
     inner, outer = dict[Port, Animation](), dict[Port, Animation]()
     for port, item in graph.animation.items():
-        if port in shown:
-            outer[Port(group, shown[port])] = renamed(item, names)
+        if port in exposed:
+            outer[Port(group, exposed[port])] = rename_in_expression(item, names)
         elif port.node in ids:
             inner[port] = item
         else:
-            outer[port] = renamed(item, names)
+            outer[port] = rename_in_expression(item, names)
     return inner, outer
 
 
-def joined(graph: Graph, body: Graph, group: str, nodes: Mapping[str, str]) -> dict[Port, Animation]:
+def join_animation(graph: Graph, body: Graph, group: str, nodes: Mapping[str, str]) -> dict[Port, Animation]:
     """The animation of a graph where the body of one of its groups stands in its place, its nodes called as `nodes`."""
     targets = {
         name: Port(nodes[item.target.node], item.target.socket)
@@ -60,8 +62,8 @@ def joined(graph: Graph, body: Graph, group: str, nodes: Mapping[str, str]) -> d
         if item.target.node in nodes
     }
     inside = dict(nodes) | {name: str(port) for name, port in targets.items() if name not in body.nodes}
-    found = {
-        Port(nodes[port.node], port.socket): renamed(item, inside)
+    animation = {
+        Port(nodes[port.node], port.socket): rename_in_expression(item, inside)
         for port, item in body.animation.items()
         if port.node in nodes
     }
@@ -69,8 +71,8 @@ def joined(graph: Graph, body: Graph, group: str, nodes: Mapping[str, str]) -> d
     for port, item in graph.animation.items():
         there = targets.get(port.socket) if port.node == group else port
         if there is not None:
-            found[there] = renamed(item, outside)
-    return found
+            animation[there] = rename_in_expression(item, outside)
+    return animation
 
 
 def check_names(before: Graph, after: Graph, animation: Animations) -> None:

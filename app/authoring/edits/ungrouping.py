@@ -10,49 +10,53 @@ from ...graph import INPUTS, OUTPUTS, Graph, Port
 from ...graph.names import fresh_name
 from ...graph.notes import moved_keys
 from . import timing
-from .elements import keys, with_sections, without_entries
-from .folding import group
-from .grouping import corner
+from .elements import list_elements, with_sections, without_entries
+from .folding import find_group
+from .grouping import group_corner
 from .layout import positions
-from .merging import Merged, merged, moved_dots
+from .merging import MergedPart, merge_part, rename_dots
 from .paths import rebased
-from .routes import routes, tidied
+from .routes import routes, tidy_routes
 
 
-def ungrouped(graph: Graph, id: str) -> tuple[Graph, tuple[str, ...]]:
+def ungroup(graph: Graph, id: str) -> tuple[Graph, tuple[str, ...]]:
     """A graph where the content of a group stands in its place, and the keys of that content.
 
     The picture stays the same: an input of the group that nothing feeds, but that has a file or default of its own,
     becomes an input of the graph. Raises GraphError for a muted group, which shows something else than its content.
     """
-    item = group(graph, id)
+    item = find_group(graph, id)
     if id in graph.muted:
         raise GraphError(f"group '{id}' is muted, so its content is not what it shows: unmute it first")
     body = rebased(item.body(), graph.folder)
-    outer = _without(graph, id)
-    found = merged(outer, body, _places(graph, id, body))
-    opened = _Opened(graph, id, body, found)
-    links, hoisted = opened.links()
+    outer = _remove_group(graph, id)
+    merged_part = merge_part(outer, body, _content_places(graph, id, body))
+    opened_group = _OpenedGroup(graph, id, body, merged_part)
+    links, hoisted = opened_group.links()
     after = replace(
-        found.graph,
-        inputs={**graph.inputs, **{opened.hoisted[name]: body.inputs[name] for name in hoisted}},
-        links={**links, **found.graph.links},
-        controls=opened.controls(),
-        animation=timing.joined(graph, body, id, {name: found.keys[name] for name in body.nodes if name in found.keys}),
+        merged_part.graph,
+        inputs={**graph.inputs, **{opened_group.hoisted[name]: body.inputs[name] for name in hoisted}},
+        links={**links, **merged_part.graph.links},
+        controls=opened_group.controls(),
+        animation=timing.join_animation(
+            graph, body, id, {name: merged_part.keys[name] for name in body.nodes if name in merged_part.keys}
+        ),
     )
-    after = opened.with_layout(after)
-    return tidied(after), tuple(found.keys[key] for key in found.keys if found.keys[key] in set(keys(after)))
+    after = opened_group.with_layout(after)
+    return tidy_routes(after), tuple(
+        merged_part.keys[key] for key in merged_part.keys if merged_part.keys[key] in set(list_elements(after))
+    )
 
 
-class _Opened:
+class _OpenedGroup:
     """A group `id` of `graph` whose `body` was merged into it."""
 
-    def __init__(self, graph: Graph, id: str, body: Graph, found: Merged) -> None:
+    def __init__(self, graph: Graph, id: str, body: Graph, found: MergedPart) -> None:
         self.graph, self.id, self.body, self.found = graph, id, body, found
-        taken, self.hoisted = set(graph.inputs), dict[str, str]()
+        input_names, self.hoisted = set(graph.inputs), dict[str, str]()
         for name in body.inputs:
-            self.hoisted[name] = fresh_name(name, taken)
-            taken.add(self.hoisted[name])
+            self.hoisted[name] = fresh_name(name, input_names)
+            input_names.add(self.hoisted[name])
 
     def links(self) -> tuple[dict[Port, Port], set[str]]:
         """Links across the border of the group, joined, and inputs of it that the graph needs now."""
@@ -66,18 +70,18 @@ class _Opened:
                     links.setdefault(end, None if source.node == self.id else source)
             elif source.node == self.id:
                 links[target] = self._source(self.body.links.get(Port(OUTPUTS, source.socket)))
-        known = {end: start for end, start in links.items() if start is not None}
+        known_links = {end: start for end, start in links.items() if start is not None}
         outside = {Port(INPUTS, fresh): name for name, fresh in self.hoisted.items()}
-        return known, {outside[start] for start in known.values() if start in outside}
+        return known_links, {outside[start] for start in known_links.values() if start in outside}
 
     def controls(self) -> dict[str, object]:
         """Controls of the graph, which turn what controls of the group turned."""
-        found = {}
+        controls = {}
         for name, item in self.graph.controls.items():
             target = self._control(item.target.socket) if item.target.node == self.id else item.target
             if target is not None:
-                found[name] = replace(item, target=target)
-        return found
+                controls[name] = replace(item, target=target)
+        return controls
 
     def with_layout(self, after: Graph) -> Graph:
         """`after` with routes joined, and viewers on what the group showed."""
@@ -85,25 +89,25 @@ class _Opened:
         for target, source in self.body.links.items():
             if source.node == INPUTS and (end := self.found.port(target)):
                 dots = outer.get(f"{self.id}.{source.socket}", ())
-                passed[str(end)] = (*dots, *moved_dots(self.found, inner.get(str(target), ())))
+                passed[str(end)] = (*dots, *rename_dots(self.found, inner.get(str(target), ())))
         for target, source in self.graph.links.items():
             if source.node == self.id != target.node:
-                dots = moved_dots(self.found, inner.get(f"{OUTPUTS}.{source.socket}", ()))
+                dots = rename_dots(self.found, inner.get(f"{OUTPUTS}.{source.socket}", ()))
                 passed[str(target)] = (*dots, *outer.get(str(target), ()))
         ends = {str(end) for end in after.links}
         passed = {target: dots for target, dots in passed.items() if dots and target in ends}
         return with_sections(after, {"routes": passed, "viewers": self._viewers()})
 
     def _viewers(self) -> dict[str, object]:
-        known, found = self.graph.ui.get("viewers"), dict[str, object]()
-        for number, text in known.items() if isinstance(known, Mapping) else ():
+        section, viewers = self.graph.ui.get("viewers"), dict[str, object]()
+        for number, text in section.items() if isinstance(section, Mapping) else ():
             node, _, socket = str(text).partition(".")
             port = self._source(self.body.links.get(Port(OUTPUTS, socket))) if node == self.id else None
             if node != self.id:
-                found[number] = text
+                viewers[number] = text
             elif port is not None:
-                found[number] = str(port)
-        return found
+                viewers[number] = str(port)
+        return viewers
 
     def _source(self, port: Port | None) -> Port | None:
         """What a source inside the group is, seen from the graph; None if there is nothing."""
@@ -117,11 +121,11 @@ class _Opened:
 
     def _control(self, name: str) -> Port | None:
         """What a control of the group turns, seen from the graph."""
-        known = name in self.body.controls and name not in self.body.inputs
-        return self.found.port(self.body.controls[name].target) if known else None
+        is_control = name in self.body.controls and name not in self.body.inputs
+        return self.found.port(self.body.controls[name].target) if is_control else None
 
 
-def _without(graph: Graph, id: str) -> Graph:
+def _remove_group(graph: Graph, id: str) -> Graph:
     """The graph without a group, and without the links to it."""
     return replace(
         without_entries(graph, [id]),
@@ -131,9 +135,9 @@ def _without(graph: Graph, id: str) -> Graph:
     )
 
 
-def _places(graph: Graph, id: str, body: Graph) -> dict[str, tuple[float, float]]:
+def _content_places(graph: Graph, id: str, body: Graph) -> dict[str, tuple[float, float]]:
     """Where the content goes: around the place of the group, as it lay inside."""
     spots = positions(body)
-    inner = corner(body, list(body.nodes), spots)
+    inner = group_corner(body, list(body.nodes), spots)
     here = positions(graph)[id]
     return {key: (round(x - inner[0] + here[0], 2), round(y - inner[1] + here[1], 2)) for key, (x, y) in spots.items()}

@@ -12,13 +12,13 @@ from ...graph import Graph, Item, Port, conversion, make_socket, signature
 from ...graph.values import coerced, value_fault
 from ...graph.walk import loop_sentence, route
 from .elements import place
-from .routes import route as dots_of
-from .routes import split, with_routes
+from .routes import dots_on_link as dots_of
+from .routes import split_route, with_routes
 
 Types = Mapping[str, type[Node]]
 
 
-def refusal(graph: Graph, source: Port, target: Port) -> str | None:
+def why_not_linkable(graph: Graph, source: Port, target: Port) -> str | None:
     """Why a link cannot be, loops included; None if it can."""
     if fault := graph.link_fault(source, target):
         return fault
@@ -26,11 +26,11 @@ def refusal(graph: Graph, source: Port, target: Port) -> str | None:
     return loop_sentence((*loop, target.node)) if loop else None
 
 
-def targets(item: Item, id: str) -> tuple[Port, ...]:
+def list_targets(item: Item, id: str) -> tuple[Port, ...]:
     """What can be linked into a node: inputs, then values that take a link."""
     face = signature(item)
-    taken = face.values if face.pointwise or not isinstance(item, Node) else {}
-    values = [name for name, value in taken.items() if value.wireable]
+    wireable = face.values if face.pointwise or not isinstance(item, Node) else {}
+    values = [name for name, value in wireable.items() if value.wireable]
     return tuple(Port(id, name) for name in (*face.inputs, *values))
 
 
@@ -40,39 +40,39 @@ def first_target(graph: Graph, source: Port, id: str, values: bool = True) -> Po
     Raises GraphError.
     """
     names = signature(graph.node(id)).inputs
-    ports = [port for port in targets(graph.node(id), id) if values or port.socket in names]
+    ports = [port for port in list_targets(graph.node(id), id) if values or port.socket in names]
     free = [port for port in ports if port not in graph.links]
-    fitting = [port for port in (*free, *ports) if refusal(graph, source, port) is None]
+    fitting = [port for port in (*free, *ports) if why_not_linkable(graph, source, port) is None]
     if not fitting:
-        raise GraphError(f"'{source}' fits no input of node '{id}'{_why(graph, source, ports)}")
+        raise GraphError(f"'{source}' fits no input of node '{id}'{_explain_refusal(graph, source, ports)}")
     return fitting[0]
 
 
 def first_source(graph: Graph, id: str, target: Port) -> Port:
     """The first output of a node that can feed `target`. Raises GraphError."""
     ports = [Port(id, name) for name in signature(graph.node(id)).outputs]
-    fitting = [port for port in ports if refusal(graph, port, target) is None]
+    fitting = [port for port in ports if why_not_linkable(graph, port, target) is None]
     if not fitting:
-        why = f": {refusal(graph, ports[0], target)}" if ports else ": it has no outputs"
+        why = f": {why_not_linkable(graph, ports[0], target)}" if ports else ": it has no outputs"
         raise GraphError(f"no output of node '{id}' fits '{target}'{why}")
     return fitting[0]
 
 
-def linked(graph: Graph, id: str, port: Port, output: bool) -> Graph:
+def link_node(graph: Graph, id: str, port: Port, output: bool) -> Graph:
     """A graph where a node is linked with `port`, a source if `output`, by the first socket that fits."""
     if output:
         return graph.connect(port, first_target(graph, port, id))
     return graph.connect(first_source(graph, id, port), port)
 
 
-def fitting(graph: Graph, port: Port, output: bool, types: Types) -> tuple[str, ...]:
+def fitting_types(graph: Graph, port: Port, is_output: bool, types: Types) -> tuple[str, ...]:
     """Ids of node types that could be linked with `port`, a source if `output`, in the order of `types`."""
-    if output:
+    if is_output:
         start = graph.source(port)
         return tuple(
             id
             for id, kind in types.items()
-            if any(start is None or conversion(start, end) is None for end in _ends(kind))
+            if any(start is None or conversion(start, end) is None for end in _wireable_ends(kind))
         )
     end = graph.target(port)
     return tuple(
@@ -86,7 +86,7 @@ def fits(graph: Graph, port: Port, output: bool, item: Item) -> bool:
     """True if a node or group could be linked with `port`, a source if `output`."""
     id = graph.fresh_id("new")
     try:
-        linked(graph.add(id, item), id, port, output)
+        link_node(graph.add(id, item), id, port, output)
     except GraphError:
         return False
     return True
@@ -101,12 +101,12 @@ def fits_picture(graph: Graph, port: Port, output: bool) -> bool:
     return end is None or conversion(make_socket(Kind.IMAGE), end) is None
 
 
-def inserted(graph: Graph, id: str, target: Port) -> Graph:
+def insert_node(graph: Graph, id: str, target: Port) -> Graph:
     """A graph where node `id` stands in the link that feeds `target`; dots left of it stay before it."""
-    return _put_between(graph, id, id, target)
+    return _put_chain_between(graph, id, id, target)
 
 
-def spliced(graph: Graph, ids: Collection[str], target: Port) -> Graph:
+def splice_chain(graph: Graph, ids: Collection[str], target: Port) -> Graph:
     """A graph where a chain of nodes stands in the link that feeds `target`. Raises GraphError if they are no chain."""
     for end, start in graph.links.items():
         if (end.node in ids) != (start.node in ids):
@@ -115,13 +115,13 @@ def spliced(graph: Graph, ids: Collection[str], target: Port) -> Graph:
     inner = [(start.node, end.node) for end, start in graph.links.items() if end.node in ids]
     fed, feeding = {end for _, end in inner}, {start for start, _ in inner}
     last = [id for id in graph.nodes if id in ids and id not in feeding]
-    first = [id for id in graph.nodes if id in ids and id not in fed and targets(graph.nodes[id], id)]
+    first = [id for id in graph.nodes if id in ids and id not in fed and list_targets(graph.nodes[id], id)]
     if len(last) != 1 or len(first) != 1:
         raise GraphError("these nodes are no chain: only one that begins and ends with one node fits into a link")
-    return _put_between(graph, first[0], last[0], target)
+    return _put_chain_between(graph, first[0], last[0], target)
 
 
-def _put_between(graph: Graph, first: str, last: str, target: Port) -> Graph:
+def _put_chain_between(graph: Graph, first: str, last: str, target: Port) -> Graph:
     """A graph where a chain from node `first` to node `last` stands in the link that feeds `target`."""
     source = graph.links.get(target)
     if source is None:
@@ -134,26 +134,26 @@ def _put_between(graph: Graph, first: str, last: str, target: Port) -> Graph:
     after = graph.disconnect(target).connect(source, entrance)
     after = after.connect(first_source(after, last, target), target)
     spot = place(graph, first)
-    left, right = split(graph, dots, spot[0]) if spot else (dots, ())
+    left, right = split_route(graph, dots, spot[0]) if spot else (dots, ())
     return with_routes(after, {entrance: left, target: right})
 
 
-def removed(graph: Graph, id: str, heal: bool = True) -> Graph:
+def remove_node(graph: Graph, id: str, heal: bool = True) -> Graph:
     """A graph without a node. With `heal` its links are joined where they fit, and so are their dots."""
     after = graph.remove(id, heal)
-    into = {graph.links[Port(id, name)]: Port(id, name) for name in reversed(_entrances(graph, id))}
+    into = {graph.links[Port(id, name)]: Port(id, name) for name in reversed(_linked_inputs(graph, id))}
     joined: dict[Port, tuple[str, ...]] = {}
     for target, source in graph.links.items():
-        if source.node == id and (came := after.links.get(target)) in into:
-            joined[target] = (*dots_of(graph, into[came]), *dots_of(graph, target))
+        if source.node == id and (source := after.links.get(target)) in into:
+            joined[target] = (*dots_of(graph, into[source]), *dots_of(graph, target))
     return with_routes(after, joined) if any(joined.values()) else after
 
 
-def extracted(graph: Graph, ids: Collection[str]) -> Graph:
+def extract_nodes(graph: Graph, ids: Collection[str]) -> Graph:
     """A graph where nodes left their chains: they keep the links among themselves, the others are joined."""
     after = graph
     for id in ids:
-        after = removed(after, id)
+        after = remove_node(after, id)
     inner = {end: start for end, start in graph.links.items() if end.node in ids and start.node in ids}
     if inner.keys() | after.links.keys() == graph.links.keys() and {**after.links, **inner} == graph.links:
         raise GraphError("nothing to take out of a chain: the nodes have no links to others")
@@ -163,14 +163,14 @@ def extracted(graph: Graph, ids: Collection[str]) -> Graph:
     )
 
 
-def cut(graph: Graph, ends: Iterable[Port]) -> Graph:
+def cut_links(graph: Graph, ends: Iterable[Port]) -> Graph:
     """A graph without the links to `ends`."""
     for target in sorted(set(ends)):
         graph = graph.disconnect(target)
     return graph
 
 
-def moved(graph: Graph, old: Port, new: Port) -> Graph:
+def move_link(graph: Graph, old: Port, new: Port) -> Graph:
     """A graph where a link feeds another socket."""
     source = graph.links.get(old)
     if source is None:
@@ -179,7 +179,7 @@ def moved(graph: Graph, old: Port, new: Port) -> Graph:
     return graph if old == new else with_routes(graph.disconnect(old).connect(source, new), {new: dots})
 
 
-def swapped(graph: Graph, id: str) -> Graph:
+def swap_inputs(graph: Graph, id: str) -> Graph:
     """A graph where the sources of a node's first two inputs changed places."""
     names = tuple(signature(graph.node(id)).inputs)[:2]
     ports = [Port(id, name) for name in names]
@@ -187,34 +187,34 @@ def swapped(graph: Graph, id: str) -> Graph:
     if len(ports) < 2 or sources == [None, None]:
         raise GraphError(f"node '{id}' has no two inputs to swap" if len(ports) < 2 else f"nothing is linked to '{id}'")
     routes = [dots_of(graph, port) for port in ports]
-    after = cut(graph, [port for port in ports if port in graph.links])
+    after = cut_links(graph, [port for port in ports if port in graph.links])
     for port, source in zip(ports, reversed(sources), strict=True):
         after = after.connect(source, port) if source else after
     return with_routes(after, dict(zip(ports, reversed(routes), strict=True)))
 
 
-def replaced(graph: Graph, id: str, kind: type[Node]) -> Graph:
+def replace_node(graph: Graph, id: str, kind: type[Node]) -> Graph:
     """A graph where a node has another type; links stay where they fit, values where name and type agree."""
     before = signature(graph.node(id)).values
     values = {}
     for name, value in kind.values.items():
         if name in before and before[name].type == value.type:
-            now = coerced(value, graph.value(Port(id, name)))
-            if now is not None and value_fault(value, now) is None:
-                values[name] = now
+            fitted_value = coerced(value, graph.value(Port(id, name)))
+            if fitted_value is not None and value_fault(value, fitted_value) is None:
+                values[name] = fitted_value
     return graph.replace(id, kind(**values))
 
 
-def _ends(kind: type[Node]) -> list[Socket | Value]:
+def _wireable_ends(kind: type[Node]) -> list[Socket | Value]:
     wires = [value for value in kind.values.values() if value.wireable] if issubclass(kind, Pointwise) else []
     return [*kind.inputs.values(), *wires]
 
 
-def _entrances(graph: Graph, id: str) -> list[str]:
+def _linked_inputs(graph: Graph, id: str) -> list[str]:
     face = signature(graph.node(id))
     names = face.inputs or sorted(port.socket for port in graph.links if port.node == id)
     return [name for name in names if Port(id, name) in graph.links]
 
 
-def _why(graph: Graph, source: Port, ports: list[Port]) -> str:
-    return f": {refusal(graph, source, ports[0])}" if ports else ": it has none"
+def _explain_refusal(graph: Graph, source: Port, ports: list[Port]) -> str:
+    return f": {why_not_linkable(graph, source, ports[0])}" if ports else ": it has none"

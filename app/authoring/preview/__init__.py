@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from .glimpses import Glimpse
-from .preview import Preview, Shown
-from .timing import Timing
+from .preview import DisplayedImage, Preview
+from .timing import NodeTiming
+from .visible_region import VisibleRegion
 
-__all__ = ["Glimpse", "Preview", "Shown", "Timing"]
+__all__ = ["DisplayedImage", "NodeTiming", "Preview", "VisibleRegion"]

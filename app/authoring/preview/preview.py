@@ -14,15 +14,15 @@ from ...compiler import Library, Plan
 from ...errors import HalationError
 from ...graph import Graph, Port, color_settings
 from ...renderer import DeviceTexture, Display, Renderer
-from ..services.renders import Pending
-from .glimpses import Glimpse
-from .jobs import Job, peek
-from .rounds import Round
-from .shown import Shelf, Shown
-from .takes import Face, Take
-from .thumbnails import Thumbnails, subjects_of
-from .timing import Stopwatch, Timing
-from .wishes import Wish
+from ..background.render_overviews import OverviewPending
+from .displayed_images import DisplayedImage, DisplayedImages
+from .frame_cache import FrameCache, FrameImage
+from .picture_job import PictureJob, begin_visible_part
+from .request import PreviewRequest
+from .thumbnails import Thumbnails, list_thumbnail_sources
+from .timing import NodeTiming, PassTimes
+from .visible_region import VisibleRegion
+from .work import PreviewWork
 
 if TYPE_CHECKING:
     from ...inputs.provider import Binding
@@ -43,14 +43,14 @@ class Preview:
     def __init__(self, renderer: Renderer, display: Display) -> None:
         self.renderer, self._runner = renderer, renderer.runner
         self._thumbnails = Thumbnails(renderer, display)
-        self._wish: Wish | None = None
-        self._round: Round | None = None
-        self._job: Job | None = None
-        self._shelf = Shelf(renderer.runner)
+        self._wish: PreviewRequest | None = None
+        self._round: PreviewWork | None = None
+        self._job: PictureJob | None = None
+        self._shelf = DisplayedImages(renderer.runner)
         self._seen: Graph | None = None
         """The last graph that was wanted: it may differ from the wish in its layout."""
-        self._stopwatch = Stopwatch()
-        self._timings: dict[str, Timing] = {}
+        self._stopwatch = PassTimes()
+        self._timings: dict[str, NodeTiming] = {}
         self._cameras: dict[Port, Camera] = {}
         self.faults: Mapping[str, str] = MappingProxyType({})
         """What is wrong, by path of the node or input (`glow/bloom`, `inputs.beauty`); "" where no node is at fault."""
@@ -61,11 +61,11 @@ class Preview:
         self.thumbnailing = True
         self.skims = False
         self.ahead: int | None = None
-        self.glimpse: Glimpse | None = None
+        self.glimpse: VisibleRegion | None = None
         self.patience = PATIENCE
         self.seconds = 0.0
         """How long the frame took that was finished last."""
-        self._takes: list[Take] = []
+        self._takes: list[FrameCache] = []
 
     # --- what the editor says ----------------------------------------------------------------------------------------
 
@@ -81,19 +81,19 @@ class Preview:
     ) -> None:
         """What panels want to show, by their names. Costs nothing when it is the same as before."""
         before = self._wish
-        wish = Wish(graph, dict(ports), dict(bindings or {}), scale, frame, size)
+        wish = PreviewRequest(graph, dict(ports), dict(bindings or {}), scale, frame, size)
         if before is not None:
-            if graph is self._seen and before.equals(replace(wish, graph=before.graph)):
+            if graph is self._seen and before.wants_same_pixels(replace(wish, graph=before.graph)):
                 return
             self._seen = graph
-            if before.equals(wish):
+            if before.wants_same_pixels(wish):
                 return
-            wish.world = before.world + (not before.same_world(wish))
-            wish.known = before.known
-            wish.take = before.take if wish.follows(before) else wish.take
+            wish.outside_version = before.outside_version + (not before.has_same_outside(wish))
+            wish.upstream = before.upstream
+            wish.frame_cache = before.frame_cache if wish.differs_only_in_frame(before) else wish.frame_cache
         self._wish, self._seen = wish, graph
-        if wish.take not in self._takes:
-            self._takes.append(wish.take)
+        if wish.frame_cache not in self._takes:
+            self._takes.append(wish.frame_cache)
         self._shelf.keep(wish.ports)
 
     def work(self, seconds: float) -> bool:
@@ -116,7 +116,7 @@ class Preview:
     def refresh(self) -> None:
         """Look again at all files: what has changed on disk is computed anew."""
         if self._wish is not None:
-            self._wish = replace(self._wish, world=self._wish.world + 1)
+            self._wish = replace(self._wish, outside_version=self._wish.outside_version + 1)
         self._forget()
 
     def reload(self, library: Library) -> None:
@@ -142,11 +142,11 @@ class Preview:
 
     # --- what the editor asks ----------------------------------------------------------------------------------------
 
-    def shown(self, name: str) -> Shown | None:
+    def shown(self, name: str) -> DisplayedImage | None:
         """The last good picture for a panel, until the new one is ready. It is whole."""
         return self._shelf.find(name)
 
-    def seen(self, name: str) -> Shown | None:
+    def seen(self, name: str) -> DisplayedImage | None:
         """The same, or the part of a newer one that can be seen."""
         return self._shelf.find_part(name) or self._shelf.find(name)
 
@@ -156,7 +156,7 @@ class Preview:
 
     def thumbnail(self, path: str) -> tuple[DeviceTexture, bool] | None:
         """The last small picture of a node, and whether it is what the node shows now."""
-        return self._thumbnails.find(path, self._wish.mark) if self._wish else None
+        return self._thumbnails.find(path, self._wish.node_mark) if self._wish else None
 
     def camera(self, port: Port) -> Camera | None:
         """The camera that an input of a node was given when pictures were computed last, by the node's path."""
@@ -182,7 +182,7 @@ class Preview:
     @property
     def remembers(self) -> bool:
         """True if frames are known to need the ones before."""
-        return self._wish is not None and self._wish.take.remembers
+        return self._wish is not None and self._wish.frame_cache.needs_history
 
     @property
     def under_way(self) -> int | None:
@@ -192,12 +192,12 @@ class Preview:
     @property
     def frames(self) -> tuple[int, ...]:
         """The frames that can be shown at once, of the graph as it is."""
-        return self._wish.take.frames(self._wish.ports, self.renderer) if self._wish else ()
+        return self._wish.frame_cache.list_frames(self._wish.ports, self.renderer) if self._wish else ()
 
     @property
     def frames_bytes(self) -> int:
         """What these take on the device, as far as they are kept."""
-        return self._wish.take.nbytes if self._wish else 0
+        return self._wish.frame_cache.nbytes if self._wish else 0
 
     @property
     def progress(self) -> tuple[int, int]:
@@ -206,7 +206,7 @@ class Preview:
         job = self._job
         if job is None or job.run is None or job.ahead:
             return before, before
-        return before + job.passes + job.run.done, before + job.passes + job.run.total
+        return before + job.finished_passes + job.run.done, before + job.finished_passes + job.run.total
 
     @property
     def lead(self) -> tuple[str, int, int] | None:
@@ -214,13 +214,13 @@ class Preview:
         job = self._job
         if job is None or job.ahead:
             return None
-        if job.run is None and job.planned[0] < job.planned[1]:
-            return "plan", job.planned[0], job.planned[1]
-        done, total = job.lead
+        if job.run is None and job.planned_frames[0] < job.planned_frames[1]:
+            return "plan", job.planned_frames[0], job.planned_frames[1]
+        done, total = job.preroll
         return ("pre-roll", done, total) if total and done < total else None
 
     @property
-    def timings(self) -> Mapping[str, Timing]:
+    def timings(self) -> Mapping[str, NodeTiming]:
         """What the nodes of the pictures that are shown took when they ran last, by path."""
         return self._timings
 
@@ -233,7 +233,7 @@ class Preview:
 
     @property
     def _has_more(self) -> bool:
-        skimmed = self._round is not None and self._round.skimmed and not self.skims
+        skimmed = self._round is not None and self._round.from_cache_only and not self.skims
         return self.busy or self._draws or skimmed or self._job is not None or self._looks_ahead
 
     @property
@@ -256,8 +256,8 @@ class Preview:
             take.close()
         self._takes = []
         if self._wish is not None:
-            self._wish = replace(self._wish, take=Take())
-            self._takes.append(self._wish.take)
+            self._wish = replace(self._wish, frame_cache=FrameCache())
+            self._takes.append(self._wish.frame_cache)
 
     @property
     def _looks_ahead(self) -> bool:
@@ -265,8 +265,8 @@ class Preview:
         now, frame = self._round, self.ahead
         if frame is None or now is None or self._job is not None or now.queue or now.broken or not now.wish.ports:
             return False
-        take = now.wish.take
-        return frame not in take.hopeless and take.find(frame, now.wish.ports, self.renderer) is None
+        take = now.wish.frame_cache
+        return frame not in take.failed_frames and take.find(frame, now.wish.ports, self.renderer) is None
 
     def _advance(self) -> bool:
         """Do the next thing; False if there is nothing to do now."""
@@ -274,53 +274,55 @@ class Preview:
             self._begin(self._wish)
         if self._round is None:
             return False
-        if self._round.skimmed and not self.skims and self._job is None:
-            self._round.skimmed, self._round.queue = False, [self._round.wish.ports]
-        if self._round.may_peek(self.glimpse) and not self.skims and self._peek(self._round):
+        if self._round.from_cache_only and not self.skims and self._job is None:
+            self._round.from_cache_only, self._round.queue = False, [self._round.wish.ports]
+        if self._round.may_show_part_first(self.glimpse) and not self.skims and self._peek(self._round):
             return True
         if self._job is None:
             return self._compile(self._round)
-        if not self._job.ready:
+        if not self._job.is_ready:
             return False
         self._step(self._round, self._job)
         return True
 
-    def _begin(self, wish: Wish) -> None:
+    def _begin(self, wish: PreviewRequest) -> None:
         """Work on a wish, from what is there of it already."""
         job, ports = self._job, wish.ports
-        if job is not None and job.ahead and job.frame == wish.frame and job.wish.take is wish.take:
+        if job is not None and job.ahead and job.frame == wish.frame and job.wish.frame_cache is wish.frame_cache:
             job.ahead, job.wish = False, wish
-            self._round = Round(wish, [], time.perf_counter())
+            self._round = PreviewWork(wish, [], time.perf_counter())
             self._settle(self._round)
             return
         self._restart()
         for take in self._takes:
-            if take is not wish.take:
+            if take is not wish.frame_cache:
                 take.close()
-        self._takes = [wish.take]
-        known = wish.take.find(wish.frame, ports, self.renderer) if ports else None
+        self._takes = [wish.frame_cache]
+        known = wish.frame_cache.find(wish.frame, ports, self.renderer) if ports else None
         for name, face in known.items() if known else ():
             if name in ports:
                 self._shelf.show(name, ports[name], wish, face)
         skimmed = bool(known and self.skims)
-        self._round = Round(wish, [ports] if ports and not skimmed else [], time.perf_counter(), skimmed=skimmed)
+        self._round = PreviewWork(
+            wish, [ports] if ports and not skimmed else [], time.perf_counter(), from_cache_only=skimmed
+        )
         self._settle(self._round)
 
-    def _may_restart(self, wish: Wish) -> bool:
+    def _may_restart(self, wish: PreviewRequest) -> bool:
         """Let a run that was begun for the same panels come to its end if that is soon."""
         now, job = self._round, self._job
         if now is None or job is None or now.wish.ports != wish.ports or now.wish.scale != wish.scale or job.ahead:
             return True
         if now.part is not None and job.part is None:
             return True
-        return time.perf_counter() - now.began > self.patience
+        return time.perf_counter() - now.started_at > self.patience
 
-    def _peek(self, now: Round) -> bool:
+    def _peek(self, now: PreviewWork) -> bool:
         """Begin with what can be seen, where that is a part of what is still to be done."""
         job, glimpse = self._job, self.glimpse
         if glimpse is None or (job is not None and (job.ahead or job.part is not None)) or not (job or now.queue):
             return False
-        now.tried, found = glimpse, peek(self.renderer, now.wish, glimpse)
+        now.tried_region, found = glimpse, begin_visible_part(self.renderer, now.wish, glimpse)
         if found is None or found.plan is None:
             return False
         if job is not None:
@@ -330,24 +332,24 @@ class Preview:
         self._cameras |= found.plan.cameras
         return True
 
-    def _compile(self, now: Round) -> bool:
+    def _compile(self, now: PreviewWork) -> bool:
         """Begin with the next ports; False if there are none."""
         if self._looks_ahead and self.ahead is not None:
             ports, frame, ahead = now.wish.ports, self.ahead, True
-        elif not now.queue or now.waits:
+        elif not now.queue or now.must_wait:
             return False
         else:
             ports, frame, ahead = now.queue.pop(0), now.wish.frame, False
         now.pending = None
         try:
-            self._job = Job(self.renderer, now.wish, ports, frame, self.timed, ahead)
+            self._job = PictureJob(self.renderer, now.wish, ports, frame, self.timed, ahead)
         except HalationError as error:
             return self._ended(now, ports, frame if ahead else None, error)
         if self._job.plan is not None and not ahead:
             self._cameras |= self._job.plan.cameras
         return True
 
-    def _step(self, now: Round, job: Job) -> None:
+    def _step(self, now: PreviewWork, job: PictureJob) -> None:
         try:
             done = job.step()
             if job.run is not None:
@@ -360,48 +362,48 @@ class Preview:
             return
         if done and job.plan is not None:
             self._job = None
-            now.passes += 0 if job.ahead else job.passes
+            now.passes += 0 if job.ahead else job.finished_passes
             if job.part is not None:
                 self._shelf.show_part(job.wish, job.ports, job.plan, job.part)
                 now.part = job.part
-                job.kept.close()
+                job.lease.close()
                 return
-            self.seconds = time.perf_counter() - job.began
+            self.seconds = time.perf_counter() - job.started_at
             self._finished(now, job, job.plan)
             self._settle(now)
 
-    def _ended(self, now: Round, ports: Mapping[str, Port], ahead: int | None, error: HalationError) -> bool:
+    def _ended(self, now: PreviewWork, ports: Mapping[str, Port], ahead: int | None, error: HalationError) -> bool:
         """What could not be done: it must wait, or be tried otherwise, or is wrong. False if it must wait."""
         if ahead is not None:
-            now.wish.take.hopeless.add(ahead)
-        elif isinstance(error, Pending):
+            now.wish.frame_cache.failed_frames.add(ahead)
+        elif isinstance(error, OverviewPending):
             now.queue.insert(0, ports)
             now.pending = error
             return False
         else:
-            now.failed(ports, error)
+            now.note_failure(ports, error)
             self._settle(now)
         return True
 
-    def _settle(self, now: Round) -> None:
+    def _settle(self, now: PreviewWork) -> None:
         """What was wrong before is known to be over only when all has been tried."""
         self.errors = MappingProxyType({**(self.errors if now.queue else {}), **now.faults})
         self.faults = MappingProxyType({path: str(error) for path, error in self.errors.items()})
 
-    def _finished(self, now: Round, job: Job, plan: Plan) -> None:
-        wish, faces = job.wish, dict[str, Face]()
+    def _finished(self, now: PreviewWork, job: PictureJob, plan: Plan) -> None:
+        wish, faces = job.wish, dict[str, FrameImage]()
         for name, port in job.ports.items():
             surface = plan.surfaces[plan.outputs[name]]
-            faces[name] = Face(surface, self._shelf.full_size(port, wish, plan, surface.size))
+            faces[name] = FrameImage(surface, self._shelf.full_size(port, wish, plan, surface.size))
             if not job.ahead:
                 self._shelf.show(name, port, wish, faces[name])
-        wish.take.put(job.frame, faces, self.renderer, now.wish.frame)
-        job.kept.close()
+        wish.frame_cache.add_frame(job.frame, faces, self.renderer, now.wish.frame)
+        job.lease.close()
         if job.ahead:
             return
         self._cameras |= plan.cameras
         if job.timings is not None:
             now.timings |= self._stopwatch.note(plan, job.timings)
             self._timings = now.timings
-        subjects = subjects_of(now.wish, plan) if self.thumbnailing and not self.skims else {}
+        subjects = list_thumbnail_sources(now.wish, plan) if self.thumbnailing and not self.skims else {}
         self._thumbnails.offer(subjects, color_settings(now.wish.graph))

@@ -10,9 +10,9 @@ from halation.nodes import ColorSettings, Kind
 from ...color.management import DEFAULT_COLOR
 from ...compiler import Plan, scaled
 from ...renderer import DeviceTexture, Display, Look, Probe, Renderer
-from ..services.coloring import Coloring
-from .data import are_normals, balanced, data_range
-from .wishes import Wish, kind_of, path_of
+from .color_fallback import ColorFallback
+from .data_range import are_normals, balance_range, find_data_range
+from .request import PreviewRequest, canvas_path, pixel_kind
 
 LARGEST = (160, 90)
 RANGE_WIDTH = 64
@@ -20,7 +20,7 @@ RANGE_WIDTH = 64
 
 
 @dataclass(frozen=True)
-class Subject:
+class ThumbnailSource:
     """A result that a node shows. `mark` changes when anything upstream of the node does."""
 
     path: str
@@ -31,7 +31,7 @@ class Subject:
 
 
 @dataclass(frozen=True)
-class _Source:
+class _DisplaySource:
     """What the display is handed."""
 
     texture: DeviceTexture
@@ -46,20 +46,20 @@ class _Source:
 
 
 @dataclass(frozen=True)
-class _Drawn:
+class _Thumbnail:
     texture: DeviceTexture
     key: str
     mark: object
 
 
-def subjects_of(wish: Wish, plan: Plan) -> dict[str, Subject]:
+def list_thumbnail_sources(wish: PreviewRequest, plan: Plan) -> dict[str, ThumbnailSource]:
     """What the nodes of a wish show when its plan has run, by path: of several outputs the first."""
-    found: dict[str, Subject] = {}
+    sources: dict[str, ThumbnailSource] = {}
     for port, number in plan.results.items():
-        path, surface = path_of(port), plan.surfaces[number]
-        kind = kind_of(wish.graph, port, surface.channels)
-        found.setdefault(path, Subject(path, surface.key, kind, surface.channels, wish.mark(path)))
-    return found
+        path, surface = canvas_path(port), plan.surfaces[number]
+        kind = pixel_kind(wish.graph, port, surface.channels)
+        sources.setdefault(path, ThumbnailSource(path, surface.key, kind, surface.channels, wish.node_mark(path)))
+    return sources
 
 
 class Thumbnails:
@@ -68,9 +68,9 @@ class Thumbnails:
     def __init__(self, renderer: Renderer, display: Display) -> None:
         self._renderer, self._display = renderer, display
         self._probe = Probe(renderer.device)
-        self._drawn: dict[str, _Drawn] = {}
-        self._waiting: dict[str, Subject] = {}
-        self._coloring, self._color = Coloring(), DEFAULT_COLOR
+        self._thumbnails: dict[str, _Thumbnail] = {}
+        self._waiting: dict[str, ThumbnailSource] = {}
+        self._coloring, self._color = ColorFallback(), DEFAULT_COLOR
         self.paths: frozenset[str] = frozenset()
         """Who has a picture; the same object until that changes."""
 
@@ -79,14 +79,14 @@ class Thumbnails:
         """True while there are some to be drawn."""
         return bool(self._waiting)
 
-    def offer(self, subjects: Mapping[str, Subject], color: ColorSettings = DEFAULT_COLOR) -> None:
+    def offer(self, subjects: Mapping[str, ThumbnailSource], color: ColorSettings = DEFAULT_COLOR) -> None:
         """These results are there now, by path; their colors are managed that way."""
-        self._color = self._coloring.of(color)
+        self._color = self._coloring.resolve(color)
         for path, subject in subjects.items():
-            drawn = self._drawn.get(path)
+            thumbnail = self._thumbnails.get(path)
             self._waiting.pop(path, None)
-            if drawn is not None and drawn.key == subject.key:
-                self._drawn[path] = _Drawn(drawn.texture, drawn.key, subject.mark)
+            if thumbnail is not None and thumbnail.key == subject.key:
+                self._thumbnails[path] = _Thumbnail(thumbnail.texture, thumbnail.key, subject.mark)
             else:
                 self._waiting[path] = subject
 
@@ -96,26 +96,26 @@ class Thumbnails:
         texture = self._renderer.runner.texture(subject.key)
         if texture is None:
             return
-        source = _Source(texture.handle, texture.handle.size, subject.channels, subject.key)
+        source = _DisplaySource(texture.handle, texture.handle.size, subject.channels, subject.key)
         width, height = source.full_size
         zoom = min(LARGEST[0] / width, LARGEST[1] / height, 1.0)
         size = scaled(source.full_size, zoom)
         look = self._look(subject, source.texture, max(size[0] / width, size[1] / height))
-        drawn = self._display.draw(f"thumbnail {subject.path}", size, source, None, look)
-        self._drawn[subject.path] = _Drawn(drawn, subject.key, subject.mark)
+        handle = self._display.draw(f"thumbnail {subject.path}", size, source, None, look)
+        self._thumbnails[subject.path] = _Thumbnail(handle, subject.key, subject.mark)
         if subject.path not in self.paths:
             self.paths |= {subject.path}
 
     def find(self, path: str, mark: Callable[[str], object]) -> tuple[DeviceTexture, bool] | None:
         """The last picture of a node, and whether it is what the node shows now, which its `mark` says."""
-        drawn = self._drawn.get(path)
-        return drawn and (drawn.texture, drawn.mark == mark(path))
+        thumbnail = self._thumbnails.get(path)
+        return thumbnail and (thumbnail.texture, thumbnail.mark == mark(path))
 
     def clear(self) -> None:
         """Forget all of them."""
-        for path in self._drawn:
+        for path in self._thumbnails:
             self._display.drop(f"thumbnail {path}")
-        self._drawn.clear()
+        self._thumbnails.clear()
         self._waiting.clear()
         self.paths = frozenset()
 
@@ -124,15 +124,15 @@ class Thumbnails:
         self.clear()
         self._probe.close()
 
-    def _look(self, subject: Subject, texture: DeviceTexture, zoom: float) -> Look:
+    def _look(self, subject: ThumbnailSource, texture: DeviceTexture, zoom: float) -> Look:
         if subject.kind is Kind.IMAGE:
             return Look(zoom=zoom, view="none", color=self._color)
         pixels = self._probe.small(texture, RANGE_WIDTH)[..., : subject.channels]
         if are_normals(pixels):
             return Look(zoom=zoom, meaning="normal")
-        low, high = data_range(pixels)
+        low, high = find_data_range(pixels)
         if subject.channels > 1:
-            low, high = balanced(low, high)
+            low, high = balance_range(low, high)
         elif low >= 0.0 and high <= 1.0:  # a mask, say: black and white mean something
             low, high = 0.0, 1.0
         return Look(zoom=zoom, meaning="field" if subject.channels == 1 else "vector", low=low, high=high)

@@ -12,7 +12,7 @@ MOST_SECONDS = 4096
 
 
 @dataclass(frozen=True)
-class Timing:
+class NodeTiming:
     """What the passes of a node took, and the bytes that they wrote. Passes shared with other nodes count for all."""
 
     seconds: float
@@ -20,38 +20,40 @@ class Timing:
     shared: tuple[str, ...]
 
 
-def key_of(plan: Plan, one: Pass) -> str:
+def pass_key(plan: Plan, one: Pass) -> str:
     """What stands for a pass: equal keys took equal work."""
     return plan.surfaces[one.targets[0]].key
 
 
-class Stopwatch:
+class PassTimes:
     """What passes took when they were timed last."""
 
     def __init__(self) -> None:
         self._seconds: dict[str, float] = {}
 
-    def note(self, plan: Plan, timings: Iterable[tuple[Pass, float]]) -> dict[str, Timing]:
+    def note(self, plan: Plan, timings: Iterable[tuple[Pass, float]]) -> dict[str, NodeTiming]:
         """Passes of a plan have been timed: what is known of all its nodes."""
-        self._seconds |= {key_of(plan, one): seconds for one, seconds in timings}
+        self._seconds |= {pass_key(plan, one): seconds for one, seconds in timings}
         while len(self._seconds) > MOST_SECONDS:
             self._seconds.pop(next(iter(self._seconds)))
-        return timings_of(plan, self._seconds)
+        return sum_node_timings(plan, self._seconds)
 
     def clear(self) -> None:
         """Forget it all."""
         self._seconds.clear()
 
 
-def timings_of(plan: Plan, seconds: Mapping[str, float]) -> dict[str, Timing]:
+def sum_node_timings(plan: Plan, seconds: Mapping[str, float]) -> dict[str, NodeTiming]:
     """Times of all nodes of a plan whose passes have been timed."""
-    found: dict[str, Timing] = {}
+    timings: dict[str, NodeTiming] = {}
     for one in plan.passes:
-        if key_of(plan, one) not in seconds:
+        if pass_key(plan, one) not in seconds:
             continue
         wrote = sum(plan.surfaces[number].nbytes for number in one.targets)
         for node in one.nodes:
-            before = found.get(node, Timing(0.0, 0, ()))
+            before = timings.get(node, NodeTiming(0.0, 0, ()))
             others = dict.fromkeys((*before.shared, *(other for other in one.nodes if other != node)))
-            found[node] = Timing(before.seconds + seconds[key_of(plan, one)], before.bytes + wrote, tuple(others))
-    return found
+            timings[node] = NodeTiming(
+                before.seconds + seconds[pass_key(plan, one)], before.bytes + wrote, tuple(others)
+            )
+    return timings

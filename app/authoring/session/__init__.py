@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .history import History
+from ..state.history import History
 from .session import Session
 
 __all__ = ["History", "Session"]

@@ -28,9 +28,9 @@ from ...graph import (
 )
 from ...graph.graph import declared
 from ...graph.keys import rounded
-from ..edits.elements import clean
-from ..edits.folding import Route, inside
-from .history import Snapshot
+from ..edits.elements import clean_text
+from ..edits.folding import GroupPath, body_at
+from ..state.history import Snapshot
 from .state import State
 
 Measure = Callable[[Graph, Mapping[str, str]], tuple[int, int]]
@@ -144,7 +144,7 @@ class Animating(State):
             return self.graph
         return self._kept("graph now", (self.root, self.graph, self.frame), lambda: self._at_now(shown))
 
-    def animated_outside(self, port: Port) -> tuple[Route, Port] | None:
+    def animated_outside(self, port: Port) -> tuple[GroupPath, Port] | None:
         """Where a value of a group's body is animated as a control of the group: the place outside, and its port."""
         found, place = None, self.place
         graph = self.graph
@@ -205,7 +205,7 @@ class Animating(State):
     def express(self, port: Port, text: str, merge: str = "") -> None:
         """Let a value follow an expression; a `=` in front does not count. Without text it stays as it is now."""
         self._check_inside(port)
-        text = clean(text).strip().removeprefix("=").strip()
+        text = clean_text(text).strip().removeprefix("=").strip()
         if text and (fault := self.expression_fault(port, text)):
             raise GraphError(fault)
         self.animate(port, Expression(text) if text else None, f"Expression of {port}", merge)
@@ -257,12 +257,12 @@ class Animating(State):
 
     # --- inside ------------------------------------------------------------------------------------------------------
 
-    def _timed(self, place: Route) -> Graph:
+    def _timed(self, place: GroupPath) -> Graph:
         """The graph at a place, with the rate and range of the document."""
         return self._kept(
             f"timed {len(place)}",
             (self.root, self.graph),
-            lambda: replace(self.graph if place == self.place else inside(self.root, place), settings=self.settings),
+            lambda: replace(self.graph if place == self.place else body_at(self.root, place), settings=self.settings),
         )
 
     def _at_now(self, shown: Iterable[Port]) -> Graph:

@@ -33,7 +33,7 @@ class Coding(State):
 
     def code(self, id: str) -> Code | None:
         """The code of a node; None for nodes that are made of none."""
-        return coding.code_of(self.graph.nodes.get(id), self.graph.folder)
+        return coding.read_node_code(self.graph.nodes.get(id), self.graph.folder)
 
     def set_code(self, id: str, text: str, merge: str = "") -> None:
         """Give a node another text; links and values stay where their names do. Text that says no node is kept too.
@@ -41,25 +41,25 @@ class Coding(State):
         Texts with the same `merge` in a row make one step, as if only the last one had been written: what one of them
         made of links and values does not matter for the next.
         """
-        before = self.history.begun(merge)
+        before = self.history.snapshot_before(merge)
         root = self.root if before is None or before.place != self.place else before.root
-        graph = folding.inside(root, self.place)
-        code = coding.code_of(graph.nodes.get(id), graph.folder)
+        graph = folding.body_at(root, self.place)
+        code = coding.read_node_code(graph.nodes.get(id), graph.folder)
         if code is None:
             raise GraphError(f"node '{id}' is not made of code")
         label = f"Edit code of {id}"
         if not code.file:
-            self.edit(label, coding.coded(graph, id, structs.replace(code, text=text)), merge=merge)
+            self.edit(label, coding.set_code(graph, id, structs.replace(code, text=text)), merge=merge)
             return
         self._check_ours()
-        after = coding.refiled(root, self._path(graph, code), text)
+        after = coding.set_file_code(root, self._path(graph, code), text)
         if after != self.root:
             self._step(label, replace(self._now, root=after), merge)
 
     def inline_code(self, id: str) -> None:
         """Let the code of a node be part of the document; the file stays as it is."""
         code = self._code_in_file(id)
-        self.edit(f"Move code of {id} into the graph", coding.coded(self.graph, id, structs.replace(code, file="")))
+        self.edit(f"Move code of {id} into the graph", coding.set_code(self.graph, id, structs.replace(code, file="")))
 
     def export_code(self, id: str, path: str | Path) -> None:
         """Write the code of a node to a file, from which it comes from then on. Raises OutputError."""
@@ -67,7 +67,7 @@ class Coding(State):
         if code is None:
             raise GraphError(f"node '{id}' is not made of code")
         name = paths.relative(path, self.graph.folder)
-        after = coding.coded(self.graph, id, structs.replace(code, file=name))
+        after = coding.set_code(self.graph, id, structs.replace(code, file=name))
         self._check_ours()
         write_text_atomically(Path(path), code.text)
         self._note(self._path(self.graph, structs.replace(code, file=name)), code.text)
@@ -76,7 +76,7 @@ class Coding(State):
     def save_code(self, id: str) -> Path:
         """Write the code of a node to its file; returns that. Raises OutputError."""
         path = self._path(self.graph, self._code_in_file(id))
-        self._write(path, coding.texts(self.root)[path])
+        self._write(path, coding.file_texts(self.root)[path])
         return path
 
     def save_drafts(self) -> tuple[Path, ...]:
@@ -93,7 +93,11 @@ class Coding(State):
             "drafts",
             (self.root, self._mark),
             lambda: MappingProxyType(
-                {path: text for path, text in coding.texts(self.root).items() if self._on_disk.get(path, text) != text}
+                {
+                    path: text
+                    for path, text in coding.file_texts(self.root).items()
+                    if self._on_disk.get(path, text) != text
+                }
             ),
         )
 
@@ -102,18 +106,18 @@ class Coding(State):
         """The document with drafts in it: nothing else would bring them back."""
         drafts = self.drafts
         return self._kept(
-            "recoverable", (self.root, drafts), lambda: coding.kept(self.root, drafts) if drafts else self.root
+            "recoverable", (self.root, drafts), lambda: coding.embed_drafts(self.root, drafts) if drafts else self.root
         )
 
     def reread_code(self, path: Path) -> None:
         """Take over what another program wrote to a file of code, drafts of it included; this is no step."""
         self._on_disk.pop(path, None)
-        self._transform(lambda graph: coding.reread(graph, path))
+        self._transform(lambda graph: coding.reread_file_code(graph, path))
         self.note_code_files()
 
     def note_code_files(self) -> None:
         """Read what the files of code are, as far as that is not known yet."""
-        for path in coding.texts(self.root):
+        for path in coding.file_texts(self.root):
             if path not in self._on_disk:
                 try:
                     self._note(path, read_text(path))
@@ -150,7 +154,7 @@ class Coding(State):
         write_text_atomically(path, text)
         self._note(path, text)
         if self._saved is not None:
-            self._saved = coding.refiled(self._saved, path, text)
+            self._saved = coding.set_file_code(self._saved, path, text)
             self._touch()
 
     def _note(self, path: Path, text: str) -> None:
@@ -159,7 +163,7 @@ class Coding(State):
 
     def _check_ours(self) -> None:
         """Raise GraphError within a group that comes from another file."""
-        if found := folding.borrowed(self.root, self.place):
+        if found := folding.find_borrowed_group(self.root, self.place):
             raise GraphError(
                 f"group '{found[0][-1]}' comes from the file '{found[1]}': make it local first, or open that file"
             )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...errors import GraphError
 from ...graph import Port
 from ..edits import decor, naming, routes
-from ..edits.elements import Place, Sizes, clean, entries
+from ..edits.elements import Place, Sizes, clean_text, entries
 from .state import State
 
 
@@ -16,7 +16,9 @@ class Decor(State):
         """A frame around the selection, or at `at`; returns its id."""
         around = () if at is not None else self.selection
         graph, id = decor.add_frame(self.graph, around, self.positions, title, at or (0.0, 0.0), sizes)
-        self.edit(f"Frame {title or naming.spoken(around)}" if around else "Add frame", graph, (f"frames.{id}",))
+        self.edit(
+            f"Frame {title or naming.describe_elements(around)}" if around else "Add frame", graph, (f"frames.{id}",)
+        )
         return id
 
     def set_frame(
@@ -25,10 +27,10 @@ class Decor(State):
         """Set the title or the display-referred color (0 to 1) of a frame; None leaves it."""
         facts: dict[str, object] = {}
         if title is not None:
-            facts["title"] = clean(title)
+            facts["title"] = clean_text(title)
         if color is not None:
             facts["color"] = tuple(round(float(part), 4) for part in color)
-        self.edit("Edit frame", decor.described(self.graph, f"frames.{id}", **facts), merge=merge)
+        self.edit("Edit frame", decor.set_facts(self.graph, f"frames.{id}", **facts), merge=merge)
 
     def resize_frame(self, id: str, x: float, y: float, width: float, height: float, merge: str = "") -> None:
         """Give a frame another rectangle."""
@@ -36,7 +38,7 @@ class Decor(State):
 
     def frame_members(self, id: str, sizes: Sizes | None = None) -> frozenset[str]:
         """The elements inside a frame."""
-        return decor.frame_members(self.graph, id, self.positions, sizes)
+        return decor.find_frame_members(self.graph, id, self.positions, sizes)
 
     def add_comment(self, at: Place, text: str = "") -> str:
         """A comment at that place; returns its id."""
@@ -46,7 +48,7 @@ class Decor(State):
 
     def set_comment(self, id: str, text: str, merge: str = "") -> None:
         """Write something else in a comment."""
-        self.edit("Edit comment", decor.described(self.graph, f"comments.{id}", text=clean(text)), merge=merge)
+        self.edit("Edit comment", decor.set_facts(self.graph, f"comments.{id}", text=clean_text(text)), merge=merge)
 
     def resize_comment(self, id: str, x: float, y: float, width: float, merge: str = "") -> None:
         """Put a comment somewhere and make it as wide; it is as high as its text."""
@@ -69,5 +71,5 @@ class Decor(State):
         self.edit("Remove dot", routes.remove_dots(self.graph, [id]))
 
     def _resize(self, key: str, x: float, y: float, width: float, height: float, merge: str) -> None:
-        graph = decor.described(self.graph, key)
-        self.edit(f"Resize {key.partition('.')[0][:-1]}", decor.boxed(graph, key, x, y, width, height), merge=merge)
+        graph = decor.set_facts(self.graph, key)
+        self.edit(f"Resize {key.partition('.')[0][:-1]}", decor.set_box(graph, key, x, y, width, height), merge=merge)

@@ -9,7 +9,7 @@ from halation.nodes import Kind, Missing, Plain, Size
 
 from ...errors import GraphError
 from ...graph import INPUTS, Graph, Input, Output, Port, problems
-from ..edits.elements import Place, clean, end_port, with_places
+from ..edits.elements import Place, clean_text, end_port, with_places
 from .state import State
 
 
@@ -97,7 +97,7 @@ class Ends(State):
 
 
 def _given(**facts: str | None) -> dict[str, Any]:
-    return {name: clean(text) for name, text in facts.items() if text is not None}
+    return {name: clean_text(text) for name, text in facts.items() if text is not None}
 
 
 def _checked(graph: Graph, name: str) -> Graph:

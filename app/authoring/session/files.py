@@ -11,11 +11,11 @@ from ...errors import UsageError
 from ...graph import Graph, Output
 from ...renderer.provenance.finding import made_by
 from ..edits import folding, layout, paths
-from .history import Step
+from ..state.history import HistoryStep
 from .state import State
 
 if TYPE_CHECKING:
-    from ..services.recovery import Recovered
+    from ..recovery.recovery import RecoveredWork
 
 
 class Files(State):
@@ -23,7 +23,7 @@ class Files(State):
 
     def new(self) -> None:
         """An empty document: one output, and nothing to show yet."""
-        root = layout.pinned(Graph(outputs={"image": Output()}))
+        root = layout.pin_places(Graph(outputs={"image": Output()}))
         self._restart(root, None, root)
 
     def open(self, path: str | Path) -> None:
@@ -46,7 +46,7 @@ class Files(State):
         """Open the text of a graph file as a document without a file."""
         self._restart(loads(text, "text", catalogue=self.types), None, None)
 
-    def restore(self, recovered: Recovered) -> None:
+    def restore(self, recovered: RecoveredWork) -> None:
         """Open work that was recovered; it has the file that it was to be saved as, but is not saved."""
         self._restart(recovered.load(), recovered.path, None)
 
@@ -87,7 +87,7 @@ class Files(State):
         self._read_anew()
         self._arrive(root)
         if root != before.root:
-            self.history.add(Step(label, before, self._now))
+            self.history.add(HistoryStep(label, before, self._now))
 
     def reload_groups(self) -> None:
         """Read the files of all groups again; this is no step. Raises DocumentError, and then nothing changes."""
@@ -98,7 +98,7 @@ class Files(State):
                 read[path] = load(path, self.types)
             return read[path]
 
-        self._transform(lambda graph: folding.reread(graph, body))
+        self._transform(lambda graph: folding.reread_groups(graph, body))
 
     def migrate(self, change: Callable[[Graph], Graph]) -> None:
         """Apply a change that keeps the meaning of a graph to the document and its whole history; this is no step."""

@@ -9,7 +9,7 @@ from ...document import save
 from ...errors import GraphError, UsageError
 from ...graph import Group
 from ..edits import folding, grouping, naming, paths, ungrouping
-from .history import Snapshot
+from ..state.history import Snapshot
 from .state import State
 
 
@@ -24,23 +24,23 @@ class Grouping(State):
     @property
     def borrowed(self) -> str:
         """The file that the graph at `place` belongs to, if it is not this document; it cannot be edited here."""
-        found = folding.borrowed(self.root, self.place)
+        found = folding.find_borrowed_group(self.root, self.place)
         return found[1] if found else ""
 
     def make_group(self, name: str = "") -> str:
         """Turn the selection into a group; returns its id. Raises GraphError if it would feed itself."""
-        graph, id = grouping.grouped(self.graph, self.selection, name)
-        self.edit(f"Group {naming.spoken(self.selection)}", graph, (id,))
+        graph, id = grouping.make_group(self.graph, self.selection, name)
+        self.edit(f"Group {naming.describe_elements(self.selection)}", graph, (id,))
         return id
 
     def ungroup(self, id: str) -> None:
         """Put what is in a group in its place."""
-        graph, put = ungrouping.ungrouped(self.graph, id)
+        graph, put = ungrouping.ungroup(self.graph, id)
         self.edit(f"Ungroup {id}", graph, put)
 
     def enter(self, id: str) -> None:
         """Show what is in a group."""
-        folding.group(self.graph, id)
+        folding.find_group(self.graph, id)
         self.go((*self.place, id))
 
     def leave(self, levels: int = 1) -> None:
@@ -49,7 +49,7 @@ class Grouping(State):
 
     def go(self, place: tuple[str, ...]) -> None:
         """Show the graph at `place`. Raises GraphError if there is none."""
-        folding.inside(self.root, place)
+        folding.body_at(self.root, place)
         if place == self.place:
             return
         self.seal()
@@ -58,7 +58,7 @@ class Grouping(State):
 
     def make_local(self, id: str) -> None:
         """Make the body of a group that comes from a file part of this document."""
-        item = folding.group(self.graph, id)
+        item = folding.find_group(self.graph, id)
         if not item.path:
             raise GraphError(f"group '{id}' is part of this document already")
         local = Group(paths.rebased(item.body(), self.graph.folder))
@@ -67,7 +67,7 @@ class Grouping(State):
     def save_group(self, id: str, path: str | Path, link: bool = False) -> None:
         """Save what is in a group as a graph file; with `link`, the group comes from that file from now on."""
         target = Path(path)
-        body = paths.rebased(folding.group(self.graph, id).body(), str(target.parent))
+        body = paths.rebased(folding.find_group(self.graph, id).body(), str(target.parent))
         paths.check_target(body, target)
         if self.path and self.path.resolve() == target.resolve():
             raise UsageError(f"{target}: this is the file of the document itself: choose another name")

@@ -22,7 +22,9 @@ class Layout(State):
     def move(self, keys: Iterable[str], dx: float, dy: float, merge: str = "") -> None:
         """Move elements by a distance; equal `merge` tokens in a row make one step."""
         spots = {key: self.position(key) for key in keys}
-        self._place(f"Move {naming.spoken(spots)}", {key: (x + dx, y + dy) for key, (x, y) in spots.items()}, merge)
+        self._place(
+            f"Move {naming.describe_elements(spots)}", {key: (x + dx, y + dy) for key, (x, y) in spots.items()}, merge
+        )
 
     def place_at(self, key: str, x: float, y: float, merge: str = "") -> None:
         """Put an element somewhere."""
@@ -32,12 +34,12 @@ class Layout(State):
     def align(self, side: str, sizes: Sizes | None = None) -> None:
         """Line up the selection: `left`, `right`, `top`, `bottom`, `center x`, `center y`, or `distribute x` or `y`."""
         some = [key for key in self.elements if key in self.selection]
-        self._place(f"Align {side}", align.aligned(self.graph, some, side, self.positions, sizes))
+        self._place(f"Align {side}", align.align_elements(self.graph, some, side, self.positions, sizes))
 
     def arrange(self, sizes: Sizes | None = None) -> None:
         """Lay out the selection, or everything if less than two nodes are selected."""
-        some = {key for key in self.selection if elements.linked_elements(key, self.graph)}
-        graph = arranging.arranged(self.graph, some if len(some) > 1 else None, self.positions, sizes)
+        some = {key for key in self.selection if elements.can_be_linked(key, self.graph)}
+        graph = arranging.arrange(self.graph, some if len(some) > 1 else None, self.positions, sizes)
         self.edit("Arrange", graph)
 
     def _place(self, label: str, places: dict[str, Place], merge: str = "") -> None:

@@ -13,7 +13,7 @@ from ...graph import INPUTS, OUTPUTS, Graph, Group, Problem
 from ...lint.live import again, remarks
 from ..edits import elements, folding, layout, routes
 from ..edits.elements import Place
-from .history import History, Snapshot, Step
+from ..state.history import History, HistoryStep, Snapshot
 
 T = TypeVar("T")
 
@@ -67,7 +67,7 @@ class State:
     def graph(self) -> Graph:
         """The graph at `place`, with the values that groups set; every element of it has a place on the canvas."""
         made, before = (self.root, self.place), self._cache.get("graph", ((), None))[1]
-        return self._kept("graph", made, lambda: layout.pinned(folding.inside(*made), before))
+        return self._kept("graph", made, lambda: layout.pin_places(folding.body_at(*made), before))
 
     @property
     def positions(self) -> Mapping[str, Place]:
@@ -139,10 +139,10 @@ class State:
             if select is not None:
                 self._select(select, self.active)
             return
-        graph = layout.pinned(routes.tidied(graph), self.graph)
-        root = folding.folded(self.root, self.place, graph, moves)
+        graph = layout.pin_places(routes.tidy_routes(graph), self.graph)
+        root = folding.put_body(self.root, self.place, graph, moves)
         folding.check_depth(root)
-        known = set(elements.keys(graph))
+        known = set(elements.list_elements(graph))
         chosen = [key for key in (self.selection if select is None else select) if key in known]
         last = chosen[-1] if chosen else ""
         active = last if select is not None else self.active if self.active in known else ""
@@ -178,7 +178,7 @@ class State:
     def _step(self, label: str, after: Snapshot, merge: str = "") -> None:
         if merge == "":
             self.seal()
-        self.history.add(Step(label, self._now, after, merge))
+        self.history.add(HistoryStep(label, self._now, after, merge))
         self._set(after)
 
     def _set(self, now: Snapshot) -> None:
@@ -211,16 +211,16 @@ class State:
 
         root = once(self.root)
         saved = None if self._saved is None else once(self._saved)
-        self.history.change(once)
+        self.history.map_documents(once)
         self._saved = saved
         self._arrive(root)
 
     def _arrive(self, root: Graph) -> None:
         """Show another document where this one was shown, as far as it has the same groups and elements."""
         place = self.place
-        while place and not folding.leads(root, place):
+        while place and not folding.is_place(root, place):
             place = place[:-1]
-        known = set(elements.keys(folding.inside(root, place))) if place == self.place else set()
+        known = set(elements.list_elements(folding.body_at(root, place))) if place == self.place else set()
         self._set(Snapshot(root, place, self.selection & known, self.active if self.active in known else ""))
 
     def _touch(self) -> None:
@@ -236,7 +236,7 @@ class State:
 
     def _elements(self) -> tuple[str, ...]:
         """The same tuple as before where the keys are the same, so that what is made of it stays."""
-        found, before = elements.keys(self.graph), self._cache.get("elements", ((), None))[1]
+        found, before = elements.list_elements(self.graph), self._cache.get("elements", ((), None))[1]
         return before if found == before else found
 
     def _checked(self, name: str, graph: Graph) -> tuple[Problem, ...]:

@@ -10,7 +10,7 @@ from halation.nodes import Node, Plain
 from ...errors import GraphError
 from ...graph import Control, Graph, Group, Port, signature
 from ...graph.names import fresh_name
-from ..edits.elements import clean
+from ..edits.elements import clean_text
 from .animating import Animating
 
 
@@ -26,7 +26,7 @@ class Values(Animating):
         if keys := self._with_key(port, self._fitted(port, value)):
             self.animate(port, keys, f"Key {port}", merge)
             return
-        fitted = clean(value) if isinstance(value, str) else self._fitted(port, value)
+        fitted = clean_text(value) if isinstance(value, str) else self._fitted(port, value)
         self.edit(f"Set {port}", self.graph.set(port, fitted), merge=merge)
 
     def set_all(self, values: Mapping[Port, object], label: str, merge: str = "") -> None:
@@ -85,7 +85,7 @@ class Values(Animating):
         """Set the label or the tooltip of a control; None leaves it."""
         if name not in self.graph.controls:
             raise GraphError(f"the graph has no control '{name}'")
-        found = {key: clean(text) for key, text in (("label", label), ("doc", doc)) if text is not None}
+        found = {key: clean_text(text) for key, text in (("label", label), ("doc", doc)) if text is not None}
         item = replace(self.graph.controls[name], **found)
         self.edit(f"Describe {name}", replace(self.graph, controls={**self.graph.controls, name: item}), merge=merge)
 

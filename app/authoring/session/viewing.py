@@ -10,7 +10,7 @@ from typing import Any, Literal
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Port, signature
 from ..edits.elements import end_port, with_sections
-from ..edits.folding import inside
+from ..edits.folding import body_at
 from .state import State
 
 Side = Literal["A", "B"]
@@ -52,7 +52,7 @@ class Viewing(State):
         """The same port as the document calls it, groups on the way included: `glow/blur.out`."""
         port, place = self.viewed(side), self.place
         while port and port.node == INPUTS and place:
-            outer = inside(self.root, place[:-1]).links.get(Port(place[-1], port.socket))
+            outer = body_at(self.root, place[:-1]).links.get(Port(place[-1], port.socket))
             if outer is None:
                 break
             port, place = outer, place[:-1]

@@ -36,14 +36,14 @@ class Wiring(State):
 
     def add_group(self, path: str | Path, at: Place = (0.0, 0.0), link: Port | None = None, output: bool = True) -> str:
         """A graph file as a node; returns its id."""
-        return self._add(naming.stem(path), self._group(path), at, link, output)
+        return self._add(naming.node_stem(path), self._group(path), at, link, output)
 
     def add_code_file(
         self, path: str | Path, at: Place = (0.0, 0.0), link: Port | None = None, output: bool = True
     ) -> str:
         """A node whose code is in a file; returns its id."""
-        item = coding.file_item(self.relative(path), self.root.folder)
-        return self._add(naming.stem(path), item, at, link, output)
+        item = coding.make_file_node(self.relative(path), self.root.folder)
+        return self._add(naming.node_stem(path), item, at, link, output)
 
     def insert(self, node: str, target: Port, at: Place | None = None, sizes: Sizes | None = None) -> str:
         """Put a node into the link that feeds `target`: an existing one by id, else a new one of that type.
@@ -57,7 +57,7 @@ class Wiring(State):
         else:
             id = self.graph.fresh_id(_stem(node))
             graph = elements.with_places(self.graph.add(id, self._new(node)), {id: at or self._middle(target)})
-        self.edit(f"Insert {id}", room.roomy(wiring.inserted(graph, id, target), (id,), target, sizes), (id,))
+        self.edit(f"Insert {id}", room.make_space(wiring.insert_node(graph, id, target), (id,), target, sizes), (id,))
         return id
 
     def splice(
@@ -69,14 +69,16 @@ class Wiring(State):
         """
         graph = self.graph
         some = {id for id in ids if id in graph.nodes}
-        moved = {key: self.positions[key] for key in (*some, *routes.inner(graph, some))}
+        moved = {key: self.positions[key] for key in (*some, *routes.inner_dots(graph, some))}
         graph = elements.with_places(graph, {key: (x + by[0], y + by[1]) for key, (x, y) in moved.items()})
-        graph = room.roomy(wiring.spliced(graph, some, target), some, target, sizes)
-        self.edit(f"Insert {naming.spoken(some)}", graph, merge=merge)
+        graph = room.make_space(wiring.splice_chain(graph, some, target), some, target, sizes)
+        self.edit(f"Insert {naming.describe_elements(some)}", graph, merge=merge)
 
     def fitting(self, port: Port, is_output: bool) -> tuple[str, ...]:
         """Ids of the node types that could be linked with `port`, a source if `is_output`."""
-        return wiring.fitting(self.graph, port, is_output, {**self.types, coding.CODE: type(coding.starter())})
+        return wiring.fitting_types(
+            self.graph, port, is_output, {**self.types, coding.CODE: type(coding.make_starter_node())}
+        )
 
     def fits_picture(self, port: Port, is_output: bool) -> bool:
         """True if a port could be linked with a picture, as a source if `is_output`."""
@@ -89,7 +91,7 @@ class Wiring(State):
 
     def refusal(self, source: Port, target: Port) -> str | None:
         """Why that link cannot be, or None."""
-        return wiring.refusal(self.graph, source, target)
+        return wiring.why_not_linkable(self.graph, source, target)
 
     def connect(self, source: Port, target: Port) -> None:
         """Link `source` to `target`, in place of what fed it."""
@@ -104,39 +106,44 @@ class Wiring(State):
         links = self.graph.links.items()
         self.edit(
             f"Unlink {key}",
-            wiring.cut(
-                self.graph, [end for end, start in links if key in (elements.owner(end), elements.owner(start))]
+            wiring.cut_links(
+                self.graph,
+                [end for end, start in links if key in (elements.element_of(end), elements.element_of(start))],
             ),
         )
 
     def cut(self, targets: Collection[Port]) -> None:
         """Remove the links to `targets`."""
         links = "link" if len(set(targets)) == 1 else "links"
-        self.edit(f"Cut {len(set(targets))} {links}", wiring.cut(self.graph, targets))
+        self.edit(f"Cut {len(set(targets))} {links}", wiring.cut_links(self.graph, targets))
 
     def move_link(self, old_target: Port, new_target: Port) -> None:
         """Let the link to one socket feed another instead."""
-        self.edit(f"Move link to {new_target}", wiring.moved(self.graph, old_target, new_target))
+        self.edit(f"Move link to {new_target}", wiring.move_link(self.graph, old_target, new_target))
 
     def swap_inputs(self, id: str) -> None:
         """Exchange what feeds the first two inputs of a node."""
-        self.edit(f"Swap inputs of {id}", wiring.swapped(self.graph, id))
+        self.edit(f"Swap inputs of {id}", wiring.swap_inputs(self.graph, id))
 
     def delete(self, heal: bool = True) -> None:
         """Remove what is selected; with `heal`, what fed a node then feeds what it fed, where that fits."""
         if not self.selection:
             raise GraphError("nothing is selected: select what to delete")
-        self.edit(f"Delete {naming.spoken(self.selection)}", deleting.deleted(self.graph, self.selection, heal), ())
+        self.edit(
+            f"Delete {naming.describe_elements(self.selection)}",
+            deleting.delete_elements(self.graph, self.selection, heal),
+            (),
+        )
 
     def extract(self, merge: str = "") -> None:
         """Take the selected nodes out of their chains; the links there are healed."""
-        after = wiring.extracted(self.graph, self._some_nodes("extract"))
-        self.edit(f"Extract {naming.spoken(self.selection)}", after, merge=merge)
+        after = wiring.extract_nodes(self.graph, self._some_nodes("extract"))
+        self.edit(f"Extract {naming.describe_elements(self.selection)}", after, merge=merge)
 
     def replace(self, id: str, type_id: str) -> None:
         """Give a node another type; links and values stay where they fit."""
         kind = type(self._new(type_id))
-        self.edit(f"Replace {id} by {type_id}", wiring.replaced(self.graph, id, kind))
+        self.edit(f"Replace {id} by {type_id}", wiring.replace_node(self.graph, id, kind))
 
     def rename(self, id: str, new: str) -> None:
         """Give a node another id; everything that names it follows."""
@@ -152,16 +159,16 @@ class Wiring(State):
         graph = self.graph
         for id in ids:
             graph = graph.mute(id, on)
-        self.edit(f"{'Mute' if on else 'Unmute'} {naming.spoken(self.selection)}", graph)
+        self.edit(f"{'Mute' if on else 'Unmute'} {naming.describe_elements(self.selection)}", graph)
 
     def collapse(self) -> None:
         """Fold the selected nodes to their title; if all are, unfold them."""
-        some = [key for key in self.elements if key in self.selection and elements.linked_elements(key, self.graph)]
+        some = [key for key in self.elements if key in self.selection and elements.can_be_linked(key, self.graph)]
         if not some:
             raise GraphError("no node is selected: select what to collapse")
         on = not all(elements.entry(self.graph, key).get("collapsed") is True for key in some)
         facts: dict[str, Mapping[str, object]] = {key: {"collapsed": True if on else None} for key in some}
-        label = f"{'Collapse' if on else 'Expand'} {naming.spoken(some)}"
+        label = f"{'Collapse' if on else 'Expand'} {naming.describe_elements(some)}"
         self.edit(label, elements.with_entries(self.graph, facts))
 
     def drop_files(self, paths: Sequence[str | Path], at: Place = (0.0, 0.0)) -> tuple[str, ...]:
@@ -173,11 +180,11 @@ class Wiring(State):
         if not paths:
             return ()
         for number, path in enumerate(paths):
-            id = graph.fresh_id(naming.stem(path))
+            id = graph.fresh_id(naming.node_stem(path))
             spot = (at[0], at[1] + number * DROP_STEP)
             graph = elements.with_places(graph.add(id, self._dropped(path)), {id: spot})
             ids.append(id)
-        what = naming.stem(paths[0]) if len(ids) == 1 else f"{len(ids)} files"
+        what = naming.node_stem(paths[0]) if len(ids) == 1 else f"{len(ids)} files"
         self.edit(f"Drop {what}", graph, ids)
         return tuple(ids)
 
@@ -199,13 +206,13 @@ class Wiring(State):
         id = self.graph.fresh_id(stem)
         graph: Graph = elements.with_places(self.graph.add(id, item), {id: at})
         if link is not None:
-            graph = wiring.linked(graph, id, link, output)
+            graph = wiring.link_node(graph, id, link, output)
         self.edit(f"Add {id}", graph, (id,))
         return id
 
     def _new(self, type_id: str) -> Node:
         if type_id == coding.CODE:
-            return coding.starter()
+            return coding.make_starter_node()
         if type_id not in self.types:
             raise GraphError(f"there is no node type '{type_id}'{did_you_mean(type_id, self.types)}")
         return self.types[type_id]()
@@ -227,13 +234,13 @@ class Wiring(State):
         if Path(path).suffix.lower() == ".json":
             return self._group(path)
         if Path(path).suffix.lower() in coding.ENDINGS:
-            return coding.file_item(self.relative(path), self.root.folder)
+            return coding.make_file_node(self.relative(path), self.root.folder)
         type_id = "read_render" if "read_render" in self.types and is_render(standing(Path(path))) else "read_image"
         return self._new(type_id).with_values(path=self.relative(path))
 
     def _middle(self, target: Port) -> Place:
         """Halfway between the ends of a link."""
-        ends = [elements.owner(end) for end in (target, self.graph.links.get(target, target))]
+        ends = [elements.element_of(end) for end in (target, self.graph.links.get(target, target))]
         spots = [self.positions.get(key, (0.0, 0.0)) for key in ends]
         return (spots[0][0] + spots[1][0]) / 2.0, (spots[0][1] + spots[1][1]) / 2.0
 

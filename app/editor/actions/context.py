@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ...authoring.services.preferences import Store
+    from ...authoring.preferences import PreferenceStore
     from ...authoring.session import Session
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import Clipboard, ElementView
@@ -27,6 +27,6 @@ class EditContext:
 class ViewSettingsContext:
     """The collaborators of the View and Help menus."""
 
-    store: Store
+    store: PreferenceStore
     dialogs: Dialogs
     commands: WindowCommands

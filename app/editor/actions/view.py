@@ -12,22 +12,22 @@ if TYPE_CHECKING:
 
 def _toggle(name: str) -> Act:
     def toggle(context: ViewSettingsContext) -> None:
-        context.store.change(**{name: not getattr(context.store.now, name)})
+        context.store.change(**{name: not getattr(context.store.current, name)})
 
     return toggle
 
 
 def _shown(name: str) -> Ask:
-    return lambda context: bool(getattr(context.store.now, name))
+    return lambda context: bool(getattr(context.store.current, name))
 
 
 def _theme(context: ViewSettingsContext) -> None:
-    context.store.change(theme="light" if context.store.now.theme == "dark" else "dark")
+    context.store.change(theme="light" if context.store.current.theme == "dark" else "dark")
 
 
 def _scale(step: float) -> Act:
     def scale(context: ViewSettingsContext) -> None:
-        now = context.store.now.ui_scale or 1.0
+        now = context.store.current.ui_scale or 1.0
         context.store.change(ui_scale=min(max(round(now + step, 2), 0.75), 3.0))
 
     return scale
@@ -44,7 +44,7 @@ VIEW: tuple[Action, ...] = (
         "Light Theme",
         _theme,
         "View",
-        checked=lambda context: context.store.now.theme == "light",
+        checked=lambda context: context.store.current.theme == "light",
         separated=True,
     ),
     Action("view.larger", "Larger Interface", _scale(0.25), "View", "Ctrl+Equal"),

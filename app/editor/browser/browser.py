@@ -237,5 +237,5 @@ class FileBrowser:
 def _answer(context: BrowserContext, now: Browsing, target: object) -> None:
     path = now.folder / str(target)
     context.dialogs.browse = None
-    context.log.attempt(lambda: context.store.used(now.browse.purpose, path))
+    context.log.attempt(lambda: context.store.note_folder(now.browse.purpose, path))
     context.log.attempt(lambda: now.browse.then(path))

@@ -100,8 +100,8 @@ def begun(context: BrowserContext, browse: Browse) -> Browsing:
     own = path.absolute().parent if path else None
     last = context.store.folder(browse.purpose)
     start = own if browse.saving and browse.purpose == "graph" and own else Path(last) if last else own or Path.home()
-    recent = tuple(dict.fromkeys(Path(one.path).parent for one in context.store.now.recent))[:4]
-    used = tuple(Path(folder) for folder in context.store.now.folders.values())
+    recent = tuple(dict.fromkeys(Path(one.path).parent for one in context.store.current.recent))[:4]
+    used = tuple(Path(folder) for folder in context.store.current.folders.values())
     made = Browsing(browse, start, endings(browse), places(own, recent, used), browse.name)
     made.listing.show(start)
     return made

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from ..toolkit.context import PanelContext
 
 if TYPE_CHECKING:
-    from ...authoring.services.preferences import Store
+    from ...authoring.preferences import PreferenceStore
     from ...authoring.session import Session
     from ..shared.dialogs import Dialogs
 
@@ -18,5 +18,5 @@ class BrowserContext(PanelContext):
     """The collaborators of the file browser."""
 
     session: Session
-    store: Store
+    store: PreferenceStore
     dialogs: Dialogs

@@ -190,7 +190,7 @@ class Canvas:
 
     def _blocked(self, panel: Rect) -> bool:
         mouse = imgui.get_mouse_pos()
-        likes = self._context.store.now
+        likes = self._context.store.current
         return any(
             holds(rect, mouse.x, mouse.y)
             for rect in (
@@ -342,7 +342,7 @@ class Canvas:
             self._naming.begin(view.renaming or asked.rename)
             view.renaming = ""
         self._naming.draw(brush, self._mouse.dragged.scene)
-        if self._context.store.now.minimap and self._mouse.dragged.scene.boxes:
+        if self._context.store.current.minimap and self._mouse.dragged.scene.boxes:
             self._minimap.draw(brush, frame.panel, self._mouse.dragged.scene)
         self._legend.draw(brush, frame.panel)
         draw_crumbs(self._context, brush, frame.panel)

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from ..toolkit.context import PanelContext
 
 if TYPE_CHECKING:
+    from ...authoring.background.shader_files import ShaderFiles
+    from ...authoring.preferences import PreferenceStore
     from ...authoring.preview import Preview
-    from ...authoring.services.preferences import Store
-    from ...authoring.services.shader_files import ShaderFiles
     from ...authoring.session import Session
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
@@ -27,7 +27,7 @@ class CanvasContext(PanelContext):
     session: Session
     canvas: CanvasView
     preview: Preview
-    store: Store
+    store: PreferenceStore
     actions: Actions
     dialogs: Dialogs
     shaders: ShaderFiles

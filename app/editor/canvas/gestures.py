@@ -6,7 +6,7 @@ from collections.abc import Collection
 from dataclasses import dataclass, field, replace
 
 from ...authoring.edits import routes
-from ...authoring.edits.wiring import spliced
+from ...authoring.edits.wiring import splice_chain
 from ...errors import GraphError
 from ...graph import INPUTS, OUTPUTS, Graph, Port
 from .geometry import Point, Rect, overlap, snapped, spanned
@@ -190,7 +190,7 @@ def insertable(graph: Graph, scene: Scene, keys: Collection[str], at: Point, rea
     if wire is None:
         return None
     try:
-        spliced(graph, ids, wire.target)
+        splice_chain(graph, ids, wire.target)
     except GraphError:
         return None
     return wire.target

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import imgui
 
-from ...authoring.edits.elements import owner
+from ...authoring.edits.elements import element_of
 from ...graph import Problem
 from .brush import Ink
 from .gestures import Gesture, Link
@@ -92,16 +92,16 @@ def moment(context: CanvasContext, ink: Ink, gesture: Gesture, hot: str) -> Mome
     shown: dict[str, str] = {}
     for side in ("A", "B"):
         if port := session.viewed(side):
-            shown[owner(port)] = shown.get(owner(port), "") + side
+            shown[element_of(port)] = shown.get(element_of(port), "") + side
     badges: dict[str, str] = {}
     for number, port in session.viewers.items():
-        badges[owner(port)] = f"{badges.get(owner(port), '')} {number}".strip()
+        badges[element_of(port)] = f"{badges.get(element_of(port), '')} {number}".strip()
     lit: dict[str, frozenset[tuple[bool, str]]] | None = None
     if isinstance(gesture, Link):
         lit = {}
         for port in gesture.targets:
-            lit[owner(port)] = lit.get(owner(port), frozenset()) | {(not gesture.output, port.socket)}
-        lit[owner(gesture.port)] = frozenset({(gesture.output, gesture.port.socket)})
+            lit[element_of(port)] = lit.get(element_of(port), frozenset()) | {(not gesture.output, port.socket)}
+        lit[element_of(gesture.port)] = frozenset({(gesture.output, gesture.port.socket)})
     costs, total = _costs(context) if context.preview.timed else ({}, 0.0)
     prefix = "".join(f"{id}/" for id in session.place)
     return Moment(

@@ -26,7 +26,7 @@ class Pictures:
 
     def of(self, context: CanvasContext) -> frozenset[str]:
         """Keys of those at the session's place; the same object while they stay the same."""
-        wanted, paths = context.store.now.thumbnails, context.preview.thumbnails
+        wanted, paths = context.store.current.thumbnails, context.preview.thumbnails
         place = context.session.place
         if self._of != (wanted, place) or self._paths is not paths:
             self._of, self._paths = (wanted, place), paths
@@ -39,7 +39,7 @@ class Pictures:
 def with_room(context: CanvasContext) -> Sizes:
     """The sizes of all elements as if every open node had its picture: room for those that come later."""
     sizes = context.canvas.sizes or {}
-    if not context.store.now.thumbnails:
+    if not context.store.current.thumbnails:
         return sizes
     known, nodes = Pictures().of(context), context.session.graph.nodes
     return {

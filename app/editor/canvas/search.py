@@ -109,14 +109,14 @@ class Search:
             self.context.log.attempt(lambda: self._add(chosen))
 
     def _add_shaders(self) -> None:
-        files = self.context.shaders.find(self.context.store.now.isf_folders)
+        files = self.context.shaders.find(self.context.store.current.isf_folders)
         if files is None:
             return
         self._awaits = False
         if self._link is not None:
             port, output = self._link
             takes = self.context.log.attempt(lambda: self.context.session.fits_picture(port, output), False)
-            files = [one for one in files if takes and (one.takes or not output)]
+            files = [one for one in files if takes and (one.has_image_input or not output)]
         self._entries = (*self._entries, *shader_entries(files))
 
     def _contents(self) -> Entry | None:

@@ -10,7 +10,7 @@ from typing import Any
 
 from halation.nodes import Node
 
-from ...authoring.edits.elements import entries, entry, owner
+from ...authoring.edits.elements import element_of, entries, entry
 from ...authoring.edits.routes import routes
 from ...graph import INPUTS, OUTPUTS, Graph, Group, Item, Port
 from .geometry import Point
@@ -134,7 +134,7 @@ class Stage:
     def _wires(self, graph: Graph, boxes: dict[str, Box]):
         passed = routes(graph)
         for target, source in graph.links.items():
-            start, end = owner(source), owner(target)
+            start, end = element_of(source), element_of(target)
             if start not in boxes or end not in boxes:
                 continue
             dots = (f"dots.{dot}" for dot in passed.get(str(target), ()))

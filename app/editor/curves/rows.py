@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 
-from ...authoring.edits.naming import called
+from ...authoring.edits.naming import value_label
 from ...errors import GraphError
 from ...graph import Animation, Graph, Keys, Port
 from ...graph.graph import declared
@@ -56,7 +56,7 @@ def rows(
         found.append(Row(node, None, node, None, ports))
         if node not in folded:
             found.extend(
-                Row(node, port, called(graph, port), graph.animation[port], (port,), channels(graph, port))
+                Row(node, port, value_label(graph, port), graph.animation[port], (port,), channels(graph, port))
                 for port in ports
             )
     return tuple(found)

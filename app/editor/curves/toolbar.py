@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ...authoring.edits.naming import called
+from ...authoring.edits.naming import value_label
 from ...graph import Interpolation
 from ..theme.style import u32, ui_scale, vec4
 from ..toolkit.buttons import dropdown, entry, quiet, room_for, tip_of, tool
@@ -200,7 +200,7 @@ def offered(context: CurvesContext) -> None:
         if port.node != node:
             node = port.node
             imgui.separator_text(node)
-        if imgui.menu_item(f"{called(context.session.graph, port)}##{port}", "", False)[0]:
+        if imgui.menu_item(f"{value_label(context.session.graph, port)}##{port}", "", False)[0]:
             context.log.attempt(lambda port=port: context.session.key(port))
 
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from ..toolkit.context import PanelContext
 
 if TYPE_CHECKING:
+    from ...authoring.background.render_overviews import RenderOverviews
     from ...authoring.preview import Preview
-    from ...authoring.services.coloring import Coloring
-    from ...authoring.services.renders import Renders
+    from ...authoring.preview.color_fallback import ColorFallback
     from ...authoring.session import Session
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
@@ -29,7 +29,7 @@ class InspectorContext(PanelContext):
     canvas: ElementView
     viewer: PixelPicker
     timeline: Player
-    renders: Renders
-    coloring: Coloring
+    renders: RenderOverviews
+    coloring: ColorFallback
     lights: dict[str, int]
     """The light that is selected, by the value that lists it."""

@@ -9,7 +9,7 @@ from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
 from ...authoring.edits.elements import entry
-from ...authoring.edits.naming import called
+from ...authoring.edits.naming import value_label
 from ...graph import Port, Unknown, signature
 from ...graph.names import fresh_name
 from ..fields.color_field import color_field
@@ -294,7 +294,7 @@ class GraphView:
                 continue
             found = True
             for port in ports:
-                if imgui.menu_item(f"{called(session.graph, port)}##{port}", "", False)[0]:
+                if imgui.menu_item(f"{value_label(session.graph, port)}##{port}", "", False)[0]:
                     rows.act(lambda port=port: session.expose(port))
             imgui.end_menu()
         if not found:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from halation.nodes import ColorSettings, Kind
 
-from ...authoring.services.background import Background
+from ...authoring.background.cache import BackgroundCache
 from ...color.file_space import FileSpace
 from ...color.management import color_mark
 from ...color.transforms import NO_VIEW, Array, to_display
@@ -32,8 +32,10 @@ class Layers:
     """What is in files: never waits for one. What was asked for last is read first."""
 
     def __init__(self) -> None:
-        self._made: Background[Key, ImageInfo | Array | str] = Background("layers", _made, _KEPT)
-        self._spaces: Background[SpaceKey, Mapping[str, FileSpace] | str] = Background("spaces", _spaces, _KEPT)
+        self._made: BackgroundCache[Key, ImageInfo | Array | str] = BackgroundCache("layers", _made, _KEPT)
+        self._spaces: BackgroundCache[SpaceKey, Mapping[str, FileSpace] | str] = BackgroundCache(
+            "spaces", _spaces, _KEPT
+        )
         self._versions = Versions()
 
     def header(self, path: Path) -> ImageInfo | str | None:
@@ -72,7 +74,7 @@ class Layers:
     @property
     def busy(self) -> bool:
         """True while something is being read."""
-        return self._made.busy or self._spaces.busy
+        return self._made.is_busy or self._spaces.is_busy
 
     def close(self) -> None:
         """End the threads."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from ...authoring.log import Entry, Level
+from ...authoring.log import Level, LogEntry
 from ..theme.style import ui_scale, vec4
 from ..toolkit.buttons import quiet, right_aligned
 from ..toolkit.places import record
@@ -51,7 +51,7 @@ class LogPanel:
                 imgui.set_scroll_here_y(1.0)
         imgui.end_child()
 
-    def _toolbar(self, entries: list[Entry]) -> None:
+    def _toolbar(self, entries: list[LogEntry]) -> None:
         for level, label in _LEVELS:
             palette = self._context.palette
             chosen = level == self._least
@@ -71,7 +71,7 @@ class LogPanel:
             self._context.log.entries.clear()
 
 
-def _row(context: LogContext, index: int, entry: Entry) -> None:
+def _row(context: LogContext, index: int, entry: LogEntry) -> None:
     scale = ui_scale()
     with font(context, "mono", 14.0):
         dim(context, strftime("%H:%M:%S", localtime(entry.at)))
@@ -93,6 +93,6 @@ def _row(context: LogContext, index: int, entry: Entry) -> None:
     imgui.dummy(ImVec2(0, 0))
 
 
-def _text(entry: Entry) -> str:
+def _text(entry: LogEntry) -> str:
     detail = f"\n{entry.detail}" if entry.detail else ""
     return f"{strftime('%H:%M:%S', localtime(entry.at))} {entry.level}: {entry.sentence}{detail}"

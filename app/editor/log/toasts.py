@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from imgui_bundle import ImVec2, imgui
 
-from ...authoring.log import TOAST_SECONDS, Entry
+from ...authoring.log import TOAST_SECONDS, LogEntry
 from ..theme.style import ui_scale, vec4
 from ..toolkit.dialogs import FIXED
 from ..toolkit.words import ICONS, level_color, wrapped
@@ -41,7 +41,7 @@ class Toasts:
         for index, entry in enumerate(reversed(entries)):
             bottom -= self._draw_one(entry, index, ImVec2(right, bottom)) + _GAP * scale
 
-    def _draw_one(self, entry: Entry, index: int, corner: ImVec2) -> float:
+    def _draw_one(self, entry: LogEntry, index: int, corner: ImVec2) -> float:
         """Draw with the lower right corner there; the height."""
         scale = ui_scale()
         left = TOAST_SECONDS - (time() - entry.at)

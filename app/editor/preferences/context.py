@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from ..toolkit.context import PanelContext
 
 if TYPE_CHECKING:
-    from ...authoring.services.preferences import Store
-    from ...authoring.services.recovery import Recovery
+    from ...authoring.preferences import PreferenceStore
+    from ...authoring.recovery.recovery import RecoveryFile
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import Clipboard
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 class PreferencesContext(PanelContext):
     """The collaborators of the Preferences dialog."""
 
-    store: Store
+    store: PreferenceStore
     actions: Actions
     dialogs: Dialogs
-    recovery: Recovery
+    recovery: RecoveryFile
     clipboard: Clipboard

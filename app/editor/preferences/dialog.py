@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from ...authoring.services.preferences import MAX_SCALE, MIN_SCALE, Preferences
-from ...authoring.services.recovery import LONGEST
-from ...authoring.services.shader_files import CUSTOMARY
+from ...authoring.background.shader_files import CUSTOMARY
+from ...authoring.preferences import MAX_SCALE, MIN_SCALE, Preferences
+from ...authoring.recovery.recovery import LONGEST
 from ..theme.style import ui_scale, vec4
 from ..toolkit.buttons import close_button, quiet
 from ..toolkit.dialogs import backdrop, dialog, escaped
@@ -72,7 +72,7 @@ class PreferencesDialog:
         imgui.end_child()
 
     def _interface(self) -> None:
-        now = self._context.store.now
+        now = self._context.store.current
         _heading(self._context, "Appearance")
         label("Theme", _LABELS)
         for theme in ("dark", "light"):
@@ -124,7 +124,7 @@ class PreferencesDialog:
 
     def _folders(self) -> None:
         """Where shaders in the Interactive Shader Format are looked for."""
-        now = self._context.store.now.isf_folders
+        now = self._context.store.current.isf_folders
         wrapped(
             self._context.palette.dim,
             "Folders with .fs files in the Interactive Shader Format; what is in them can be "
@@ -159,8 +159,8 @@ class PreferencesDialog:
         logarithmic: bool = False,
     ) -> None:
         """A slider that takes effect when it is let go."""
-        whole = isinstance(getattr(self._context.store.now, name), int)
-        value = self._edited.get(name, float(getattr(self._context.store.now, name)))
+        whole = isinstance(getattr(self._context.store.current, name), int)
+        value = self._edited.get(name, float(getattr(self._context.store.current, name)))
         imgui.set_next_item_width(220 * ui_scale())
         flags = int(imgui.SliderFlags_.always_clamp) | (int(imgui.SliderFlags_.logarithmic) if logarithmic else 0)
         moved, value = imgui.slider_float(f"##{name}", value, low, high, text, flags)
@@ -174,7 +174,7 @@ class PreferencesDialog:
 
 def _change(context: PreferencesContext, **values: Any) -> None:
     context.log.attempt(lambda: context.store.change(**values))
-    context.recovery.interval = min(context.store.now.autosave, LONGEST)
+    context.recovery.interval = min(context.store.current.autosave, LONGEST)
 
 
 def _heading(context: PreferencesContext, title: str) -> None:
@@ -184,7 +184,7 @@ def _heading(context: PreferencesContext, title: str) -> None:
 
 
 def _switch(context: PreferencesContext, name: str, title: str) -> None:
-    changed, value = imgui.checkbox(title, getattr(context.store.now, name))
+    changed, value = imgui.checkbox(title, getattr(context.store.current, name))
     record(context, f"preference {name}")
     if changed:
         _change(context, **{name: value})

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 def assigned(context: PreferencesContext, id: str, keys: str) -> None:
     """Give an action a shortcut, "" for none."""
-    own = {**context.store.now.shortcuts, id: keys}
+    own = {**context.store.current.shortcuts, id: keys}
     if context.actions[id].shortcut == keys:
         del own[id]
     context.store.change(shortcuts=own)

@@ -43,7 +43,7 @@ class ShortcutEditor:
         self._query = imgui.input_text_with_hint("##actions", hint, self._query)[1]
         record(self._context, "shortcut search")
         right_aligned(label)
-        own, icon = bool(self._context.store.now.shortcuts), icons.ICON_FA_ROTATE_LEFT
+        own, icon = bool(self._context.store.current.shortcuts), icons.ICON_FA_ROTATE_LEFT
         if quiet(self._context, f"{icon}  Reset all", "reset shortcuts", "As it came", enabled=own):
             self._context.log.attempt(lambda: self._context.store.change(shortcuts={}))
         self._listen()
@@ -74,7 +74,7 @@ class ShortcutEditor:
         imgui.same_line(left + room - width - 34 * scale)
         waiting = self._waiting == action.id
         text = "Press keys..." if waiting else shown(self._context.actions.shortcut(action.id)) or "none"
-        changed = action.id in self._context.store.now.shortcuts
+        changed = action.id in self._context.store.current.shortcuts
         imgui.push_style_color(imgui.Col_.button, vec4(palette.field))
         imgui.push_style_color(imgui.Col_.text, vec4(palette.accent if waiting or changed else palette.text))
         if imgui.button(f"{text}##{action.id}", ImVec2(width, 0)):

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from ..toolkit.context import PanelContext
 
 if TYPE_CHECKING:
+    from ...authoring.preferences import PreferenceStore
     from ...authoring.preview import Preview
-    from ...authoring.services.preferences import Store
-    from ...authoring.services.recovery import Recovery
+    from ...authoring.recovery.recovery import RecoveryFile
     from ...authoring.session import Session
     from ...watch.watching import Watcher
     from ..shared.protocols import Clipboard, ElementView
@@ -24,8 +24,8 @@ class ProblemsContext(PanelContext):
     preview: Preview
     canvas: ElementView
     clipboard: Clipboard
-    recovery: Recovery
+    recovery: RecoveryFile
     watcher: Watcher
-    store: Store
+    store: PreferenceStore
     faults: dict[str, str]
     """Panels that failed, with the traceback."""

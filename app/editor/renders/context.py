@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from ..toolkit.context import PanelContext
 
 if TYPE_CHECKING:
-    from ...authoring.services.coloring import Coloring
-    from ...authoring.services.exporting import Exports
-    from ...authoring.services.preferences import Store
+    from ...authoring.preferences import PreferenceStore
+    from ...authoring.preview.color_fallback import ColorFallback
+    from ...authoring.render_queue.queue import RenderQueue
     from ...authoring.session import Session
     from ..shared.dialogs import Dialogs
     from ..shared.protocols import Clipboard, PlayedSpan
@@ -22,10 +22,10 @@ class RendersContext(PanelContext):
     """The collaborators of the Renders panel."""
 
     session: Session
-    exports: Exports
-    store: Store
+    exports: RenderQueue
+    store: PreferenceStore
     timeline: PlayedSpan
     dialogs: Dialogs
     clipboard: Clipboard
-    coloring: Coloring
+    coloring: ColorFallback
     flipbooks: FlipbookPlayer

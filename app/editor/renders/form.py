@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal
 from halation.nodes import Kind
 from msgspec.structs import replace
 
-from ...authoring.services.exporting import Export, RenderJob
+from ...authoring.render_queue.queue import QueuedRender, RenderJob
 from ...errors import HalationError, UsageError
 from ...graph.frames import Pattern, check_numbered, format_frames, is_video, numbered, parse_frames, unnumbered
 from ...media.sequences import find_sequence
@@ -165,7 +165,7 @@ class Form:
             return replace(made, scale=self.scale)
         return replace(made, size=self.size) if self.sizing == "size" else made
 
-    def start(self) -> Export:
+    def start(self) -> QueuedRender:
         """Put it into the queue. Raises UsageError or GraphError."""
         files = [(name, self.file(name)) for name in self.wanted()]
         if not self.frames():
@@ -174,7 +174,7 @@ class Form:
             self.context.session.root, files, dict(self.context.session.bindings), self.options()
         )
         if files:
-            self.context.store.used("export", files[0][1])
+            self.context.store.note_folder("export", files[0][1])
         self._seen = (None, 0.0, Aim())
         return made
 

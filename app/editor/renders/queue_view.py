@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from ...authoring.services.exporting import Export, State
-from ...authoring.services.flipbook import Strip
+from ...authoring.flipbook import FlipbookStrip
+from ...authoring.render_queue.queue import QueuedRender, RenderState
 from ..theme.style import u32, ui_scale, vec4
 from ..toolkit.buttons import quiet, right_aligned, room_for
 from ..toolkit.places import record
@@ -30,8 +30,14 @@ _WIDTH, _HEIGHT = 92.0, 56.0
 _PAUSE = 1.5
 """Seconds between two small pictures of a render that runs."""
 
-_COLORS: dict[State, str] = {"done": "good", "failed": "error", "cancelled": "dim", "running": "text", "waiting": "dim"}
-_ICONS: dict[State, str] = {
+_COLORS: dict[RenderState, str] = {
+    "done": "good",
+    "failed": "error",
+    "cancelled": "dim",
+    "running": "text",
+    "waiting": "dim",
+}
+_ICONS: dict[RenderState, str] = {
     "done": icons.ICON_FA_FILM,
     "failed": icons.ICON_FA_TRIANGLE_EXCLAMATION,
     "cancelled": icons.ICON_FA_BAN,
@@ -53,13 +59,13 @@ class Queue:
 
     def __init__(self, context: RendersContext) -> None:
         self._context = context
-        self._open: set[Export] = set()
+        self._open: set[QueuedRender] = set()
         """Those whose notes are shown."""
         self._pictures: Pictures | None = None
         self._textures = Textures()
-        self._seen: dict[Export, tuple[Path, float, float]] = {}
+        self._seen: dict[QueuedRender, tuple[Path, float, float]] = {}
         """The file that stands for a render, when that was written, and when it was chosen."""
-        self._shown: dict[Export, tuple[Path, float]] = {}
+        self._shown: dict[QueuedRender, tuple[Path, float]] = {}
 
     def close(self) -> None:
         """Give small pictures back."""
@@ -76,7 +82,7 @@ class Queue:
             return
         running, waiting = exports.running, exports.waiting
         ended = [one for one in exports.all if one not in running and one not in waiting]
-        ended.sort(key=lambda one: -one.ended)
+        ended.sort(key=lambda one: -one.ended_at)
         imgui.align_text_to_frame_padding()
         counts = ((len(running), "running"), (len(waiting), "waiting"), (len(ended), "ended"))
         dim(self._context, ", ".join(f"{count} {what}" for count, what in counts if count))
@@ -94,7 +100,7 @@ class Queue:
 
     # --- one of them -------------------------------------------------------------------------------------------------
 
-    def _row(self, index: int, export: Export, turn: int) -> None:
+    def _row(self, index: int, export: QueuedRender, turn: int) -> None:
         scale, palette = ui_scale(), self._context.palette
         start = imgui.get_cursor_screen_pos()
         self._picture(export, start)
@@ -110,8 +116,8 @@ class Queue:
         record(self._context, f"export {index}")
         with font(self._context, "text", SMALL):
             self._details(export)
-        if export.sentence:
-            wrapped(palette.error, export.sentence)
+        if export.failure:
+            wrapped(palette.error, export.failure)
             record(self._context, f"export fault {index}")
         if export in self._open:
             for note in export.notes:
@@ -122,7 +128,7 @@ class Queue:
         if imgui.get_cursor_screen_pos().y < low:
             imgui.dummy((0, max(low - imgui.get_cursor_screen_pos().y - imgui.get_style().item_spacing.y, 0.0)))
 
-    def _head(self, index: int, export: Export, turn: int) -> None:
+    def _head(self, index: int, export: QueuedRender, turn: int) -> None:
         buttons = self._buttons(index, export, turn)
         shown, spacing = [button.icon for button in buttons], 2 * ui_scale()
         imgui.align_text_to_frame_padding()
@@ -140,11 +146,11 @@ class Queue:
         imgui.pop_style_var()
         self._compare_menu(index, export)
 
-    def _buttons(self, index: int, export: Export, turn: int) -> list[_Button]:
+    def _buttons(self, index: int, export: QueuedRender, turn: int) -> list[_Button]:
         found: list[_Button] = []
         first, folder = export.destinations[0][1], export.destinations[0][1].parent
         over = export.state not in ("running", "waiting")
-        if export.written:
+        if export.written_files:
             doc = "Compare it with another version, in the viewer"
             found.append(
                 _Button(icons.ICON_FA_PLAY, "play", "Play it in the viewer", partial(_play, self._context, export))
@@ -158,7 +164,7 @@ class Queue:
         if export.state in ("failed", "cancelled"):
             doc = "Go on: frames that are there, and would come out the same, are kept" if export.done else "Try again"
             found.append(
-                _Button(icons.ICON_FA_ROTATE_RIGHT, "again", doc, partial(self._context.exports.again, export))
+                _Button(icons.ICON_FA_ROTATE_RIGHT, "again", doc, partial(self._context.exports.resume, export))
             )
         if export.notes:
             lit = export in self._open
@@ -173,11 +179,11 @@ class Queue:
             found.append(_Button(icons.ICON_FA_XMARK, "cancel", doc, export.cancel))
         return found
 
-    def _compare_menu(self, index: int, export: Export) -> None:
+    def _compare_menu(self, index: int, export: QueuedRender) -> None:
         """What it can be compared with."""
         if not imgui.begin_popup(f"compare {index}"):
             return
-        others = [one for one in self._context.exports.all if one is not export and one.written]
+        others = [one for one in self._context.exports.all if one is not export and one.written_files]
         for place, other in enumerate(others):
             path = other.destinations[0][1]
             name = f"{path.parent.name}/{title(other)}" if title(other) == title(export) else title(other)
@@ -195,9 +201,9 @@ class Queue:
         record(self._context, "compare with other")
         imgui.end_popup()
 
-    def _details(self, export: Export) -> None:
+    def _details(self, export: QueuedRender) -> None:
         """What is computed, and the file that was written last."""
-        last = export.written[-1] if export.written else None
+        last = export.written_files[-1] if export.written_files else None
         parts = [under_way(export)] if export.state == "running" else [str(export.destinations[0][1].parent)]
         if last is not None and export.state == "running":
             parts.append(f"last: {last.name}")
@@ -206,7 +212,7 @@ class Queue:
 
     # --- small pictures ----------------------------------------------------------------------------------------------
 
-    def _picture(self, export: Export, start: ImVec2) -> None:
+    def _picture(self, export: QueuedRender, start: ImVec2) -> None:
         """The last file that it wrote, or what stands for it."""
         scale, palette, lines = ui_scale(), self._context.palette, imgui.get_window_draw_list()
         width, height = _WIDTH * scale, _HEIGHT * scale
@@ -234,11 +240,11 @@ class Queue:
             texture, (left, top), (left + across, top + down), (0, 0), (1, 1), u32((1.0, 1.0, 1.0)), 4 * scale
         )
 
-    def _chosen(self, export: Export) -> tuple[Path, float] | None:
+    def _chosen(self, export: QueuedRender) -> tuple[Path, float] | None:
         """The file that stands for it: a new one only now and then, for decoding takes time too."""
-        if not export.written:
+        if not export.written_files:
             return None
-        path, now, before = export.written[-1], time.monotonic(), self._seen.get(export)
+        path, now, before = export.written_files[-1], time.monotonic(), self._seen.get(export)
         late = before is None or now - before[2] > _PAUSE or export.state != "running"
         if late and (before is None or before[0] != path):
             try:
@@ -248,26 +254,26 @@ class Queue:
         found = self._seen.get(export)
         return found and found[:2]
 
-    def _forget(self, known: tuple[Export, ...]) -> None:
+    def _forget(self, known: tuple[QueuedRender, ...]) -> None:
         for kept in (self._seen, self._shown):
             for export in [one for one in kept if one not in known]:
                 del kept[export]
         self._open.intersection_update(known)
 
-    def _flip(self, export: Export) -> None:
+    def _flip(self, export: QueuedRender) -> None:
         self._open ^= {export}
 
 
-def _play(context: RendersContext, export: Export) -> None:
-    context.flipbooks.open(Strip.rendered(export))
+def _play(context: RendersContext, export: QueuedRender) -> None:
+    context.flipbooks.open(FlipbookStrip.from_render(export))
 
 
-def _compare(context: RendersContext, one: Export, other: Export) -> None:
-    context.flipbooks.open(Strip.rendered(one), Strip.rendered(other))
+def _compare(context: RendersContext, one: QueuedRender, other: QueuedRender) -> None:
+    context.flipbooks.open(FlipbookStrip.from_render(one), FlipbookStrip.from_render(other))
 
 
-def _choose(context: RendersContext, export: Export) -> None:
-    context.flipbooks.choose(Strip.rendered(export))
+def _choose(context: RendersContext, export: QueuedRender) -> None:
+    context.flipbooks.choose(FlipbookStrip.from_render(export))
 
 
 def _open(context: RendersContext, folder: Path) -> None:

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ...authoring.services.exporting import Export
+from ...authoring.render_queue.queue import QueuedRender
 from .form import Aim
 
 
-def title(export: Export) -> str:
+def title(export: QueuedRender) -> str:
     """What a render is called: its files."""
     first = export.destinations[0][1].name
     more = len(export.destinations) - 1
     return f"{first} and {more} more" if more else first
 
 
-def progress_text(export: Export) -> str:
+def progress_text(export: QueuedRender) -> str:
     """How far a render is that runs."""
     done, total = export.passes
     if export.total > 1:
@@ -25,7 +25,7 @@ def progress_text(export: Export) -> str:
     return f"{done} of {total} passes" if done < total else "writing"
 
 
-def under_way(export: Export) -> str:
+def under_way(export: QueuedRender) -> str:
     """What of a render is computed now, and how long it still takes."""
     parts: list[str] = []
     if export.total > 1 and export.job.order.processes > 1 and not export.node:
@@ -38,7 +38,7 @@ def under_way(export: Export) -> str:
     return "   ".join(parts) or "reading the graph"
 
 
-def state_text(export: Export, turn: int = 0) -> str:
+def state_text(export: QueuedRender, turn: int = 0) -> str:
     """How a render ended, or the turn that it waits for."""
     if export.state == "waiting":
         return "next" if turn == 0 else f"{turn} before it"
@@ -47,9 +47,9 @@ def state_text(export: Export, turn: int = 0) -> str:
     if export.state == "done":
         took = time_text(export.seconds)
         if not many:
-            return f"{'kept as it was' if export.kept else 'done'} in {took}"
-        number = "all" if export.kept == export.total else f"{export.kept}"
-        return f"{count} in {took}, {number} kept as they were" if export.kept else f"{count} in {took}"
+            return f"{'kept as it was' if export.reused else 'done'} in {took}"
+        number = "all" if export.reused == export.total else f"{export.reused}"
+        return f"{count} in {took}, {number} kept as they were" if export.reused else f"{count} in {took}"
     return f"{export.state} after {count}" if many and export.done else export.state
 
 

@@ -9,7 +9,7 @@ from halation.nodes import ColorSettings
 from ...graph import color_settings
 
 if TYPE_CHECKING:
-    from ...authoring.services.coloring import Coloring
+    from ...authoring.preview.color_fallback import ColorFallback
     from ...authoring.session import Session
 
 
@@ -20,9 +20,9 @@ class ColorContext(Protocol):
     def session(self) -> Session: ...
 
     @property
-    def coloring(self) -> Coloring: ...
+    def coloring(self) -> ColorFallback: ...
 
 
 def settings_in_use(context: ColorContext) -> ColorSettings:
     """The color settings of the document, or of the built-in config where its own cannot be read."""
-    return context.coloring.of(color_settings(context.session.root))
+    return context.coloring.resolve(color_settings(context.session.root))

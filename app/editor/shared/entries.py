@@ -8,8 +8,8 @@ from pathlib import Path
 
 from halation.nodes import Kind, Node
 
-from ...authoring.edits.coding import CODE, starter
-from ...authoring.services.shader_files import ShaderFile
+from ...authoring.background.shader_files import ShaderFile
+from ...authoring.edits.coding import CODE, make_starter_node
 from .fuzzy import match
 
 GROUP, GRAPH, SHADER = "group", "graph", "code"
@@ -48,7 +48,7 @@ def node_entries(types: Mapping[str, type[Node]]) -> tuple[Entry, ...]:
 def code_entries() -> tuple[Entry, ...]:
     """What is made by writing it."""
     doc = "GLSL of your own: the function's signature declares sockets and values."
-    return (Entry(CODE, "code", starter().category, doc),)
+    return (Entry(CODE, "code", make_starter_node().category, doc),)
 
 
 def shader_entries(files: Iterable[ShaderFile]) -> tuple[Entry, ...]:

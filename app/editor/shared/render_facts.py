@@ -15,7 +15,7 @@ from ...render_layers.overview import Overview, Use
 from ...render_layers.report import certainty
 
 if TYPE_CHECKING:
-    from ...authoring.services.renders import Renders
+    from ...authoring.background.render_overviews import RenderOverviews
     from ...authoring.session import Session
 
 
@@ -26,7 +26,7 @@ class RenderContext(Protocol):
     def session(self) -> Session: ...
 
     @property
-    def renders(self) -> Renders: ...
+    def renders(self) -> RenderOverviews: ...
 
 
 FOUND = "found"

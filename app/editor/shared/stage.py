@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ...authoring.services.flipbook import Flipbook
+    from ...authoring.flipbook import Flipbook
     from ...authoring.session import Session
 
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from ..toolkit.context import PanelContext
 
 if TYPE_CHECKING:
-    from ...authoring.services.preferences import Store
-    from ...authoring.services.recovery import Recovery
+    from ...authoring.preferences import PreferenceStore
+    from ...authoring.recovery.recovery import RecoveryFile
     from ..shared.action import Actions
     from ..shared.dialogs import Dialogs
     from ..workflows.documents import DocumentWorkflow
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 class StartContext(PanelContext):
     """The collaborators of the start screen."""
 
-    store: Store
+    store: PreferenceStore
     dialogs: Dialogs
     actions: Actions
-    recovery: Recovery
+    recovery: RecoveryFile
     documents: DocumentWorkflow

@@ -10,8 +10,8 @@ from halation.presets import picture
 from imgui_bundle import ImVec2, imgui
 from imgui_bundle import icons_fontawesome_6 as icons
 
-from ...authoring.services.preferences import Recent
-from ...authoring.services.recovery import Recovered
+from ...authoring.preferences import Recent
+from ...authoring.recovery.recovery import RecoveredWork
 from ...custom_nodes.plugins import preset_paths
 from ...media.pictures.thumbnail import load_thumbnail
 from ..theme.style import mix, u32, ui_scale, vec4
@@ -42,7 +42,7 @@ class StartScreen:
     def __init__(self, context: StartContext) -> None:
         self._context = context
         self._textures = Textures()
-        self._found: tuple[Recovered, ...] | None = None
+        self._found: tuple[RecoveredWork, ...] | None = None
         self._there: dict[str, bool] = {}
         self._pictured = {path: picture(path).is_file() for path in preset_paths()}
 
@@ -56,8 +56,8 @@ class StartScreen:
             self._found = None
             return
         if self._found is None:
-            self._found = self._context.recovery.found()
-            self._there = {recent.path: recent.exists for recent in self._context.store.now.recent}
+            self._found = self._context.recovery.find_abandoned()
+            self._there = {recent.path: recent.exists for recent in self._context.store.current.recent}
         covered = self._context.dialogs.browse is not None or self._context.dialogs.question is not None
         close = backdrop(self._context, "start") and not covered
         with dialog(self._context, "Start", (1180, 560)):
@@ -95,7 +95,7 @@ class StartScreen:
         if imgui.button(f"{icons.ICON_FA_FOLDER_OPEN}  Open...", ImVec2(width, 0)):
             self._context.actions.run("file.open")
         record(self._context, "start open")
-        if not self._context.store.now.hint_seen:
+        if not self._context.store.current.hint_seen:
             self._hint()
 
     def _hint(self) -> None:
@@ -111,9 +111,9 @@ class StartScreen:
         imgui.dummy(ImVec2(0, 4 * ui_scale()))
         with font(self._context, "bold"):
             imgui.text_unformatted("Recent")
-        if not self._context.store.now.recent:
+        if not self._context.store.current.recent:
             dim(self._context, "Files that you open appear here.")
-        for index, recent in enumerate(self._context.store.now.recent):
+        for index, recent in enumerate(self._context.store.current.recent):
             imgui.push_id(index)
             self._recent_row(index, recent)
             imgui.pop_id()
@@ -146,7 +146,7 @@ class StartScreen:
         elif clicked:
             self._context.log.add(f"{path} is not there any more; take it off the list or bring it back", "warning")
 
-    def _recoveries(self, found: tuple[Recovered, ...]) -> None:
+    def _recoveries(self, found: tuple[RecoveredWork, ...]) -> None:
         if not found:
             return
         with font(self._context, "bold"):

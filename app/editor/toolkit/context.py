@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from ...authoring.log import Log
-from ...authoring.services.preferences import Store
+from ...authoring.preferences import PreferenceStore
 from ..theme.fonts import Fonts
 from ..theme.palette import PALETTES, Palette
 from .places import Rect
@@ -15,7 +15,7 @@ from .places import Rect
 class Interface:
     """How the window looks, where its widgets are, and whether the user drags a value in it."""
 
-    store: Store
+    store: PreferenceStore
     fonts: Fonts | None = None
     places: dict[str, Rect] = field(default_factory=dict[str, Rect])
     """Where widgets were drawn last, by name: for tests and hints."""
@@ -25,7 +25,7 @@ class Interface:
     @property
     def palette(self) -> Palette:
         """The colors of the theme that the user chose."""
-        return PALETTES[self.store.now.theme]
+        return PALETTES[self.store.current.theme]
 
 
 @dataclass(frozen=True)

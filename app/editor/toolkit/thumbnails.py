@@ -8,7 +8,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...authoring.services.background import Background
+from ...authoring.background.cache import BackgroundCache
 from ...errors import HalationError
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ class Pictures:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._decoded: Background[tuple[Path, float], Array | str] = Background(
+        self._decoded: BackgroundCache[tuple[Path, float], Array | str] = BackgroundCache(
             "thumbnails", self._made, _IN_MEMORY, _WAITING, self._tidy
         )
 
@@ -37,7 +37,7 @@ class Pictures:
     @property
     def busy(self) -> bool:
         """True while something that was asked for is not ready."""
-        return self._decoded.busy
+        return self._decoded.is_busy
 
     def forget(self) -> None:
         """Nothing that was asked for is wanted any more."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import icons_fontawesome_6 as icons
 from imgui_bundle import imgui
 
-from ...authoring.services.flipbook import SIDES
+from ...authoring.flipbook import SIDES
 from ..theme.style import mix, u32, ui_scale, vec4
 from ..toolkit.buttons import quiet, room_for
 from ..toolkit.words import dim, elided, font, tip

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from ..toolkit.context import PanelContext
 
 if TYPE_CHECKING:
+    from ...authoring.background.render_overviews import RenderOverviews
+    from ...authoring.preferences import PreferenceStore
     from ...authoring.preview import Preview
-    from ...authoring.services.coloring import Coloring
-    from ...authoring.services.preferences import Store
-    from ...authoring.services.renders import Renders
+    from ...authoring.preview.color_fallback import ColorFallback
     from ...authoring.session import Session
     from ...renderer.viewing.display import Display
     from ...renderer.viewing.probe import Probe
@@ -31,15 +31,15 @@ class ViewerContext(PanelContext):
     preview: Preview
     display: Display
     probe: Probe
-    store: Store
+    store: PreferenceStore
     actions: Actions
     dialogs: Dialogs
     clipboard: Clipboard
     timeline: PlayState
     canvas: ElementView
     code: CodeFault
-    renders: Renders
-    coloring: Coloring
+    renders: RenderOverviews
+    coloring: ColorFallback
     lights: dict[str, int]
     """The light that is selected, by the value that lists it."""
 

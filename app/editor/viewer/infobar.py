@@ -19,7 +19,7 @@ from .measuring import hsv, written
 from .scopes import LUMINANCE
 
 if TYPE_CHECKING:
-    from ...authoring.preview import Shown
+    from ...authoring.preview import DisplayedImage
     from .context import ViewerContext
 
 _LETTERS = "RGBA"
@@ -41,7 +41,7 @@ def row_height() -> float:
     return imgui.get_text_line_height() + 6 * ui_scale()
 
 
-def about(context: ViewerContext, side: str, shown: Shown | None, sight: Sight, seconds: float) -> list[Word]:
+def about(context: ViewerContext, side: str, shown: DisplayedImage | None, sight: Sight, seconds: float) -> list[Word]:
     """What a side shows, in a few words; for A also how, and how long it took."""
     palette, preview = context.palette, context.preview
     words: list[Word] = []

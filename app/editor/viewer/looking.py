@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from halation.nodes import ColorSettings, Kind
 
-from ...authoring.preview.data import Array, are_normals, balanced, data_range
+from ...authoring.preview.data_range import Array, are_normals, balance_range, find_data_range
 from ...color.management import DEFAULT_COLOR
 from ...color.transforms import to_display
 from ...graph import OUTPUTS, Graph, Port
@@ -43,8 +43,8 @@ def range_of(state: ViewerState, meaning: Meaning, samples: Samples) -> tuple[fl
         return state.low, state.high
     if meaning not in ("field", "vector"):
         return 0.0, 1.0
-    low, high = data_range(samples())
-    return balanced(low, high) if meaning == "vector" else (low, high)
+    low, high = find_data_range(samples())
+    return balance_range(low, high) if meaning == "vector" else (low, high)
 
 
 def measures(state: ViewerState, kind: Kind) -> bool:

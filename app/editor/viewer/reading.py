@@ -11,7 +11,7 @@ from .geometry import Box, Pixels, texel, texels
 from .measuring import Array, Statistics, statistics
 
 if TYPE_CHECKING:
-    from ...authoring.preview import Shown
+    from ...authoring.preview import DisplayedImage
     from ...renderer.viewing.probe import Probe
 
 T = TypeVar("T")
@@ -29,13 +29,13 @@ class Reader:
     def __init__(self) -> None:
         self._known: dict[object, tuple[object, Any]] = {}
 
-    def small(self, probe: Probe, shown: Shown) -> Array:
+    def small(self, probe: Probe, shown: DisplayedImage) -> Array:
         """The picture [h, w, channels] with most pixels left out."""
         return self._kept(
             "small", _mark(shown), lambda: probe.small(shown.texture, SMALL)[..., : shown.channels].astype(np.float32)
         )
 
-    def pixel(self, probe: Probe, name: str, shown: Shown, pixel: Pixels) -> tuple[float, ...]:
+    def pixel(self, probe: Probe, name: str, shown: DisplayedImage, pixel: Pixels) -> tuple[float, ...]:
         """The numbers of one pixel, given at full size; `name` says what for. None where there are none as yet."""
         (x, y), (left, top) = texel(pixel, shown.full_size, shown.size), shown.start
         x, y = x - left, y - top
@@ -45,7 +45,7 @@ class Reader:
             ("pixel", name), (_mark(shown), x, y), lambda: tuple(probe.pixel(shown.texture, x, y)[: shown.channels])
         )
 
-    def measured(self, probe: Probe, name: str, shown: Shown, box: Box) -> Statistics:
+    def measured(self, probe: Probe, name: str, shown: DisplayedImage, box: Box) -> Statistics:
         """Statistics of a box of fractions."""
         part = texels(box, shown.texture.size)
         return self._kept(
@@ -70,7 +70,7 @@ class Scan:
         self.wrong = 0
         """Pixels found so far."""
 
-    def step(self, probe: Probe, shown: Shown | None) -> None:
+    def step(self, probe: Probe, shown: DisplayedImage | None) -> None:
         """Go on, from the start where the picture is another one."""
         if shown is None:
             self._mark, self._steps, self.wrong = None, None, 0
@@ -84,7 +84,7 @@ class Scan:
             else:
                 self.wrong += found
 
-    def _look_through(self, probe: Probe, shown: Shown) -> Iterator[int]:
+    def _look_through(self, probe: Probe, shown: DisplayedImage) -> Iterator[int]:
         width, height = shown.texture.size
         rows = max(BAND // max(width, 1), 1)
         for top in range(0, height, rows):
@@ -92,5 +92,5 @@ class Scan:
             yield int((~np.isfinite(part).all(axis=2)).sum())
 
 
-def _mark(shown: Shown) -> object:
+def _mark(shown: DisplayedImage) -> object:
     return shown.key, shown.revision, shown.texture.size

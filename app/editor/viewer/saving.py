@@ -14,12 +14,12 @@ from ..shared.dialogs import Browse
 from .looking import picture_only
 
 if TYPE_CHECKING:
-    from ...authoring.preview import Shown
+    from ...authoring.preview import DisplayedImage
     from ...renderer.viewing.look import Look
     from .context import ViewerContext
 
 
-def ask_to_save(context: ViewerContext, a: Shown, b: Shown | None, look: Look) -> None:
+def ask_to_save(context: ViewerContext, a: DisplayedImage, b: DisplayedImage | None, look: Look) -> None:
     """Draw the picture at its own size, and ask where to keep it."""
     width, height = a.full_size
     texture = context.display.draw("saved", (width, height), a, b, picture_only(look))

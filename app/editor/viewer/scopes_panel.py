@@ -24,7 +24,7 @@ from .state import SCOPES
 from .wanted import A
 
 if TYPE_CHECKING:
-    from ...authoring.preview import Shown
+    from ...authoring.preview import DisplayedImage
     from .context import ViewerContext
 
 SECONDS = 0.2
@@ -102,7 +102,7 @@ class Scopes:
         if quiet(self._context, label, "button measured", doc, lit=lit):
             viewer.scopes_of_scene = not viewer.scopes_of_scene
 
-    def _refresh(self, shown: Shown, names: list[str]) -> None:
+    def _refresh(self, shown: DisplayedImage, names: list[str]) -> None:
         """Measure again if the picture, or how it is shown, has changed, but not too often."""
         viewer = self._context.viewer
         mark = (
@@ -140,7 +140,7 @@ class Scopes:
         )
         self._textures[name] = plate.show(pixels).native_handle
 
-    def _measured(self, shown: Shown) -> np.ndarray:
+    def _measured(self, shown: DisplayedImage) -> np.ndarray:
         """The picture, or its region, as [h, w, 3]."""
         viewer = self._context.viewer
         whole = self._reader.small(self._context.probe, shown)

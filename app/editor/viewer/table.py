@@ -16,7 +16,7 @@ from .reading import Reader
 from .wanted import layer
 
 if TYPE_CHECKING:
-    from ...authoring.preview import Shown
+    from ...authoring.preview import DisplayedImage
     from .context import ViewerContext
 
 _FLAGS = (
@@ -94,7 +94,7 @@ def _row(context: ViewerContext, name: str, place: str, values: tuple[float, ...
         imgui.text_colored(vec4(color), f"{written(value):>9}")
 
 
-def _layers(context: ViewerContext) -> list[tuple[str, Shown]]:
+def _layers(context: ViewerContext) -> list[tuple[str, DisplayedImage]]:
     """A, B and the inputs of the graph, as far as they are there."""
     names = [("A", "A")]
     if context.viewer.compares:

@@ -295,7 +295,7 @@ def _view(context: ViewerContext, asked: str) -> _Tool:
 
 
 def _proxy_while_dragging(context: ViewerContext) -> None:
-    coarse = context.store.now.proxy_while_dragging
+    coarse = context.store.current.proxy_while_dragging
     if imgui.menu_item("Coarser while dragging", "", coarse)[0]:
         context.log.attempt(lambda: context.store.change(proxy_while_dragging=not coarse))
 

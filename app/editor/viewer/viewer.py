@@ -35,7 +35,7 @@ from .toolbar import context_menu, draw_toolbar
 from .wanted import A, B
 
 if TYPE_CHECKING:
-    from ...authoring.preview import Shown
+    from ...authoring.preview import DisplayedImage
     from .context import ViewerContext
 
 TABLE_LINES = 7
@@ -52,8 +52,8 @@ _EMPTY = "Nothing to show yet: add a node (Tab over the graph), or drop an image
 class _Now:
     """What is shown in this frame."""
 
-    a: Shown | None
-    b: Shown | None
+    a: DisplayedImage | None
+    b: DisplayedImage | None
     view: str
     """The view that the picture asks for."""
 

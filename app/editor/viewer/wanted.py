@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ...authoring.preview import Glimpse
+from ...authoring.preview import VisibleRegion
 from ...graph import INPUTS, Port
 from .geometry import Sight
 from .ground import depths
@@ -25,7 +25,9 @@ def effective_scale(context: ViewerContext) -> float:
     """The chosen proxy, or a coarser one while a value is being dragged and pictures come too slowly."""
     viewer, seen = context.viewer, glimpse(context)
     share = seen.share(viewer.proxy) if seen else 1.0
-    return viewer.pace.at(viewer.proxy, context.interface.dragging and context.store.now.proxy_while_dragging, share)
+    return viewer.pace.at(
+        viewer.proxy, context.interface.dragging and context.store.current.proxy_while_dragging, share
+    )
 
 
 def wanted(context: ViewerContext) -> tuple[dict[str, Port], float]:
@@ -41,7 +43,7 @@ def wanted(context: ViewerContext) -> tuple[dict[str, Port], float]:
     return found | depths(context), effective_scale(context)
 
 
-def glimpse(context: ViewerContext) -> Glimpse | None:
+def glimpse(context: ViewerContext) -> VisibleRegion | None:
     """What can be seen of A, and of B where it is compared with; None where all is needed to show it.
 
     So it is while frames are played, which are kept for the next time, and where numbers of the whole picture say how
@@ -59,7 +61,7 @@ def glimpse(context: ViewerContext) -> Glimpse | None:
     left, top, right, bottom = max(left, 0.0), max(top, 0.0), min(right, 1.0), min(bottom, 1.0)
     if not sides or left >= right or top >= bottom:
         return None
-    return Glimpse((left, top, right, bottom), viewer.picture, frozenset(sides))
+    return VisibleRegion((left, top, right, bottom), viewer.picture, frozenset(sides))
 
 
 def _sides(context: ViewerContext) -> dict[str, Port]:

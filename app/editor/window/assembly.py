@@ -7,11 +7,11 @@ from pathlib import Path
 
 from imgui_bundle import imgui
 
+from ...authoring.background.render_overviews import RenderOverviews
 from ...authoring.log import Log
+from ...authoring.preferences import PreferenceStore, state_folder
 from ...authoring.preview import Preview
-from ...authoring.services.preferences import Store, state_folder
-from ...authoring.services.recovery import Recovery
-from ...authoring.services.renders import Renders
+from ...authoring.recovery.recovery import RecoveryFile
 from ...authoring.session import Session
 from ...graph import Graph
 from ...inputs.provider import MediaProvider
@@ -38,9 +38,9 @@ class SystemClipboard:
 def assemble(device: Device, state: Path | None = None) -> Editor:
     """Build an editor on a window's device, with an empty graph. `state` is the folder of everything it remembers."""
     folder = state or state_folder()
-    store, log = Store(folder), Log()
-    renderer = Renderer(device, budget=store.now.memory_budget * 2**20)
-    renders, session = Renders(), Session()
+    store, log = PreferenceStore(folder), Log()
+    renderer = Renderer(device, budget=store.current.memory_budget * 2**20)
+    renders, session = RenderOverviews(), Session()
     session.measure = _measure
     renderer.pictures.look = renders.render
     display = Display(device)
@@ -48,8 +48,8 @@ def assemble(device: Device, state: Path | None = None) -> Editor:
         Stage(session),
         Preview(renderer, display),
         store,
-        Actions(table(), lambda: store.now.shortcuts, log),
-        Recovery(folder, store.now.autosave),
+        Actions(table(), lambda: store.current.shortcuts, log),
+        RecoveryFile(folder, store.current.autosave),
         SystemClipboard(),
         display,
         Probe(device),
@@ -70,7 +70,7 @@ def open_first(editor: Editor, path: Path | None, bindings: Mapping[str, str]) -
         editor.dialogs.open.add("start")
         return
     editor.session.open(path)
-    editor.store.opened(path)
+    editor.store.note_opened(path)
     for name, file in bindings.items():
         editor.session.bind(name, file)
 

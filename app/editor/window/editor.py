@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from ...authoring.background.render_overviews import RenderOverviews
+from ...authoring.background.shader_files import ShaderFiles
 from ...authoring.log import Log
-from ...authoring.services.coloring import Coloring
-from ...authoring.services.exporting import Exports
-from ...authoring.services.renders import Renders
-from ...authoring.services.shader_files import ShaderFiles
+from ...authoring.preview.color_fallback import ColorFallback
+from ...authoring.render_queue.queue import RenderQueue
 from ...watch.watching import Watcher
 from ..canvas.view import CanvasView
 from ..code.state import CodeState
@@ -24,9 +24,9 @@ from ..toolkit.places import Rect
 from ..viewer.state import ViewerState
 
 if TYPE_CHECKING:
+    from ...authoring.preferences import PreferenceStore
     from ...authoring.preview import Preview
-    from ...authoring.services.preferences import Store
-    from ...authoring.services.recovery import Recovery
+    from ...authoring.recovery.recovery import RecoveryFile
     from ...authoring.session import Session
     from ...renderer.viewing.display import Display
     from ...renderer.viewing.probe import Probe
@@ -40,19 +40,19 @@ class Editor:
 
     stage: Stage
     preview: Preview
-    store: Store
+    store: PreferenceStore
     actions: Actions
-    recovery: Recovery
+    recovery: RecoveryFile
     clipboard: Clipboard
     display: Display
     probe: Probe
     interface: Interface
     log: Log = field(default_factory=Log)
-    exports: Exports = field(default_factory=Exports)
+    exports: RenderQueue = field(default_factory=RenderQueue)
     watcher: Watcher = field(default_factory=Watcher)
-    renders: Renders = field(default_factory=Renders)
+    renders: RenderOverviews = field(default_factory=RenderOverviews)
     shaders: ShaderFiles = field(default_factory=ShaderFiles)
-    coloring: Coloring = field(default_factory=Coloring)
+    coloring: ColorFallback = field(default_factory=ColorFallback)
     canvas: CanvasView = field(default_factory=CanvasView)
     viewer: ViewerState = field(default_factory=ViewerState)
     code: CodeState = field(default_factory=CodeState)

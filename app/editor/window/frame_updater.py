@@ -64,7 +64,7 @@ class FrameUpdater:
     def _compute(self) -> None:
         """Compute what the viewer and the canvas show, for as long as the budget lasts."""
         editor, context = self._editor, self._contexts.viewer
-        preview, preferences, session = editor.preview, editor.store.now, context.session
+        preview, preferences, session = editor.preview, editor.store.current, context.session
         preview.thumbnailing, preview.timed = preferences.thumbnails, preferences.timings
         preview.paused = editor.viewer.paused
         self._play(session)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from imgui_bundle import hello_imgui, immapp
 
-from ...authoring.services.preferences import state_folder
+from ...authoring.preferences import state_folder
 from .opengl import best_version
 from .window import Window
 

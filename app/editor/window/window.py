@@ -229,7 +229,7 @@ class Window:
     # --- parts -------------------------------------------------------------------------------------------------------
 
     def _restyle(self) -> None:
-        likes = self.editor.store.now
+        likes = self.editor.store.current
         scale = likes.ui_scale or hello_imgui.dpi_window_size_factor()
         if self._styled != (self.editor.palette, scale):
             self._styled = (self.editor.palette, scale)

@@ -12,9 +12,9 @@ from ..shared.dialogs import Browse, Question
 
 if TYPE_CHECKING:
     from ...authoring.log import Log
-    from ...authoring.services.exporting import Exports
-    from ...authoring.services.preferences import Store
-    from ...authoring.services.recovery import Recovered, Recovery
+    from ...authoring.preferences import PreferenceStore
+    from ...authoring.recovery.recovery import RecoveredWork, RecoveryFile
+    from ...authoring.render_queue.queue import RenderQueue
     from ...authoring.session import Session
     from ...watch.watching import Watcher
     from ..shared.dialogs import Dialogs
@@ -32,10 +32,10 @@ class DocumentWorkflow:
     """What the File menu does. Each step that would lose work asks first."""
 
     session: Session
-    store: Store
+    store: PreferenceStore
     watcher: Watcher
-    recovery: Recovery
-    exports: Exports
+    recovery: RecoveryFile
+    exports: RenderQueue
     canvas: ElementView
     dialogs: Dialogs
     log: Log
@@ -62,7 +62,7 @@ class DocumentWorkflow:
 
         def open_file() -> None:
             self.session.open(path)
-            self.store.opened(path)
+            self.store.note_opened(path)
             self._show_document()
 
         self._unless_unsaved(lambda: self.log.attempt(open_file), "open")
@@ -86,7 +86,7 @@ class DocumentWorkflow:
 
         self._unless_unsaved(lambda: self.log.attempt(open_recipe), "open the graph")
 
-    def recover(self, recovered: Recovered) -> None:
+    def recover(self, recovered: RecoveredWork) -> None:
         """Open work that was not saved, after asking about other unsaved work."""
 
         def restore() -> None:
@@ -131,7 +131,7 @@ class DocumentWorkflow:
                 self.code_files.save_drafts()
                 self.session.save_as(target)
                 self.watcher.expect(target)
-                self.store.opened(target)
+                self.store.note_opened(target)
                 self.log.add(f"saved {target.name}")
                 then()
 

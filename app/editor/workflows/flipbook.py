@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
-from ...authoring.services.flipbook import Flipbook, Strip
+from ...authoring.flipbook import Flipbook, FlipbookStrip
 from ..shared.action import Action
 from ..shared.dialogs import Browse
 
@@ -41,7 +41,7 @@ class FlipbookPlayer:
     dialogs: Dialogs
     commands: WindowCommands
 
-    def open(self, *strips: Strip) -> None:
+    def open(self, *strips: FlipbookStrip) -> None:
         """Play sequences in the viewer; two are side by side unless they are compared otherwise already."""
         document, before = self.stage.document, self.stage.flipbook
         watched = before.watched if before else document.viewed_in_root("A")
@@ -59,11 +59,11 @@ class FlipbookPlayer:
             self.viewer.end_flipbook()
             self.stage.flipbook = None
 
-    def choose(self, first: Strip | None = None) -> None:
+    def choose(self, first: FlipbookStrip | None = None) -> None:
         """Ask for pictures to play, alone or beside others."""
 
         def play(path: Path) -> None:
-            strip = Strip.chosen(path)
+            strip = FlipbookStrip.from_file(path)
             self.open(*(first, strip) if first else (strip,))
 
         title = f"Compare {first.name} with" if first else "Play pictures"

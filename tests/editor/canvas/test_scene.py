@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from halation.authoring.edits.decor import add_frame
-from halation.authoring.edits.layout import pinned, positions
+from halation.authoring.edits.layout import pin_places, positions
 from halation.editor.canvas.gestures import (
     Link,
     Move,
@@ -31,7 +31,7 @@ P = Port.parse
 
 
 def staged(graph: Graph, stage: Stage | None = None, pictures: frozenset[str] = frozenset(), open: str = "") -> Scene:
-    return (stage or Stage()).build(graph, positions(pinned(graph)).__getitem__, (), pictures, open)
+    return (stage or Stage()).build(graph, positions(pin_places(graph)).__getitem__, (), pictures, open)
 
 
 def pin(scene: Scene, port: str, output: bool) -> tuple[float, float]:
@@ -75,7 +75,7 @@ def test_layouts_are_built_again_only_where_something_changed() -> None:
 
 
 def test_a_changed_value_leaves_all_boxes_and_links_but_its_own_node() -> None:
-    stage, graph = Stage(), pinned(chain("exposure", "bloom"))
+    stage, graph = Stage(), pin_places(chain("exposure", "bloom"))
     first = staged(graph, stage)
     second = staged(graph.set(P("exposure.stops"), 2.0), stage)
     assert second.net is first.net
@@ -95,9 +95,9 @@ def test_a_changed_value_leaves_all_boxes_and_links_but_its_own_node() -> None:
     ],
 )
 def test_what_is_staged_again_is_what_is_staged_anew(change) -> None:
-    stage, graph = Stage(), pinned(chain("exposure", "bloom"))
+    stage, graph = Stage(), pin_places(chain("exposure", "bloom"))
     staged(graph, stage)
-    assert staged(pinned(change(graph)), stage) == staged(pinned(change(graph)))
+    assert staged(pin_places(change(graph)), stage) == staged(pin_places(change(graph)))
 
 
 def test_a_first_picture_moves_no_pin_and_no_field() -> None:

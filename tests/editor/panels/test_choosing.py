@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from halation.authoring.services.exporting import Exports, RenderJob
-from halation.authoring.services.preferences import Store
+from halation.authoring.preferences import PreferenceStore
+from halation.authoring.render_queue.queue import RenderJob, RenderQueue
 from halation.authoring.session import Session
 from halation.editor.browser.browsing import Browsing, begun, size_text
 from halation.editor.renders.folders import command, show_folder
@@ -26,15 +26,15 @@ PRESET = next(path for path in paths() if path.stem == "soft_bloom")
 class Desk:
     """As much of an editor as these need."""
 
-    store: Store
+    store: PreferenceStore
     session: Session = field(default_factory=Session)
-    exports: Exports = field(default_factory=Exports)
+    exports: RenderQueue = field(default_factory=RenderQueue)
     timeline: TimelineState = field(default_factory=TimelineState)
 
 
 @pytest.fixture
 def desk(tmp_path: Path) -> Desk:
-    return Desk(Store(tmp_path / "state"))
+    return Desk(PreferenceStore(tmp_path / "state"))
 
 
 @pytest.fixture
@@ -58,15 +58,15 @@ def names(now: Browsing) -> list[str]:
 
 
 def test_it_lists_what_is_wanted_where_it_was_last(desk: Desk, folder: Path) -> None:
-    desk.store.used("graph", folder / "a.json")
-    desk.store.used("image", folder / "x.exr")
+    desk.store.note_folder("graph", folder / "a.json")
+    desk.store.note_folder("image", folder / "x.exr")
     assert names(browsing(desk)) == ["inner", "a.json", "b.json"]
     assert names(browsing(desk, purpose="image")) == ["inner", "picture.EXR"]
     assert names(browsing(desk, purpose="export", name="a.png")) != names(browsing(desk))
 
 
 def test_opening_and_going_back(desk: Desk, folder: Path) -> None:
-    desk.store.used("graph", folder / "a.json")
+    desk.store.note_folder("graph", folder / "a.json")
     now = browsing(desk)
     now.poll()
     assert now.item is not None and now.item.is_folder
@@ -82,7 +82,7 @@ def test_opening_and_going_back(desk: Desk, folder: Path) -> None:
 
 
 def test_saving_takes_the_name_and_adds_the_ending(desk: Desk, folder: Path) -> None:
-    desk.store.used("graph", folder / "a.json")
+    desk.store.note_folder("graph", folder / "a.json")
     now = browsing(desk, saving=True, name="look.json")
     assert now.item is None
     assert now.target == folder / "look.json"
@@ -103,7 +103,7 @@ def test_sizes(size: int, said: str) -> None:
 
 def test_the_form_suggests_files_and_gives_options(desk: Desk, tmp_path: Path) -> None:
     desk.session.open(PRESET)
-    desk.store.used("export", tmp_path / "x.exr")
+    desk.store.note_folder("export", tmp_path / "x.exr")
     form = Form(desk)
     assert form.wanted() == ("image",)
     assert form.file("image") == tmp_path / "soft_bloom.exr"
@@ -131,7 +131,7 @@ def test_a_render_is_started_and_its_folder_remembered(desk: Desk, tmp_path: Pat
     made = form.start()
     assert title(made) == "small.png"
     assert made.wait(60)
-    assert (made.state, made.sentence) == ("done", "")
+    assert (made.state, made.failure) == ("done", "")
     assert (tmp_path / "small.png").is_file()
     assert desk.store.folder("export") == str(tmp_path)
 

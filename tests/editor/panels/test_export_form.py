@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
-from halation.authoring.services.exporting import Exports
-from halation.authoring.services.preferences import Store
+from halation.authoring.preferences import PreferenceStore
+from halation.authoring.render_queue.queue import RenderQueue
 from halation.authoring.session import Session
 from halation.editor.renders.form import Form
 from halation.editor.renders.wording import aim_text, exist_text, time_text
@@ -22,20 +22,20 @@ PRESET = next(path for path in paths() if path.stem == "soft_bloom")
 class Desk:
     """As much of an editor as the form needs."""
 
-    store: Store
+    store: PreferenceStore
     session: Session = field(default_factory=Session)
-    exports: Exports = field(default_factory=Exports)
+    exports: RenderQueue = field(default_factory=RenderQueue)
     timeline: TimelineState = field(default_factory=TimelineState)
 
 
 @pytest.fixture
 def desk(tmp_path: Path) -> Desk:
     """A preset of 24 frames, whose renders go to a folder of their own."""
-    made = Desk(Store(tmp_path / "state"))
+    made = Desk(PreferenceStore(tmp_path / "state"))
     made.session.open(PRESET)
     made.session.set_frames(1, 24)
     (tmp_path / "out").mkdir()
-    made.store.used("export", tmp_path / "out" / "x.exr")
+    made.store.note_folder("export", tmp_path / "out" / "x.exr")
     return made
 
 

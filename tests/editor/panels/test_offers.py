@@ -8,7 +8,7 @@ from typing import Any, cast
 
 import pytest
 from halation.authoring.log import Log
-from halation.authoring.services.preferences import Store
+from halation.authoring.preferences import PreferenceStore
 from halation.authoring.session import Session
 from halation.editor.actions import table
 from halation.editor.command_palette.commands import commands, ranked
@@ -30,11 +30,11 @@ PRESET = next(path for path in paths() if path.stem == "soft_bloom")
 @pytest.fixture
 def desk(tmp_path: Path) -> Editor:
     """An editor whose pictures and files are left out."""
-    store = Store(tmp_path)
+    store = PreferenceStore(tmp_path)
     none = cast(Any, None)
     preview, recovery, watcher = (cast(Any, SimpleNamespace(fault="", faults={})) for _ in range(3))
     log = Log()
-    actions = Actions(table(), lambda: store.now.shortcuts, log)
+    actions = Actions(table(), lambda: store.current.shortcuts, log)
     return Editor(
         Stage(Session()), preview, store, actions, recovery, none, none, none, Interface(store), log, watcher=watcher
     )
@@ -98,9 +98,9 @@ def test_taking_a_shortcut_over_and_giving_it_back(desk: Editor, contexts: Conte
     assert desk.actions.shortcut("file.open") == "Ctrl+O"
     assert desk.actions.shortcut("file.new") == ""
     reset(contexts.preferences, "file.new")
-    assert desk.store.now.shortcuts == {}
+    assert desk.store.current.shortcuts == {}
     assigned(contexts.preferences, "file.new", "F5")
-    assert desk.store.now.shortcuts == {"file.new": "F5"}
+    assert desk.store.current.shortcuts == {"file.new": "F5"}
 
 
 def test_the_same_keys_may_serve_two_panels() -> None:

@@ -120,7 +120,7 @@ def test_slow_pictures_are_wanted_coarser_while_dragging(editor: Any) -> None:
     editor.viewer.pace.took(1.0, 0.2)
     editor.interface.dragging = True
     assert wanted(editor)[1] == 0.5
-    editor.store.now.proxy_while_dragging = False
+    editor.store.current.proxy_while_dragging = False
     assert wanted(editor)[1] == 1.0
 
 

@@ -1,0 +1,123 @@
+"""Renders, looked at in a thread: what they hold, for panels and for the compiler; which object is where."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import MappingProxyType
+
+from halation.nodes import Matte, Render
+
+from ...errors import HalationError, InputError
+from ...render_layers.mattes import IdMap, id_map
+from ...render_layers.naming import Role
+from ...render_layers.overview import Overview, overview
+from ...render_layers.render import find_render
+from ...resources.input_files import fingerprint
+from ...watch.sequence_files import standing
+from ...watch.versions import Versions
+from .cache import BackgroundCache
+
+ROLES = (
+    Role.BEAUTY,
+    Role.ALBEDO,
+    Role.EMISSION,
+    Role.DEPTH,
+    Role.NORMAL,
+    Role.POSITION,
+    Role.VELOCITY,
+    Role.OCCLUSION,
+    Role.OBJECT_ID,
+    Role.MATERIAL_ID,
+    Role.UV,
+)
+"""What a render is read for."""
+
+_KEPT, _KEPT_IDS = 256, 3
+
+ChosenLayers = Mapping[str, str]
+"""Layers that somebody chose, by role."""
+
+_Key = tuple[str, str, tuple[tuple[str, str], ...]]
+"""Path, version of the file, and chosen layers."""
+
+
+class OverviewPending(InputError):
+    """A render is still being looked at. `ready` says when asking again makes sense."""
+
+    def __init__(self, path: str, ready: Callable[[], bool]) -> None:
+        super().__init__(f"{path}: is still being looked at: wait a moment")
+        self.ready = ready
+
+
+class RenderOverviews:
+    """What renders hold: never waits for a file."""
+
+    def __init__(self) -> None:
+        self._overviews: BackgroundCache[_Key, tuple[Overview | str, Render | str]] = BackgroundCache(
+            "renders", _read_overview, _KEPT
+        )
+        self._ids: BackgroundCache[tuple[str, str, str], IdMap | str] = BackgroundCache("mattes", _ids, _KEPT_IDS, 1)
+        self._versions = Versions()
+
+    def overview(self, path: Path, named: ChosenLayers = MappingProxyType({})) -> Overview | str | None:
+        """What a render holds, a sentence if it cannot be read, None while it is being looked at."""
+        path = standing(path)
+        version, fault = self._versions.of(path)
+        if fault:
+            return fault
+        overview = self._overviews.get(_key(str(path), version, named))
+        return overview and overview[0]
+
+    def render(self, path: str, named: ChosenLayers) -> Render:
+        """The same for the compiler. Raises Pending, and InputError for a file that cannot be read."""
+        key = _key(path, fingerprint(path), named)
+        entry = self._overviews.get(key)
+        if entry is None:
+            raise OverviewPending(path, lambda: self._overviews.get(key) is not None)
+        if isinstance(entry[1], str):
+            raise InputError(entry[1])
+        return entry[1]
+
+    def ids(self, path: Path, matte: Matte) -> IdMap | str | None:
+        """What is where in the picture, a sentence if nobody knows, None while it is being read."""
+        path = standing(path)
+        version, fault = self._versions.of(path)
+        return fault or self._ids.get((str(path), version, matte.layers[0]))
+
+    @property
+    def is_busy(self) -> bool:
+        """True while something is being looked at."""
+        return self._overviews.is_busy or self._ids.is_busy
+
+    def close(self) -> None:
+        """End the threads."""
+        self._overviews.close()
+        self._ids.close()
+
+
+def _key(path: str, version: str, named: ChosenLayers) -> _Key:
+    return path, version, tuple(sorted((role, layer) for role, layer in named.items() if layer))
+
+
+def _read_overview(key: _Key) -> tuple[Overview | str, Render | str]:
+    path, _, named = key
+    try:
+        contents = overview(path, ROLES, {Role(role): layer for role, layer in named})
+    except HalationError as fault:
+        return str(fault), str(fault)
+    except Exception as fault:
+        message = f"{path}: cannot be looked at ({fault})"
+        return message, message
+    try:
+        return contents, find_render(path, dict(named))
+    except HalationError as fault:
+        return contents, str(fault)
+
+
+def _ids(key: tuple[str, str, str]) -> IdMap | str:
+    path, _, layer = key
+    try:
+        return id_map(path, layer)
+    except HalationError as fault:
+        return str(fault)

@@ -1,0 +1,235 @@
+"""What one person likes: kept beside the documents, never in them."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import Annotated, Any, Literal, cast, get_type_hints
+
+import msgspec
+import platformdirs
+
+from ..errors import OutputError, UsageError
+from ..resources.atomic_write import write_text_atomically
+from .recovery.file_locks import hold_lock
+
+MAX_RECENT = 20
+MAX_SCALE = 3.0
+MIN_SCALE = 0.75
+
+Purpose = Literal["graph", "image", "table", "scene", "config", "code", "export"]
+
+
+def state_folder() -> Path:
+    """Where the editor keeps what is no document: HALATION_STATE, else where the system wants it."""
+    given = os.environ.get("HALATION_STATE")
+    return Path(given).absolute() if given else platformdirs.user_state_path("halation", appauthor=False)
+
+
+def _scale(number: float) -> float:
+    if number and not MIN_SCALE <= number <= MAX_SCALE:
+        raise ValueError(f"Expected 0 or a number in {MIN_SCALE:g}..{MAX_SCALE:g}")
+    return number
+
+
+@dataclass(frozen=True)
+class Recent:
+    """A graph file that was open; `time` is in seconds since 1970."""
+
+    path: str
+    time: float = 0.0
+
+    @property
+    def exists(self) -> bool:
+        """True if the file is still there."""
+        return os.path.isfile(self.path)  # noqa: PTH113 - False, not an error, for a path that no system allows
+
+
+@dataclass(frozen=True)
+class Preferences:
+    """`ui_scale` is 0 for what the system says; `shortcuts` are those that differ, by action; "" stands for none.
+
+    `recent` has the newest first. `folders` are those used last, by purpose. `autosave` is in seconds,
+    `memory_budget` in MiB. `isf_folders` hold shaders that can be added. `extra` keeps what another version of
+    Halation wrote.
+    """
+
+    theme: Literal["dark", "light"] = "dark"
+    ui_scale: float = 0.0
+    shortcuts: Mapping[str, str] = field(default_factory=lambda: MappingProxyType[str, str]({}))
+    recent: tuple[Recent, ...] = ()
+    folders: Mapping[Purpose, str] = field(default_factory=lambda: MappingProxyType[Purpose, str]({}))
+    thumbnails: bool = True
+    timings: bool = False
+    minimap: bool = True
+    autosave: Annotated[float, msgspec.Meta(ge=0.5, le=10.0)] = 5.0
+    memory_budget: Annotated[int, msgspec.Meta(ge=64, le=2**20)] = 512
+    hint_seen: bool = False
+    proxy_while_dragging: bool = True
+    isf_folders: tuple[str, ...] = ()
+    extra: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType[str, Any]({}))
+
+
+TYPES = get_type_hints(Preferences, include_extras=True)
+FAULTS = (msgspec.ValidationError, ValueError, TypeError)
+CHECKS = {"ui_scale": _scale}
+NAMES = tuple(one.name for one in fields(Preferences) if one.name != "extra")
+
+
+class PreferenceStore:
+    """Preferences in a folder. `now` is what holds; `faults` are sentences about what could not be read or written.
+
+    Several editors share the file: each writes only what changed in it, over what the others wrote.
+    """
+
+    def __init__(self, folder: Path | None = None) -> None:
+        self.file = (folder or state_folder()) / "preferences.json"
+        self.faults: list[str] = []
+        self.current = self._read(Preferences())
+        self._written = self.current
+        self._forgotten: set[str] = set()
+
+    def change(self, **values: Any) -> None:
+        """Set fields of `now`. Raises UsageError for a value that makes no sense."""
+        checked: dict[str, Any] = {}
+        for name, value in values.items():
+            if name not in NAMES:
+                raise UsageError(f"there is no preference '{name}'")
+            try:
+                checked[name] = _check_value(name, value)
+            except FAULTS as fault:
+                raise UsageError(f"the preference '{name}' cannot be {value!r}: {_lower_first(fault)}") from None
+        self.current = replace(self.current, **checked)
+
+    def note_opened(self, path: str | Path) -> None:
+        """Note that a graph file was opened or saved."""
+        here = os.path.abspath(path)  # noqa: PTH100 - links stay as they were named
+        self._forgotten.discard(here)
+        self.current = replace(self.current, recent=_merge_recent((Recent(here, time.time()),), self.current.recent))
+
+    def forget(self, path: str | Path) -> None:
+        """Take a file off the list of recent files."""
+        self._forgotten.add(str(path))
+        self.current = replace(self.current, recent=tuple(one for one in self.current.recent if one.path != str(path)))
+
+    def folder(self, purpose: Purpose) -> str:
+        """The folder that was used last for this, "" if there is none any more."""
+        folder = self.current.folders.get(purpose, "")
+        return folder if os.path.isdir(folder) else ""  # noqa: PTH112 - as above
+
+    def note_folder(self, purpose: Purpose, path: str | Path) -> None:
+        """Note the folder of a file that was chosen."""
+        self.change(folders={**self.current.folders, purpose: str(Path(path).absolute().parent)})
+
+    def flush(self) -> bool:
+        """Write what changed, if anything did; True if so. What cannot be written is tried again the next time."""
+        if self.current == self._written and not self._forgotten:
+            return False
+        try:
+            self.file.parent.mkdir(parents=True, exist_ok=True)
+            with hold_lock(self.file.with_suffix(".lock")):
+                self.current = self._merge_with_file()
+                write_text_atomically(self.file, json.dumps(_tree(self.current), indent=2, sort_keys=True) + "\n")
+        except OSError as fault:
+            self._report(f"preferences cannot be kept in {self.file.parent} ({fault.strerror})")
+            return False
+        except OutputError as fault:
+            self._report(f"preferences cannot be kept: {fault}")
+            return False
+        self._written = self.current
+        self._forgotten.clear()
+        return True
+
+    def _merge_with_file(self) -> Preferences:
+        """What is in the file, with what changed here put over it."""
+        there = self._read(self._written)
+        changed = _list_differences(self.current, self._written)
+        recent = tuple(one for one in there.recent if one.path not in self._forgotten)
+        return replace(there, **changed | {"recent": _merge_recent(self.current.recent, recent)})
+
+    def _read(self, fallback: Preferences) -> Preferences:
+        """The file's preferences; what is broken in it is reported, and `fallback` stands for it."""
+        try:
+            tree = json.loads(self.file.read_bytes())
+            if not isinstance(tree, dict):
+                raise ValueError("it holds no object")
+        except (FileNotFoundError, NotADirectoryError):
+            return fallback
+        except OSError as fault:
+            self._report(f"{self.file}: the preferences cannot be read ({fault.strerror})")
+            return fallback
+        except (ValueError, RecursionError) as fault:
+            self._set_aside(fault)
+            return fallback
+        values: dict[str, Any] = {}
+        for name in NAMES:
+            try:
+                if name in tree:
+                    values[name] = _check_value(name, self._sound_entries(name, tree[name]))
+            except FAULTS as fault:
+                self._report(f"{self.file}: '{name}' is left out ({_lower_first(fault)})")
+                values[name] = getattr(fallback, name)
+        extra = {name: item for name, item in tree.items() if name not in NAMES}
+        return Preferences(**values, extra=MappingProxyType(extra))
+
+    def _sound_entries(self, name: str, raw: Any) -> Any:
+        """A list or object without the entries that are broken: one of them is no reason to lose the others."""
+        if isinstance(raw, list):
+            return [one for one in raw if self._is_sound(name, [one])]
+        if isinstance(raw, dict):
+            return {key: one for key, one in raw.items() if self._is_sound(name, {key: one})}
+        return raw
+
+    def _is_sound(self, name: str, raw: Any) -> bool:
+        try:
+            _check_value(name, raw)
+        except FAULTS as fault:
+            self._report(f"{self.file}: an entry of '{name}' is left out ({_lower_first(fault)})")
+            return False
+        return True
+
+    def _set_aside(self, fault: Exception) -> None:
+        aside = self.file.with_name("preferences.broken.json")
+        with contextlib.suppress(OSError):
+            self.file.replace(aside)
+        self._report(f"{self.file}: the preferences are damaged ({fault}); they are set aside as {aside.name}")
+
+    def _report(self, sentence: str) -> None:
+        if sentence not in self.faults:
+            self.faults.append(sentence)
+
+
+def _check_value(name: str, value: Any) -> Any:
+    """A value as its field declares it. Raises ValidationError or ValueError."""
+    converted = msgspec.convert(msgspec.to_builtins(value, enc_hook=dict), TYPES[name])
+    return CHECKS[name](converted) if name in CHECKS else converted
+
+
+def _merge_recent(first: tuple[Recent, ...], second: tuple[Recent, ...]) -> tuple[Recent, ...]:
+    """Both lists as one, newest first, every path once."""
+    newest: dict[str, Recent] = {}
+    for one in sorted((*first, *second), key=lambda one: one.time, reverse=True):
+        newest.setdefault(one.path, one)
+    return tuple(newest.values())[:MAX_RECENT]
+
+
+def _list_differences(preferences: Preferences, other: Preferences) -> dict[str, Any]:
+    """The fields in which they differ, as `preferences` has them."""
+    return {name: getattr(preferences, name) for name in NAMES if getattr(preferences, name) != getattr(other, name)}
+
+
+def _tree(preferences: Preferences) -> dict[str, Any]:
+    """What is written: fields that differ from their default, and what was there that means nothing here."""
+    changed = msgspec.to_builtins(_list_differences(preferences, Preferences()), enc_hook=dict)
+    return {**preferences.extra, **cast("dict[str, Any]", changed)}
+
+
+def _lower_first(fault: Exception) -> str:
+    message = str(fault)
+    return message[:1].lower() + message[1:]

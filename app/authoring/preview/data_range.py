@@ -1,0 +1,43 @@
+"""Data made visible: which numbers are worth showing, and what vectors mean. Thumbnails and viewer show it alike."""
+
+from __future__ import annotations
+
+import numpy as np
+
+Array = np.ndarray
+
+FAR = 1e8
+"""Renderers write larger depths where there is nothing."""
+
+HALF_MAX = 65504.0
+"""What infinity becomes in files and nodes."""
+
+
+def find_data_range(pixels: Array) -> tuple[float, float]:
+    """From where to where data [h, w, channels] is worth showing: without stray extremes, and what stands for far."""
+    finite = pixels[np.isfinite(pixels)]
+    near = finite[(np.abs(finite) < FAR) & (np.abs(finite) != HALF_MAX)]
+    finite = near if near.size else finite
+    if not finite.size:
+        return 0.0, 1.0
+    low, high = (float(part) for part in np.percentile(finite, (0.5, 99.5)))
+    if high <= low:
+        low, high = float(finite.min()), float(finite.max())
+    if high <= low:
+        return (low, low + 1.0) if low else (0.0, 1.0)
+    return low, high
+
+
+def balance_range(low: float, high: float) -> tuple[float, float]:
+    """The same range with zero in its middle, where both signs occur: directions, motion."""
+    reach = max(abs(low), abs(high))
+    return (-reach, reach) if low < 0.0 < high else (low, high)
+
+
+def are_normals(pixels: Array) -> bool:
+    """True if vectors [h, w, 3 or 4] are unit length wherever there is anything."""
+    if pixels.shape[2] < 3:
+        return False
+    length = np.linalg.norm(pixels[..., :3].reshape(-1, 3).astype(np.float64), axis=1)
+    there = length[np.isfinite(length) & (length > 1e-4)]
+    return bool(there.size) and float((np.abs(there - 1.0) < 0.05).mean()) > 0.95

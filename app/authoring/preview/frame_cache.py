@@ -1,0 +1,152 @@
+"""What is known of all frames of one graph: which are there, and the histories on the way to others."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from halation.nodes import Size
+
+from ...compiler import Surface
+from ...graph import Port
+from ...renderer import FrameRenderer, Lease, Renderer
+
+SHARE = 0.5
+"""The part of the memory budget that frames may take which were shown."""
+
+LOOK_AGAIN = 0.2
+"""Seconds after which it is looked up anew which frames are there."""
+
+MOST_FRAMES = 5000
+"""Frames that are remembered at all."""
+
+
+@dataclass(frozen=True)
+class FrameImage:
+    """What a panel shows of a frame."""
+
+    surface: Surface
+    full_size: Size
+
+
+FrameImages = Mapping[str, FrameImage]
+"""By the panels' names."""
+
+
+class FrameCache:
+    """The frames of one graph as it is wanted, whatever the frame: it ends with any other change.
+
+    Frames that were shown stay on the device within a share of the memory budget; when that is spent, those go that
+    would be wanted last if the range was played on and on.
+    """
+
+    def __init__(self) -> None:
+        self._images_by_frame: dict[int, FrameImages] = {}
+        self._leases: dict[int, Lease] = {}
+        self._last_lookup: tuple[tuple[str, ...], float, tuple[int, ...]] = ((), 0.0, ())
+        """For whom it was looked up which frames are there, when, and which."""
+        self._frame_renderers: dict[tuple[tuple[str, Port], ...], FrameRenderer] = {}
+        self.closed = False
+        self.failed_frames: set[int] = set()
+        """Frames that cannot be made."""
+
+    # --- frames ------------------------------------------------------------------------------------------------------
+
+    def add_frame(self, frame: int, faces: FrameImages, renderer: Renderer, current_frame: int) -> None:
+        """A frame has been made; `now` is the one that is looked at."""
+        if self.closed:
+            return
+        self._last_lookup = (), 0.0, ()
+        faces = {**self._images_by_frame.get(frame, {}), **faces}
+        self._release_frame(frame)
+        self._images_by_frame[frame] = faces
+        lease = renderer.runner.lease()
+        for face in faces.values():
+            if face.surface.key in renderer.runner.textures:
+                lease.take(face.surface.key)
+        self._leases[frame] = lease
+        self._make_room(int(renderer.runner.textures.budget * SHARE), current_frame)
+        while len(self._images_by_frame) > MOST_FRAMES:
+            self._forget_frame(next(iter(self._images_by_frame)))
+
+    def find(self, frame: int, names: Mapping[str, Port], renderer: Renderer) -> FrameImages | None:
+        """What panels of these names show at a frame, if all of it is on the device."""
+        faces = self._images_by_frame.get(frame)
+        return faces if faces is not None and is_on_device(faces, names, renderer) else None
+
+    def list_frames(self, names: Mapping[str, Port], renderer: Renderer) -> tuple[int, ...]:
+        """The frames that are on the device, in order; what had to make room is noticed a moment later."""
+        now = time.monotonic()
+        asked_names, looked_up_at, frames = self._last_lookup
+        if asked_names != tuple(names) or now - looked_up_at > LOOK_AGAIN:
+            frames = tuple(
+                sorted(frame for frame, faces in self._images_by_frame.items() if is_on_device(faces, names, renderer))
+            )
+            self._last_lookup = tuple(names), now, frames
+        return frames
+
+    @property
+    def nbytes(self) -> int:
+        """What frames that are kept take on the device."""
+        return sum(self._sizes().values())
+
+    # --- histories ---------------------------------------------------------------------------------------------------
+
+    def find_frame_renderer(self, ports: Mapping[str, Port]) -> FrameRenderer | None:
+        """The history of these ports, if they are known to have one."""
+        return self._frame_renderers.get(tuple(ports.items()))
+
+    @property
+    def needs_history(self) -> bool:
+        """True if frames are known to need the ones before."""
+        return bool(self._frame_renderers)
+
+    def add_frame_renderer(self, ports: Mapping[str, Port], reel: FrameRenderer) -> FrameRenderer:
+        """They have one."""
+        self._frame_renderers[tuple(ports.items())] = reel
+        return reel
+
+    def close(self) -> None:
+        """Let go of everything."""
+        self.closed = True
+        for lease in (*self._leases.values(), *self._frame_renderers.values()):
+            lease.close()
+        self._images_by_frame.clear()
+        self._leases.clear()
+        self._frame_renderers.clear()
+
+    # --- parts -------------------------------------------------------------------------------------------------------
+
+    def _sizes(self) -> dict[str, int]:
+        return {
+            face.surface.key: face.surface.nbytes
+            for frame in self._leases
+            for face in self._images_by_frame[frame].values()
+        }
+
+    def _make_room(self, most: int, current_frame: int) -> None:
+        """Let frames go that are wanted last, until the others fit."""
+        sizes = self._sizes()
+        total, first, last = sum(sizes.values()), min(self._leases), max(self._leases)
+        if total <= most:
+            return
+        span = last - first + 1
+        for frame in sorted(self._leases, key=lambda frame: (frame - current_frame) % span, reverse=True):
+            self._release_frame(frame)
+            if sum(self._sizes().values()) <= most:
+                return
+
+    def _release_frame(self, frame: int) -> None:
+        """No longer keep a frame; it may stay for a while."""
+        if lease := self._leases.pop(frame, None):
+            lease.close()
+
+    def _forget_frame(self, frame: int) -> None:
+        self._release_frame(frame)
+        del self._images_by_frame[frame]
+
+
+def is_on_device(faces: FrameImages, names: Mapping[str, Port], renderer: Renderer) -> bool:
+    textures = renderer.runner.textures
+    return all(name in faces and faces[name].surface.key in textures for name in names)

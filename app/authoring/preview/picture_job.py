@@ -1,0 +1,120 @@
+"""One picture, or several of one frame, on their way: compiled and run in small steps, history first."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from ...compiler import Plan
+from ...errors import DeviceError, HalationError
+from ...graph import Port
+from ...renderer import FrameRenderer, Renderer, Run
+from .request import PreviewRequest
+from .visible_region import PictureRegion, VisibleRegion, find_visible_part
+
+if TYPE_CHECKING:
+    from ...compiler import Pass
+
+
+class PictureJob:
+    """A frame of a wish, for some of its ports. Raises the errors of `app.errors`, from the first line on.
+
+    `ahead` is for a frame that nobody wants to see yet. With a `part`, no more is computed of the pictures.
+    """
+
+    def __init__(
+        self,
+        renderer: Renderer,
+        wish: PreviewRequest,
+        ports: Mapping[str, Port],
+        frame: int,
+        timed: bool,
+        ahead: bool = False,
+        part: PictureRegion | None = None,
+    ) -> None:
+        self.wish, self.ports, self.frame, self.ahead, self.part = wish, ports, frame, ahead, part
+        self.timings: list[tuple[Pass, float]] | None = [] if timed else None
+        self.plan: Plan | None = None
+        self.run: Run | None = None
+        self.started_at = time.perf_counter()
+        self.finished_passes = 0
+        """Passes of runs that have ended."""
+        self.preroll = (0, 0)
+        """Frames of the history that have been run, and all that must be."""
+        self.planned_frames = (0, 0)
+        """The same for plans."""
+        self.lease = renderer.runner.lease()
+        self._runs: Iterator[Run] | None = None
+        self._frame_renderer: FrameRenderer | None = None
+        try:
+            self._frame_renderer = wish.frame_cache.find_frame_renderer(ports)
+            if self._frame_renderer is None:
+                region = part.region if part else None
+                plan = _check_displayable(renderer.compile(wish.graph, wish.render_request(ports, frame, region)))
+                if plan.memories:
+                    self._frame_renderer = wish.frame_cache.add_frame_renderer(
+                        ports, FrameRenderer(renderer, wish.graph, wish.render_request(ports, frame))
+                    )
+                else:
+                    self.plan, self.run = plan, renderer.runner.steps(plan, self.lease, timings=self.timings)
+        except BaseException:
+            self.lease.close()
+            raise
+
+    @property
+    def is_ready(self) -> bool:
+        """False while the next step would wait for a file."""
+        return self.run is None or self.run.ready
+
+    def step(self) -> bool:
+        """Do a little; True when all is done."""
+        if self.run is None:
+            self._plan_next()
+            return False
+        if next(self.run, None) is not None:
+            return False
+        self.finished_passes += self.run.total
+        return self._runs is None or not self._start_next_run()
+
+    def close(self) -> None:
+        """Drop it."""
+        if self.run is not None:
+            self.run.close()
+        self.lease.close()
+
+    def _plan_next(self) -> None:
+        """Compile one plan; with the last one, begin to run."""
+        assert self._frame_renderer is not None
+        if planned := self._frame_renderer.plan_next(self.frame):
+            self.planned_frames = planned
+            return
+        self.plan = _check_displayable(self._frame_renderer.plan(self.frame))
+        self.preroll = (-1, len(self._frame_renderer.lead(self.frame)))
+        self._runs = self._frame_renderer.steps(self.frame, self.lease, self.timings)
+        self._start_next_run()
+
+    def _start_next_run(self) -> bool:
+        assert self._runs is not None
+        run = next(self._runs, None)
+        if run is None:
+            return False
+        self.run, self.preroll = run, (self.preroll[0] + 1, self.preroll[1])
+        return True
+
+
+def begin_visible_part(renderer: Renderer, wish: PreviewRequest, glimpse: VisibleRegion) -> PictureJob | None:
+    """What makes the part of a wish that can be seen; None where nothing is gained by that."""
+    ports = {name: wish.ports[name] for name in sorted(glimpse.names)}
+    try:
+        part = find_visible_part(renderer, wish, ports, glimpse)
+        return PictureJob(renderer, wish, ports, wish.frame, False, part=part) if part else None
+    except HalationError:  # is found again, and said, where all is made
+        return None
+
+
+def _check_displayable(plan: Plan) -> Plan:
+    """A plan whose pictures can be shown. Raises DeviceError for one that can only be rendered to files."""
+    if plan.tiling is not None:
+        raise DeviceError(f"{plan.tiling.why}: look at a smaller proxy, or render it to a file")
+    return plan

@@ -1,0 +1,111 @@
+"""What the editor wants to see, and what its ports mean."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Any
+
+from halation.nodes import Kind, Size
+
+from ...compiler import Region, Upstream
+from ...errors import GraphError
+from ...graph import INPUTS, OUTPUTS, Graph, Group, Port
+from ...renderer import RenderRequest
+from .frame_cache import FrameCache
+
+if TYPE_CHECKING:
+    from ...inputs.provider import Binding
+
+
+@dataclass(eq=False)
+class PreviewRequest:
+    """Ports of a graph that panels want to show, by the panels' names. `world` counts changes outside of the graph."""
+
+    graph: Graph
+    ports: Mapping[str, Port]
+    bindings: Mapping[str, Binding]
+    scale: float
+    frame: int
+    size: Size | None
+    outside_version: int = 0
+    upstream: Upstream | None = None
+    """What each node depends on, in this graph or in an earlier one."""
+    frame_cache: FrameCache = field(default_factory=FrameCache)
+    """What is known of all frames of it."""
+
+    def render_request(self, ports: Mapping[str, Port], frame: int, region: Region | None = None) -> RenderRequest:
+        """The same for the renderer."""
+        return RenderRequest(self.bindings, ports, self.size, self.scale, frame, region=region)
+
+    def differs_only_in_frame(self, before: PreviewRequest) -> bool:
+        """True where nothing but the frame differs."""
+        return replace(self, frame=before.frame).wants_same_pixels(before)
+
+    def wants_same_pixels(self, other: PreviewRequest) -> bool:
+        """True where the same pixels are wanted; layout does not matter."""
+        return (
+            self.ports == other.ports
+            and self.scale == other.scale
+            and self.has_same_outside(other)
+            and (self.graph is other.graph or _pixel_facts(self.graph) == _pixel_facts(other.graph))
+        )
+
+    def has_same_outside(self, other: PreviewRequest) -> bool:
+        """True where all that comes from outside of the graph is the same."""
+        return (
+            (self.frame, self.size) == (other.frame, other.size)
+            and self.bindings.keys() == other.bindings.keys()
+            and all(_is_same_binding(item, other.bindings[name]) for name, item in self.bindings.items())
+        )
+
+    def node_mark(self, path: str) -> object:
+        """Something that changes when anything upstream of a node does."""
+        if self.upstream is None or self.upstream.graph is not self.graph:
+            self.upstream = Upstream(self.graph, known=self.upstream)
+        return self.upstream.hashes.get(path), self.outside_version
+
+
+def _pixel_facts(graph: Graph) -> tuple[Any, ...]:
+    """All of a graph that pixels depend on."""
+    return (
+        graph.nodes,
+        graph.links,
+        graph.inputs,
+        graph.outputs,
+        graph.controls,
+        graph.animation,
+        graph.settings,
+        graph.muted,
+        graph.folder,
+    )
+
+
+def _is_same_binding(one: Binding, other: Binding) -> bool:
+    """Arrays are the same where they are one object: comparing all pixels in every frame would be slow."""
+    plain = (str, PurePath, float, int, tuple)
+    return one is other or (isinstance(one, plain) and isinstance(other, plain) and one == other)
+
+
+def canvas_path(port: Port) -> str:
+    """Where a port is on the canvas: inputs are boxes of their own."""
+    return f"{port}" if port.node.rpartition("/")[2] == INPUTS else port.node
+
+
+def pixel_kind(graph: Graph, port: Port, channels: int) -> Kind:
+    """What the pixels of a port mean."""
+    *groups, last = port.node.split("/")
+    for name in groups:
+        item = graph.nodes.get(name)
+        if not isinstance(item, Group):
+            break
+        graph = item.graph
+    try:
+        socket = graph.target(Port(last, port.socket)) if last == OUTPUTS else graph.source(Port(last, port.socket))
+    except GraphError:
+        socket = None
+    kind = getattr(socket, "kind", None)
+    if isinstance(kind, Kind):
+        return kind
+    return Kind.FIELD if channels == 1 else Kind.IMAGE if channels == 4 else Kind.VECTOR

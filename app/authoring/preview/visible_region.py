@@ -1,0 +1,88 @@
+"""What can be seen of pictures: where that is a small part of them, it is computed before the rest."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from halation.nodes import Size
+
+from ...compiler import Region, scaled
+from ...graph import Port
+from ...renderer import Renderer
+from .request import PreviewRequest
+
+Box = tuple[float, float, float, float]
+"""Left, top, right, bottom as fractions of a picture."""
+
+MARGIN = 1 / 16
+"""What is computed beyond each edge, as a part of what is seen: small moves need nothing new."""
+
+GRID = 16
+"""Pixels: the least margin, and what regions are whole multiples of."""
+
+LARGEST = 0.5
+"""The part of a picture above which all of it is computed at once."""
+
+SMALL = 2**18
+"""Pixels of a picture below which all of it is computed at once."""
+
+
+@dataclass(frozen=True)
+class VisibleRegion:
+    """The box that panels of these `names` show of pictures that are of the size `picture` at scale 1."""
+
+    box: Box
+    picture: Size
+    names: frozenset[str]
+
+    def region(self, size: Size) -> Region | None:
+        """What to compute of a picture of so many pixels; None where that is hardly less than all."""
+        spans: list[tuple[int, int]] = []
+        for length, low, high in zip(size, self.box[:2], self.box[2:], strict=True):
+            more = max(GRID, math.ceil((high - low) * length * MARGIN))
+            first, end = math.floor(low * length) - more, math.ceil(high * length) + more
+            spans.append((max(first // GRID * GRID, 0), min(-(-end // GRID) * GRID, length)))
+        region, pixels = Region.of(spans[0], spans[1]), size[0] * size[1]
+        return region if pixels >= SMALL and region.width * region.height <= LARGEST * pixels else None
+
+    def share(self, scale: float) -> float:
+        """The part of the pictures that is computed first at a scale, of their area."""
+        size = scaled(self.picture, scale)
+        region = self.region(size)
+        return region.width * region.height / (size[0] * size[1]) if region else 1.0
+
+
+@dataclass(frozen=True)
+class PictureRegion:
+    """A region of pictures of `size` pixels."""
+
+    region: Region
+    size: Size
+
+    def shows(self, glimpse: VisibleRegion) -> bool:
+        """True if all that can be seen is in it."""
+        for axis, (first, end) in enumerate((self.region.across, self.region.down)):
+            length, low, high = self.size[axis], glimpse.box[axis], glimpse.box[axis + 2]
+            if first > max(math.floor(low * length) - 1, 0) or end < min(math.ceil(high * length) + 1, length):
+                return False
+        return True
+
+
+def find_visible_part(
+    renderer: Renderer, wish: PreviewRequest, ports: Mapping[str, Port], glimpse: VisibleRegion
+) -> PictureRegion | None:
+    """What to compute first of these ports; None where it must be all, or all is there.
+
+    Frames that need the ones before are made as a whole, since these are. Raises the errors of `app.errors`.
+    """
+    if wish.frame_cache.needs_history:
+        return None
+    plan, textures = renderer.compile(wish.graph, wish.render_request(ports, wish.frame)), renderer.runner.textures
+    surfaces = [plan.surfaces[number] for number in plan.outputs.values()]
+    size = scaled(glimpse.picture, wish.scale)
+    if plan.memories or plan.tiling is not None or any(surface.size != size for surface in surfaces):
+        return None
+    region = None if all(surface.key in textures for surface in surfaces) else glimpse.region(size)
+    return region and PictureRegion(region, size)

@@ -1,0 +1,60 @@
+"""The work on one wish."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from ...errors import HalationError
+from ...graph import Port
+from ..background.render_overviews import OverviewPending
+from .request import PreviewRequest
+from .timing import NodeTiming
+from .visible_region import PictureRegion, VisibleRegion
+
+REST = 0.2
+"""Seconds that a graph must stay as it is before all of a picture is computed of which the seen part is there."""
+
+
+@dataclass(eq=False)
+class PreviewWork:
+    """What is still to be compiled, and what went wrong so far."""
+
+    wish: PreviewRequest
+    queue: list[Mapping[str, Port]]
+    started_at: float
+    passes: int = 0
+    from_cache_only: bool = False
+    """True if its pictures were there, and nothing else was looked at."""
+    faults: dict[str, HalationError] = field(default_factory=dict[str, HalationError])
+    pending: OverviewPending | None = None
+    """The render that the first of the queue waits for."""
+    broken: dict[str, str] = field(default_factory=dict[str, str])
+    """Why panels cannot show what they want, by name."""
+    timings: dict[str, NodeTiming] = field(default_factory=dict[str, NodeTiming])
+    part: PictureRegion | None = None
+    """What is shown of its pictures, while the rest is still to be computed."""
+    tried_region: VisibleRegion | None = None
+    """What was seen when a part was looked for last."""
+
+    def may_show_part_first(self, glimpse: VisibleRegion | None) -> bool:
+        """True if a part of its pictures may be computed first."""
+        if glimpse is None or glimpse == self.tried_region or self.faults or self.pending or not self.wish.ports:
+            return False
+        return glimpse.names <= self.wish.ports.keys() and not (self.part and self.part.shows(glimpse))
+
+    @property
+    def must_wait(self) -> bool:
+        """True while the first of the queue must not be begun."""
+        if self.part is not None and time.perf_counter() - self.started_at < REST:
+            return True
+        return self.pending is not None and not self.pending.ready()
+
+    def note_failure(self, ports: Mapping[str, Port], error: HalationError) -> None:
+        """One fault must not hide what else can be shown: every port is tried alone."""
+        if len(ports) > 1:
+            self.queue = [{name: port} for name, port in ports.items()] + self.queue
+            return
+        self.broken |= dict.fromkeys(ports, str(error))
+        self.faults |= dict.fromkeys(error.node.split(", "), error)

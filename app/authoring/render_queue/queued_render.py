@@ -1,0 +1,218 @@
+"""One render to files: its process, what that tells, and how it is stopped."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from ...graph import Graph
+from ...renderer.jobs.render_job import RenderJob, worker_command
+from ...resources.atomic_write import temporary_prefix
+
+RenderState = Literal["waiting", "running", "done", "failed", "cancelled"]
+
+_PATIENCE = 0.6
+"""Seconds that a render may take to stop by itself."""
+
+_MOST_NOTES = 200
+
+_MIN_DONE_FOR_ESTIMATE = 0.3
+"""The part of a frame that must be done before anybody can say how long the rest takes."""
+
+
+@dataclass(frozen=True)
+class QueuedJob:
+    """What is rendered, now or again: the job that is sent to a process, and its graph."""
+
+    order: RenderJob
+    graph: Graph
+
+
+class QueuedRender:
+    """One render: it waits, runs, and ends. Everything may be read at any time.
+
+    `done` and `total` count frames, `kept` those that were there already; `frame` is the one under way, `passes` how
+    many of its passes are through and of how many, `node` what was computed last. `sentence` says why it failed,
+    `notes` what else there is to know, `written` the files that are there now.
+    """
+
+    def __init__(self, job: QueuedJob, ended: Callable[[], object] = bool) -> None:
+        self.job = job
+        self.state: RenderState = "waiting"
+        self.done = self.reused = 0
+        self.total = max(len(job.order.frames), 1)
+        self.frame: int | None = None
+        self.passes = (0, 0)
+        self.node = self.failure = ""
+        self.notes: tuple[str, ...] = ()
+        self.written_files: tuple[Path, ...] = ()
+        self.started_at = self.ended_at = 0.0
+        self._first_pass_at = 0.0
+        """When the first pass was through."""
+        self._report_end, self._has_ended, self._lock = ended, threading.Event(), threading.Lock()
+        self._process: subprocess.Popen[str] | None = None
+        self._helpers: tuple[int, ...] = ()
+        self._cancelled = False
+
+    @property
+    def destinations(self) -> tuple[tuple[str, Path], ...]:
+        """Names of outputs, and where they go."""
+        return self.job.order.files
+
+    @property
+    def fraction(self) -> float:
+        """How much of it is done, 0..1."""
+        return 1.0 if self.state == "done" else min((self.done + self._partial_frame) / max(self.total, 1), 1.0)
+
+    @property
+    def seconds(self) -> float:
+        """How long it has been running, or ran."""
+        return (self.ended_at or time.monotonic()) - self.started_at if self.started_at else 0.0
+
+    @property
+    def seconds_left(self) -> float | None:
+        """How long it still takes, if the frames to come take as long as those before; None where nobody knows."""
+        finished_frames = self.done - self.reused + self._partial_frame
+        if self.state != "running" or finished_frames < _MIN_DONE_FOR_ESTIMATE or not self._first_pass_at:
+            return None
+        return (
+            (time.monotonic() - self._first_pass_at)
+            / finished_frames
+            * max(self.total - self.done - self._partial_frame, 0.0)
+        )
+
+    def begin(self) -> None:
+        """Start the process. What it cannot do is its `sentence`."""
+        with self._lock:
+            if self.state != "waiting":
+                return
+            self.started_at = time.monotonic()
+            try:
+                self._process = subprocess.Popen(
+                    worker_command(),
+                    cwd=self.job.graph.folder or ".",
+                    stdin=subprocess.PIPE,
+                    stdout=subprocess.PIPE,
+                    stderr=subprocess.PIPE,
+                    encoding="utf-8",
+                    errors="surrogateescape",
+                    env={**os.environ, "PYTHONIOENCODING": "utf-8"},
+                    start_new_session=True,
+                )
+            except OSError as fault:
+                self.failure = f"the export cannot be started: {fault.filename or ''} {fault.strerror}"
+                self._finish("failed")
+                return
+            self.state = "running"
+        threading.Thread(target=self._run, args=(self._process,), name="export", daemon=True).start()
+
+    def cancel(self) -> None:
+        """Stop it, within a second; finished frames stay. Nothing happens if it has ended."""
+        with self._lock:
+            if self.state == "waiting":
+                self._finish("cancelled")
+            if self._process is None or self.state != "running" or self._cancelled:
+                return
+            self._cancelled = True
+        # Killed at once, it could not remove what it had begun to write. It may be busy, so it gets a moment.
+        if sys.platform != "win32":
+            self._process.send_signal(signal.SIGINT)
+        deadline = threading.Timer(_PATIENCE if sys.platform != "win32" else 0.0, self._kill)
+        deadline.daemon = True
+        deadline.start()
+
+    def wait(self, timeout: float | None = None) -> bool:
+        """Wait until it has ended, at most `timeout` seconds; False if it has not."""
+        return self._has_ended.wait(timeout)
+
+    # --- on the thread of its own ------------------------------------------------------------------------------------
+
+    def _run(self, running: subprocess.Popen[str]) -> None:
+        try:
+            self._read_output(running)
+        finally:
+            if not self._has_ended.is_set():
+                self.failure = "what the export says cannot be understood"
+                self._finish("failed")
+            self._report_end()
+
+    def _read_output(self, running: subprocess.Popen[str]) -> None:
+        with running as process:
+            assert process.stdin and process.stdout and process.stderr
+            with contextlib.suppress(OSError):  # it may end before it has read everything
+                process.stdin.write(self.job.order.to_json())
+            with contextlib.suppress(OSError):
+                process.stdin.close()
+            for line in process.stderr:
+                self._read_progress(line.rstrip())
+            output = process.stdout.read()
+        self._remove_partial_files(running.pid)
+        self._end(running.returncode, output)
+
+    def _read_progress(self, line: str) -> None:
+        """One line of what the process tells."""
+        with contextlib.suppress(ValueError, KeyError, TypeError, IndexError):
+            event = json.loads(line)
+            if "processes" in event:
+                self._helpers = tuple(map(int, event["processes"]))
+                self._first_pass_at = time.monotonic()
+            elif "done" in event:
+                self.written_files = (*self.written_files, *map(Path, event["written"]))
+                self.reused += bool(event["kept"])
+                self.done, self.total, self.passes = int(event["done"]), int(event["frames"]), (0, 0)
+            else:
+                passes = int(event["pass"]), int(event["passes"])
+                self.frame, self.node, self.passes = int(event["frame"]), str(event["nodes"][-1]), passes
+                self._first_pass_at = self._first_pass_at or time.monotonic()
+            return
+        if line:
+            self.notes = (*self.notes, line.removeprefix("-: "))[-_MOST_NOTES:]
+
+    def _end(self, code: int, output: str) -> None:
+        report: dict[str, Any] = {}
+        with contextlib.suppress(ValueError):
+            report = json.loads(output)
+        if code == 0:
+            self.written_files = tuple(Path(path) for path in report.get("written", ())) or self.written_files
+            self._finish("done")
+        elif self._cancelled:
+            self._finish("cancelled")
+        else:
+            fault = report.get("error", {}).get("message") or (self.notes[-1] if self.notes else "it gave no reason")
+            self.failure = str(fault).removeprefix("-: ") if code > 0 else f"the export was ended by signal {-code}"
+            self._finish("failed")
+
+    def _finish(self, state: RenderState) -> None:
+        self.ended_at, self.state = time.monotonic(), state
+        self._has_ended.set()
+
+    def _kill(self) -> None:
+        """End the process, and those that share its frames."""
+        if self._process is None or self.state != "running":
+            return
+        with contextlib.suppress(OSError):
+            os.killpg(self._process.pid, signal.SIGKILL) if sys.platform != "win32" else self._process.kill()
+
+    def _remove_partial_files(self, process: int) -> None:
+        """Remove what the processes had not finished when they were killed."""
+        for folder in {Path(os.path.realpath(path)).parent for _, path in self.destinations}:
+            for number in (process, *self._helpers):
+                for part in folder.glob(f"{temporary_prefix(number)}*"):
+                    with contextlib.suppress(OSError):
+                        part.unlink()
+
+    @property
+    def _partial_frame(self) -> float:
+        """How much of the frame under way is done."""
+        done, total = self.passes
+        return done / total if total else 0.0

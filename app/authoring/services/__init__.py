@@ -1,1 +1,0 @@
-"""What goes on beside the window: preferences, recovery, watched files, renders to disk."""

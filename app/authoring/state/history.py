@@ -1,0 +1,117 @@
+"""What can be undone: a list of steps, each with the document before and after."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+from ...graph import Graph
+
+MOST = 1000
+"""Steps that are kept; older ones are forgotten."""
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """A document as it was seen: its graph, the groups entered, and what was selected."""
+
+    root: Graph
+    place: tuple[str, ...] = ()
+    selection: frozenset[str] = frozenset()
+    active: str = ""
+
+
+@dataclass(frozen=True)
+class HistoryStep:
+    """One thing that was done. Further ones with the same `merge` become part of it."""
+
+    label: str
+    before: Snapshot
+    after: Snapshot
+    merge: str = ""
+
+
+@dataclass
+class History:
+    """Steps, oldest first; `position` of them are in force, the others can be done again."""
+
+    _steps: list[HistoryStep] = field(default_factory=list[HistoryStep])
+    position: int = 0
+
+    @property
+    def steps(self) -> tuple[str, ...]:
+        """The labels of all steps, oldest first."""
+        return tuple(step.label for step in self._steps)
+
+    @property
+    def can_undo(self) -> bool:
+        """True if something was done."""
+        return self.position > 0
+
+    @property
+    def can_redo(self) -> bool:
+        """True if something was undone."""
+        return self.position < len(self._steps)
+
+    @property
+    def undo_label(self) -> str:
+        """What undo would take back, or nothing."""
+        return self._steps[self.position - 1].label if self.can_undo else ""
+
+    @property
+    def redo_label(self) -> str:
+        """What redo would do again, or nothing."""
+        return self._steps[self.position].label if self.can_redo else ""
+
+    def add(self, step: HistoryStep) -> None:
+        """One more step; what was undone is forgotten. It joins the last one if both have the same `merge`."""
+        last = self._steps[self.position - 1] if self.can_undo and not self.can_redo else None
+        del self._steps[self.position :]
+        if last and step.merge and last.merge == step.merge:
+            self._steps[-1] = replace(last, after=step.after)
+        else:
+            self._steps = [*self._steps, step][-MOST:]
+        self.position = len(self._steps)
+
+    def snapshot_before(self, merge: str) -> Snapshot | None:
+        """The document before the last step, if that is one of this `merge` to which more can be added."""
+        if not merge or not self.can_undo or self.can_redo or self._steps[-1].merge != merge:
+            return None
+        return self._steps[-1].before
+
+    def abandon(self, merge: str) -> Snapshot | None:
+        """Forget the last step if it is that unfinished one; returns the document before it."""
+        before = self.snapshot_before(merge)
+        if before is not None:
+            self.position -= 1
+            self._steps.pop()
+        return before
+
+    def seal(self) -> None:
+        """End merging; a step that came back to where it began is forgotten."""
+        if not self.can_undo or self.can_redo or not self._steps[-1].merge:
+            return
+        last = self._steps.pop()
+        if last.before.root != last.after.root:
+            self._steps.append(replace(last, merge=""))
+        self.position = len(self._steps)
+
+    def go_to(self, position: int) -> Snapshot | None:
+        """The document with that many steps in force, at least none and at most all; None if nothing changes."""
+        target = min(max(position, 0), len(self._steps))
+        if target == self.position:
+            return None
+        back = target < self.position
+        self.position = target
+        return self._steps[target].before if back else self._steps[target - 1].after
+
+    def map_documents(self, edit: Callable[[Graph], Graph]) -> None:
+        """Apply what is no step, such as another folder, to every document of the past and future."""
+        self._steps = [
+            replace(
+                step,
+                before=replace(step.before, root=edit(step.before.root)),
+                after=replace(step.after, root=edit(step.after.root)),
+            )
+            for step in self._steps
+        ]
